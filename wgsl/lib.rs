@@ -1,1 +1,45 @@
-//! stub
+//! The cookbook's WGSL as constants, for the harness and for Rust engines: add this crate, paste `source` into your
+//! shader text.
+
+/// A technique: pure functions, no bindings, no entry points.
+#[derive(Clone, Copy, Debug)]
+pub struct Module {
+    /// The technique's name, which prefixes every name in `source`.
+    pub name: &'static str,
+    /// WGSL, valid by itself.
+    pub source: &'static str,
+    /// Its doc page in Markdown.
+    pub page: &'static str,
+}
+
+/// A complete shader, to be pasted after the modules that its `// requires:` line names.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe {
+    /// The recipe's name.
+    pub name: &'static str,
+    /// WGSL with entry points and bindings.
+    pub source: &'static str,
+}
+
+macro_rules! modules {
+    ($($name:literal),* $(,)?) => {
+        &[$(Module {
+            name: $name,
+            source: include_str!(concat!($name, ".wgsl")),
+            page: include_str!(concat!("../docs/", $name, ".md")),
+        }),*]
+    };
+}
+
+macro_rules! recipes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Recipe { name: $name, source: include_str!(concat!("recipes/", $name, ".wgsl")) }),*]
+    };
+}
+
+/// Every module, in the order of their names.
+pub const MODULES: &[Module] =
+    modules!["closest_point", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
+
+/// Every recipe, in the order of their names.
+pub const RECIPES: &[Recipe] = recipes!["display", "gem"];

@@ -1,1 +1,14 @@
-//! stub
+//! The harness of the Lapidary cookbook: it runs every WGSL function on a GPU, tests it against its Rust mirror and
+//! its f64 oracle, renders the recipes and builds the gallery. `cook` is its command line.
+
+pub mod check;
+pub mod cookbook;
+pub mod dispatch;
+pub mod formula;
+pub mod formulas;
+pub mod gpu;
+pub mod mutation;
+pub mod nearest;
+pub mod property;
+pub mod render;
+pub mod scene;

@@ -1,2 +1,7 @@
-//! stub
-fn main(){}
+//! `cook`, the cookbook's command line.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

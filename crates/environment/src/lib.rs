@@ -1,1 +1,178 @@
-//! stub
+//! Mirror of `wgsl/environment.wgsl`: coordinates and texels of a latitude-longitude map, and a procedural studio. The
+//! shader's comments hold the reasons, domains and accuracies.
+
+pub mod oracle;
+
+use glam::{UVec2, Vec2, Vec3};
+
+/// Angle of the point (x, y) in turns, counterclockwise from +x, in [-1/2, 1/2].
+#[rustfmt::skip] // two lines of coefficients, as in the shader
+pub fn turns(y: f32, x: f32) -> f32 {
+    let longer = x.abs().max(y.abs());
+    let shorter = x.abs().min(y.abs());
+    let mut ratio = 0.0;
+    if longer > 0.0 {
+        ratio = shorter / longer;
+    }
+    let s = ratio * ratio;
+    let mut turns = ratio * (0.15915492 - s * (0.053049512 - s * (0.031782802 - s * (0.022312697
+        - s * (0.015779087 - s * (0.009467554 - s * (0.0038598904 - s * 0.00074695825)))))));
+    if y.abs() > x.abs() {
+        turns = 0.25 - turns;
+    }
+    if x < 0.0 {
+        turns = 0.5 - turns;
+    }
+    if y < 0.0 { -turns } else { turns }
+}
+
+/// Length of the vector (a, b), safe from overflow and underflow of the squares.
+pub fn hypot(a: f32, b: f32) -> f32 {
+    let longer = a.abs().max(b.abs());
+    let mut ratio = 0.0;
+    if longer > 0.0 {
+        ratio = a.abs().min(b.abs()) / longer;
+    }
+    longer * (1.0 + ratio * ratio).sqrt()
+}
+
+/// Sine of an angle in turns, of any size.
+pub fn sine(turns: f32) -> f32 {
+    let wrapped = turns - turns.round_ties_even();
+    let folded = wrapped.clamp(-0.5 - wrapped, 0.5 - wrapped);
+    let s = folded * folded;
+    folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
+}
+
+/// Latitude-longitude coordinates of a direction of any length.
+pub fn uv_from_direction(direction: Vec3) -> Vec2 {
+    let u = 0.5 + turns(direction.z, direction.x);
+    let v = 2.0 * turns(hypot(direction.x, direction.z), direction.y);
+    Vec2::new(u, v)
+}
+
+/// The same by normalize and acos.
+pub fn uv_from_direction_naive(direction: Vec3) -> Vec2 {
+    let unit = direction / direction.length();
+    Vec2::new(
+        0.5 + unit.z.atan2(unit.x) * 0.15915494,
+        unit.y.acos() * 0.31830987,
+    )
+}
+
+/// Unit direction of latitude-longitude coordinates.
+pub fn direction_from_uv(uv: Vec2) -> Vec3 {
+    let polar = 0.5 * uv.y;
+    let sin_polar = sine(polar);
+    let cos_polar = -sine(polar - 0.25);
+    let sin_azimuth = -sine(uv.x);
+    let cos_azimuth = sine(uv.x - 0.25);
+    Vec3::new(sin_polar * cos_azimuth, cos_polar, sin_polar * sin_azimuth)
+}
+
+/// The four texels around a point of the map and how to blend them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentTexels {
+    /// Column and row of the texel at the lower coordinates.
+    pub lower: UVec2,
+    /// Column and row of the texel at the higher coordinates.
+    pub upper: UVec2,
+    /// Share of `upper` in each direction.
+    pub weight: Vec2,
+}
+
+/// Texels and weights of a bilinear lookup: columns wrap, rows are clamped.
+pub fn texels(uv: Vec2, size: UVec2) -> EnvironmentTexels {
+    // A texel's value sits in its middle, half a texel from its edge.
+    let column = (uv.x - uv.x.floor()) * size.x as f32 - 0.5;
+    let row = (uv.y * size.y as f32 - 0.5).clamp(0.0, size.y as f32 - 1.0);
+    // Left of the first middle the column is -1: one width more makes it the last.
+    let left = (column.floor() + size.x as f32) as u32 % size.x;
+    let top = row.floor() as u32;
+    let lower = UVec2::new(left, top);
+    let upper = UVec2::new((left + 1) % size.x, (top + 1).min(size.y - 1));
+    EnvironmentTexels {
+        lower,
+        upper,
+        weight: Vec2::new(column - column.floor(), row - row.floor()),
+    }
+}
+
+/// The same with both coordinates clamped.
+pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
+    let corner = uv * size.as_vec2() - 0.5;
+    let lower = corner.floor().max(Vec2::ZERO).as_uvec2();
+    let upper = (lower + 1).min(size - 1);
+    EnvironmentTexels {
+        lower,
+        upper,
+        weight: corner - corner.floor(),
+    }
+}
+
+/// How much of a rectangular, soft-edged light a direction meets, in [0, 1].
+pub fn softbox(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
+    let depth = direction.dot(axis);
+    // The projection knows no sign: -axis would land in the middle of the light.
+    if depth <= 0.0 {
+        return 0.0;
+    }
+    let right = up.cross(axis);
+    let position = Vec2::new(direction.dot(right), direction.dot(up)) / depth;
+    let inside = (half_size + softness - position.abs()) / (2.0 * softness);
+    let t = inside.clamp(Vec2::ZERO, Vec2::ONE);
+    let coverage = t * t * (3.0 - 2.0 * t);
+    coverage.x * coverage.y
+}
+
+/// The same without a look at the sign of the depth.
+pub fn softbox_naive(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
+    let depth = direction.dot(axis);
+    let right = up.cross(axis);
+    let position = Vec2::new(direction.dot(right), direction.dot(up)) / depth;
+    let inside = (half_size + softness - position.abs()) / (2.0 * softness);
+    let t = inside.clamp(Vec2::ZERO, Vec2::ONE);
+    let coverage = t * t * (3.0 - 2.0 * t);
+    coverage.x * coverage.y
+}
+
+/// Radiance of a dome that runs from `ground` straight below to `zenith` straight above.
+pub fn dome(direction: Vec3, ground: Vec3, zenith: Vec3) -> Vec3 {
+    let height = 0.5 + 0.5 * direction.y;
+    let weight = height * height;
+    ground * (1.0 - weight) + zenith * weight
+}
+
+/// A jeweller's studio: black flags with few, small, bright lights between them.
+#[rustfmt::skip] // a light is two lines, as in the shader
+pub fn studio(direction: Vec3) -> Vec3 {
+    // Surround: black velvet below, a dim and slightly blue tent above.
+    let surround = dome(direction, Vec3::new(0.012, 0.011, 0.010), Vec3::new(0.10, 0.12, 0.16));
+    // Key: a square softbox, high at the front left, slightly warm.
+    let key = Vec3::new(9.0, 8.4, 7.2) * softbox(direction,
+        Vec3::new(-2.0, 6.0, 3.0) / 7.0, Vec3::new(6.0, 3.0, -2.0) / 7.0, Vec2::new(0.28, 0.28), 0.05);
+    // Overhead: a long neutral strip just behind the zenith; the table and the upper halves mirror it.
+    let overhead = Vec3::new(13.0, 13.0, 13.0) * softbox(direction,
+        Vec3::new(0.0, 24.0, -7.0) / 25.0, Vec3::new(0.0, 7.0, 24.0) / 25.0, Vec2::new(0.70, 0.06), 0.03);
+    // Two upright strips, cool from the right and warm from the back left: the bezels' sides differ in colour.
+    let cool_strip = Vec3::new(7.0, 8.6, 10.0) * softbox(direction,
+        Vec3::new(6.0, 3.0, 2.0) / 7.0, Vec3::new(-2.0, 6.0, -3.0) / 7.0, Vec2::new(0.08, 0.45), 0.04);
+    let warm_strip = Vec3::new(9.0, 7.2, 5.0) * softbox(direction,
+        Vec3::new(-2.0, 1.0, -2.0) / 3.0, Vec3::new(2.0, 2.0, -1.0) / 3.0, Vec2::new(0.09, 0.40), 0.04);
+    // Three sparks: too small to light the stone, bright enough for dispersion to draw them out into colours.
+    let back_spark = Vec3::new(20.0, 19.0, 17.0) * softbox(direction,
+        Vec3::new(4.0, 7.0, -4.0) / 9.0, Vec3::new(1.0, 4.0, 8.0) / 9.0, Vec2::new(0.08, 0.08), 0.03);
+    let front_spark = Vec3::new(15.0, 16.0, 18.0) * softbox(direction,
+        Vec3::new(1.0, 2.0, 2.0) / 3.0, Vec3::new(-2.0, 2.0, -1.0) / 3.0, Vec2::new(0.07, 0.07), 0.03);
+    let low_spark = Vec3::new(16.0, 16.0, 16.0) * softbox(direction,
+        Vec3::new(2.0, 3.0, -6.0) / 7.0, Vec3::new(6.0, 2.0, 3.0) / 7.0, Vec2::new(0.06, 0.06), 0.03);
+    // Two weak cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
+    let back_card = Vec3::new(0.8, 0.85, 0.9) * softbox(direction,
+        Vec3::new(0.0, -3.0, -4.0) / 5.0, Vec3::new(0.0, 4.0, -3.0) / 5.0, Vec2::new(0.60, 0.20), 0.10);
+    let front_card = Vec3::new(0.6, 0.55, 0.5) * softbox(direction,
+        Vec3::new(0.0, -5.0, 12.0) / 13.0, Vec3::new(0.0, 12.0, 5.0) / 13.0, Vec2::new(0.50, 0.14), 0.10);
+    surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,176 @@
-//! stub
+//! Mirror of `wgsl/proxy_geometry.wgsl`: the inside of a gem guessed from the one triangle that a ray enters by. Imagire,
+//! "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9).
+//!
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+
+pub mod oracle;
+
+use glam::{IVec2, Vec2, Vec3};
+
+/// A triangle's image through the centre: one tile of plane P, and the lattice of all tiles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryPlane {
+    /// Image of the triangle's first vertex.
+    pub origin: Vec3,
+    /// From there to the image of the second vertex.
+    pub edge_first: Vec3,
+    /// And to the image of the third.
+    pub edge_second: Vec3,
+}
+
+/// Where a ray meets a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryHit {
+    /// Where the ray meets the plane; where it started, on a miss.
+    pub point: Vec3,
+    /// Along the ray, in units of its direction's length; 0 on a miss.
+    pub distance: f32,
+    /// False where the plane is behind the ray, through its start, or parallel to it.
+    pub hit: bool,
+}
+
+/// One tile of plane P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryFacet {
+    /// The first vertex.
+    pub vertex_first: Vec3,
+    /// The second.
+    pub vertex_second: Vec3,
+    /// The third.
+    pub vertex_third: Vec3,
+    /// Whole lattice steps along the two edges.
+    pub cell: IVec2,
+    /// Whether it is the cell's other half: the image turned by a half turn.
+    pub turned: bool,
+}
+
+/// A ray nearer than this to parallel (the sine of its angle to the plane) misses.
+pub const PROXY_GEOMETRY_PARALLEL: f32 = 9.536_743_164_062_5e-7;
+
+/// Image of a point through the centre of the proxy.
+pub fn image(centre: Vec3, position: Vec3) -> Vec3 {
+    2.0 * centre - position
+}
+
+/// Plane P and its lattice from a triangle and the centre.
+pub fn plane(centre: Vec3, position_first: Vec3, position_second: Vec3, position_third: Vec3) -> ProxyGeometryPlane {
+    ProxyGeometryPlane {
+        origin: image(centre, position_first),
+        edge_first: position_first - position_second,
+        edge_second: position_first - position_third,
+    }
+}
+
+/// Unit normal of a triangle, zero for a degenerate one.
+pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
+    let first = position_second - position_first;
+    let second = position_third - position_first;
+    let first_size = first.x.abs().max(first.y.abs()).max(first.z.abs());
+    let second_size = second.x.abs().max(second.y.abs()).max(second.z.abs());
+    if first_size.min(second_size) == 0.0 {
+        return Vec3::ZERO;
+    }
+    // Neither edge is longer than √3 now, and neither so short that the square of the sine could underflow.
+    let perpendicular = (first / first_size).cross(second / second_size);
+    let squared = perpendicular.dot(perpendicular);
+    if squared == 0.0 {
+        return Vec3::ZERO;
+    }
+    perpendicular / squared.sqrt()
+}
+
+/// The normal as one writes it.
+pub fn face_normal_naive(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
+    (position_second - position_first).cross(position_third - position_first).normalize()
+}
+
+/// Where a ray meets the plane through `plane_point` with unit normal `normal`.
+pub fn intersect(position: Vec3, direction: Vec3, plane_point: Vec3, normal: Vec3) -> ProxyGeometryHit {
+    let slope = normal.dot(direction);
+    let height = normal.dot(plane_point - position);
+    if slope.abs() <= PROXY_GEOMETRY_PARALLEL || height * slope.signum() <= 0.0 {
+        return ProxyGeometryHit { point: position, distance: 0.0, hit: false };
+    }
+    let distance = height / slope;
+    ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
+}
+
+/// The intersection without its cases.
+pub fn intersect_naive(position: Vec3, direction: Vec3, plane_point: Vec3, normal: Vec3) -> ProxyGeometryHit {
+    let distance = normal.dot(plane_point - position) / normal.dot(direction);
+    ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
+}
+
+/// Coordinates of a point of plane P on the lattice.
+pub fn coordinates(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec3) -> Vec2 {
+    let extent = edge_first.abs().max(edge_second.abs());
+    let size = extent.x.max(extent.y).max(extent.z);
+    if size == 0.0 {
+        return Vec2::ZERO;
+    }
+    let offset = (point - origin) / size;
+    let first = edge_first / size;
+    let second = edge_second / size;
+    let perpendicular = first.cross(second);
+    let squared = perpendicular.dot(perpendicular);
+    // 2^-60, the square of the limit stated above.
+    if squared < 8.673_617_379_884_035e-19 {
+        return Vec2::ZERO;
+    }
+    Vec2::new(offset.cross(second).dot(perpendicular), first.cross(offset).dot(perpendicular)) / squared
+}
+
+/// The coordinates by the Gram matrix of the edges.
+pub fn coordinates_naive(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec3) -> Vec2 {
+    let offset = point - origin;
+    let first_first = edge_first.dot(edge_first);
+    let first_second = edge_first.dot(edge_second);
+    let second_second = edge_second.dot(edge_second);
+    let offset_first = offset.dot(edge_first);
+    let offset_second = offset.dot(edge_second);
+    Vec2::new(
+        second_second * offset_first - first_second * offset_second,
+        first_first * offset_second - first_second * offset_first,
+    ) / (first_first * second_second - first_second * first_second)
+}
+
+/// The tile of plane P that holds a point.
+pub fn facet(plane: ProxyGeometryPlane, point: Vec3) -> ProxyGeometryFacet {
+    let coordinates = coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
+    let cell = coordinates.floor();
+    let within = coordinates - cell;
+    let turned = within.x + within.y > 1.0;
+    // The turned half starts at the far corner of the cell and runs backwards along both edges.
+    let corner = if turned { cell + Vec2::ONE } else { cell };
+    let way = if turned { -1.0 } else { 1.0 };
+    let vertex = plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second;
+    ProxyGeometryFacet {
+        vertex_first: vertex,
+        vertex_second: vertex + way * plane.edge_first,
+        vertex_third: vertex + way * plane.edge_second,
+        cell: cell.as_ivec2(),
+        turned,
+    }
+}
+
+/// Normal of a tile, eq. (8) and (9), turned so that it faces the ray.
+pub fn facet_normal(centre: Vec3, vertex_first: Vec3, vertex_second: Vec3, vertex_third: Vec3, direction: Vec3) -> Vec3 {
+    let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0;
+    let size = to_centre.x.abs().max(to_centre.y.abs()).max(to_centre.z.abs());
+    if size == 0.0 {
+        return -direction;
+    }
+    let scaled = to_centre / size;
+    let normal = scaled / scaled.dot(scaled).sqrt();
+    if normal.dot(direction) > 0.0 { -normal } else { normal }
+}
+
+/// Eq. (8) and (9) as they stand.
+pub fn facet_normal_naive(centre: Vec3, vertex_first: Vec3, vertex_second: Vec3, vertex_third: Vec3) -> Vec3 {
+    (centre - (vertex_first + vertex_second + vertex_third) / 3.0).normalize()
+}
+
+/// The plane that a ray meets after it was reflected at a tile.
+pub fn next_plane(centre: Vec3, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
+    plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third)
+}

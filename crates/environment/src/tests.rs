@@ -1,0 +1,371 @@
+//! Mirror against oracle: what f32 costs, and where the naive forms break.
+
+use super::*;
+use glam::{DVec2, DVec3};
+
+struct Lcg(u64);
+
+impl Lcg {
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f32 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+    /// Uniform in (-1, 1).
+    fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+    /// Either sign, magnitudes spread evenly over the exponents from 2^low to 2^high.
+    fn magnitude(&mut self, low: f32, high: f32) -> f32 {
+        let sign = if self.unit() < 0.5 { -1.0 } else { 1.0 };
+        sign * (low + (high - low) * self.unit()).exp2()
+    }
+    fn direction(&mut self) -> Vec3 {
+        loop {
+            let d = Vec3::new(self.signed(), self.signed(), self.signed());
+            if d.length() > 0.1 && d.length() <= 1.0 {
+                return d.normalize();
+            }
+        }
+    }
+}
+
+fn ulp(exact: f64) -> f64 {
+    let x = exact.abs() as f32;
+    f64::from(f32::from_bits(x.to_bits() + 1) - x).max(2f64.powi(-126))
+}
+
+fn report(what: &str, worst: f64, bound: f64) {
+    println!("{what}: {worst:.3e} of {bound:.3e}");
+    assert!(worst <= bound, "{what}: {worst:e} > {bound:e}");
+}
+
+/// How far `f` moves when each component of `input` moves by `ulps` of the largest: what `ulps` backward allow.
+fn backward(ulps: f64, input: Vec3, f: impl Fn(DVec3) -> DVec3) -> f64 {
+    let (exact, step) = (
+        f(input.as_dvec3()),
+        ulps * ulp(f64::from(input.abs().max_element())),
+    );
+    DVec3::AXES
+        .iter()
+        .map(|&axis| {
+            let moved = |sign: f64| {
+                (f(input.as_dvec3() + sign * step * axis) - exact)
+                    .abs()
+                    .max_element()
+            };
+            moved(1.0).max(moved(-1.0))
+        })
+        .sum()
+}
+
+#[test]
+fn angles_match_the_oracle() {
+    let mut rng = Lcg(1);
+    let mut worst = [0.0f64; 3];
+    for i in 0..1_000_000 {
+        let (x, y) = match i % 4 {
+            0 => (rng.signed(), rng.signed()),
+            1 => (rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0)),
+            2 => (
+                rng.magnitude(-1.0, 1.0),
+                if i % 8 == 2 {
+                    0.0
+                } else {
+                    rng.magnitude(-30.0, 1.0)
+                },
+            ),
+            _ => (
+                if i % 8 == 3 {
+                    0.0
+                } else {
+                    rng.magnitude(-30.0, 1.0)
+                },
+                rng.magnitude(-1.0, 1.0),
+            ),
+        };
+        let (wide_x, wide_y) = (f64::from(x), f64::from(y));
+        let exact = oracle::turns(wide_y, wide_x);
+        assert!(turns(y, x).abs() <= 0.5);
+        worst[0] = worst[0].max((f64::from(turns(y, x)) - exact).abs() / ulp(exact));
+        let exact = oracle::hypot(wide_x, wide_y);
+        worst[1] = worst[1].max((f64::from(hypot(x, y)) - exact).abs() / ulp(exact));
+        let angle = if i % 2 == 0 { x } else { 8.0 * rng.signed() };
+        let exact = oracle::sine(f64::from(angle));
+        worst[2] = worst[2].max((f64::from(sine(angle)) - exact).abs() / ulp(exact));
+    }
+    report("turns ulp", worst[0], 6.0);
+    report("hypot ulp", worst[1], 3.0);
+    report("sine ulp", worst[2], 5.0);
+    for quarter in -8..=8 {
+        let exact = [0.0, 1.0, 0.0, -1.0][(quarter & 3) as usize];
+        assert!((sine(0.25 * quarter as f32) - exact).abs() <= 6e-8);
+    }
+}
+
+#[test]
+fn map_coordinates_match_the_oracle() {
+    let mut rng = Lcg(2);
+    let mut worst = [0.0f64; 5];
+    for i in 0..1_000_000 {
+        let direction = match i % 4 {
+            0 => rng.direction(),
+            1 => Vec3::new(
+                rng.magnitude(-126.0, 126.0),
+                rng.magnitude(-126.0, 126.0),
+                rng.magnitude(-126.0, 126.0),
+            ),
+            2 => Vec3::new(
+                rng.magnitude(-30.0, 0.0),
+                rng.magnitude(0.0, 0.0),
+                rng.magnitude(-30.0, 0.0),
+            ),
+            _ => Vec3::new(-1.0, rng.signed(), rng.magnitude(-40.0, -10.0)),
+        };
+        let uv = uv_from_direction(direction);
+        assert!(
+            uv.min_element() >= 0.0 && uv.max_element() <= 1.0,
+            "{direction} {uv}"
+        );
+        let exact = oracle::uv_from_direction(direction.as_dvec3());
+        worst[0] = worst[0].max((uv.as_dvec2() - exact).abs().max_element());
+        let unit = direction.as_dvec3().normalize();
+        worst[1] = worst[1].max(
+            (direction_from_uv(uv).as_dvec3() - unit)
+                .abs()
+                .max_element(),
+        );
+
+        let uv = if i % 4 == 0 {
+            Vec2::new(rng.unit(), rng.magnitude(-30.0, 0.0).abs())
+        } else {
+            Vec2::new(rng.unit(), rng.unit())
+        };
+        let exact = oracle::direction_from_uv(uv.as_dvec2());
+        let got = direction_from_uv(uv);
+        worst[2] = worst[2]
+            .max((got.as_dvec3() - exact).abs().max_element() / ulp(exact.abs().max_element()));
+        worst[3] = worst[3].max((got.as_dvec3().length() - 1.0).abs());
+        if unit.y.abs() < 0.9 && i % 4 == 0 {
+            let naive = uv_from_direction_naive(direction);
+            worst[4] = worst[4].max(
+                (naive.as_dvec2() - oracle::uv_from_direction(direction.as_dvec3()))
+                    .abs()
+                    .max_element(),
+            );
+        }
+    }
+    report("uv_from_direction abs", worst[0], 1.5e-7);
+    report("round trip abs", worst[1], 1e-6);
+    report("direction_from_uv ulp", worst[2], 8.0);
+    report("|direction_from_uv| - 1", worst[3], 4e-7);
+    report("naive uv on benign input abs", worst[4], 3e-7);
+}
+
+#[test]
+fn poles_and_seam() {
+    for (direction, uv) in [
+        (Vec3::Y, Vec2::new(0.5, 0.0)),
+        (Vec3::NEG_Y, Vec2::new(0.5, 1.0)),
+        (Vec3::X, Vec2::new(0.5, 0.5)),
+        (Vec3::Z, Vec2::new(0.75, 0.5)),
+        (Vec3::NEG_Z, Vec2::new(0.25, 0.5)),
+        (Vec3::NEG_X, Vec2::new(1.0, 0.5)),
+        (Vec3::new(-1.0, 0.0, -0.0), Vec2::new(1.0, 0.5)),
+        (Vec3::new(-1.0, 0.0, -1e-30), Vec2::new(0.0, 0.5)),
+        (Vec3::new(-0.0, 1.0, 0.0), Vec2::new(0.5, 0.0)),
+        (Vec3::ZERO, Vec2::new(0.5, 0.0)),
+    ] {
+        assert_eq!(uv_from_direction(direction), uv, "{direction}");
+    }
+}
+
+#[test]
+fn naive_coordinates_fail_where_the_docs_say_so() {
+    for direction in [
+        Vec3::new(1e-4, 1.0, 2e-4),
+        Vec3::new(3e-4, -1.0, 1e-4),
+        Vec3::new(-0.0, 1.0, 0.0),
+        Vec3::new(3e-24, 4e-24, 0.0),
+        Vec3::new(3e19, 4e19, 0.0),
+    ] {
+        let exact = oracle::uv_from_direction(direction.as_dvec3());
+        let (stable, naive) = (
+            uv_from_direction(direction),
+            uv_from_direction_naive(direction),
+        );
+        println!(
+            "{direction}: exact {exact}, stable off {:e}, naive {naive} off {:e}",
+            (stable.as_dvec2() - exact).abs().max_element(),
+            (naive.as_dvec2() - exact).abs().max_element()
+        );
+        assert!((stable.as_dvec2() - exact).abs().max_element() <= 1.5e-7);
+        let naive_error = (naive.as_dvec2() - exact).abs();
+        assert!(naive.is_nan() || naive_error.max_element() > 5e-5);
+    }
+}
+
+#[test]
+fn texels_match_the_oracle() {
+    let mut rng = Lcg(3);
+    let (mut worst, mut backward, mut disagreements) = (0.0f64, 0.0f64, 0);
+    for i in 0..1_000_000 {
+        let size = match i % 3 {
+            0 => UVec2::new(1 + (8.0 * rng.unit()) as u32, 1 + (8.0 * rng.unit()) as u32),
+            1 => UVec2::new(2048, 1024),
+            _ => UVec2::new(
+                1 + (16383.0 * rng.unit()) as u32,
+                1 + (16383.0 * rng.unit()) as u32,
+            ),
+        };
+        let uv = match i % 5 {
+            0 => Vec2::new(4.0 * rng.unit(), rng.unit()),
+            1 => Vec2::new(
+                (rng.unit() * size.x as f32).floor() / size.x as f32,
+                (rng.unit() * size.y as f32).floor() / size.y as f32,
+            ),
+            2 => Vec2::new([0.0, 1.0, 0.5, 2.0][i % 4], [0.0, 1.0, 0.5, 1.0][i % 4]),
+            3 => Vec2::new(
+                rng.magnitude(-40.0, 0.0).abs(),
+                rng.magnitude(-40.0, 0.0).abs(),
+            ),
+            _ => Vec2::new(rng.unit(), rng.unit()),
+        };
+        let got = texels(uv, size);
+        assert!(got.lower.cmplt(size).all() && got.upper.cmplt(size).all());
+        assert!(got.weight.min_element() >= 0.0 && got.weight.max_element() <= 1.0);
+        let exact = oracle::texels(uv.as_dvec2(), size);
+        if (got.lower, got.upper) != (exact.lower, exact.upper) {
+            // Right for an input two ulp off.
+            let step = 2.0 * ulp(f64::from(uv.max_element()));
+            let near = [-1.0, 0.0, 1.0].iter().any(|x| {
+                [-1.0, 0.0, 1.0].iter().any(|y| {
+                    let moved = oracle::texels(uv.as_dvec2() + step * DVec2::new(*x, *y), size);
+                    (got.lower, got.upper) == (moved.lower, moved.upper)
+                })
+            });
+            assert!(near, "{uv} {size} {got:?} {exact:?}");
+            disagreements += 1;
+            continue;
+        }
+        let unit = ulp(f64::from(uv.max_element())) * size.as_dvec2();
+        let error = (got.weight.as_dvec2() - exact.weight).abs();
+        worst = worst.max((error - 2.0 * unit).max_element());
+        backward = backward.max(((error - 1e-7) / unit).max_element());
+    }
+    println!(
+        "texels: {disagreements} discrete disagreements; weight beyond 2 backward {worst:e} abs, beyond 1e-7 {backward} backward"
+    );
+    assert!(worst <= 1e-7);
+    // The hard case: on the seam both neighbours count.
+    let size = UVec2::new(8, 4);
+    for u in [0.0, 1.0, 0.999] {
+        println!(
+            "u {u}: {:?}\n  naive {:?}",
+            texels(Vec2::new(u, 0.5), size),
+            texels_naive(Vec2::new(u, 0.5), size)
+        );
+    }
+    for _ in 0..100_000 {
+        let uv = Vec2::new(0.125 + 0.75 * rng.unit(), 0.25 + 0.5 * rng.unit());
+        assert_eq!(texels(uv, size), texels_naive(uv, size));
+    }
+}
+
+#[test]
+fn softbox_matches_the_oracle() {
+    let mut rng = Lcg(4);
+    let (mut worst, mut naive_differs, mut lit) = (0.0f64, 0.0f32, 0);
+    for i in 0..1_000_000 {
+        let axis = rng.direction();
+        // Twice, since a short cross product is not orthogonal to its last digits.
+        let sideways = axis.cross(rng.direction()).normalize();
+        let up = axis.cross(sideways).normalize();
+        let half_size = Vec2::new(0.02 + 2.0 * rng.unit(), 0.02 + 2.0 * rng.unit());
+        let softness = (0.004 + rng.unit() * 0.5).min(half_size.min_element());
+        // Around the edges, where everything happens.
+        let reach = (half_size + softness) * 1.2;
+        let mut direction =
+            (axis + reach.x * rng.signed() * up.cross(axis) + reach.y * rng.signed() * up)
+                .normalize();
+        if i % 4 == 0 {
+            direction = rng.direction();
+        }
+        let got = softbox(direction, axis, up, half_size, softness);
+        assert!((0.0..=1.0).contains(&got));
+        let f = |d: DVec3, a: DVec3, u: DVec3| {
+            DVec3::X * oracle::softbox(d, a, u, half_size.as_dvec2(), f64::from(softness))
+        };
+        let (d, a, u) = (direction.as_dvec3(), axis.as_dvec3(), up.as_dvec3());
+        let exact = f(d, a, u).x;
+        let allowed = backward(3.0, direction, |d| f(d, a, u))
+            + backward(3.0, axis, |a| f(d, a, u))
+            + backward(3.0, up, |u| f(d, a, u));
+        let error = (f64::from(got) - exact).abs() - 6.0 * ulp(exact);
+        if error > 0.0 {
+            worst = worst.max(error / allowed);
+        }
+        lit += usize::from(exact > 0.0);
+        if direction.dot(axis) > 0.0 {
+            naive_differs = naive_differs
+                .max((softbox_naive(direction, axis, up, half_size, softness) - got).abs());
+        }
+    }
+    println!("lit {lit}");
+    report("softbox beyond 6 ulp, of 3 backward", worst, 1.0);
+    assert_eq!(naive_differs, 0.0);
+    let naive = softbox_naive(Vec3::NEG_Z, Vec3::Z, Vec3::Y, Vec2::ONE, 0.5);
+    assert_eq!(
+        (
+            softbox(Vec3::NEG_Z, Vec3::Z, Vec3::Y, Vec2::ONE, 0.5),
+            naive
+        ),
+        (0.0, 1.0)
+    );
+}
+
+#[test]
+fn dome_and_studio_match_the_oracle() {
+    let mut rng = Lcg(5);
+    let (mut dome_worst, mut studio_worst) = (0.0f64, 0.0f64);
+    let (mut low, mut high, mut mean, mut lit, mut upper) =
+        (Vec3::MAX, Vec3::ZERO, DVec3::ZERO, 0, 0);
+    let count = 2_000_000;
+    for i in 0..count {
+        let direction = rng.direction();
+        let got = studio(direction);
+        (low, high) = (low.min(got), high.max(got));
+        mean += got.as_dvec3() / f64::from(count);
+        lit += usize::from(got.max_element() > 0.5 && direction.y > 0.0);
+        upper += usize::from(direction.y > 0.0);
+        if i % 4 != 0 {
+            continue;
+        }
+        let exact = oracle::studio(direction.as_dvec3());
+        let error = (got.as_dvec3() - exact).abs().max_element() - 8.0 * ulp(exact.max_element());
+        if error > 0.0 {
+            studio_worst = studio_worst.max(error / backward(3.0, direction, oracle::studio));
+        }
+        let (ground, zenith) = (
+            Vec3::new(rng.unit(), rng.unit(), rng.unit()),
+            Vec3::new(rng.unit(), rng.unit(), rng.unit()),
+        );
+        let truth = |d: DVec3| oracle::dome(d, ground.as_dvec3(), zenith.as_dvec3());
+        let exact = truth(direction.as_dvec3());
+        let error = (dome(direction, ground, zenith).as_dvec3() - exact)
+            .abs()
+            .max_element()
+            - backward(1.0, direction, truth);
+        dome_worst = dome_worst.max(error / ulp(exact.max_element()));
+    }
+    report("dome ulp beyond 1 backward", dome_worst, 4.0);
+    report("studio beyond 8 ulp, of 3 backward", studio_worst, 1.0);
+    println!(
+        "studio from {low} to {high}, mean {mean}, upper hemisphere lit {:.3}",
+        lit as f64 / upper as f64
+    );
+    assert!(low.min_element() >= 0.0099 && high.max_element() <= 20.1);
+}

@@ -1,0 +1,155 @@
+//! The truth in f64, by other geometry than the mirror's: the point reflection as a solved midpoint, normals by the
+//! angle that they make, the intersection by bisection of the signed height, lattice coordinates by Cramer's rule in
+//! an orthonormal frame of the plane, the tile by a search over the lattice.
+
+use glam::{DMat2, DMat3, DVec2, DVec3, IVec2};
+
+/// A triangle's image through the centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryPlane {
+    /// Image of the triangle's first vertex.
+    pub origin: DVec3,
+    /// From there to the image of the second vertex.
+    pub edge_first: DVec3,
+    /// And to the image of the third.
+    pub edge_second: DVec3,
+}
+
+/// Where a ray meets a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryHit {
+    /// Where, or the start on a miss.
+    pub point: DVec3,
+    /// Along the ray; 0 on a miss.
+    pub distance: f64,
+    /// Whether it does.
+    pub hit: bool,
+}
+
+/// One tile of plane P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyGeometryFacet {
+    /// The first vertex.
+    pub vertex_first: DVec3,
+    /// The second.
+    pub vertex_second: DVec3,
+    /// The third.
+    pub vertex_third: DVec3,
+    /// Whole lattice steps along the two edges.
+    pub cell: IVec2,
+    /// Whether it is the cell's other half.
+    pub turned: bool,
+}
+
+/// The point of which `centre` is the midpoint with `position`.
+pub fn image(centre: DVec3, position: DVec3) -> DVec3 {
+    centre + (centre - position)
+}
+
+/// Edges as differences of images.
+pub fn plane(centre: DVec3, position_first: DVec3, position_second: DVec3, position_third: DVec3) -> ProxyGeometryPlane {
+    let [first, second, third] = [position_first, position_second, position_third].map(|x| image(centre - position_first, x - position_first));
+    ProxyGeometryPlane { origin: first + position_first, edge_first: second - first, edge_second: third - first }
+}
+
+/// The second edge made perpendicular to the first (Gram and Schmidt), then completed to a right-handed frame.
+pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third: DVec3) -> DVec3 {
+    let first = (position_second - position_first).normalize_or_zero();
+    let second = (position_third - position_first).normalize_or_zero();
+    let mut across = second - second.dot(first) * first;
+    // Once more: twice is enough, for what cancelled in the first round (Kahan).
+    across -= across.dot(first) * first;
+    // Below f64's own rounding the edges are parallel, and the triangle is degenerate.
+    if across.length() < 1e-13 { DVec3::ZERO } else { first.cross(across.normalize()).normalize_or_zero() }
+}
+
+/// The parameter at which the ray's height over the plane is 0, by similar triangles on the heights of two of its points.
+pub fn intersect(position: DVec3, direction: DVec3, plane_point: DVec3, normal: DVec3) -> ProxyGeometryHit {
+    let miss = ProxyGeometryHit { point: position, distance: 0.0, hit: false };
+    let height = (position - plane_point).dot(normal);
+    let unit = height.abs();
+    let descent = (position + unit * direction - plane_point).dot(normal) - height;
+    // Descends by less than the sine allows, or away from the plane.
+    if unit == 0.0 || (direction.dot(normal)).abs() <= f64::from(crate::PROXY_GEOMETRY_PARALLEL) || descent * height >= 0.0 {
+        return miss;
+    }
+    // The first estimate by the two heights, then one secant step, since they cancel for far points.
+    let mut distance = -height / (descent / unit);
+    distance -= (position + distance * direction - plane_point).dot(normal) / direction.dot(normal);
+    ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
+}
+
+/// Cramer's rule on two components, in an orthonormal frame of the plane.
+pub fn coordinates(point: DVec3, origin: DVec3, edge_first: DVec3, edge_second: DVec3) -> DVec2 {
+    let size = edge_first.abs().max(edge_second.abs()).max_element();
+    if size == 0.0 {
+        return DVec2::ZERO;
+    }
+    let (first, second, offset) = (edge_first / size, edge_second / size, (point - origin) / size);
+    // The frame is laid along the longer edge, so that a zero edge does no harm.
+    let along = if first.length() > second.length() { first } else { second }.normalize();
+    let other = if first.length() > second.length() { second } else { first };
+    let across = other - other.dot(along) * along;
+    let across = (across - across.dot(along) * along).normalize_or_zero();
+    let flat = |v: DVec3| DVec2::new(v.dot(along), v.dot(across));
+    let matrix = DMat2::from_cols(flat(first), flat(second));
+    let area = matrix.determinant();
+    if area.abs() < 2f64.powi(-30) {
+        return DVec2::ZERO;
+    }
+    let offset = flat(offset);
+    DVec2::new(
+        DMat2::from_cols(offset, flat(second)).determinant(),
+        DMat2::from_cols(flat(first), offset).determinant(),
+    ) / area
+}
+
+/// The tile among those about the rounded coordinates that holds the point, by its half-open inequalities.
+pub fn facet(plane: ProxyGeometryPlane, point: DVec3) -> ProxyGeometryFacet {
+    let coordinates = coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
+    let near = coordinates.round();
+    for (dx, dy) in [(-1.0, -1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0)] {
+        let cell = near + DVec2::new(dx, dy);
+        // Compared, not subtracted: a difference from a tiny negative coordinate would round to the next cell.
+        if coordinates.cmplt(cell).any() || coordinates.cmpge(cell + DVec2::ONE).any() {
+            continue;
+        }
+        let within = coordinates - cell;
+        let turned = within.y > 1.0 - within.x;
+        let corners = if turned {
+            [DVec2::new(1.0, 1.0), DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0)]
+        } else {
+            [DVec2::ZERO, DVec2::X, DVec2::Y]
+        };
+        let lattice = DMat3::from_cols(plane.edge_first, plane.edge_second, plane.origin);
+        let [vertex_first, vertex_second, vertex_third] = corners.map(|corner| lattice * (cell + corner).extend(1.0));
+        return ProxyGeometryFacet { vertex_first, vertex_second, vertex_third, cell: cell.as_ivec2(), turned };
+    }
+    unreachable!("the four cells about the nearest lattice point hold the point")
+}
+
+/// The direction from the centroid, found vertex by vertex, to the centre; the larger of its angles to the ray.
+pub fn facet_normal(
+    centre: DVec3,
+    vertex_first: DVec3,
+    vertex_second: DVec3,
+    vertex_third: DVec3,
+    direction: DVec3,
+) -> DVec3 {
+    let to_centre = [vertex_first, vertex_second, vertex_third].iter().map(|vertex| (centre - vertex) / 3.0).sum::<DVec3>();
+    if to_centre == DVec3::ZERO {
+        return -direction;
+    }
+    let normal = to_centre / to_centre.length();
+    if normal.angle_between(direction) < std::f64::consts::FRAC_PI_2 { -normal } else { normal }
+}
+
+/// As `facet_normal`, whichever way it points.
+pub fn facet_normal_naive(centre: DVec3, vertex_first: DVec3, vertex_second: DVec3, vertex_third: DVec3) -> DVec3 {
+    facet_normal(centre, vertex_first, vertex_second, vertex_third, DVec3::ZERO)
+}
+
+/// The plane of the tile's image.
+pub fn next_plane(centre: DVec3, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
+    plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third)
+}

@@ -1,0 +1,63 @@
+//! The truth in f64, from Snell's law in angles: n_i sin θ_i = n_t sin θ_t, in the plane of incidence. The mirror
+//! never forms an angle.
+
+use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
+
+/// Where a ray goes at an interface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RefractionHit {
+    /// Unit direction of the refracted ray, or of the reflected one where nothing is refracted.
+    pub direction: DVec3,
+    /// True under total internal reflection.
+    pub total: bool,
+}
+
+/// The quotient of the indices as a difference of logarithms.
+pub fn relative_index(index_incident: f64, index_transmitted: f64) -> f64 {
+    (index_transmitted.ln() - index_incident.ln()).exp()
+}
+
+/// The law of reflection: in the plane of incidence the ray leaves at the angle at which it came.
+pub fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
+    let (angle, tangent, normal) = plane_of_incidence(incident, normal);
+    direction_at(angle, tangent, normal)
+}
+
+/// cos² θ_t as 1 - sin² θ_t, factored so that f64 keeps its digits near total internal reflection.
+pub fn radicand(cosine: f64, relative_index: f64) -> f64 {
+    let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
+    let sine_transmitted = sine / relative_index;
+    if cosine < 0.5 {
+        // Near grazing 1 - sine loses c²; n - sin θ_i = (n - 1) + (1 - sin θ_i), with 1 - sin θ_i = 2 sin²((π/2 - θ_i)/2).
+        let complement = 2.0 * (0.5 * cosine.asin()).sin().powi(2);
+        ((relative_index - 1.0) + complement) * (relative_index + sine) / (relative_index * relative_index)
+    } else {
+        (1.0 - sine_transmitted) * (1.0 + sine_transmitted)
+    }
+}
+
+/// Snell's law: θ_t = asin(sin θ_i / n); total where the sine would exceed 1.
+pub fn refract(incident: DVec3, normal: DVec3, relative_index: f64) -> RefractionHit {
+    let (angle, tangent, normal) = plane_of_incidence(incident, normal);
+    // From behind the plane is grazing incidence, as the module states it.
+    let angle = angle.min(FRAC_PI_2);
+    if radicand(angle.cos(), relative_index) < 0.0 {
+        return RefractionHit { direction: direction_at(angle, tangent, normal), total: true };
+    }
+    let transmitted = (angle.sin() / relative_index).min(1.0).asin();
+    RefractionHit { direction: direction_at(transmitted, tangent, -normal), total: false }
+}
+
+/// Angle of incidence in [0, π], unit tangent along which the ray moves, unit normal.
+fn plane_of_incidence(incident: DVec3, normal: DVec3) -> (f64, DVec3, DVec3) {
+    let normal = normal.normalize();
+    let along = normal.cross(incident);
+    let angle = along.length().atan2(-normal.dot(incident));
+    (angle, along.cross(normal).normalize_or_zero(), normal)
+}
+
+/// Unit direction at `angle` from `axis` towards `tangent`.
+fn direction_at(angle: f64, tangent: DVec3, axis: DVec3) -> DVec3 {
+    angle.sin() * tangent + angle.cos() * axis
+}

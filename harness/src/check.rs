@@ -1,0 +1,196 @@
+//! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
+
+use crate::cookbook::{self, header::FunctionDoc};
+use crate::dispatch::shape::Scalar;
+use crate::dispatch::{DispatchError, Kernel, KernelModule};
+use crate::formula::{Formula, Words};
+use crate::formulas;
+use crate::gpu::Gpu;
+use crate::property::persistence::{PersistenceError, Regressions};
+use crate::property::tolerance::Tolerance;
+use crate::property::{Check, Report, Settings};
+use serde::Serialize;
+
+/// Why a check could not run; a check that ran and failed is a report.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckError {
+    /// No such module or function.
+    #[error("{0}")]
+    Unknown(String),
+    /// The source or the device refused.
+    #[error("{path}: {error}")]
+    Dispatch {
+        /// Whose source.
+        path: String,
+        /// What is the matter.
+        error: DispatchError,
+    },
+    /// The kept inputs could not be read or written.
+    #[error(transparent)]
+    Persistence(#[from] PersistenceError),
+}
+
+/// A row of `cook check`'s table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The module.
+    pub module: String,
+    /// The WGSL function.
+    pub function: String,
+    /// Inputs tested.
+    pub cases: u64,
+    /// Inputs that failed.
+    pub failed: u64,
+    /// Results with a NaN or an infinity.
+    pub nonfinite: u64,
+    /// Forward error against the oracle in ulp of the exact value's largest component.
+    pub max_ulp: f64,
+    /// The same, at the 99th percentile.
+    pub p99_ulp: f64,
+    /// The same, the median.
+    pub median_ulp: f64,
+    /// Largest error over allowed error.
+    pub worst_ratio: f64,
+    /// The input of that error.
+    pub worst_input: String,
+    /// The simplest input found that fails as well; null where nothing failed.
+    pub shrunk_input: Option<String>,
+    /// What the worst input broke; null where nothing failed.
+    pub reason: Option<String>,
+    /// Edges of the domain that the run did not reach.
+    pub missed_edges: Vec<&'static str>,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
+
+impl Row {
+    /// Whether the formula holds.
+    pub fn passed(&self) -> bool {
+        self.failed == 0 && self.missed_edges.is_empty()
+    }
+}
+
+/// The source that a check runs on.
+#[derive(Clone, Copy, Debug)]
+pub enum Source<'a> {
+    /// The cookbook's own. Failing inputs are kept.
+    Cookbook,
+    /// The user's copy: path for messages, and text. The tolerance stays the cookbook's.
+    Copy(&'a str, &'a str),
+}
+
+/// The function's comment in the cookbook.
+///
+/// # Panics
+/// Where a formula is declared for a function that the cookbook does not have, which a test forbids.
+pub fn documentation(formula: &Formula) -> &'static FunctionDoc {
+    cookbook::module(formula.module)
+        .and_then(|module| module.function(formula.function))
+        .unwrap_or_else(|| panic!("wgsl/{}.wgsl has no function `{}`", formula.module, formula.function))
+}
+
+/// The formulas that `filter` names: all, a module's, or one function's (`refraction::refract` or
+/// `refraction::refraction_refract`). Naive forms are left out unless named.
+pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError> {
+    let promised = |formula: &&Formula| formula.benign.is_none();
+    let Some(filter) = filter else { return Ok(formulas::all().iter().filter(promised).collect()) };
+    let (module, function) = filter.split_once("::").map_or((filter, None), |(module, function)| (module, Some(function)));
+    let Some(module) = cookbook::module(module) else {
+        let names: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
+        return Err(CheckError::Unknown(format!("no module `{module}`{}", crate::nearest::suggest(module, &names))));
+    };
+    let Some(function) = function else {
+        return Ok(formulas::all().iter().filter(|f| f.module == module.name).filter(promised).collect());
+    };
+    let found = module.function(function).and_then(|found| formulas::of_function(&found.name));
+    found.map(|formula| vec![formula]).ok_or_else(|| {
+        let names: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
+        let hint = crate::nearest::suggest(function, &names);
+        CheckError::Unknown(format!("module `{}` has no function `{function}`{hint}", module.name))
+    })
+}
+
+/// The tolerance of a formula on this device: that of its `Accuracy:` line, or of its benign domain for a naive form.
+pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
+    match formula.benign {
+        Some(relative) => Tolerance::of_benign(&formula.arguments, &formula.result, relative),
+        None => {
+            let bounds = documentation(formula).accuracy.bounds(gpu.is_lavapipe()).unwrap_or_default();
+            Tolerance::new(&formula.arguments, &formula.result, bounds)
+        }
+    }
+}
+
+/// Reflects, checks the signature against the mirror's, and compiles.
+pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Result<Kernel<'gpu>, CheckError> {
+    let own_path = format!("wgsl/{}.wgsl", formula.module);
+    let (path, text) = match source {
+        Source::Cookbook => (own_path.as_str(), cookbook::module(formula.module).map_or("", |module| module.source)),
+        Source::Copy(path, text) => (path, text),
+    };
+    let in_path = |error| CheckError::Dispatch { path: path.to_owned(), error };
+    let module = KernelModule::reflect(text, path, formula.function).map_err(in_path)?;
+    module.signature.expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
+    Kernel::new(gpu, module).map_err(in_path)
+}
+
+/// Runs the property tests of one formula. Inputs that failed in earlier runs and those of the hard cases go first.
+pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings) -> Result<Row, CheckError> {
+    let mut kernel = kernel(gpu, formula, source)?;
+    let regressions = Regressions::of_cookbook();
+    let mut replayed = regressions.load(formula.function, kernel.argument_words())?;
+    replayed.extend(formula.hard_cases.iter().map(|case| case.arguments.clone()));
+    let tolerance = tolerance(gpu, formula);
+    let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }
+        .run(settings, &replayed)
+        .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+    if let (Source::Cookbook, Some(shrunk)) = (source, &report.shrunk) {
+        regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
+    }
+    Ok(row(formula, &report))
+}
+
+fn row(formula: &Formula, report: &Report) -> Row {
+    Row {
+        module: formula.module.to_owned(),
+        function: formula.function.to_owned(),
+        cases: report.cases,
+        failed: report.failed,
+        nonfinite: report.nonfinite,
+        max_ulp: report.max_ulp,
+        p99_ulp: report.ulps.quantile(0.99),
+        median_ulp: report.ulps.quantile(0.5),
+        worst_ratio: report.worst_ratio,
+        worst_input: spell(formula, &report.worst),
+        shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
+        reason: report.reason.clone(),
+        missed_edges: report.missed_edges().collect(),
+        seconds: report.seconds,
+    }
+}
+
+/// The input as a person reads it: shortest decimals that name the f32 exactly, vectors in parentheses.
+pub fn spell(formula: &Formula, words: &Words) -> String {
+    let mut at = 0;
+    let mut arguments = Vec::new();
+    for shape in &formula.arguments {
+        let mut leaves = Vec::new();
+        for leaf in shape.leaves() {
+            let numbers: Vec<String> = words
+                .iter()
+                .skip(at + leaf.start)
+                .take(leaf.length)
+                .map(|word| match leaf.scalar {
+                    Scalar::F32 => format!("{:?}", f32::from_bits(*word)),
+                    Scalar::I32 => word.cast_signed().to_string(),
+                    Scalar::U32 => word.to_string(),
+                    Scalar::Bool => (*word != 0).to_string(),
+                })
+                .collect();
+            leaves.push(if numbers.len() == 1 { numbers.concat() } else { format!("({})", numbers.join(", ")) });
+        }
+        at += shape.words();
+        arguments.push(if leaves.len() == 1 { leaves.concat() } else { format!("{{{}}}", leaves.join(", ")) });
+    }
+    arguments.join(", ")
+}

@@ -1,0 +1,116 @@
+//! `cook check`.
+
+use super::{Context, Failure, Outcome};
+use lapidary_harness::check::{self, Row, Source};
+use lapidary_harness::cookbook;
+use lapidary_harness::property::{DEFAULT_CASES, Settings};
+use std::path::PathBuf;
+
+/// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --wgsl my_engine/refraction.wgsl")]
+pub(super) struct Arguments {
+    /// A module, or one function of it as MODULE::FUNCTION; all where left out.
+    #[arg(value_name = "MODULE[::FUNCTION]")]
+    filter: Option<String>,
+    /// Test this file's functions instead of the cookbook's, to the cookbook's tolerance.
+    #[arg(long, value_name = "FILE")]
+    wgsl: Option<PathBuf>,
+    /// Random inputs a function.
+    #[arg(long, default_value_t = DEFAULT_CASES, value_parser = clap::value_parser!(u64).range(1..))]
+    cases: u64,
+    /// Where the random inputs start; the same seed gives the same inputs.
+    #[arg(long, default_value_t = Settings::default().seed)]
+    seed: u64,
+    /// One JSON document on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let copy = match &arguments.wgsl {
+        None => None,
+        Some(path) => {
+            let text = std::fs::read_to_string(path)
+                .map_err(|error| Failure(format!("{}: cannot be read: {error}", path.display())))?;
+            Some((path.display().to_string(), text))
+        }
+    };
+    let source = copy.as_ref().map_or(Source::Cookbook, |(path, text)| Source::Copy(path, text));
+    let filter = match (&arguments.filter, source) {
+        (None, Source::Copy(path, text)) => Some(module_of(path, text)?),
+        (filter, _) => filter.clone(),
+    };
+    let formulas = check::select(filter.as_deref())?;
+    let gpu = context.gpu()?;
+    let settings = Settings { cases: arguments.cases, seed: arguments.seed };
+    // All signatures first, so that a wrong one is said before minutes of testing.
+    for formula in &formulas {
+        check::kernel(gpu, formula, source)?;
+    }
+    let bar = super::progress::bar(formulas.len() as u64, "checking");
+    let mut rows = Vec::new();
+    for formula in formulas {
+        bar.set_message(formula.function);
+        rows.push(check::run(gpu, formula, source, settings)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&rows)?);
+    } else {
+        print_table(&rows, &gpu.describe());
+    }
+    Ok(if rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
+}
+
+/// The module whose functions a user's file holds, where the user did not say.
+fn module_of(path: &str, text: &str) -> Result<String, Failure> {
+    let holds = |module: &&cookbook::Module| module.functions.iter().any(|function| text.contains(&function.name));
+    let mut found = cookbook::modules().iter().filter(holds);
+    match (found.next(), found.next()) {
+        (Some(module), None) => Ok(module.name.to_owned()),
+        (None, _) => Err(Failure(format!("{path}: holds no function of the cookbook; name one: cook check MODULE::FUNCTION --wgsl {path}"))),
+        (Some(_), Some(_)) => Err(Failure(format!("{path}: holds functions of several modules; name one: cook check MODULE --wgsl {path}"))),
+    }
+}
+
+fn print_table(rows: &[Row], adapter: &str) {
+    println!("on {adapter}; forward error against the f64 oracle in ulp, and the worst error over the allowed one");
+    println!(
+        "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7}",
+        "function", "cases", "failed", "nonfinite", "max ulp", "p99", "median", "of bound", "seconds"
+    );
+    for row in rows {
+        println!(
+            "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7.2}",
+            row.function,
+            row.cases,
+            row.failed,
+            row.nonfinite,
+            short(row.max_ulp),
+            short(row.p99_ulp),
+            short(row.median_ulp),
+            short(row.worst_ratio),
+            row.seconds
+        );
+    }
+    for row in rows.iter().filter(|row| !row.passed()) {
+        println!("\nFAILED {}", row.function);
+        if let Some(reason) = &row.reason {
+            println!("  {reason}");
+            println!("  worst input:  {}", row.worst_input);
+        }
+        if let Some(shrunk) = &row.shrunk_input {
+            println!("  shrunk input: {shrunk}");
+        }
+        for edge in &row.missed_edges {
+            println!("  the inputs never reached: {edge}; run more --cases");
+        }
+    }
+}
+
+/// Three digits, in whichever notation is shorter.
+fn short(value: f64) -> String {
+    if value == 0.0 || (0.01..10_000.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.1e}") }
+}

@@ -1,0 +1,83 @@
+//! The commands. Each returns an [`Outcome`] or a [`Failure`]; this file turns those into exit codes: 0 for success, 1
+//! for a check that failed, 2 for bad usage or bad input, with one clear line on stderr.
+
+mod check;
+mod progress;
+mod render;
+
+use clap::{Parser, Subcommand};
+use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use std::process::ExitCode;
+
+/// Whether what was checked holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// All is well.
+    Passed,
+    /// A check ran and failed.
+    Failed,
+}
+
+/// One clear line: what, where, what to do.
+#[derive(Debug)]
+pub(crate) struct Failure(pub(crate) String);
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// A shader cookbook for gems and translucent materials: copy the WGSL, test its formulas, look at the pictures.
+#[derive(Parser)]
+#[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
+struct Arguments {
+    /// Which GPU: lavapipe, any, or part of an adapter's name.
+    #[arg(long, global = true, value_name = "NAME")]
+    adapter: Option<AdapterChoice>,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Check(check::Arguments),
+    Render(render::Arguments),
+}
+
+/// What every command may use.
+pub(crate) struct Context {
+    adapter: AdapterChoice,
+}
+
+impl Context {
+    /// The process's device, opened at the first use.
+    pub(crate) fn gpu(&self) -> Result<&'static Gpu, Failure> {
+        Ok(Gpu::shared(&self.adapter)?)
+    }
+}
+
+/// Parses the command line, runs the command, reports.
+pub(crate) fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are no errors; clap knows which stream and which code.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let context = Context { adapter: arguments.adapter.unwrap_or_else(AdapterChoice::platform_default) };
+    let outcome = match arguments.command {
+        Command::Check(arguments) => check::run(&context, &arguments),
+        Command::Render(arguments) => render::run(&context, &arguments),
+    };
+    match outcome {
+        Ok(Outcome::Passed) => ExitCode::SUCCESS,
+        Ok(Outcome::Failed) => ExitCode::from(1),
+        Err(Failure(message)) => {
+            eprintln!("cook: {}", message.trim_end());
+            ExitCode::from(2)
+        }
+    }
+}

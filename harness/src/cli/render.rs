@@ -1,0 +1,82 @@
+//! `cook render`.
+
+use super::{Context, Failure, Outcome, progress};
+use lapidary_harness::cookbook;
+use lapidary_harness::nearest;
+use lapidary_harness::render::file::Format;
+use lapidary_harness::render::{self, Environment, RUNGS, Rung, Settings};
+use lapidary_harness::scene::Scene;
+use lapidary_harness::scene::environment_map::EnvironmentMap;
+use std::path::PathBuf;
+
+/// Renders a scene: a built-in's name, or a .glb or .gltf file.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  ./cook render brilliant\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr")]
+pub(super) struct Arguments {
+    /// brilliant, octahedron, step_cut, prism, bunny_stone, or a glTF 2.0 file.
+    scene: String,
+    /// In pixels.
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
+    size: (u32, u32),
+    /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png where left out.
+    #[arg(long, value_name = "F.png|F.exr")]
+    out: Option<PathBuf>,
+    /// How much of the light's way is followed: surface, proxy-1.
+    #[arg(long, default_value = "proxy-1", value_parser = parse_rung)]
+    rung: Rung,
+    /// The proxy's centre: stable, or the paper's eq. (4).
+    #[arg(long, value_name = "FORM", default_value = "stable", value_parser = ["stable", "paper"])]
+    centre: String,
+    /// A latitude-longitude .exr or .hdr image; the procedural studio where left out.
+    #[arg(long, value_name = "FILE")]
+    environment: Option<PathBuf>,
+    /// Radiance is multiplied by this before the tone curve.
+    #[arg(long, default_value_t = 1.0, value_parser = parse_exposure)]
+    exposure: f32,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let parsed = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
+}
+
+fn parse_rung(text: &str) -> Result<Rung, String> {
+    let names: Vec<&str> = RUNGS.iter().map(|(name, _)| *name).collect();
+    let found = RUNGS.iter().find(|(name, _)| *name == text).map(|(_, rung)| *rung);
+    found.ok_or_else(|| format!("no such rung{}", nearest::suggest(text, &names)))
+}
+
+fn parse_exposure(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(exposure) if exposure.is_finite() && exposure > 0.0 => Ok(exposure),
+        _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let scene = Scene::open(&arguments.scene)?;
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
+    Format::of_path(&out)?;
+    let environment = match &arguments.environment {
+        None => Environment::Studio,
+        Some(path) => Environment::Map(EnvironmentMap::load(path)?),
+    };
+    let (width, height) = arguments.size;
+    let settings = Settings {
+        rung: arguments.rung,
+        paper_centre: arguments.centre == "paper",
+        environment,
+        exposure: arguments.exposure,
+        ..Settings::of_size(width, height)
+    };
+    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let bar = progress::bar(0, "rendering");
+    let picture = render::render_with(context.gpu()?, &scene, &settings, &source, &mut |done, total| {
+        bar.set_length(total);
+        bar.set_position(done);
+    })?;
+    bar.finish_and_clear();
+    render::file::write(&picture, &out)?;
+    println!("{}", out.display());
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,166 @@
+//! The `Accuracy:` line of a function: the tolerance that its tests apply. Grammar in `docs/contract.md`.
+
+use crate::dispatch::shape::Shape;
+use std::fmt;
+
+/// What a function promises.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Accuracy {
+    /// Kept to be compared with; promises nothing.
+    Naive,
+    /// Bounds on lavapipe and on any conforming WebGPU implementation.
+    Bounded {
+        /// On the reference device.
+        lavapipe: Vec<FieldBound>,
+        /// From WGSL's own guarantees.
+        portable: Vec<FieldBound>,
+    },
+}
+
+/// The bound on one field of the result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldBound {
+    /// The struct's field; none where the result is a scalar, a vector or a matrix.
+    pub field: Option<String>,
+    /// Its bound.
+    pub bound: Bound,
+}
+
+/// The allowed error of a field, a sum of terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bound {
+    /// In units in the last place of the exact value's largest component.
+    pub ulp: f64,
+    /// Absolute.
+    pub absolute: f64,
+    /// Relative to the exact value's largest component.
+    pub relative: f64,
+    /// Exact for an input that is off by up to this many ulp in each component.
+    pub backward: f64,
+}
+
+impl Accuracy {
+    /// Parses the text after `Accuracy:`.
+    pub fn parse(text: &str) -> Result<Accuracy, String> {
+        let text = text.trim();
+        if text == "naive" {
+            return Ok(Self::Naive);
+        }
+        let expected = || "expected `naive` or `lavapipe BOUNDS; portable BOUNDS`".to_owned();
+        let (lavapipe, portable) = text.split_once(';').ok_or_else(expected)?;
+        let lavapipe = lavapipe.trim().strip_prefix("lavapipe ").ok_or_else(expected)?;
+        let portable = portable.trim().strip_prefix("portable ").ok_or_else(expected)?;
+        Ok(Self::Bounded { lavapipe: parse_bounds(lavapipe)?, portable: parse_bounds(portable)? })
+    }
+
+    /// The bounds for a device, and none for a naive form.
+    pub fn bounds(&self, lavapipe: bool) -> Option<&[FieldBound]> {
+        match self {
+            Self::Naive => None,
+            Self::Bounded { lavapipe: bounds, .. } if lavapipe => Some(bounds),
+            Self::Bounded { portable, .. } => Some(portable),
+        }
+    }
+
+    /// Checks that the fields named are those of `result`, each once.
+    pub fn check_fields(&self, result: &Shape) -> Result<(), String> {
+        let fields: Vec<Option<&str>> = match result {
+            Shape::Struct(_, fields) => fields.iter().map(|(name, _)| Some(name.as_str())).collect(),
+            _ => vec![None],
+        };
+        let Self::Bounded { lavapipe, portable } = self else { return Ok(()) };
+        for bounds in [lavapipe, portable] {
+            let named: Vec<Option<&str>> = bounds.iter().map(|bound| bound.field.as_deref()).collect();
+            if named != fields {
+                let spell = |names: &[Option<&str>]| {
+                    names.iter().map(|name| name.unwrap_or("(no field name)")).collect::<Vec<_>>().join(", ")
+                };
+                return Err(format!("bounds are for {}, the result has {}", spell(&named), spell(&fields)));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn parse_bounds(text: &str) -> Result<Vec<FieldBound>, String> {
+    text.split(',').map(|bound| parse_bound(bound.trim())).collect()
+}
+
+fn parse_bound(text: &str) -> Result<FieldBound, String> {
+    let (field, terms) = match text.split_once(' ') {
+        Some((first, rest)) if first.parse::<f64>().is_err() => (Some(first.to_owned()), rest),
+        _ => (None, text),
+    };
+    let mut bound = Bound::default();
+    for term in terms.split('+') {
+        let (number, unit) = term
+            .trim()
+            .split_once(' ')
+            .ok_or_else(|| format!("`{term}`: expected a number and ulp, abs, rel or backward"))?;
+        let number: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
+        if !(number.is_finite() && number >= 0.0) {
+            return Err(format!("`{number}` is no bound"));
+        }
+        let slot = match unit.trim() {
+            "ulp" => &mut bound.ulp,
+            "abs" => &mut bound.absolute,
+            "rel" => &mut bound.relative,
+            "backward" => &mut bound.backward,
+            other => return Err(format!("`{other}` is not ulp, abs, rel or backward")),
+        };
+        *slot += number;
+    }
+    Ok(FieldBound { field, bound })
+}
+
+/// In the line's own grammar.
+impl fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Bounded { lavapipe, portable } = self else { return f.write_str("naive") };
+        let spell = |bounds: &[FieldBound]| bounds.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        write!(f, "lavapipe {}; portable {}", spell(lavapipe), spell(portable))
+    }
+}
+
+/// In the line's own grammar.
+impl fmt::Display for FieldBound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(field) = &self.field {
+            write!(f, "{field} ")?;
+        }
+        let Bound { ulp, absolute, relative, backward } = self.bound;
+        let terms = [(ulp, "ulp"), (absolute, "abs"), (relative, "rel"), (backward, "backward")];
+        let mut terms: Vec<String> =
+            terms.iter().filter(|(number, _)| *number != 0.0).map(|(number, unit)| format!("{number} {unit}")).collect();
+        if terms.is_empty() {
+            terms.push("0 ulp".to_owned());
+        }
+        f.write_str(&terms.join(" + "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_reads_back_as_it_was_written() {
+        for line in [
+            "naive",
+            "lavapipe 0.5 ulp; portable 2.5 ulp",
+            "lavapipe direction 5 ulp + 3 backward, total 3 backward; portable direction 9 ulp, total 0 ulp",
+            "lavapipe 0.000001 abs; portable 0.001 rel",
+        ] {
+            assert_eq!(Accuracy::parse(line).expect(line).to_string(), line);
+        }
+    }
+
+    #[test]
+    fn a_broken_line_is_refused() {
+        for line in
+            ["", "exact", "lavapipe 3 ulp", "portable 3 ulp; lavapipe 3 ulp", "lavapipe 3; portable 3 ulp", "lavapipe 3 cm; portable 3 ulp", "lavapipe inf ulp; portable 1 ulp", "lavapipe -1 ulp; portable 1 ulp"]
+        {
+            assert!(Accuracy::parse(line).is_err(), "{line}");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The cookbook as data: which modules and recipes there are, what their comments promise, how they are put together
+//! and written for other shading languages.
+
+pub mod accuracy_line;
+pub mod header;
+pub mod lint;
+pub mod translate;
+
+use header::{FunctionDoc, Header};
+use std::sync::OnceLock;
+
+/// One technique's WGSL module.
+#[derive(Clone, Debug)]
+pub struct Module {
+    /// Its name, the same in `wgsl/`, `crates/`, `docs/` and `snapshots/`.
+    pub name: &'static str,
+    /// Its WGSL.
+    pub source: &'static str,
+    /// Its doc page, Markdown.
+    pub page: &'static str,
+    /// What its header says.
+    pub header: Header,
+    /// What its functions' comments say, in order of the file.
+    pub functions: Vec<FunctionDoc>,
+}
+
+impl Module {
+    /// The function of that WGSL name, with or without the module's prefix.
+    pub fn function(&self, name: &str) -> Option<&FunctionDoc> {
+        let prefixed = format!("{}_{name}", self.name);
+        self.functions.iter().find(|function| function.name == name || function.name == prefixed)
+    }
+}
+
+/// A complete shader written with the modules' functions.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    /// Its name.
+    pub name: &'static str,
+    /// Its WGSL, without the modules that it requires.
+    pub source: &'static str,
+    /// The modules that its `// requires:` line names, in order.
+    pub requires: Vec<&'static str>,
+}
+
+impl Recipe {
+    /// The whole shader: the required modules in the order of the `// requires:` line, then the recipe.
+    pub fn compose(&self) -> String {
+        compose(&self.requires, self.source)
+    }
+}
+
+/// All modules, in the order of their names.
+///
+/// # Panics
+/// Where a module's comments break the contract, with the line and what is expected: the sources are compiled in, so
+/// only an edit of the cookbook itself can do this.
+pub fn modules() -> &'static [Module] {
+    static MODULES: OnceLock<Vec<Module>> = OnceLock::new();
+    MODULES.get_or_init(|| {
+        let fault = |name: &str, fault: header::HeaderFault| -> ! {
+            panic!("wgsl/{name}.wgsl:{}: {}", fault.line, fault.message)
+        };
+        lapidary_wgsl::MODULES
+            .iter()
+            .map(|module| Module {
+                name: module.name,
+                source: module.source,
+                page: module.page,
+                header: header::parse_header(module.source).unwrap_or_else(|e| fault(module.name, e)),
+                functions: header::parse_functions(module.source).unwrap_or_else(|e| fault(module.name, e)),
+            })
+            .collect()
+    })
+}
+
+/// The module of that name.
+pub fn module(name: &str) -> Option<&'static Module> {
+    modules().iter().find(|module| module.name == name)
+}
+
+/// All recipes, in the order of their names.
+pub fn recipes() -> &'static [Recipe] {
+    static RECIPES: OnceLock<Vec<Recipe>> = OnceLock::new();
+    RECIPES.get_or_init(|| {
+        lapidary_wgsl::RECIPES
+            .iter()
+            .map(|recipe| Recipe { name: recipe.name, source: recipe.source, requires: requires(recipe.source) })
+            .collect()
+    })
+}
+
+/// The recipe of that name.
+pub fn recipe(name: &str) -> Option<&'static Recipe> {
+    recipes().iter().find(|recipe| recipe.name == name)
+}
+
+fn requires(source: &'static str) -> Vec<&'static str> {
+    source
+        .lines()
+        .find_map(|line| line.strip_prefix("// requires:"))
+        .map(|names| names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect())
+        .unwrap_or_default()
+}
+
+/// Modules one after another in the order of `names`, then `last`. Unknown names are left to the caller to refuse.
+pub fn compose(names: &[&str], last: &str) -> String {
+    let mut parts: Vec<&str> = names.iter().filter_map(|name| module(name)).map(|module| module.source).collect();
+    if !last.is_empty() {
+        parts.push(last);
+    }
+    parts.join("\n")
+}

@@ -1,0 +1,135 @@
+//! Writes the compute entry point that calls a function once per row, from its signature alone.
+//!
+//! Buffers cannot hold bools, so each struct that has one travels as a twin with `u32` in its place; everything else
+//! travels as it is, in the layout that naga gives it.
+
+use super::shape::{Scalar, Shape, Signature};
+use std::fmt::Write as _;
+
+/// The entry point's name.
+pub const ENTRY_POINT: &str = "lapidary_kernel";
+/// The struct that holds one row's arguments.
+pub const INPUT: &str = "LapidaryKernelInput";
+/// The struct that holds one row's result.
+pub const OUTPUT: &str = "LapidaryKernelOutput";
+/// Invocations in a workgroup.
+pub const WORKGROUP_SIZE: u32 = 64;
+
+/// WGSL text to append to the source that defines the function: transport structs, two buffers
+/// (`@group(0)`: binding 0 holds the inputs, binding 1 the outputs), and the entry point.
+pub fn kernel_source(signature: &Signature) -> String {
+    let mut declarations = String::new();
+    let mut declared = Vec::new();
+    let mut members = String::new();
+    let mut arguments = Vec::new();
+    for (index, (_, shape)) in signature.arguments.iter().enumerate() {
+        declare_twins(shape, &mut declared, &mut declarations);
+        // No name ends in a digit: naga would rename it.
+        let _ = writeln!(members, "    argument_{index}_of_row: {},", transport_name(shape));
+        arguments.push(decode(shape, &format!("row.argument_{index}_of_row")));
+    }
+    declare_twins(&signature.result, &mut declared, &mut declarations);
+    let result = transport_name(&signature.result);
+    let encoded = encode(&signature.result, "result");
+    format!(
+        "{declarations}
+struct {INPUT} {{
+{members}}}
+
+struct {OUTPUT} {{
+    result: {result},
+}}
+
+@group(0) @binding(0) var<storage, read> lapidary_kernel_inputs: array<{INPUT}>;
+@group(0) @binding(1) var<storage, read_write> lapidary_kernel_outputs: array<{OUTPUT}>;
+
+@compute @workgroup_size({WORKGROUP_SIZE})
+fn {ENTRY_POINT}(@builtin(global_invocation_id) invocation: vec3u) {{
+    if (invocation.x >= arrayLength(&lapidary_kernel_outputs)) {{
+        return;
+    }}
+    let row = lapidary_kernel_inputs[invocation.x];
+    let result = {function}({arguments});
+    lapidary_kernel_outputs[invocation.x] = {OUTPUT}({encoded});
+}}
+",
+        function = signature.function,
+        arguments = arguments.join(", "),
+    )
+}
+
+/// The type that `shape` travels as.
+fn transport_name(shape: &Shape) -> String {
+    if !shape.holds_bool() {
+        return shape.to_string();
+    }
+    match shape {
+        Shape::Scalar(_) => "u32".to_owned(),
+        Shape::Vector(size, _) => format!("vec{size}u"),
+        Shape::Array(element, length) => format!("array<{}, {length}>", transport_name(element)),
+        Shape::Struct(name, _) => format!("LapidaryTransport{name}"),
+        Shape::Matrix(..) => unreachable!("a matrix holds no bool"),
+    }
+}
+
+/// Declares the twin of each struct in `shape` that holds a bool, members before the struct that has them.
+fn declare_twins(shape: &Shape, declared: &mut Vec<String>, declarations: &mut String) {
+    match shape {
+        _ if !shape.holds_bool() => {}
+        Shape::Array(element, _) => declare_twins(element, declared, declarations),
+        Shape::Struct(_, fields) => {
+            let twin = transport_name(shape);
+            if declared.contains(&twin) {
+                return;
+            }
+            fields.iter().for_each(|(_, shape)| declare_twins(shape, declared, declarations));
+            let _ = writeln!(declarations, "struct {twin} {{");
+            for (field, shape) in fields {
+                let _ = writeln!(declarations, "    {field}: {},", transport_name(shape));
+            }
+            declarations.push_str("}\n\n");
+            declared.push(twin);
+        }
+        Shape::Scalar(_) | Shape::Vector(..) | Shape::Matrix(..) => {}
+    }
+}
+
+/// The expression that turns the transported `expression` into a value of `shape`.
+fn decode(shape: &Shape, expression: &str) -> String {
+    convert(shape, expression, &|shape| shape.to_string(), &|shape, expression| match shape {
+        Shape::Vector(size, Scalar::Bool) => format!("({expression} != vec{size}u(0u))"),
+        _ => format!("({expression} != 0u)"),
+    })
+}
+
+/// The expression that turns a value of `shape` into what travels.
+fn encode(shape: &Shape, expression: &str) -> String {
+    convert(shape, expression, &transport_name, &|shape, expression| match shape {
+        Shape::Vector(size, Scalar::Bool) => format!("select(vec{size}u(0u), vec{size}u(1u), {expression})"),
+        _ => format!("select(0u, 1u, {expression})"),
+    })
+}
+
+/// Rebuilds a value member by member, down to the bools, which `bools` converts; what holds no bool is passed as it is.
+fn convert(
+    shape: &Shape,
+    expression: &str,
+    type_name: &dyn Fn(&Shape) -> String,
+    bools: &dyn Fn(&Shape, &str) -> String,
+) -> String {
+    if !shape.holds_bool() {
+        return expression.to_owned();
+    }
+    let parts: Vec<String> = match shape {
+        Shape::Scalar(_) | Shape::Vector(..) => return bools(shape, expression),
+        Shape::Array(element, length) => (0..*length)
+            .map(|index| convert(element, &format!("{expression}[{index}]"), type_name, bools))
+            .collect(),
+        Shape::Struct(_, fields) => fields
+            .iter()
+            .map(|(name, shape)| convert(shape, &format!("{expression}.{name}"), type_name, bools))
+            .collect(),
+        Shape::Matrix(..) => unreachable!("a matrix holds no bool"),
+    };
+    format!("{}({})", type_name(shape), parts.join(", "))
+}

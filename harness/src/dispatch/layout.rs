@@ -1,0 +1,82 @@
+//! Where each word of a value lies in a buffer: naga's own offsets, strides and sizes.
+
+/// The byte size of one element of a storage array and the byte offset of each of its words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Bytes from one element to the next.
+    pub stride: usize,
+    /// Byte offset of each word, in order of the words.
+    pub offsets: Vec<usize>,
+}
+
+impl Layout {
+    /// The layout of an array of the struct type `name` in the storage address space.
+    ///
+    /// # Panics
+    /// Where the module has no such struct: the caller has just generated it.
+    pub fn of_struct(module: &naga::Module, name: &str) -> Layout {
+        let (handle, ty) =
+            module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("a generated struct");
+        let mut layouter = naga::proc::Layouter::default();
+        layouter.update(module.to_ctx()).expect("a validated module has layouts");
+        let naga::TypeInner::Struct { .. } = ty.inner else { unreachable!("`{name}` is declared as a struct") };
+        let mut offsets = Vec::new();
+        collect(module, &layouter, handle, 0, &mut offsets);
+        Layout { stride: layouter[handle].to_stride() as usize, offsets }
+    }
+
+    /// Spreads rows of words over the bytes of a buffer.
+    pub fn scatter(&self, words: &[u32], bytes: &mut [u8]) {
+        let width = self.offsets.len();
+        for (row, element) in words.chunks_exact(width).zip(bytes.chunks_exact_mut(self.stride)) {
+            for (word, offset) in row.iter().zip(&self.offsets) {
+                element[*offset..offset + 4].copy_from_slice(&word.to_ne_bytes());
+            }
+        }
+    }
+
+    /// Collects rows of words from the bytes of a buffer.
+    pub fn gather(&self, bytes: &[u8], rows: usize, words: &mut Vec<u32>) {
+        words.clear();
+        words.reserve(rows * self.offsets.len());
+        for element in bytes.chunks_exact(self.stride).take(rows) {
+            for offset in &self.offsets {
+                let word: [u8; 4] = element[*offset..offset + 4].try_into().expect("four bytes");
+                words.push(u32::from_ne_bytes(word));
+            }
+        }
+    }
+}
+
+fn collect(
+    module: &naga::Module,
+    layouter: &naga::proc::Layouter,
+    ty: naga::Handle<naga::Type>,
+    base: usize,
+    offsets: &mut Vec<usize>,
+) {
+    match &module.types[ty].inner {
+        naga::TypeInner::Scalar(_) => offsets.push(base),
+        naga::TypeInner::Vector { size, .. } => {
+            offsets.extend((0..*size as usize).map(|index| base + 4 * index));
+        }
+        naga::TypeInner::Matrix { columns, rows, .. } => {
+            // WGSL aligns a column of three like one of four.
+            let column_stride = if *rows == naga::VectorSize::Bi { 8 } else { 16 };
+            for column in 0..*columns as usize {
+                offsets.extend((0..*rows as usize).map(|row| base + column * column_stride + 4 * row));
+            }
+        }
+        naga::TypeInner::Array { base: element, size: naga::ArraySize::Constant(length), stride } => {
+            for index in 0..length.get() as usize {
+                collect(module, layouter, *element, base + index * *stride as usize, offsets);
+            }
+        }
+        naga::TypeInner::Struct { members, .. } => {
+            for member in members {
+                collect(module, layouter, member.ty, base + member.offset as usize, offsets);
+            }
+        }
+        other => unreachable!("Shape::of_type refuses {other:?}"),
+    }
+}

@@ -1,0 +1,311 @@
+//! The shape of a value that travels to the GPU: what naga says a WGSL type is, and what Rust says its mirror is.
+//!
+//! A value of any shape flattens into 32-bit words, one per scalar in declaration order. Comparison, shrinking,
+//! storage of failing inputs and reports all work on words; only the upload knows offsets.
+
+use std::fmt;
+
+/// A 32-bit scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Scalar {
+    /// IEEE 754 binary32.
+    F32,
+    /// Signed.
+    I32,
+    /// Unsigned.
+    U32,
+    /// Travels as a `u32` of 0 or 1, since WGSL has no bool in buffers.
+    Bool,
+}
+
+impl Scalar {
+    /// Its WGSL keyword.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::I32 => "i32",
+            Self::U32 => "u32",
+            Self::Bool => "bool",
+        }
+    }
+}
+
+/// A WGSL type of scalars, vectors, matrices, arrays and structs of those.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One scalar.
+    Scalar(Scalar),
+    /// `vecN<T>`, N from 2 to 4.
+    Vector(u8, Scalar),
+    /// `matCxR<f32>`: columns, rows.
+    Matrix(u8, u8),
+    /// `array<T, N>`.
+    Array(Box<Shape>, u32),
+    /// A struct: its name, and name and shape of each member in order.
+    Struct(String, Vec<(String, Shape)>),
+}
+
+impl Shape {
+    /// How many 32-bit words a value flattens to.
+    pub fn words(&self) -> usize {
+        match self {
+            Self::Scalar(_) => 1,
+            Self::Vector(size, _) => usize::from(*size),
+            Self::Matrix(columns, rows) => usize::from(*columns) * usize::from(*rows),
+            Self::Array(element, length) => element.words() * *length as usize,
+            Self::Struct(_, fields) => fields.iter().map(|(_, shape)| shape.words()).sum(),
+        }
+    }
+
+    /// Whether a bool is anywhere inside, so that the type cannot stand in a buffer as it is.
+    pub fn holds_bool(&self) -> bool {
+        match self {
+            Self::Scalar(scalar) | Self::Vector(_, scalar) => *scalar == Scalar::Bool,
+            Self::Matrix(..) => false,
+            Self::Array(element, _) => element.holds_bool(),
+            Self::Struct(_, fields) => fields.iter().any(|(_, shape)| shape.holds_bool()),
+        }
+    }
+
+    /// The scalar of each word, in order.
+    pub fn scalars(&self) -> Vec<Scalar> {
+        self.leaves().iter().flat_map(|leaf| std::iter::repeat_n(leaf.scalar, leaf.length)).collect()
+    }
+
+    /// The scalars, vectors and matrix columns that the value is made of, in order of their words.
+    pub fn leaves(&self) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.collect_leaves(String::new(), &mut leaves);
+        leaves
+    }
+
+    fn collect_leaves(&self, path: String, leaves: &mut Vec<Leaf>) {
+        let start = leaves.last().map_or(0, |leaf| leaf.start + leaf.length);
+        match self {
+            Self::Scalar(scalar) => leaves.push(Leaf { path, scalar: *scalar, start, length: 1 }),
+            Self::Vector(size, scalar) => {
+                leaves.push(Leaf { path, scalar: *scalar, start, length: usize::from(*size) });
+            }
+            Self::Matrix(columns, rows) => {
+                for column in 0..*columns {
+                    Self::Vector(*rows, Scalar::F32).collect_leaves(format!("{path}[{column}]"), leaves);
+                }
+            }
+            Self::Array(element, length) => {
+                for index in 0..*length {
+                    element.collect_leaves(format!("{path}[{index}]"), leaves);
+                }
+            }
+            Self::Struct(_, fields) => {
+                for (name, shape) in fields {
+                    let dot = if path.is_empty() { "" } else { "." };
+                    shape.collect_leaves(format!("{path}{dot}{name}"), leaves);
+                }
+            }
+        }
+    }
+
+    /// The shape of a type of a naga module, or the part of it that cannot travel.
+    pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Result<Shape, String> {
+        let named = |ty: naga::Handle<naga::Type>| {
+            module.types[ty].name.clone().unwrap_or_else(|| format!("{:?}", module.types[ty].inner))
+        };
+        let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
+            (naga::ScalarKind::Float, 4) => Ok(Scalar::F32),
+            (naga::ScalarKind::Sint, 4) => Ok(Scalar::I32),
+            (naga::ScalarKind::Uint, 4) => Ok(Scalar::U32),
+            (naga::ScalarKind::Bool, _) => Ok(Scalar::Bool),
+            _ => Err(format!("{scalar:?} is not a 32-bit scalar")),
+        };
+        match &module.types[ty].inner {
+            naga::TypeInner::Scalar(inner) => Ok(Shape::Scalar(scalar(*inner)?)),
+            naga::TypeInner::Vector { size, scalar: inner } => Ok(Shape::Vector(*size as u8, scalar(*inner)?)),
+            naga::TypeInner::Matrix { columns, rows, scalar: inner } => match scalar(*inner)? {
+                Scalar::F32 => Ok(Shape::Matrix(*columns as u8, *rows as u8)),
+                other => Err(format!("a matrix of {}", other.name())),
+            },
+            naga::TypeInner::Array { base, size: naga::ArraySize::Constant(length), .. } => {
+                Ok(Shape::Array(Box::new(Self::of_type(module, *base)?), length.get()))
+            }
+            naga::TypeInner::Struct { members, .. } => {
+                let fields = members
+                    .iter()
+                    .map(|member| {
+                        Ok((member.name.clone().unwrap_or_default(), Self::of_type(module, member.ty)?))
+                    })
+                    .collect::<Result<_, String>>()?;
+                Ok(Shape::Struct(named(ty), fields))
+            }
+            _ => Err(format!("`{}` cannot be passed through a buffer", named(ty))),
+        }
+    }
+}
+
+/// A scalar, vector or matrix column inside a value: the unit of comparison, since a vector's error is measured by its
+/// largest component.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Leaf {
+    /// Where it is, as `field.member[index]`; empty where the whole value is the leaf.
+    pub path: String,
+    /// What it is made of.
+    pub scalar: Scalar,
+    /// Its first word.
+    pub start: usize,
+    /// How many words.
+    pub length: usize,
+}
+
+/// As WGSL writes the type.
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let letter = |scalar: &Scalar| match scalar {
+            Scalar::F32 => "f",
+            Scalar::I32 => "i",
+            Scalar::U32 => "u",
+            Scalar::Bool => "<bool>",
+        };
+        match self {
+            Self::Scalar(scalar) => f.write_str(scalar.name()),
+            Self::Vector(size, scalar) => write!(f, "vec{size}{}", letter(scalar)),
+            Self::Matrix(columns, rows) => write!(f, "mat{columns}x{rows}f"),
+            Self::Array(element, length) => write!(f, "array<{element}, {length}>"),
+            Self::Struct(name, _) => f.write_str(name),
+        }
+    }
+}
+
+/// A function's name, its arguments with their names, and its result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// The WGSL function.
+    pub function: String,
+    /// Name and shape of each argument.
+    pub arguments: Vec<(String, Shape)>,
+    /// What it returns.
+    pub result: Shape,
+}
+
+impl Signature {
+    /// Reads the signature of `function` off a naga module.
+    pub fn reflect(module: &naga::Module, function: &str) -> Result<Signature, SignatureError> {
+        let Some((_, found)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)) else {
+            return Err(SignatureError::Missing { function: function.to_owned() });
+        };
+        let unsupported = |part: String, reason: String| SignatureError::Unsupported {
+            function: function.to_owned(),
+            part,
+            reason,
+        };
+        let arguments = found
+            .arguments
+            .iter()
+            .map(|argument| {
+                let name = argument.name.clone().unwrap_or_default();
+                match Shape::of_type(module, argument.ty) {
+                    Ok(shape) => Ok((name, shape)),
+                    Err(reason) => Err(unsupported(format!("argument `{name}`"), reason)),
+                }
+            })
+            .collect::<Result<_, _>>()?;
+        let Some(result) = &found.result else {
+            return Err(unsupported("result".to_owned(), "it returns nothing".to_owned()));
+        };
+        let result = Shape::of_type(module, result.ty).map_err(|reason| unsupported("result".to_owned(), reason))?;
+        Ok(Signature { function: function.to_owned(), arguments, result })
+    }
+
+    /// Checks that this, the WGSL function's signature, is what the Rust side expects.
+    pub fn expect(&self, arguments: &[Shape], result: &Shape) -> Result<(), SignatureError> {
+        let mismatch = |part: String, expected: &str, found: &str| SignatureError::Mismatch {
+            function: self.function.clone(),
+            part,
+            expected: expected.to_owned(),
+            found: found.to_owned(),
+        };
+        if arguments.len() != self.arguments.len() {
+            return Err(mismatch(
+                "number of arguments".to_owned(),
+                &arguments.len().to_string(),
+                &self.arguments.len().to_string(),
+            ));
+        }
+        for (expected, (name, found)) in arguments.iter().zip(&self.arguments) {
+            if let Some((expected, found)) = difference(expected, found) {
+                return Err(mismatch(format!("argument `{name}`"), &expected, &found));
+            }
+        }
+        match difference(result, &self.result) {
+            None => Ok(()),
+            Some((expected, found)) => Err(mismatch("result".to_owned(), &expected, &found)),
+        }
+    }
+}
+
+/// As WGSL writes it.
+impl fmt::Display for Signature {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "fn {}(", self.function)?;
+        for (index, (name, shape)) in self.arguments.iter().enumerate() {
+            write!(f, "{}{name}: {shape}", if index == 0 { "" } else { ", " })?;
+        }
+        write!(f, ") -> {}", self.result)
+    }
+}
+
+/// The first difference between two shapes, spelled out down to the member.
+fn difference(expected: &Shape, found: &Shape) -> Option<(String, String)> {
+    if expected == found {
+        return None;
+    }
+    let spell = |shape: &Shape| match shape {
+        Shape::Struct(name, fields) => {
+            let fields: Vec<String> = fields.iter().map(|(name, shape)| format!("{name}: {shape}")).collect();
+            format!("{name} {{ {} }}", fields.join(", "))
+        }
+        other => other.to_string(),
+    };
+    if let (Shape::Struct(name, left), Shape::Struct(other, right)) = (expected, found)
+        && name == other
+        && left.len() == right.len()
+        && left.iter().zip(right).all(|(left, right)| left.0 == right.0)
+    {
+        return left.iter().zip(right).find_map(|(left, right)| {
+            let (expected, found) = difference(&left.1, &right.1)?;
+            Some((format!("{name}.{}: {expected}", left.0), format!("{name}.{}: {found}", left.0)))
+        });
+    }
+    Some((spell(expected), spell(found)))
+}
+
+/// Why a function cannot be dispatched.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SignatureError {
+    /// No such function in the source.
+    #[error("function `{function}` is missing")]
+    Missing {
+        /// Its name.
+        function: String,
+    },
+    /// Its types cannot travel through a buffer.
+    #[error("function `{function}`: {part}: {reason}")]
+    Unsupported {
+        /// Its name.
+        function: String,
+        /// Which argument, or the result.
+        part: String,
+        /// What is the matter with it.
+        reason: String,
+    },
+    /// WGSL and Rust disagree.
+    #[error("function `{function}`: {part}: expected {expected}, found {found}")]
+    Mismatch {
+        /// Its name.
+        function: String,
+        /// Which argument, or the result.
+        part: String,
+        /// What the mirror has.
+        expected: String,
+        /// What the WGSL has.
+        found: String,
+    },
+}

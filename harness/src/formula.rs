@@ -1,0 +1,237 @@
+//! What a formula is: a WGSL function with its mirror, its oracle, the domain of its inputs and the edges that the domain
+//! must reach, its invariants, and its hard cases. One file of `formulas/` per module declares them.
+
+use crate::dispatch::shape::Shape;
+use crate::dispatch::value::{Arguments, Exact, Function, Value};
+use crate::property::draws::{Domain, Draws};
+
+/// A row's words.
+pub type Words = Vec<u32>;
+/// The mirror on words: appends the result's.
+pub type MirrorFn = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
+/// The oracle on numbers: appends the result's.
+pub type OracleFn = Box<dyn Fn(&[f64], &mut Vec<f64>) + Send + Sync>;
+type Predicate = Box<dyn Fn(&[u32]) -> bool + Send + Sync>;
+/// Says what is broken for these arguments and this result of the shader.
+type Invariance = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
+/// The same for the results at two related inputs.
+type Relation = Box<dyn Fn(&[u32], &[u32], &[u32]) -> Result<(), String> + Send + Sync>;
+
+/// A part of the domain that a run must reach.
+pub struct Edge {
+    /// What is there.
+    pub name: &'static str,
+    /// Whether these arguments are there.
+    pub reached: Predicate,
+}
+
+/// Something that the mathematics says of every result.
+pub struct Invariant {
+    /// What it says.
+    pub name: &'static str,
+    /// Whether it holds.
+    pub holds: Invariance,
+}
+
+/// Something that the mathematics says of the results at two inputs.
+pub struct Pair {
+    /// What it says.
+    pub name: &'static str,
+    /// The other input, from the row's.
+    pub transform: Box<dyn Fn(&[u32], &mut Words) + Send + Sync>,
+    /// Whether it holds between the row's result and the other's.
+    pub holds: Relation,
+}
+
+/// An input at which the usual form fails, with what is mathematically right there.
+pub struct HardCase {
+    /// What is hard about it.
+    pub name: &'static str,
+    /// The input.
+    pub arguments: Words,
+    /// The right result, flattened.
+    pub limit: Vec<f64>,
+    /// Largest allowed distance of the stable form's result from it, over all components.
+    pub bound: f64,
+    /// The WGSL function that fails here.
+    pub naive: &'static str,
+    /// The naive form's arguments, where it takes others.
+    pub naive_arguments: Words,
+    /// By how much the naive form fails at least: its largest distance from the limit; infinite where it must not even be
+    /// finite.
+    pub naive_error: f64,
+}
+
+/// A WGSL function and everything that its tests need.
+pub struct Formula {
+    /// The module.
+    pub module: &'static str,
+    /// The WGSL function.
+    pub function: &'static str,
+    /// Its arguments' shapes.
+    pub arguments: Vec<Shape>,
+    /// Its result's shape.
+    pub result: Shape,
+    /// The mirror.
+    pub mirror: MirrorFn,
+    /// The oracle.
+    pub oracle: OracleFn,
+    /// Where inputs come from.
+    pub domain: Domain<Words>,
+    /// What the domain must reach.
+    pub edges: Vec<Edge>,
+    /// What holds of every result.
+    pub invariants: Vec<Invariant>,
+    /// What holds of pairs of results.
+    pub pairs: Vec<Pair>,
+    /// Where the naive form fails.
+    pub hard_cases: Vec<HardCase>,
+    /// For a naive form, the relative error that it keeps on its benign domain.
+    pub benign: Option<f64>,
+}
+
+impl std::fmt::Debug for Formula {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Formula").field("function", &self.function).finish_non_exhaustive()
+    }
+}
+
+/// Starts a formula: the WGSL function's name, the mirror and the oracle. Argument and result types are the mirror's and are
+/// checked against naga's at start-up; the oracle's must be their twins.
+///
+/// # Panics
+/// Where mirror and oracle do not have the same shape: a slip in `formulas/`, found by the first test that runs.
+pub fn formula<A, R, EA, ER>(
+    module: &'static str,
+    function: &'static str,
+    mirror: impl Function<A, R> + Send + Sync + 'static,
+    oracle: impl Function<EA, ER> + Send + Sync + 'static,
+    domain: impl Fn(&mut Draws<'_>) -> A + Send + Sync + 'static,
+) -> Builder<A, R>
+where
+    A: Arguments<u32>,
+    R: Value,
+    EA: Arguments<f64>,
+    ER: Exact,
+{
+    assert_eq!(A::shapes(), EA::shapes(), "{function}: the arguments of mirror and oracle differ");
+    assert_eq!(R::shape(), ER::shape(), "{function}: the results of mirror and oracle differ");
+    Builder {
+        formula: Formula {
+            module,
+            function,
+            arguments: A::shapes(),
+            result: R::shape(),
+            mirror: Box::new(move |mut words, result| mirror.call(A::read(&mut words)).write(result)),
+            oracle: Box::new(move |mut numbers, result| oracle.call(EA::read(&mut numbers)).write(result)),
+            domain: Domain::new(move |draws| {
+                let mut words = Words::new();
+                domain(draws).write(&mut words);
+                words
+            }),
+            edges: Vec::new(),
+            invariants: Vec::new(),
+            pairs: Vec::new(),
+            hard_cases: Vec::new(),
+            benign: None,
+        },
+        types: std::marker::PhantomData,
+    }
+}
+
+/// A formula in the making, with its types.
+pub struct Builder<A, R> {
+    formula: Formula,
+    types: std::marker::PhantomData<fn(A) -> R>,
+}
+
+impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
+    /// A part of the domain that a run of the default size must reach.
+    pub fn edge(mut self, name: &'static str, reached: impl Fn(A) -> bool + Send + Sync + 'static) -> Self {
+        self.formula.edges.push(Edge { name, reached: Box::new(move |mut words| reached(A::read(&mut words))) });
+        self
+    }
+
+    /// What the mathematics says of every result; the message says by how much it is broken.
+    pub fn invariant(
+        mut self,
+        name: &'static str,
+        holds: impl Fn(A, R) -> Result<(), String> + Send + Sync + 'static,
+    ) -> Self {
+        let holds = Box::new(move |mut arguments: &[u32], mut result: &[u32]| {
+            holds(A::read(&mut arguments), R::read(&mut result))
+        });
+        self.formula.invariants.push(Invariant { name, holds });
+        self
+    }
+
+    /// What the mathematics says of the results at an input and at `transform` of it.
+    pub fn pair(
+        mut self,
+        name: &'static str,
+        transform: impl Fn(A) -> A + Send + Sync + 'static,
+        holds: impl Fn(A, R, R) -> Result<(), String> + Send + Sync + 'static,
+    ) -> Self {
+        self.formula.pairs.push(Pair {
+            name,
+            transform: Box::new(move |mut words, other| transform(A::read(&mut words)).write(other)),
+            holds: Box::new(move |mut arguments: &[u32], mut result: &[u32], mut other: &[u32]| {
+                holds(A::read(&mut arguments), R::read(&mut result), R::read(&mut other))
+            }),
+        });
+        self
+    }
+
+    /// A hard case: at `arguments` the result is within `bound` of `limit`, and `naive`, at the same arguments, is off by
+    /// `naive_error` or more (infinite: not finite).
+    pub fn hard_case(
+        self,
+        name: &'static str,
+        arguments: A,
+        (limit, bound): (&[f64], f64),
+        (naive, naive_error): (&'static str, f64),
+    ) -> Self {
+        let mut words = Words::new();
+        arguments.write(&mut words);
+        self.push_hard_case(name, words.clone(), (limit, bound), naive, words, naive_error)
+    }
+
+    /// A hard case whose naive form takes other arguments.
+    pub fn hard_case_with<N: Arguments<u32>>(
+        self,
+        name: &'static str,
+        arguments: A,
+        limit: (&[f64], f64),
+        (naive, naive_arguments, naive_error): (&'static str, N, f64),
+    ) -> Self {
+        let (mut words, mut naive_words) = (Words::new(), Words::new());
+        arguments.write(&mut words);
+        naive_arguments.write(&mut naive_words);
+        self.push_hard_case(name, words, limit, naive, naive_words, naive_error)
+    }
+
+    fn push_hard_case(
+        mut self,
+        name: &'static str,
+        arguments: Words,
+        (limit, bound): (&[f64], f64),
+        naive: &'static str,
+        naive_arguments: Words,
+        naive_error: f64,
+    ) -> Self {
+        let limit = limit.to_vec();
+        self.formula.hard_cases.push(HardCase { name, arguments, limit, bound, naive, naive_arguments, naive_error });
+        self
+    }
+
+    /// Says that this is a naive form, and which relative error it keeps on the benign domain given.
+    pub fn benign(mut self, relative: f64) -> Self {
+        self.formula.benign = Some(relative);
+        self
+    }
+
+    /// The formula.
+    pub fn build(self) -> Formula {
+        self.formula
+    }
+}

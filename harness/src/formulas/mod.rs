@@ -1,0 +1,41 @@
+//! Every formula of the cookbook, one file a module: WGSL function, mirror and oracle bound by name, with the domain,
+//! its edges, invariants and hard cases.
+
+mod closest_point;
+mod environment;
+mod fresnel;
+mod proxy_geometry;
+mod refraction;
+mod srgb;
+
+use crate::formula::Formula;
+use std::sync::OnceLock;
+
+/// All formulas, in the order of their modules' names and of each file.
+pub fn all() -> &'static [Formula] {
+    static FORMULAS: OnceLock<Vec<Formula>> = OnceLock::new();
+    FORMULAS.get_or_init(|| {
+        [
+            closest_point::formulas(),
+            environment::formulas(),
+            fresnel::formulas(),
+            proxy_geometry::formulas(),
+            refraction::formulas(),
+            srgb::formulas(),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    })
+}
+
+/// The formula of a WGSL function.
+pub fn of_function(function: &str) -> Option<&'static Formula> {
+    all().iter().find(|formula| formula.function == function)
+}
+
+/// Passes where `value` lies within `bound` of `wanted`; the message says by how much it does not.
+fn near(what: &str, value: f64, wanted: f64, bound: f64) -> Result<(), String> {
+    // Written so that a NaN does not pass.
+    if (value - wanted).abs() <= bound { Ok(()) } else { Err(format!("{what} is {value}, not {wanted} ± {bound:e}")) }
+}

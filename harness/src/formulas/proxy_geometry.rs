@@ -1,0 +1,385 @@
+//! `wgsl/proxy_geometry.wgsl`.
+
+use super::near;
+use crate::formula::{Formula, formula};
+use crate::mirror_struct;
+use crate::property::draws::Draws;
+use glam::{DVec3, Vec2, Vec3};
+use lapidary_proxy_geometry::{
+    self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryFacet, ProxyGeometryHit, ProxyGeometryPlane, oracle,
+};
+
+mirror_struct!(lapidary_proxy_geometry, ProxyGeometryPlane { origin, edge_first, edge_second });
+mirror_struct!(lapidary_proxy_geometry, ProxyGeometryHit { point, distance, hit });
+mirror_struct!(lapidary_proxy_geometry, ProxyGeometryFacet {
+    vertex_first,
+    vertex_second,
+    vertex_third,
+    cell,
+    turned
+});
+
+const M: &str = "proxy_geometry";
+
+/// Error that a unit vector's length may have: the sum of three squares and the inputs' rounding, 2⁻²⁴ each.
+const UNIT: f64 = 16.0 / (1 << 24) as f64;
+
+/// The scales of a model: 1 in half of the cases, else any magnitude in which positions and their sums stay finite.
+fn size(draws: &mut Draws<'_>, low: i32, high: i32) -> f32 {
+    if draws.below(2) == 0 { 1.0 } else { draws.magnitude(low, high) }
+}
+
+/// Positions about the origin, of every size.
+fn position(draws: &mut Draws<'_>) -> Vec3 {
+    size(draws, -110, 119) * draws.in_cube()
+}
+
+/// Two edges from one vertex: any angle down to `thinnest` (a sine), lengths up to `ratio` apart, sometimes along the axes.
+fn edges(draws: &mut Draws<'_>, thinnest: i32, ratio: i32) -> (DVec3, DVec3) {
+    let first = draws.unit_vector().as_dvec3().normalize();
+    let across = draws.perpendicular(first);
+    let sine = match draws.below(3) {
+        0 => f64::from(draws.magnitude(thinnest, -1)),
+        _ => f64::from(draws.between(0.3, 1.0)),
+    };
+    let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt() * if draws.below(2) == 0 { 1.0 } else { -1.0 };
+    let length = if draws.below(3) == 0 { f64::from(draws.magnitude(-ratio, ratio)) } else { 1.0 };
+    (first, length * (cosine * first + sine * across))
+}
+
+/// A triangle of any size, thin and fat, not degenerate.
+fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
+    let size = f64::from(size(draws, -95, 95));
+    let (first, second) = edges(draws, -19, 6);
+    let corner = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
+    [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3())
+}
+
+/// Sine of the angle at the first vertex, in f64.
+fn thinness([first, second, third]: [Vec3; 3]) -> f64 {
+    let [a, b, c] = [first, second, third].map(|vertex| vertex.as_dvec3());
+    (b - a).cross(c - a).length() / ((b - a).length() * (c - a).length())
+}
+
+/// A lattice, a point in its plane that is up to a thousand cells away, on an edge or a vertex in a third of the cases.
+fn lattice_point(draws: &mut Draws<'_>) -> (ProxyGeometryPlane, Vec3) {
+    let size = f64::from(size(draws, -90, 90));
+    let (first, second) = edges(draws, -9, 3);
+    let origin = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
+    let plane = ProxyGeometryPlane {
+        origin: (size * origin).as_vec3(),
+        edge_first: (size * first).as_vec3(),
+        edge_second: (size * second).as_vec3(),
+    };
+    let cell = |draws: &mut Draws<'_>| match draws.below(3) {
+        0 => f64::from(draws.below(2001)) - 1000.0,
+        _ => f64::from(draws.below(5)) - 2.0,
+    };
+    let whole = (cell(draws), cell(draws));
+    let within = match draws.below(6) {
+        0 => (0.0, 0.0),
+        1 => (f64::from(draws.between(0.0, 1.0)), 0.0),
+        2 => {
+            let along = f64::from(draws.between(0.0, 1.0));
+            (along, 1.0 - along)
+        }
+        _ => (f64::from(draws.between(0.0, 1.0)), f64::from(draws.between(0.0, 1.0))),
+    };
+    let point = plane.origin.as_dvec3()
+        + (whole.0 + within.0) * plane.edge_first.as_dvec3()
+        + (whole.1 + within.1) * plane.edge_second.as_dvec3();
+    (plane, point.as_vec3())
+}
+
+/// A ray and a plane: ahead, behind, through the start, parallel, and at the limit of what counts as parallel.
+fn ray_and_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
+    let size = size(draws, -60, 60);
+    let normal = draws.unit_vector();
+    let axis = normal.as_dvec3().normalize();
+    let tangent = draws.perpendicular(axis);
+    let slope = match draws.below(6) {
+        0 => f64::from(draws.magnitude(-30, -1)),
+        1 => f64::from(PROXY_GEOMETRY_PARALLEL) * f64::from(draws.between(0.9, 1.1)),
+        2 => draws.pick(&[0.0, 1.0, f64::from(PROXY_GEOMETRY_PARALLEL)]),
+        _ => f64::from(draws.between(0.0, 1.0)),
+    };
+    let slope = if draws.below(2) == 0 { slope } else { -slope };
+    let direction = (((1.0 - slope) * (1.0 + slope)).max(0.0).sqrt() * tangent + slope * axis).as_vec3();
+    let position = if draws.below(2) == 0 { Vec3::ZERO } else { size * draws.in_cube() };
+    let plane_point = match draws.below(6) {
+        0 => position,
+        1 => (position.as_dvec3() + f64::from(size) * tangent).as_vec3(),
+        _ => size * draws.in_cube(),
+    };
+    (position, direction, plane_point, normal)
+}
+
+/// A stone's centre, a tile and the ray that meets it.
+fn tile_and_ray(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3, Vec3) {
+    let [first, second, third] = triangle(draws);
+    let centroid = (first.as_dvec3() + second.as_dvec3() + third.as_dvec3()) / 3.0;
+    let extent = f64::from(first.distance(second).max(first.distance(third)).max(first.abs().max_element()));
+    let away = if draws.below(4) == 0 { f64::from(draws.magnitude(-10, 3)) } else { 1.0 };
+    let centre = (centroid + extent * away * draws.direction()).as_vec3();
+    (centre, first, second, third, draws.unit_vector())
+}
+
+/// Tiles of ordinary size, where the squares that the usual form takes stay in range.
+fn ordinary_tile(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
+    let vertex = |draws: &mut Draws<'_>| draws.in_cube();
+    let tile = (vertex(draws), vertex(draws), vertex(draws));
+    let centre = (tile.0 + tile.1 + tile.2) / 3.0 + draws.direction().as_vec3() * draws.between(0.5, 2.0);
+    (centre, tile.0, tile.1, tile.2)
+}
+
+pub(super) fn formulas() -> Vec<Formula> {
+    [plane_formulas(), normal_formulas(), intersection_formulas(), lattice_formulas()].into_iter().flatten().collect()
+}
+
+fn plane_formulas() -> Vec<Formula> {
+    let facet = |draws: &mut Draws<'_>| {
+        let [vertex_first, vertex_second, vertex_third] = triangle(draws);
+        ProxyGeometryFacet { vertex_first, vertex_second, vertex_third, cell: glam::IVec2::ZERO, turned: draws.below(2) == 1 }
+    };
+    vec![
+        formula(M, "proxy_geometry_image", mirror::image, oracle::image, |draws| (position(draws), position(draws)))
+            .edge("centre far outside the stone", |(centre, x)| centre.length() > 1e3 * x.length())
+            .pair("the image of the image is the point", |(centre, x)| (centre, 2.0 * centre - x), |(centre, x), _, back: Vec3| {
+                let scale = centre.as_dvec3().length() + x.as_dvec3().length();
+                near("distance", back.as_dvec3().distance(x.as_dvec3()), 0.0, scale * UNIT)
+            })
+            .build(),
+        formula(M, "proxy_geometry_plane", mirror::plane, oracle::plane, |draws| {
+            let [a, b, c] = triangle(draws);
+            (draws.in_cube() * a.abs().max_element().max(b.abs().max_element()), a, b, c)
+        })
+        .edge("counter-clockwise from above", |(_, a, b, c)| (b - a).normalize_or_zero().cross(c - a).z > 0.0)
+        .edge("clockwise from above", |(_, a, b, c)| (b - a).normalize_or_zero().cross(c - a).z < 0.0)
+        // Paper, 4.2: coplanar neighbours whose centres are equal continue each other's pattern.
+        .pair(
+            "coplanar neighbours with an equal centre share plane P and the image of their edge",
+            |(centre, a, b, c)| (centre, b, c, b + (c - a)),
+            |(centre, a, b, c), plane: ProxyGeometryPlane, neighbour: ProxyGeometryPlane| {
+                let scale = [centre, a, b, c].map(|v| v.as_dvec3().length()).into_iter().fold(0.0, f64::max);
+                let [origin, first, second] = [plane.origin, plane.edge_first, plane.edge_second].map(Vec3::as_dvec3);
+                let edge = neighbour.origin.as_dvec3() - (origin + first);
+                near("image of b", edge.length(), 0.0, scale * UNIT)?;
+                let other = neighbour.origin.as_dvec3() + neighbour.edge_first.as_dvec3() - (origin + second);
+                near("image of c", other.length(), 0.0, scale * UNIT)?;
+                let normal = first.normalize().cross(second.normalize());
+                let height = (neighbour.origin.as_dvec3() + neighbour.edge_second.as_dvec3() - origin).dot(normal);
+                near("height of the neighbour over plane P", height, 0.0, scale * UNIT)
+            },
+        )
+        .build(),
+        formula(M, "proxy_geometry_next_plane", mirror::next_plane, oracle::next_plane, move |draws| {
+            let facet = facet(draws);
+            (draws.in_cube() * facet.vertex_first.abs().max_element(), facet)
+        })
+        .edge("a turned tile", |(_, facet)| facet.turned)
+        .build(),
+    ]
+}
+
+fn normal_formulas() -> Vec<Formula> {
+    let huge = 1e19f32;
+    let tiny = 1e-20f32;
+    let ray = Vec3::NEG_Z;
+    let scaled = |size: f32| (Vec3::ZERO, Vec3::X * size, Vec3::Y * size);
+    let tile = |size: f32| (Vec3::Z * size, Vec3::X * size, Vec3::NEG_X * size, Vec3::ZERO, ray);
+    vec![
+        formula(M, "proxy_geometry_face_normal", mirror::face_normal, oracle::face_normal, |draws| {
+            let [a, b, c] = triangle(draws);
+            match draws.below(16) {
+                0 => (a, a, c),
+                1 => (a, b, a),
+                2 => (a, a, a),
+                3 => (Vec3::ZERO, b - a, b - a),
+                _ => (a, b, c),
+            }
+        })
+        .edge("a sliver", |(a, b, c)| (1e-6..1e-4).contains(&thinness([a, b, c])))
+        .edge("two equal corners", |(a, b, c)| a == b && b != c)
+        .edge("three equal corners", |(a, b, c)| a == b && b == c)
+        .edge("size below 1e-20", |(a, b, c)| a.distance(b).max(a.distance(c)) < 1e-20 && thinness([a, b, c]) > 1e-3)
+        .edge("size above 1e19", |(a, b, c)| (b - a).abs().max_element() > 1e19 && thinness([a, b, c]) > 1e-3)
+        .invariant("unit length, or zero", |_, normal: Vec3| {
+            if normal == Vec3::ZERO { Ok(()) } else { near("length", normal.as_dvec3().length(), 1.0, UNIT) }
+        })
+        .pair("the other winding turns it round", |(a, b, c)| (a, c, b), |_, normal: Vec3, other: Vec3| {
+            near("sum", (normal + other).as_dvec3().length(), 0.0, UNIT)
+        })
+        .hard_case("edges of 1e-20", scaled(tiny), (&[0.0, 0.0, 1.0], 1e-6), ("proxy_geometry_face_normal_naive", f64::INFINITY))
+        .hard_case("edges of 1e19", scaled(huge), (&[0.0, 0.0, 1.0], 1e-6), ("proxy_geometry_face_normal_naive", f64::INFINITY))
+        .hard_case(
+            "two equal corners",
+            (Vec3::X, Vec3::X, Vec3::Y),
+            (&[0.0, 0.0, 0.0], 0.0),
+            ("proxy_geometry_face_normal_naive", f64::INFINITY),
+        )
+        .hard_case("three equal corners", (Vec3::X, Vec3::X, Vec3::X), (&[0.0, 0.0, 0.0], 0.0), (
+            "proxy_geometry_face_normal_naive",
+            f64::INFINITY,
+        ))
+        .build(),
+        formula(M, "proxy_geometry_face_normal_naive", mirror::face_normal_naive, oracle::face_normal, |draws| {
+            let (first, second) = edges(draws, -3, 2);
+            (Vec3::ZERO, first.as_vec3(), second.as_vec3())
+        })
+        .benign(1e-4)
+        .build(),
+        formula(M, "proxy_geometry_facet_normal", mirror::facet_normal, oracle::facet_normal, |draws| {
+            let (centre, a, b, c, direction) = tile_and_ray(draws);
+            if draws.below(16) == 0 {
+                // Three times the same vertex: the only centroid that is exact in every rounding.
+                (Vec3::X, Vec3::X, Vec3::X, Vec3::X, direction)
+            } else {
+                (centre, a, b, c, direction)
+            }
+        })
+        .edge("centre on the tile's centroid", |(centre, a, b, c, _)| centre == a && a == b && b == c)
+        .edge("seen from behind", |(centre, a, _, _, direction)| (centre - a).dot(direction) > 0.0)
+        .edge("seen from the centre", |(centre, a, _, _, direction)| (centre - a).dot(direction) < 0.0)
+        .edge("size below 1e-20", |(centre, a, _, _, _)| centre.distance(a) < 1e-20 && centre != a)
+        .edge("size above 1e19", |(centre, a, _, _, _)| (centre - a).abs().max_element() > 1e19)
+        .invariant("unit length", |_, normal: Vec3| near("length", normal.as_dvec3().length(), 1.0, UNIT))
+        .invariant("faces the ray", |(_, _, _, _, direction), normal: Vec3| {
+            near("cosine", normal.as_dvec3().dot(direction.as_dvec3()).max(0.0), 0.0, UNIT)
+        })
+        .hard_case_with("a stone of size 1e-25", tile(1e-25), (&[0.0, 0.0, 1.0], 1e-6), (
+            "proxy_geometry_facet_normal_naive",
+            (tile(1e-25).0, tile(1e-25).1, tile(1e-25).2, tile(1e-25).3),
+            f64::INFINITY,
+        ))
+        .hard_case_with("a stone of size 1e20", tile(1e20), (&[0.0, 0.0, 1.0], 1e-6), (
+            "proxy_geometry_facet_normal_naive",
+            (tile(1e20).0, tile(1e20).1, tile(1e20).2, tile(1e20).3),
+            0.9,
+        ))
+        .hard_case_with(
+            "h = 0: the centre on the tile's centroid",
+            (Vec3::X, Vec3::X, Vec3::X, Vec3::X, ray),
+            (&[0.0, 0.0, 1.0], 0.0),
+            ("proxy_geometry_facet_normal_naive", (Vec3::X, Vec3::X, Vec3::X, Vec3::X), f64::INFINITY),
+        )
+        .build(),
+        formula(M, "proxy_geometry_facet_normal_naive", mirror::facet_normal_naive, oracle::facet_normal_naive, ordinary_tile)
+            .benign(1e-5)
+            .build(),
+    ]
+}
+
+fn intersection_formulas() -> Vec<Formula> {
+    let parallel = (Vec3::ZERO, Vec3::X, Vec3::NEG_Z, Vec3::Z);
+    let behind = (Vec3::ZERO, Vec3::NEG_Z, Vec3::Z, Vec3::Z);
+    vec![
+        formula(M, "proxy_geometry_intersect", mirror::intersect, oracle::intersect, ray_and_plane)
+            .edge("plane ahead", |(x, r, p, n)| (p - x).dot(n) * r.dot(n) > 0.0)
+            .edge("plane behind (h < 0)", |(x, r, p, n)| (p - x).dot(n) * r.dot(n) < 0.0)
+            .edge("start in the plane (h = 0)", |(x, _, p, _)| x == p)
+            .edge("exactly parallel", |(_, r, _, n)| r.dot(n) == 0.0)
+            .edge("just counted as parallel", |(_, r, _, n)| {
+                let limit = PROXY_GEOMETRY_PARALLEL;
+                (0.98 * limit..=limit).contains(&r.dot(n).abs())
+            })
+            .edge("just not counted as parallel", |(_, r, _, n)| {
+                let limit = PROXY_GEOMETRY_PARALLEL;
+                (limit.next_up()..1.015 * limit).contains(&r.dot(n).abs())
+            })
+            .invariant("a miss stays where it is", |(x, ..), hit: ProxyGeometryHit| {
+                if hit.hit || (hit.point == x && hit.distance == 0.0) { Ok(()) } else { Err(format!("{hit:?}")) }
+            })
+            .invariant("a hit is ahead", |_, hit: ProxyGeometryHit| {
+                if !hit.hit || hit.distance > 0.0 { Ok(()) } else { Err(format!("{hit:?}")) }
+            })
+            .hard_case("plane P parallel to the ray", parallel, (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0), (
+                "proxy_geometry_intersect_naive",
+                f64::INFINITY,
+            ))
+            .hard_case("h < 0: the plane behind the ray", behind, (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0), (
+                "proxy_geometry_intersect_naive",
+                1.0,
+            ))
+            .hard_case(
+                "h = 0, parallel: the ray in the plane",
+                (Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z),
+                (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0),
+                ("proxy_geometry_intersect_naive", f64::INFINITY),
+            )
+            .build(),
+        formula(M, "proxy_geometry_intersect_naive", mirror::intersect_naive, oracle::intersect, |draws| {
+            let direction = draws.direction();
+            let normal = draws.direction();
+            let normal = if normal.dot(direction).abs() < 0.2 { direction } else { normal };
+            let ahead = f64::from(draws.between(0.5, 2.0));
+            let position = draws.in_cube();
+            let plane_point = position.as_dvec3() + ahead * direction;
+            (position, direction.as_vec3(), plane_point.as_vec3(), normal.as_vec3())
+        })
+        .benign(3e-5)
+        .build(),
+    ]
+}
+
+fn lattice_formulas() -> Vec<Formula> {
+    // A sliver with edges (1, 0, 0) and (1, 2^-9, 0), and the point at coordinates (3, -2.5).
+    let thin = 2f32.powi(-9);
+    let sliver = (Vec3::new(0.5, -2.5 * thin, 0.0), Vec3::ZERO, Vec3::X, Vec3::new(1.0, thin, 0.0));
+    let huge = 1e19f32;
+    let tiny = 1e-20f32;
+    let square = |size: f32| (Vec3::new(0.25, 0.5, 0.0) * size, Vec3::ZERO, Vec3::X * size, Vec3::Y * size);
+    vec![
+        formula(M, "proxy_geometry_coordinates", mirror::coordinates, oracle::coordinates, |draws| {
+            let (plane, point) = lattice_point(draws);
+            match draws.below(16) {
+                0 => (point, plane.origin, Vec3::ZERO, Vec3::ZERO),
+                1 => (point, plane.origin, plane.edge_first, plane.edge_first),
+                2 => {
+                    // About the limit of what counts as degenerate, |e1 × e2| = 2⁻³⁰.
+                    let thin = 2f32.powi(-30) * draws.between(0.95, 1.05);
+                    (Vec3::new(0.5, 0.25 * thin, 0.0), Vec3::ZERO, Vec3::X, Vec3::new(0.0, thin, 0.0))
+                }
+                _ => (point, plane.origin, plane.edge_first, plane.edge_second),
+            }
+        })
+        .edge("no triangle at all", |(_, _, e1, e2)| e1 == Vec3::ZERO && e2 == Vec3::ZERO)
+        .edge("parallel edges", |(_, _, e1, e2)| e1 == e2 && e1 != Vec3::ZERO)
+        .edge("just degenerate", |(_, _, e1, e2)| (0.99..1.0).contains(&(e1.cross(e2).length() * 2f32.powi(30))))
+        .edge("just not degenerate", |(_, _, e1, e2)| (1.0..1.007).contains(&(e1.cross(e2).length() * 2f32.powi(30))))
+        .edge("size below 1e-20", |(_, _, e1, e2)| e1.length().max(e2.length()) < 1e-20 && e1 != e2)
+        .edge("size above 1e19", |(_, _, e1, e2)| e1.abs().max(e2.abs()).max_element() > 1e19)
+        .hard_case("a sliver of sine 1/512", sliver, (&[3.0, -2.5], 1e-5), ("proxy_geometry_coordinates_naive", 1e-3))
+        .hard_case("edges of 1e-20", square(tiny), (&[0.25, 0.5], 1e-6), ("proxy_geometry_coordinates_naive", f64::INFINITY))
+        .hard_case("edges of 1e19", square(huge), (&[0.25, 0.5], 1e-6), ("proxy_geometry_coordinates_naive", f64::INFINITY))
+        .hard_case(
+            "parallel edges",
+            (Vec3::X, Vec3::ZERO, Vec3::X, Vec3::X),
+            (&[0.0, 0.0], 0.0),
+            ("proxy_geometry_coordinates_naive", f64::INFINITY),
+        )
+        .build(),
+        formula(M, "proxy_geometry_coordinates_naive", mirror::coordinates_naive, oracle::coordinates, |draws| {
+            let (first, second) = edges(draws, -1, 1);
+            let at = Vec2::new(draws.between(0.5, 3.0), draws.between(0.5, 3.0)).as_dvec2();
+            ((at.x * first + at.y * second).as_vec3(), Vec3::ZERO, first.as_vec3(), second.as_vec3())
+        })
+        .benign(2e-4)
+        .build(),
+        formula(M, "proxy_geometry_facet", mirror::facet, oracle::facet, lattice_point)
+            .edge("a tile that is not turned", |(plane, point)| !oracle_facet(plane, point).turned)
+            .edge("a turned tile", |(plane, point)| oracle_facet(plane, point).turned)
+            .edge("on a vertex", |(plane, point)| point == plane.origin)
+            .edge("hundreds of cells away", |(plane, point)| oracle_facet(plane, point).cell.abs().max_element() > 200)
+            .edge("negative cells", |(plane, point)| oracle_facet(plane, point).cell.x < 0)
+            .build(),
+    ]
+}
+
+fn oracle_facet(plane: ProxyGeometryPlane, point: Vec3) -> oracle::ProxyGeometryFacet {
+    let exact = oracle::ProxyGeometryPlane {
+        origin: plane.origin.as_dvec3(),
+        edge_first: plane.edge_first.as_dvec3(),
+        edge_second: plane.edge_second.as_dvec3(),
+    };
+    oracle::facet(exact, point.as_dvec3())
+}

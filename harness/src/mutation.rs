@@ -1,0 +1,214 @@
+//! Mutation of a module's functions on naga's IR: one operator, comparison or constant changed at a time. A suite that
+//! lets a mutant pass does not test what was changed.
+
+use crate::cookbook;
+use crate::dispatch::{self, KernelModule};
+use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
+use std::fmt;
+
+/// The factor on a constant: 1 + 2⁻⁶, far above any tolerance and far below any other value that a formula might hold.
+const NUDGE: f32 = 1.0 + 1.0 / 64.0;
+
+/// A single change.
+#[derive(Clone, Debug, PartialEq)]
+enum Edit {
+    Binary(BinaryOperator),
+    /// `-x` instead of `x * s` of a vector and a scalar, for which there is no quotient.
+    Negate,
+    /// `x` instead of `-x`.
+    Keep,
+    Literal(Literal),
+}
+
+/// Where a change is made.
+#[derive(Clone, Debug, PartialEq)]
+enum Site {
+    /// An expression of a function, by its index in the compacted function.
+    Expression(usize),
+    /// The value of a module's const.
+    Constant,
+}
+
+/// A mutant: where, and what is changed into what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mutant {
+    /// The WGSL function, or the const.
+    pub owner: String,
+    /// The line of source, trimmed.
+    pub line: String,
+    /// Which of several sites on that line with the same change, from 1 on.
+    pub occurrence: usize,
+    /// The change, as `Add -> Subtract`.
+    pub change: String,
+    site: Site,
+    edit: Edit,
+}
+
+/// A name that stays the same while other lines change.
+impl fmt::Display for Mutant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} | {} | {}", self.owner, self.line, self.change)?;
+        if self.occurrence > 1 { write!(f, " | {}", self.occurrence) } else { Ok(()) }
+    }
+}
+
+/// A kernel with nothing in it that its function does not use, so that every expression is live.
+pub fn compacted(mut kernel: KernelModule) -> KernelModule {
+    naga::compact::compact(&mut kernel.module, naga::compact::KeepUnused::No);
+    kernel
+}
+
+/// Every mutant of the named function of `module`, and of the consts that it is the first to use.
+///
+/// `kernel` is the function's own, compacted.
+pub fn mutants(module: &cookbook::Module, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
+    let mut mutants: Vec<Mutant> = Vec::new();
+    let mut add = |owner: &str, span: naga::Span, site: Site, change: String, edit: Edit| {
+        let start = span.to_range().map_or(0, |range| range.start);
+        let line = module.source[..start.min(module.source.len())].matches('\n').count();
+        let line = module.source.lines().nth(line).unwrap_or_default().trim().to_owned();
+        let same = |other: &&Mutant| other.owner == owner && other.line == line && other.change == change;
+        let occurrence = mutants.iter().filter(same).count() + 1;
+        mutants.push(Mutant { owner: owner.to_owned(), line, occurrence, change, site, edit });
+    };
+    let ir = &kernel.module;
+    for (_, found) in ir.functions.iter().filter(|(_, found)| found.name.as_deref() == Some(function)) {
+        for (handle, expression) in found.expressions.iter() {
+            let span = found.expressions.get_span(handle);
+            for (change, edit) in edits(&found.expressions, expression) {
+                add(function, span, Site::Expression(handle.index()), change, edit);
+            }
+        }
+    }
+    for (_, constant) in ir.constants.iter() {
+        let Some(name) = constant.name.as_deref() else { continue };
+        for (change, edit) in edits(&ir.global_expressions, &ir.global_expressions[constant.init]) {
+            add(name, ir.global_expressions.get_span(constant.init), Site::Constant, change, edit);
+        }
+    }
+    mutants
+}
+
+/// The kernel with one change; none where the kernel does not hold the site, or where the change makes no valid program.
+pub fn apply(kernel: &KernelModule, mutant: &Mutant) -> Option<KernelModule> {
+    let mut mutated = kernel.clone();
+    let ir = &mut mutated.module;
+    match mutant.site {
+        Site::Constant => {
+            let (_, constant) = ir.constants.iter().find(|(_, c)| c.name.as_deref() == Some(&mutant.owner))?;
+            let init = constant.init;
+            edit(ir.global_expressions.get_mut(init), &mutant.edit);
+        }
+        Site::Expression(index) => {
+            let (_, function) =
+                ir.functions.iter_mut().find(|(_, function)| function.name.as_deref() == Some(&mutant.owner))?;
+            let handle = function.expressions.iter().map(|(handle, _)| handle).nth(index)?;
+            edit(function.expressions.get_mut(handle), &mutant.edit);
+        }
+    }
+    dispatch::validate(&mutated.module).ok()?;
+    Some(mutated)
+}
+
+fn edit(expression: &mut Expression, edit: &Edit) {
+    let replacement = match (&*expression, edit) {
+        (Expression::Binary { left, right, .. }, Edit::Binary(op)) => {
+            Expression::Binary { op: *op, left: *left, right: *right }
+        }
+        (Expression::Binary { left, .. }, Edit::Negate) => Expression::Unary { op: UnaryOperator::Negate, expr: *left },
+        (Expression::Unary { expr, .. }, Edit::Keep) => {
+            // A conversion of f32 to f32, since an expression cannot stand for another.
+            Expression::As { expr: *expr, kind: ScalarKind::Float, convert: Some(4) }
+        }
+        (Expression::Literal(_), Edit::Literal(literal)) => Expression::Literal(*literal),
+        (other, edit) => unreachable!("{edit:?} was made for another expression than {other:?}"),
+    };
+    *expression = replacement;
+}
+
+fn edits(arena: &naga::Arena<Expression>, expression: &Expression) -> Vec<(String, Edit)> {
+    match expression {
+        Expression::Binary { op, left, right } => {
+            operators(*op)
+                .iter()
+                .map(|other| {
+                    // Only a vector times a scalar mixes types.
+                    let mixed = *other == BinaryOperator::Divide && mixes(arena, *left, *right);
+                    if mixed {
+                        (format!("{op:?} -> negated vector"), Edit::Negate)
+                    } else {
+                        (format!("{op:?} -> {other:?}"), Edit::Binary(*other))
+                    }
+                })
+                .collect()
+        }
+        Expression::Unary { op: UnaryOperator::Negate, .. } => vec![("Negate -> nothing".to_owned(), Edit::Keep)],
+        Expression::Literal(literal) => literals(*literal)
+            .into_iter()
+            .map(|other| (format!("{} -> {}", spell(*literal), spell(other)), Edit::Literal(other)))
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Whether a product's quotient would be of a vector and a scalar, which naga's IR does not have. Told from the expressions alone: a
+/// side that is splatted, composed or a vector's is left to validation, which drops what is not valid.
+fn mixes(arena: &naga::Arena<Expression>, left: Handle<Expression>, right: Handle<Expression>) -> bool {
+    let scalar = |handle: Handle<Expression>| {
+        matches!(arena[handle], Expression::Literal(_) | Expression::AccessIndex { .. })
+            || matches!(&arena[handle], Expression::Math { fun, .. } if matches!(fun, naga::MathFunction::Dot | naga::MathFunction::Length))
+    };
+    let vector = |handle: Handle<Expression>| {
+        matches!(arena[handle], Expression::Compose { .. } | Expression::Splat { .. })
+            || matches!(&arena[handle], Expression::Math { fun: naga::MathFunction::Cross | naga::MathFunction::Normalize, .. })
+    };
+    (scalar(right) && vector(left)) || (scalar(left) && vector(right))
+}
+
+fn operators(op: BinaryOperator) -> &'static [BinaryOperator] {
+    use BinaryOperator as Op;
+    match op {
+        Op::Add => &[Op::Subtract],
+        Op::Subtract => &[Op::Add],
+        Op::Multiply => &[Op::Divide],
+        Op::Divide | Op::Modulo => &[Op::Multiply],
+        // Each comparison loses or gains its boundary, and is turned round.
+        Op::Less => &[Op::LessEqual, Op::Greater],
+        Op::LessEqual => &[Op::Less, Op::GreaterEqual],
+        Op::Greater => &[Op::GreaterEqual, Op::Less],
+        Op::GreaterEqual => &[Op::Greater, Op::LessEqual],
+        Op::Equal => &[Op::NotEqual],
+        Op::NotEqual => &[Op::Equal],
+        Op::LogicalAnd => &[Op::LogicalOr],
+        Op::LogicalOr => &[Op::LogicalAnd],
+        Op::And => &[Op::InclusiveOr],
+        Op::InclusiveOr | Op::ExclusiveOr => &[Op::And],
+        Op::ShiftLeft => &[Op::ShiftRight],
+        Op::ShiftRight => &[Op::ShiftLeft],
+    }
+}
+
+fn literals(literal: Literal) -> Vec<Literal> {
+    match literal {
+        // Neither a factor nor a sign changes 0.
+        Literal::F32(0.0) => vec![Literal::F32(NUDGE - 1.0)],
+        Literal::F32(value) => vec![Literal::F32(value * NUDGE), Literal::F32(-value), Literal::F32(0.0)],
+        Literal::I32(value) => vec![Literal::I32(value.wrapping_add(1)), Literal::I32(value.wrapping_neg()), Literal::I32(0)],
+        Literal::U32(value) => vec![Literal::U32(value.wrapping_add(1)), Literal::U32(0)],
+        Literal::Bool(value) => vec![Literal::Bool(!value)],
+        _ => Vec::new(),
+    }
+    .into_iter()
+    .filter(|other| *other != literal)
+    .collect()
+}
+
+fn spell(literal: Literal) -> String {
+    match literal {
+        Literal::F32(value) => format!("{value:?}f"),
+        Literal::U32(value) => format!("{value}u"),
+        Literal::I32(value) => format!("{value}i"),
+        Literal::Bool(value) => value.to_string(),
+        other => format!("{other:?}"),
+    }
+}

@@ -1,0 +1,324 @@
+//! Where random inputs come from: a counter-based stream of draws, and the proptest strategy over it.
+//!
+//! Row r of a run is a pure function of (seed, r), so that a million rows are generated without a value tree, and one row
+//! is rebuilt alone when it must be shrunk. Shrinking works on the draws: each is pulled towards 0, and each
+//! generator maps 0 to the simplest value, so that whatever a generator guarantees (unit length, an angle, a
+//! side of a plane) holds for every shrunk input as well.
+
+use glam::{DVec3, Vec2, Vec3};
+use proptest::strategy::{NewTree, Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+use std::sync::Arc;
+
+/// A stream of random draws, replayed from a record where there is one.
+#[derive(Debug)]
+pub struct Draws<'a> {
+    key: u64,
+    count: u64,
+    replayed: Option<&'a [u32]>,
+}
+
+impl<'a> Draws<'a> {
+    /// The stream of row `row` of a run with `seed`.
+    pub fn of_row(seed: u64, row: u64) -> Draws<'static> {
+        Draws { key: mix(seed ^ mix(row)), count: 0, replayed: None }
+    }
+
+    /// A stream that repeats `draws`, then goes on with zeros.
+    pub fn replay(draws: &'a [u32]) -> Draws<'a> {
+        Draws { key: 0, count: 0, replayed: Some(draws) }
+    }
+
+    /// The next 32 bits.
+    pub fn bits(&mut self) -> u32 {
+        let index = self.count;
+        self.count += 1;
+        match self.replayed {
+            Some(draws) => draws.get(index as usize).copied().unwrap_or(0),
+            None => (mix(self.key.wrapping_add(index.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 32) as u32,
+        }
+    }
+
+    /// A whole number in [0, n), 0 the simplest.
+    pub fn below(&mut self, n: u32) -> u32 {
+        ((u64::from(self.bits()) * u64::from(n)) >> 32) as u32
+    }
+
+    /// One of `choices`, the first the simplest.
+    pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u32) as usize]
+    }
+
+    /// Uniform in [0, 1), on the multiples of 2⁻³².
+    pub fn unit(&mut self) -> f64 {
+        f64::from(self.bits()) * 2f64.powi(-32)
+    }
+
+    /// Uniform in [low, high], `low` the simplest.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        let value = f64::from(low) + self.unit() * (f64::from(high) - f64::from(low));
+        value as f32
+    }
+
+    /// Positive, with an exponent uniform in [low, high] and any mantissa, so that all magnitudes are met. The
+    /// exponent nearest 0 and the mantissa 1 are the simplest.
+    pub fn magnitude(&mut self, low: i32, high: i32) -> f32 {
+        let near = 0.clamp(low, high);
+        let step = self.below((high - low + 1).unsigned_abs()) as i32;
+        // Fans out from `near`: 0, -1, 1, -2, 2, … until one side ends, then on along the other.
+        let (below, above) = (near - low, high - near);
+        let side = below.min(above);
+        let exponent = if step <= 2 * side {
+            if step % 2 == 0 { near + step / 2 } else { near - step / 2 - 1 }
+        } else if below > above {
+            near - (step - side)
+        } else {
+            near + (step - side)
+        };
+        let exponent = exponent.clamp(low, high);
+        let mantissa = 1.0 + f64::from(self.bits() >> 9) * 2f64.powi(-23);
+        (mantissa * 2f64.powi(exponent)) as f32
+    }
+
+    /// `magnitude` with either sign, plus the simplest.
+    pub fn signed(&mut self, low: i32, high: i32) -> f32 {
+        let sign = if self.below(2) == 0 { 1.0 } else { -1.0 };
+        sign * self.magnitude(low, high)
+    }
+
+    /// `value` moved by up to `ulps` units in the last place, either way; often not at all.
+    pub fn nudged(&mut self, value: f32, ulps: u32) -> f32 {
+        let steps = self.below(2 * ulps + 1);
+        let (count, down) = (steps.div_ceil(2), steps % 2 == 1);
+        (0..count).fold(value, |value, _| if down { value.next_down() } else { value.next_up() })
+    }
+
+    /// A vector with components in [-1, 1].
+    pub fn in_cube(&mut self) -> Vec3 {
+        Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
+    }
+
+    /// A point in the unit square.
+    pub fn in_square(&mut self) -> Vec2 {
+        Vec2::new(self.between(0.0, 1.0), self.between(0.0, 1.0))
+    }
+
+    /// Uniform on the sphere, in f64; +z the simplest.
+    pub fn direction(&mut self) -> DVec3 {
+        let z = 1.0 - 2.0 * self.unit();
+        let azimuth = std::f64::consts::TAU * self.unit();
+        let radius = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+        DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z)
+    }
+
+    /// A unit vector: along an axis in one case of four, where sums of products are exact, else anywhere.
+    pub fn unit_vector(&mut self) -> Vec3 {
+        match self.below(4) {
+            0 => self.pick(&[Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y]),
+            _ => self.direction().as_vec3(),
+        }
+    }
+
+    /// A unit vector perpendicular to `axis` (unit, f64): exactly so where `axis` lies along a coordinate axis.
+    pub fn perpendicular(&mut self, axis: DVec3) -> DVec3 {
+        let helper = if axis.z.abs() < 0.9 { DVec3::Z } else { DVec3::X };
+        let first = axis.cross(helper).normalize();
+        let second = axis.cross(first);
+        match self.below(2) {
+            0 => first,
+            _ => {
+                let azimuth = std::f64::consts::TAU * self.unit();
+                azimuth.cos() * first + azimuth.sin() * second
+            }
+        }
+    }
+}
+
+/// SplitMix64's output function: a bijection of 64 bits that passes statistical tests on counters.
+/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+fn mix(key: u64) -> u64 {
+    let key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let key = (key ^ (key >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let key = (key ^ (key >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    key ^ (key >> 31)
+}
+
+/// A generator of values from draws; as a proptest strategy it shrinks by its draws.
+pub struct Domain<T> {
+    generate: Arc<dyn Fn(&mut Draws<'_>) -> T + Send + Sync>,
+}
+
+impl<T> Domain<T> {
+    /// A domain from its generator.
+    pub fn new(generate: impl Fn(&mut Draws<'_>) -> T + Send + Sync + 'static) -> Self {
+        Self { generate: Arc::new(generate) }
+    }
+
+    /// The value of row `row`.
+    pub fn row(&self, seed: u64, row: u64) -> T {
+        (self.generate)(&mut Draws::of_row(seed, row))
+    }
+
+    /// The tree of row `row`, to be shrunk.
+    pub fn tree(&self, seed: u64, row: u64) -> DrawTree<T> {
+        let mut draws = Draws::of_row(seed, row);
+        (self.generate)(&mut draws);
+        let count = draws.count;
+        let mut again = Draws::of_row(seed, row);
+        let draws: Vec<u32> = (0..count).map(|_| again.bits()).collect();
+        DrawTree { domain: self.clone(), draws, at: 0, stage: 0, undo: None, moved: false }
+    }
+}
+
+impl<T> Clone for Domain<T> {
+    fn clone(&self) -> Self {
+        Self { generate: Arc::clone(&self.generate) }
+    }
+}
+
+impl<T> std::fmt::Debug for Domain<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Domain")
+    }
+}
+
+impl<T: std::fmt::Debug> Strategy for Domain<T> {
+    type Tree = DrawTree<T>;
+    type Value = T;
+
+    fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
+        use proptest::prelude::Rng as _;
+        let seed = runner.rng().next_u64();
+        Ok(self.tree(seed, 0))
+    }
+}
+
+/// A value with the draws that made it. Each draw in turn is tried at 0, then with ever fewer of its low bits cleared,
+/// then one less; what still fails is kept, and rounds go on until one changes nothing.
+pub struct DrawTree<T> {
+    domain: Domain<T>,
+    draws: Vec<u32>,
+    at: usize,
+    stage: usize,
+    undo: Option<(usize, u32)>,
+    moved: bool,
+}
+
+/// What a draw is tried at, from the boldest to the smallest step.
+const STAGES: [fn(u32) -> u32; 8] = [
+    |_| 0,
+    |draw| draw & 0xff00_0000,
+    |draw| draw & 0xfff0_0000,
+    |draw| draw & 0xffff_0000,
+    |draw| draw & 0xffff_f000,
+    |draw| draw & 0xffff_fe00,
+    |draw| draw / 2,
+    |draw| draw - draw / 16,
+];
+
+impl<T: std::fmt::Debug> ValueTree for DrawTree<T> {
+    type Value = T;
+
+    fn current(&self) -> T {
+        (self.domain.generate)(&mut Draws::replay(&self.draws))
+    }
+
+    fn simplify(&mut self) -> bool {
+        // Reached again without `complicate`: the last step was kept.
+        if self.undo.take().is_some() {
+            self.moved = true;
+        }
+        loop {
+            if self.at == self.draws.len() {
+                if !self.moved {
+                    return false;
+                }
+                (self.at, self.stage, self.moved) = (0, 0, false);
+                continue;
+            }
+            if self.stage == STAGES.len() {
+                (self.at, self.stage) = (self.at + 1, 0);
+                continue;
+            }
+            let draw = self.draws[self.at];
+            let simpler = STAGES[self.stage](draw);
+            self.stage += 1;
+            if simpler != draw {
+                self.undo = Some((self.at, draw));
+                self.draws[self.at] = simpler;
+                return true;
+            }
+        }
+    }
+
+    fn complicate(&mut self) -> bool {
+        match self.undo.take() {
+            None => false,
+            Some((at, draw)) => {
+                self.draws[at] = draw;
+                true
+            }
+        }
+    }
+}
+
+impl<T> std::fmt::Debug for DrawTree<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("DrawTree").field("draws", &self.draws).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_the_same_alone_as_in_its_run() {
+        let domain = Domain::new(|draws| (draws.signed(-126, 127), draws.unit_vector()));
+        for row in 0..1000 {
+            assert_eq!(domain.row(7, row), domain.tree(7, row).current());
+        }
+    }
+
+    #[test]
+    fn magnitudes_reach_both_ends_and_zero_draws_are_simplest() {
+        let values: Vec<f32> = (0..20_000).map(|row| Draws::of_row(1, row).magnitude(-126, 127)).collect();
+        assert!(values.iter().all(|value| value.is_normal() && *value > 0.0));
+        assert!(values.iter().any(|value| *value < 2f32.powi(-125)) && values.iter().any(|value| *value > 1.6e38));
+        assert_eq!(Draws::replay(&[]).magnitude(-126, 127), 1.0);
+        assert_eq!(Draws::replay(&[]).magnitude(-126, -20).log2(), -20.0);
+        for (low, high) in [(-3, 1), (-1, 4), (2, 5), (-5, -2)] {
+            let mut met: Vec<i32> =
+                (0..2000).map(|row| Draws::of_row(2, row).magnitude(low, high).log2().floor() as i32).collect();
+            met.sort_unstable();
+            met.dedup();
+            assert_eq!(met, (low..=high).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn shrinking_finds_the_edge_of_a_failure() {
+        // Fails above 1000 whatever the sign: the smallest failing magnitude is the edge itself.
+        let domain = Domain::new(|draws| draws.signed(-20, 20));
+        let fails = |value: f32| value.abs() > 1000.0;
+        let row = (0..).find(|row| fails(domain.row(3, *row))).expect("some row fails");
+        let mut tree = domain.tree(3, row);
+        while tree.simplify() {
+            if !fails(tree.current()) {
+                tree.complicate();
+            }
+        }
+        assert!((1000.0..1100.0).contains(&tree.current()), "{}", tree.current());
+    }
+
+    #[test]
+    fn it_serves_as_a_proptest_strategy() {
+        let mut runner = TestRunner::deterministic();
+        let domain = Domain::new(|draws| draws.between(-1.0, 1.0));
+        runner.run(&domain, |value| {
+            proptest::prop_assert!((-1.0..=1.0).contains(&value));
+            Ok(())
+        })
+        .expect("in range");
+    }
+}

@@ -1,0 +1,253 @@
+//! Property testing on a GPU: batches of inputs a dispatch, every row compared, the worst one shrunk alone.
+
+pub mod draws;
+pub mod histogram;
+pub mod persistence;
+pub mod tolerance;
+
+use crate::dispatch::shape::Scalar;
+use crate::dispatch::{DispatchError, Kernel, ROWS_PER_DISPATCH};
+use crate::formula::{Formula, Words};
+use histogram::Histogram;
+use proptest::strategy::ValueTree;
+use rayon::prelude::*;
+use std::time::Instant;
+use tolerance::{Tolerance, Verdict, number};
+
+/// Cases a formula by default.
+pub const DEFAULT_CASES: u64 = 65_536;
+/// Dispatches spent on shrinking one row at most.
+const MOST_SHRINKS: usize = 4_000;
+/// Rows that one thread generates or compares at a time.
+const ROWS_PER_TASK: usize = 512;
+
+/// How to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// How many random inputs.
+    pub cases: u64,
+    /// From which seed.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { cases: DEFAULT_CASES, seed: 0x1a91_da21 }
+    }
+}
+
+/// What a run found.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Rows tested, those replayed included.
+    pub cases: u64,
+    /// Rows that failed their tolerance or an invariant.
+    pub failed: u64,
+    /// Rows with a NaN or an infinity.
+    pub nonfinite: u64,
+    /// Distribution of the forward error in ulp.
+    pub ulps: Histogram,
+    /// Largest forward error in ulp.
+    pub max_ulp: f64,
+    /// Largest error over allowed error.
+    pub worst_ratio: f64,
+    /// The row of that error.
+    pub worst: Words,
+    /// The simplest input found that fails half as badly as the worst; none where nothing failed.
+    pub shrunk: Option<Words>,
+    /// What the worst row broke.
+    pub reason: Option<String>,
+    /// How often each edge was reached.
+    pub edges: Vec<(&'static str, u64)>,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// Whether every row held and every edge was reached.
+    pub fn passed(&self) -> bool {
+        self.failed == 0 && self.missed_edges().next().is_none()
+    }
+
+    /// The edges that the run did not reach.
+    pub fn missed_edges(&self) -> impl Iterator<Item = &'static str> {
+        self.edges.iter().filter(|(_, count)| *count == 0).map(|(name, _)| *name)
+    }
+}
+
+/// A formula bound to a kernel and a tolerance, ready to run.
+pub struct Check<'a, 'gpu> {
+    /// What is tested.
+    pub formula: &'a Formula,
+    /// The shader.
+    pub kernel: &'a mut Kernel<'gpu>,
+    /// What it is held to.
+    pub tolerance: &'a Tolerance,
+}
+
+/// Results for a batch of rows.
+struct Batch {
+    verdicts: Vec<Verdict>,
+    broken: Vec<Option<String>>,
+}
+
+impl Check<'_, '_> {
+    /// Tests `replayed` rows first, then `settings.cases` random ones, and shrinks the worst if any failed.
+    pub fn run(&mut self, settings: Settings, replayed: &[Words]) -> Result<Report, DispatchError> {
+        let start = Instant::now();
+        let mut report = Report {
+            cases: 0,
+            failed: 0,
+            nonfinite: 0,
+            ulps: Histogram::default(),
+            max_ulp: 0.0,
+            worst_ratio: -1.0,
+            worst: Words::new(),
+            shrunk: None,
+            reason: None,
+            edges: self.formula.edges.iter().map(|edge| (edge.name, 0)).collect(),
+            seconds: 0.0,
+        };
+        let mut worst_row = None;
+        if !replayed.is_empty() {
+            self.batch(&replayed.concat(), &mut report)?;
+        }
+        let width = self.kernel.argument_words();
+        let mut first = 0;
+        while first < settings.cases {
+            let rows = (settings.cases - first).min(ROWS_PER_DISPATCH as u64) as usize;
+            let mut arguments = vec![0; rows * width];
+            let domain = &self.formula.domain;
+            arguments.par_chunks_mut(ROWS_PER_TASK * width).enumerate().for_each(|(task, words)| {
+                for (index, row) in words.chunks_exact_mut(width).enumerate() {
+                    row.copy_from_slice(&domain.row(settings.seed, first + (task * ROWS_PER_TASK + index) as u64));
+                }
+            });
+            if let Some(index) = self.batch(&arguments, &mut report)? {
+                worst_row = Some(first + index as u64);
+            }
+            first += rows as u64;
+        }
+        if report.failed > 0 {
+            // A replayed row has no draws to shrink by: it was shrunk when it was written down.
+            report.shrunk = Some(match worst_row {
+                Some(row) => self.shrink(settings.seed, row, report.worst_ratio)?,
+                None => report.worst.clone(),
+            });
+        }
+        report.worst_ratio = report.worst_ratio.max(0.0);
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(report)
+    }
+
+    /// Tests a batch and adds it to the report; returns the index of its worst row where that is the worst so far.
+    fn batch(&mut self, arguments: &[u32], report: &mut Report) -> Result<Option<usize>, DispatchError> {
+        let width = self.kernel.argument_words();
+        let batch = self.judge(arguments)?;
+        let mut worst = None;
+        for (index, (verdict, broken)) in batch.verdicts.iter().zip(&batch.broken).enumerate() {
+            let fails = !verdict.holds() || broken.is_some();
+            report.failed += u64::from(fails);
+            report.nonfinite += u64::from(verdict.nonfinite);
+            report.ulps.add(verdict.ulp);
+            report.max_ulp = report.max_ulp.max(verdict.ulp);
+            let badness = badness(verdict, broken.as_ref());
+            if badness > report.worst_ratio {
+                report.worst_ratio = badness;
+                report.worst = arguments[index * width..(index + 1) * width].to_vec();
+                report.reason = broken.clone().or_else(|| (!verdict.holds()).then(|| describe(verdict)));
+                worst = Some(index);
+            }
+        }
+        report.cases += batch.verdicts.len() as u64;
+        for (edge, (_, count)) in self.formula.edges.iter().zip(&mut report.edges) {
+            *count += arguments.par_chunks_exact(width).filter(|row| (edge.reached)(row)).count() as u64;
+        }
+        Ok(worst)
+    }
+
+    fn judge(&mut self, arguments: &[u32]) -> Result<Batch, DispatchError> {
+        let formula = self.formula;
+        let (width, result_width) = (self.kernel.argument_words(), self.kernel.result_words());
+        let rows = arguments.len() / width;
+        let mut results = Words::new();
+        self.kernel.run(arguments, &mut results)?;
+        let mut others = Vec::with_capacity(formula.pairs.len());
+        for pair in &formula.pairs {
+            let mut transformed = Words::with_capacity(arguments.len());
+            arguments.chunks_exact(width).for_each(|row| (pair.transform)(row, &mut transformed));
+            let mut other = Words::new();
+            self.kernel.run(&transformed, &mut other)?;
+            others.push(other);
+        }
+        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::dispatch::shape::Shape::scalars).collect();
+        let tolerance = self.tolerance;
+        let judged: Vec<(Verdict, Option<String>)> = (0..rows)
+            .into_par_iter()
+            .with_min_len(ROWS_PER_TASK)
+            .map_init(
+                || (Words::new(), Vec::new(), Vec::new()),
+                |(mirrored, numbers, exact), row| {
+                    let arguments = &arguments[row * width..(row + 1) * width];
+                    let result = &results[row * result_width..(row + 1) * result_width];
+                    mirrored.clear();
+                    (formula.mirror)(arguments, mirrored);
+                    numbers.clear();
+                    numbers.extend(arguments.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)));
+                    exact.clear();
+                    (formula.oracle)(numbers, exact);
+                    let verdict = tolerance.judge(arguments, result, mirrored, exact, &*formula.oracle);
+                    let invariants = formula.invariants.iter().map(|invariant| {
+                        (invariant.holds)(arguments, result).map_err(|why| format!("{}: {why}", invariant.name))
+                    });
+                    let pairs = formula.pairs.iter().zip(&others).map(|(pair, other)| {
+                        let other = &other[row * result_width..(row + 1) * result_width];
+                        (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
+                    });
+                    let broken = invariants.chain(pairs).find_map(Result::err);
+                    (verdict, broken)
+                },
+            )
+            .collect();
+        let (verdicts, broken) = judged.into_iter().unzip();
+        Ok(Batch { verdicts, broken })
+    }
+
+    /// The simplest input near row `row` that still fails at least half as badly.
+    fn shrink(&mut self, seed: u64, row: u64, worst: f64) -> Result<Words, DispatchError> {
+        let mut tree = self.formula.domain.tree(seed, row);
+        let mut simplest = tree.current();
+        // Half the worst, so that the search does not end on the tolerance's edge; still failing in any case.
+        let enough = (worst / 2.0).min(f64::MAX);
+        for _ in 0..MOST_SHRINKS {
+            if !tree.simplify() {
+                break;
+            }
+            let candidate = tree.current();
+            let batch = self.judge(&candidate)?;
+            let badness = badness(&batch.verdicts[0], batch.broken[0].as_ref());
+            if badness >= enough && badness > 1.0 {
+                simplest = candidate;
+            } else {
+                tree.complicate();
+            }
+        }
+        Ok(simplest)
+    }
+}
+
+/// How badly a row fails; above 1 where it does.
+fn badness(verdict: &Verdict, broken: Option<&String>) -> f64 {
+    // A broken invariant has no measure of its own; it counts as just failing, so that a larger error leads.
+    let invariant = if broken.is_some() { 1.0 + f64::EPSILON } else { 0.0 };
+    let ratio = if verdict.nonfinite { f64::INFINITY } else { verdict.ratio };
+    ratio.max(invariant)
+}
+
+fn describe(verdict: &Verdict) -> String {
+    if verdict.nonfinite {
+        "the result is not finite".to_owned()
+    } else {
+        format!("off by {:.1} times the allowed error", verdict.ratio)
+    }
+}

@@ -1,0 +1,104 @@
+use image::{ImageBuffer, Rgb, Rgba};
+
+use super::*;
+
+/// A map with a different colour in each pixel.
+fn coloured(width: u32, height: u32) -> DynamicImage {
+    DynamicImage::ImageRgb32F(ImageBuffer::from_fn(width, height, |x, y| {
+        Rgb([x as f32, y as f32, 0.5])
+    }))
+}
+
+fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+fn decode(bytes: &[u8]) -> Result<EnvironmentMap, EnvironmentMapError> {
+    EnvironmentMap::decode(bytes, Path::new("sky.hdr"))
+}
+
+#[test]
+fn both_formats_give_linear_pixels_from_the_top_left() {
+    for format in [ImageFormat::OpenExr, ImageFormat::Hdr] {
+        let map = decode(&encoded(&coloured(5, 3), format)).unwrap();
+        assert_eq!((map.width, map.height, map.pixels.len()), (5, 3, 15));
+        let [red, green, blue, _] = map.pixels[2 * 5 + 4];
+        assert_eq!([red, green, blue], [4.0, 2.0, 0.5], "{format:?}");
+    }
+}
+
+#[test]
+fn a_file_is_loaded_and_errors_name_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sky.exr");
+    std::fs::write(&path, encoded(&coloured(4, 2), ImageFormat::OpenExr)).unwrap();
+    assert_eq!(EnvironmentMap::load(&path).unwrap().width, 4);
+
+    for missing in [folder.path().join("none.hdr"), folder.path().to_owned()] {
+        let message = EnvironmentMap::load(&missing).unwrap_err().to_string();
+        assert!(
+            message.starts_with(&missing.display().to_string()),
+            "{message}"
+        );
+        assert!(message.contains("cannot be read"), "{message}");
+    }
+}
+
+#[test]
+fn other_files_are_refused() {
+    let png = encoded(&DynamicImage::new_rgb8(4, 4), ImageFormat::Png);
+    for bytes in [&b""[..], b"hello", &png] {
+        let error = decode(bytes).unwrap_err();
+        assert!(
+            matches!(error, EnvironmentMapError::Format { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn impossible_radiance_is_found_at_its_place() {
+    for bad in [f32::NAN, f32::INFINITY, -1.0] {
+        let image = DynamicImage::ImageRgba32F(ImageBuffer::from_fn(4, 3, |x, y| {
+            Rgba([1.0, if (x, y) == (3, 1) { bad } else { 0.0 }, 1.0, f32::NAN])
+        }));
+        let error = decode(&encoded(&image, ImageFormat::OpenExr)).unwrap_err();
+        assert!(error.to_string().contains("column 3, row 1"), "{error}");
+    }
+}
+
+#[test]
+fn small_files_with_large_claims_take_no_memory() {
+    for (size, says) in [
+        ("-Y 8192 +X 16384", "cannot hold so many"),
+        ("-Y 8193 +X 16", "at most 16384 x 8192"),
+        ("-Y 65535 +X 65535", "at most 16384 x 8192"),
+        ("-Y 4294967295 +X 4294967295", "are too large"),
+        ("-Y 1 +X 16", "at least 2 x 2"),
+        ("-Y 0 +X 0", "at least 2 x 2"),
+    ] {
+        let text = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n");
+        let message = decode(text.as_bytes()).unwrap_err().to_string();
+        assert!(message.contains(says), "{size}: {message}");
+    }
+}
+
+#[test]
+fn truncated_and_changed_files_are_errors_or_images() {
+    for format in [ImageFormat::OpenExr, ImageFormat::Hdr] {
+        let good = encoded(&coloured(16, 8), format);
+        for end in 0..good.len() {
+            assert!(decode(&good[..end]).is_err(), "{format:?} cut at {end}");
+        }
+        for place in 0..good.len() {
+            for value in [0, 0xff, good[place].wrapping_add(1)] {
+                let mut bytes = good.clone();
+                bytes[place] = value;
+                // What matters is that it returns.
+                let _ = decode(&bytes);
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Fuzzing of the glTF loader: valid files, broken in many ways.
+//!
+//! The test suite runs [`SUITE_CASES`], a benchmark [`BENCHMARK_CASES`]; both call [`run`]. A case is a
+//! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
+//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`] promises.
+
+use proptest::collection::vec;
+use proptest::prelude::{Strategy, any, prop_oneof};
+use proptest::sample::Index;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+
+use super::{Mesh, Scene, SceneError, glb, gltf};
+
+/// Cases of the test suite: seconds.
+pub const SUITE_CASES: u32 = 5_000;
+
+/// Cases of the benchmark: minutes.
+pub const BENCHMARK_CASES: u32 = 100_000;
+
+/// One change to a file.
+#[derive(Debug, Clone)]
+pub enum Edit {
+    /// Replaces a byte anywhere.
+    Byte(Index, u8),
+    /// Cuts the file off.
+    Truncate(Index),
+    /// Inserts a copy of a range, of at most 64 bytes, at another place.
+    Duplicate {
+        /// Where the range starts.
+        from: Index,
+        /// How long it is.
+        length: u8,
+        /// Where the copy goes.
+        to: Index,
+    },
+    /// Replaces a digit inside the JSON by another, so that the JSON stays valid.
+    Digit(Index, u8),
+    /// Replaces a whole number inside the JSON by one of [`HOSTILE_NUMBERS`], and mends the lengths of
+    /// a .glb, so that the number reaches the loader's checks.
+    Number(Index, Index),
+}
+
+/// Numbers that overflow, wrap, are not whole, or just pass an end.
+pub const HOSTILE_NUMBERS: [&str; 16] = [
+    "0",
+    "1",
+    "2",
+    "3",
+    "5",
+    "6",
+    "5121",
+    "5126",
+    "255",
+    "65536",
+    "4294967295",
+    "4294967296",
+    "18446744073709551615",
+    "-1",
+    "0.5",
+    "1e39",
+];
+
+/// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
+/// indices, no normals, a hierarchy with a matrix and with translation, rotation and scale.
+const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior"],
+"scene":0,"scenes":[{"nodes":[0,3]}],
+"nodes":[{"children":[1,2],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
+{"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},{"mesh":0},
+{"camera":0,"translation":[0,0,9]}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0},
+{"attributes":{"POSITION":0},"mode":6},{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":4}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},
+"extensions":{"KHR_materials_ior":{"ior":1.75}}}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48,"byteStride":12},
+{"buffer":0,"byteOffset":48,"byteLength":6}],
+"buffers":[{"byteLength":54,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAECAgED"}]}"#;
+
+/// The valid files that are broken: an octahedron as .glb, and a small hand-written .gltf.
+///
+/// # Errors
+/// None: both are made from constants. The type is that of the functions which make them.
+pub fn seeds() -> Result<[Vec<u8>; 2], SceneError> {
+    let octahedron = Scene::named("octahedron")?;
+    let written = glb::write(&octahedron).unwrap_or_default();
+    Ok([written, DOCUMENT.as_bytes().to_vec()])
+}
+
+/// Lists of 1 to 64 edits, most of them short, so that a good part of the files stays readable far in.
+pub fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    let edit = prop_oneof![
+        4 => (any::<Index>(), any::<u8>()).prop_map(|(place, byte)| Edit::Byte(place, byte)),
+        1 => any::<Index>().prop_map(Edit::Truncate),
+        1 => (any::<Index>(), 1..=64u8, any::<Index>())
+            .prop_map(|(from, length, to)| Edit::Duplicate { from, length, to }),
+        6 => (any::<Index>(), b'0'..=b'9').prop_map(|(place, digit)| Edit::Digit(place, digit)),
+        6 => (any::<Index>(), any::<Index>()).prop_map(|(place, value)| Edit::Number(place, value)),
+    ];
+    prop_oneof![
+        3 => vec(edit.clone(), 1..=2),
+        1 => vec(edit, 1..=64),
+    ]
+}
+
+/// `bytes` after all `edits`, in order.
+#[must_use]
+pub fn mutate(bytes: &[u8], edits: &[Edit]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    for edit in edits {
+        if bytes.is_empty() {
+            break;
+        }
+        apply(&mut bytes, edit);
+    }
+    bytes
+}
+
+fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
+    match edit {
+        Edit::Byte(place, byte) => *place.get_mut(bytes) = *byte,
+        Edit::Truncate(place) => bytes.truncate(place.index(bytes.len())),
+        Edit::Duplicate { from, length, to } => {
+            let start = from.index(bytes.len());
+            let end = bytes.len().min(start + usize::from(*length));
+            let copy = bytes[start..end].to_vec();
+            let at = to.index(bytes.len());
+            bytes.splice(at..at, copy);
+        }
+        Edit::Digit(place, digit) => {
+            let (json, _) = parts(bytes);
+            let digits: Vec<usize> = json.filter(|&k| bytes[k].is_ascii_digit()).collect();
+            if !digits.is_empty() {
+                bytes[*place.get(&digits)] = *digit;
+            }
+        }
+        Edit::Number(place, value) => {
+            let (json, binary) = parts(bytes);
+            let text = &bytes[json.clone()];
+            let numbers = numbers(text);
+            if numbers.is_empty() {
+                return;
+            }
+            let mut changed = text.to_vec();
+            let value = value.get(&HOSTILE_NUMBERS);
+            changed.splice(place.get(&numbers).clone(), value.bytes());
+            *bytes = match binary {
+                // A file too large for its container stays as it is; none here is.
+                Some(binary) => glb::container(&changed, &bytes[binary]).unwrap_or_default(),
+                None => changed,
+            };
+        }
+    }
+}
+
+type Range = std::ops::Range<usize>;
+
+/// Where the JSON lies, and the binary chunk if the container is sound.
+fn parts(bytes: &[u8]) -> (Range, Option<Range>) {
+    let word = |at: usize| {
+        let word = bytes.get(at..)?.first_chunk()?;
+        Some(u32::from_le_bytes(*word) as usize)
+    };
+    let sound = || {
+        let json_end = word(12)?.checked_add(20)?;
+        let binary_end = word(json_end)?.checked_add(json_end + 8)?;
+        let fits = bytes.starts_with(b"glTF") && binary_end <= bytes.len();
+        fits.then(|| (20..json_end, Some(json_end + 8..binary_end)))
+    };
+    sound().unwrap_or((0..bytes.len(), None))
+}
+
+/// The runs of digits, signs, points and exponents that stand where a JSON value may.
+fn numbers(json: &[u8]) -> Vec<Range> {
+    let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < json.len() {
+        let length = json[at..].iter().take_while(|byte| is_part(byte)).count();
+        let after = at
+            .checked_sub(1)
+            .is_some_and(|before| b":[, \n".contains(&json[before]));
+        if length > 0 && after && json[at..at + length].iter().any(u8::is_ascii_digit) {
+            found.push(at..at + length);
+        }
+        at += length.max(1);
+    }
+    found
+}
+
+/// How the cases of a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// Files that gave a scene.
+    pub loaded: u32,
+    /// Files that gave an error.
+    pub refused: u32,
+}
+
+/// Loads one broken file. True where it gave a scene.
+///
+/// # Errors
+/// What is wrong with the scene or with the error's message.
+pub fn check(bytes: &[u8]) -> Result<bool, String> {
+    match gltf::parse(bytes, None) {
+        Ok(scene) => check_scene(&scene, bytes.len() as u64).map(|()| true),
+        Err(error) => {
+            let message = error.to_string();
+            let one_line = !message.contains('\n') && message.len() < 2_000;
+            let fault = || format!("not one short line: {message:?}");
+            one_line.then_some(false).ok_or_else(fault)
+        }
+    }
+}
+
+fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
+    let taken: u64 = scene.objects.iter().map(|o| o.mesh.byte_size()).sum();
+    if taken > file_bytes * gltf::MAX_EXPANSION {
+        return Err(format!(
+            "{file_bytes} bytes of file became {taken} bytes of mesh"
+        ));
+    }
+    let camera = &scene.camera;
+    let sees = camera.eye.is_finite() && camera.up.is_normalized() && camera.eye != camera.target;
+    if !sees || !camera.target.is_finite() || !camera.vertical_fov.is_finite() {
+        return Err(format!("the camera sees nothing: {camera:?}"));
+    }
+    let wrong = scene.objects.iter().find(|object| !is_sound(&object.mesh));
+    wrong.map_or(Ok(()), |object| Err(format!("a broken mesh: {object:?}")))
+}
+
+fn is_sound(mesh: &Mesh) -> bool {
+    mesh.normals.len() == mesh.positions.len()
+        && mesh.indices.len().is_multiple_of(3)
+        && mesh.triangles().count() == mesh.triangle_count()
+        && mesh.positions.iter().all(|position| position.is_finite())
+        && mesh.normals.iter().all(|normal| normal.is_normalized())
+}
+
+/// Runs `cases` cases, the same ones each time, half of them on each seed.
+///
+/// # Errors
+/// The shrunk list of edits that makes the loader panic or break a promise, in words.
+pub fn run(cases: u32) -> Result<Tally, String> {
+    let seeds = seeds().map_err(|error| error.to_string())?;
+    let tally = std::cell::Cell::new(Tally::default());
+    let config = Config {
+        cases,
+        failure_persistence: None,
+        ..Config::default()
+    };
+    let mut runner =
+        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let outcome = runner.run(&(any::<bool>(), edits()), |(second, edits)| {
+        let bytes = mutate(&seeds[usize::from(second)], &edits);
+        let loaded = check(&bytes).map_err(TestCaseError::fail)?;
+        let mut counts = tally.get();
+        if loaded {
+            counts.loaded += 1;
+        } else {
+            counts.refused += 1;
+        }
+        tally.set(counts);
+        Ok(())
+    });
+    match outcome {
+        Ok(()) => Ok(tally.get()),
+        Err(TestError::Fail(reason, edits)) => Err(format!("{reason}: {edits:?}")),
+        Err(TestError::Abort(reason)) => Err(reason.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

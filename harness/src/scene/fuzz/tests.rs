@@ -1,0 +1,50 @@
+use super::*;
+
+#[test]
+fn seeds_are_valid() {
+    for seed in seeds().unwrap() {
+        assert_eq!(check(&seed), Ok(true), "{:?}", gltf::parse(&seed, None));
+    }
+}
+
+#[test]
+fn loader_survives_mutated_bytes() {
+    let tally = run(SUITE_CASES).unwrap();
+    assert_eq!(tally.loaded + tally.refused, SUITE_CASES);
+    // A fuzzer whose files all fail at the first check, or never fail, checks nothing.
+    assert!(tally.loaded > SUITE_CASES / 20, "{tally:?}");
+    assert!(tally.refused > SUITE_CASES / 4, "{tally:?}");
+}
+
+#[test]
+fn every_kind_of_edit_changes_the_file() {
+    let [seed, _] = seeds().unwrap();
+    let mut runner = TestRunner::deterministic();
+    let mut kinds = std::collections::HashMap::new();
+    for _ in 0..500 {
+        let tree = proptest::strategy::Strategy::new_tree(&edits(), &mut runner).unwrap();
+        for edit in proptest::strategy::ValueTree::current(&tree) {
+            let changed = mutate(&seed, std::slice::from_ref(&edit)) != seed;
+            *kinds.entry(std::mem::discriminant(&edit)).or_insert(0) += i32::from(changed);
+        }
+    }
+    assert_eq!(kinds.len(), 5);
+    assert!(kinds.values().all(|&changes| changes > 20), "{kinds:?}");
+}
+
+#[test]
+fn a_scene_that_breaks_a_promise_is_noticed() {
+    let good = Scene::named("octahedron").unwrap();
+    assert_eq!(check_scene(&good, 1_000), Ok(()));
+    assert!(check_scene(&good, 0).unwrap_err().contains("bytes of mesh"));
+    let broken = |change: fn(&mut Scene)| {
+        let mut scene = good.clone();
+        change(&mut scene);
+        check_scene(&scene, 1_000).is_err()
+    };
+    assert!(broken(|scene| scene.objects[0].mesh.indices[0] = 6));
+    assert!(broken(
+        |scene| scene.objects[0].mesh.positions[0].x = f32::NAN
+    ));
+    assert!(broken(|scene| scene.camera.target = scene.camera.eye));
+}

@@ -1,0 +1,150 @@
+//! Loads glTF 2.0: .glb, and .gltf with its buffers beside it or inside it.
+//!
+//! The gltf crate only splits the JSON into its types here. Its validation refuses extensions that we
+//! know, and its readers trust what it validated, so every reference, range and number is checked here
+//! instead. What a file can make the loader allocate is bounded by [`MAX_TRIANGLES`],
+//! [`MAX_FILE_BYTES`] and [`MAX_EXPANSION`].
+//!
+//! Loaded are triangles (also strips and fans), node transforms, base colour factors, refractive
+//! indices and the first perspective camera. Points and lines have no surface and are passed over.
+//! Skins, morph targets and animations are not applied, textures not read: a body shows at rest.
+
+use std::path::Path;
+
+use ::gltf::json::Root;
+use glam::Vec3;
+
+use super::camera::Camera;
+use super::{Object, Scene, SceneError, vertices};
+
+mod accessor;
+mod budget;
+mod buffers;
+mod camera_node;
+mod container;
+mod error;
+mod material;
+mod nodes;
+mod primitive;
+
+pub use error::GltfError;
+
+/// The largest file, and the largest sum of a file's buffers, that is read: 1 GiB.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// The most triangles in one scene, counting each instance: 2²⁴, and three times as many vertices. Such
+/// a scene takes 0.4 GB with shared vertices, 1.4 GB without.
+pub const MAX_TRIANGLES: u64 = 1 << 24;
+
+/// The most bytes of mesh per byte of file (with its external buffers). Indexed data as it is stored
+/// expands at most fivefold; the rest is for nodes that show one mesh many times.
+pub const MAX_EXPANSION: u64 = 256;
+
+/// The largest world coordinate. Two edges within it are at most 2√3·10⁹ long, so the square of their
+/// cross product, the largest number that the shaders form of them, is below 1.5·10³⁸ and fits f32.
+pub const MAX_COORDINATE: f32 = 1e9;
+
+/// The extensions that a file may require: what they say is read, or may be left out of a mesh.
+pub const KNOWN_EXTENSIONS: [&str; 5] = [
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_dispersion",
+    "KHR_materials_diffuse_transmission",
+];
+
+/// The vertical field of view of a scene without a camera of its own, in radians, and the direction
+/// in which its camera stands.
+const DEFAULT_VIEW: (f32, Vec3) = (0.47, Vec3::new(0.35, 0.45, 1.0));
+
+/// Loads a .glb or .gltf file. Buffers that it names are read relative to it.
+///
+/// # Errors
+/// [`SceneError::File`] with the path and what is wrong.
+pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    let in_file = |problem| SceneError::File {
+        path: path.to_owned(),
+        problem,
+    };
+    let base = path.parent().unwrap_or(Path::new(""));
+    let mut scene = buffers::read_file(path, MAX_FILE_BYTES)
+        .and_then(|bytes| parse_scene(&bytes, Some(base)))
+        .map_err(in_file)?;
+    if scene.name.is_empty() {
+        let stem = path.file_stem().unwrap_or_default();
+        scene.name = stem.to_string_lossy().into_owned();
+    }
+    Ok(scene)
+}
+
+/// Loads the bytes of a .glb or .gltf file. Buffers that it names are read from the folder `base`;
+/// without one, such a buffer is an error. A scene without a name is called `scene`.
+///
+/// # Errors
+/// [`SceneError::Gltf`] with what is wrong.
+pub fn parse(bytes: &[u8], base: Option<&Path>) -> Result<Scene, SceneError> {
+    let mut scene = parse_scene(bytes, base)?;
+    if scene.name.is_empty() {
+        "scene".clone_into(&mut scene.name);
+    }
+    Ok(scene)
+}
+
+fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
+    let container::Container { json, binary } = container::split(bytes)?;
+    let root: Root = ::gltf::json::deserialize::from_slice(json).map_err(GltfError::json)?;
+    check_asset(&root)?;
+    let buffers = buffers::Buffers::load(&root, binary, base)?;
+    let file_bytes = bytes.len() as u64 + buffers.external_bytes();
+    let shown = nodes::Shown::of(&root)?;
+
+    let mut budget = budget::Budget::new(file_bytes);
+    let mut objects: Vec<Object> = Vec::new();
+    for node in &shown.nodes {
+        primitive::add_objects(&root, &buffers, node, &mut budget, &mut objects)?;
+    }
+    if objects.iter().all(|object| object.mesh.indices.is_empty()) {
+        return Err(GltfError::NoTriangles);
+    }
+    let camera = match camera_node::first_perspective(&root, &shown.nodes, &objects)? {
+        Some(camera) => camera,
+        None => {
+            let (vertical_fov, toward_eye) = DEFAULT_VIEW;
+            Camera::framing(vertices(&objects), toward_eye, vertical_fov)
+        }
+    };
+    Ok(Scene {
+        name: shown.name,
+        objects,
+        camera,
+    })
+}
+
+fn check_asset(root: &Root) -> Result<(), GltfError> {
+    let asked = root
+        .asset
+        .min_version
+        .as_ref()
+        .unwrap_or(&root.asset.version);
+    if !root.asset.version.starts_with("2.") || !asked.starts_with("2.") {
+        return Err(GltfError::Version {
+            version: error::excerpt(asked),
+        });
+    }
+    let unknown: Vec<String> = root
+        .extensions_required
+        .iter()
+        .filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str()))
+        .map(|name| error::excerpt(name))
+        .collect();
+    if unknown.is_empty() {
+        Ok(())
+    } else {
+        Err(GltfError::RequiredExtensions {
+            extensions: error::shortened(unknown),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Checked reading of accessors.
+
+use ::gltf::json::Root;
+use ::gltf::json::accessor::{ComponentType, Type};
+use ::gltf::json::validation::Checked;
+
+use super::buffers::Buffers;
+use super::error::{GltfError, item};
+
+/// The elements of an accessor, known to lie within their buffer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Elements<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+    count: usize,
+}
+
+/// What an accessor must hold.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kind {
+    type_: Type,
+    components: &'static [ComponentType],
+    description: &'static str,
+}
+
+/// Positions and normals.
+pub(super) const VECTORS: Kind = Kind {
+    type_: Type::Vec3,
+    components: &[ComponentType::F32],
+    description: "VEC3 of float",
+};
+
+/// Indices.
+pub(super) const INDICES: Kind = Kind {
+    type_: Type::Scalar,
+    components: &[ComponentType::U8, ComponentType::U16, ComponentType::U32],
+    description: "SCALAR of unsigned byte, short or int",
+};
+
+impl<'a> Elements<'a> {
+    /// The elements of accessor `index`, which `user` refers to. All lengths and offsets are compared
+    /// in 64 bits, and no memory is taken.
+    pub(super) fn of(
+        root: &Root,
+        buffers: &'a Buffers<'_>,
+        index: usize,
+        kind: Kind,
+        user: &str,
+    ) -> Result<Self, GltfError> {
+        let accessor = item(&root.accessors, "accessor", index, || user.to_owned())?;
+        let name = format!("accessor {index}");
+        let wrong = |problem: String| GltfError::part(name.clone(), problem);
+
+        let component = match accessor.component_type {
+            Checked::Valid(generic) => generic.0,
+            Checked::Invalid => {
+                return Err(wrong("its componentType is not one of glTF's".to_owned()));
+            }
+        };
+        if accessor.type_ != Checked::Valid(kind.type_) || !kind.components.contains(&component) {
+            return Err(wrong(format!(
+                "{user} needs {} there; export without quantisation or compression",
+                kind.description
+            )));
+        }
+        if accessor.sparse.is_some() {
+            return Err(wrong(
+                "sparse accessors are not read; export without them".to_owned(),
+            ));
+        }
+        let Some(view_index) = accessor.buffer_view else {
+            return Err(wrong(
+                "it has no bufferView, so no data; export it again".to_owned(),
+            ));
+        };
+        let view = item(&root.buffer_views, "bufferView", view_index.value(), || {
+            name.clone()
+        })?;
+        let buffer = item(buffers.list(), "buffer", view.buffer.value(), || {
+            format!("bufferView {}", view_index.value())
+        })?;
+
+        let view_start = view.byte_offset.map_or(0, |offset| offset.0);
+        let view_bytes = range(buffer, view_start, view.byte_length.0).ok_or_else(|| {
+            let part = format!("bufferView {}", view_index.value());
+            let (length, has) = (view.byte_length.0, buffer.len());
+            GltfError::part(part, format!(
+                "it takes {length} bytes from byte {view_start} of a buffer of {has}; export it again"
+            ))
+        })?;
+
+        let size = component.size() * kind.type_.multiplicity();
+        let stride = view.byte_stride.map_or(size, |stride| stride.0);
+        if !(size..=252).contains(&stride) {
+            return Err(wrong(format!(
+                "its elements of {size} bytes lie {stride} apart, but must lie {size} to 252 apart"
+            )));
+        }
+        let count = accessor.count.0;
+        let start = accessor.byte_offset.map_or(0, |offset| offset.0);
+        // The last element need not be followed by the rest of its stride.
+        let length = count
+            .checked_sub(1)
+            .and_then(|steps| steps.checked_mul(stride as u64)?.checked_add(size as u64));
+        let bytes = length.and_then(|length| range(view_bytes, start, length));
+        let (Some(bytes), Ok(count)) = (bytes, usize::try_from(count)) else {
+            let has = view_bytes.len();
+            return Err(wrong(format!(
+                "it has {count} elements of {size} bytes, {stride} apart from byte {start}, in a \
+                 bufferView of {has} bytes; export it again"
+            )));
+        };
+        Ok(Self {
+            bytes,
+            stride,
+            size,
+            count,
+        })
+    }
+
+    /// The number of elements, at least one.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The elements as vectors. Meant for [`VECTORS`].
+    pub(super) fn vectors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
+        self.elements().map(|bytes| {
+            let mut components = bytes.chunks_exact(4).map(little_endian).map(f32::from_bits);
+            std::array::from_fn(|_| components.next().unwrap_or(0.0))
+        })
+    }
+
+    /// The elements as unsigned numbers. Meant for [`INDICES`].
+    pub(super) fn indices(self) -> impl Iterator<Item = u32> + 'a {
+        self.elements().map(little_endian)
+    }
+
+    fn elements(self) -> impl Iterator<Item = &'a [u8]> {
+        let chunks = self.bytes.chunks(self.stride).take(self.count);
+        chunks.map(move |chunk| &chunk[..self.size])
+    }
+}
+
+/// A number of up to four bytes, which need not be aligned.
+fn little_endian(bytes: &[u8]) -> u32 {
+    bytes
+        .iter()
+        .rev()
+        .fold(0, |number, &byte| number << 8 | u32::from(byte))
+}
+
+/// `length` bytes from `start`, if there are so many.
+fn range(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
+    let end = usize::try_from(start.checked_add(length)?).ok()?;
+    bytes.get(usize::try_from(start).ok()?..end)
+}

@@ -1,0 +1,192 @@
+//! The bytes of a file's buffers: its binary chunk, base64 in its JSON, or files beside it.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use ::gltf::json::{Buffer, Root};
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+
+use super::MAX_FILE_BYTES;
+use super::error::{GltfError, excerpt};
+
+/// The bytes of all buffers, each exactly as long as the file says.
+#[derive(Debug)]
+pub(super) struct Buffers<'a> {
+    buffers: Vec<Cow<'a, [u8]>>,
+    external_bytes: u64,
+}
+
+/// Writers differ in whether they pad base64, and either way it is unambiguous.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+impl<'a> Buffers<'a> {
+    pub(super) fn load(
+        root: &Root,
+        binary: Option<&'a [u8]>,
+        base: Option<&Path>,
+    ) -> Result<Self, GltfError> {
+        let mut all = Self {
+            buffers: Vec::with_capacity(root.buffers.len()),
+            external_bytes: 0,
+        };
+        let mut left = MAX_FILE_BYTES;
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let length = buffer.byte_length.0;
+            left = left
+                .checked_sub(length)
+                .ok_or_else(|| GltfError::TooLarge {
+                    what: format!("buffer {index}, with those before it,"),
+                    bytes: (MAX_FILE_BYTES - left).saturating_add(length),
+                    limit: MAX_FILE_BYTES,
+                })?;
+            let bytes = all.bytes_of(index, buffer, binary, base)?;
+            all.buffers.push(bytes);
+        }
+        Ok(all)
+    }
+
+    /// The bytes read from files beside the glTF file.
+    pub(super) fn external_bytes(&self) -> u64 {
+        self.external_bytes
+    }
+
+    pub(super) fn list(&self) -> &[Cow<'a, [u8]>] {
+        &self.buffers
+    }
+
+    fn bytes_of(
+        &mut self,
+        index: usize,
+        buffer: &Buffer,
+        binary: Option<&'a [u8]>,
+        base: Option<&Path>,
+    ) -> Result<Cow<'a, [u8]>, GltfError> {
+        let wrong = |problem: String| GltfError::part(format!("buffer {index}"), problem);
+        // The bytes that `load` has bounded; on a 32-bit machine a GiB still fits.
+        let length = buffer.byte_length.0 as usize;
+        let mut bytes = match (&buffer.uri, binary) {
+            (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+            (None, _) => {
+                return Err(wrong(
+                    "it has no uri and no binary chunk; export it again".to_owned(),
+                ));
+            }
+            (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
+                Some(data) => decode(data).map_err(wrong)?,
+                None => {
+                    let file = resolve(uri, base).map_err(wrong)?;
+                    let bytes = read_named(&file, &format!("buffer {index}"), length as u64)?;
+                    self.external_bytes += bytes.len() as u64;
+                    bytes
+                }
+            }),
+        };
+        if bytes.len() < length {
+            let found = bytes.len();
+            return Err(wrong(format!(
+                "it must have {length} bytes but has {found}; export or download it again"
+            )));
+        }
+        match &mut bytes {
+            Cow::Borrowed(slice) => *slice = &slice[..length],
+            Cow::Owned(vector) => vector.truncate(length),
+        }
+        Ok(bytes)
+    }
+}
+
+/// The data of a `data:` URI after its scheme.
+fn decode(data: &str) -> Result<Vec<u8>, String> {
+    let (kind, text) = data
+        .split_once(',')
+        .ok_or("its data: URI has no comma; export it again")?;
+    if !kind.ends_with(";base64") {
+        return Err("its data: URI is not base64; export it as base64".to_owned());
+    }
+    let decoded = BASE64.decode(text);
+    decoded.map_err(|error| format!("its base64 is damaged: {error}; export it again"))
+}
+
+/// The file that a relative URI names.
+fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
+    let shown = excerpt(uri);
+    let name = percent_decoded(uri)
+        .ok_or_else(|| format!("its uri {shown:?} is not valid; rename the file"))?;
+    let scheme = name.split_once(':').map_or("", |(scheme, _)| scheme);
+    let absolute = name.starts_with(['/', '\\']) || Path::new(&name).is_absolute();
+    // A colon in a later part of a path is part of a file's name.
+    if absolute || (!scheme.is_empty() && !scheme.contains('/')) {
+        return Err(format!(
+            "its uri {shown:?} is not a relative path; put the file beside the .gltf"
+        ));
+    }
+    let base = base.ok_or_else(|| {
+        format!("its uri {shown:?} names a file, but the data did not come from a file; use a .glb")
+    })?;
+    Ok(base.join(name))
+}
+
+fn percent_decoded(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.bytes();
+    while let Some(byte) = rest.next() {
+        bytes.push(match byte {
+            b'%' => {
+                let digit = |byte: Option<u8>| char::from(byte?).to_digit(16);
+                let value = 16 * digit(rest.next())? + digit(rest.next())?;
+                value as u8
+            }
+            _ => byte,
+        });
+    }
+    String::from_utf8(bytes)
+        .ok()
+        .filter(|name| !name.contains('\0'))
+}
+
+/// All bytes of the glTF file at `path`.
+pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, GltfError> {
+    let too_large = |bytes| GltfError::TooLarge {
+        what: "the file".to_owned(),
+        bytes,
+        limit,
+    };
+    let bytes = read_up_to(path, "the file".to_owned(), limit.saturating_add(1))?;
+    let length = bytes.len() as u64;
+    if length > limit {
+        Err(too_large(length))
+    } else {
+        Ok(bytes)
+    }
+}
+
+/// At most `length` bytes of a buffer's file.
+fn read_named(path: &Path, buffer: &str, length: u64) -> Result<Vec<u8>, GltfError> {
+    let what = format!("{buffer}'s file {:?}", path.display().to_string());
+    read_up_to(path, what, length)
+}
+
+/// Devices and pipes, which may never end, are refused.
+fn read_up_to(path: &Path, what: String, limit: u64) -> Result<Vec<u8>, GltfError> {
+    let unreadable = |reason: String| GltfError::Unreadable {
+        what: what.clone(),
+        reason,
+    };
+    // Asked before the file is opened, because opening a pipe waits for its other end.
+    let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+    if !metadata.is_file() {
+        return Err(unreadable("it is not a regular file".to_owned()));
+    }
+    let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
+    let mut bytes = Vec::new();
+    match file.take(limit).read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(unreadable(error.to_string())),
+    }
+}

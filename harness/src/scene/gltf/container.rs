@@ -1,0 +1,76 @@
+//! The two containers of glTF: plain JSON, and .glb with its chunks.
+
+use super::GltfError;
+
+/// The parts of a file.
+#[derive(Debug)]
+pub(super) struct Container<'a> {
+    pub(super) json: &'a [u8],
+    /// The binary chunk of a .glb, if it has one.
+    pub(super) binary: Option<&'a [u8]>,
+}
+
+/// Splits a .glb, or takes all of a .gltf as JSON.
+///
+/// Written out here because the gltf crate subtracts the header's size from the stated length before
+/// it compares them, which overflows on lengths below 12.
+pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
+    if !bytes.starts_with(b"glTF") {
+        let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+        return match first {
+            Some(b'{') => Ok(Container {
+                json: bytes,
+                binary: None,
+            }),
+            _ => Err(GltfError::NotGltf),
+        };
+    }
+    let version = word(bytes, 4, "its header")?;
+    if version != 2 {
+        return Err(GltfError::Version {
+            version: version.to_string(),
+        });
+    }
+    let stated = word(bytes, 8, "its header")? as usize;
+    let bytes = bytes
+        .get(..stated)
+        .ok_or_else(|| damaged(format!("it states {stated} bytes but has {}", bytes.len())))?;
+    let (kind, json, rest) = chunk(bytes, 12)?;
+    if kind != b"JSON" {
+        return Err(damaged("its first chunk is not JSON".to_owned()));
+    }
+    if rest == bytes.len() {
+        return Ok(Container { json, binary: None });
+    }
+    // A first chunk of an unknown kind after the JSON is skipped by rule, and with it the binary one,
+    // which must come second.
+    let (kind, data, _) = chunk(bytes, rest)?;
+    let binary = (kind == b"BIN\0").then_some(data);
+    Ok(Container { json, binary })
+}
+
+/// The kind and the data of the chunk at `at`, and where the next one starts.
+fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), GltfError> {
+    let length = word(bytes, at, "a chunk")? as usize;
+    let start = at + 8;
+    let kind = bytes.get(at + 4..start);
+    let end = start.checked_add(length);
+    let data = end.and_then(|end| bytes.get(start..end));
+    match (kind, data) {
+        (Some(kind), Some(data)) => Ok((kind, data, start + length)),
+        _ => Err(damaged(format!(
+            "the chunk at byte {at} states {length} bytes but the file ends before"
+        ))),
+    }
+}
+
+fn word(bytes: &[u8], at: usize, part: &str) -> Result<u32, GltfError> {
+    let word = bytes.get(at..).and_then(|tail| tail.first_chunk());
+    let word =
+        word.ok_or_else(|| damaged(format!("it ends at byte {} inside {part}", bytes.len())))?;
+    Ok(u32::from_le_bytes(*word))
+}
+
+fn damaged(problem: String) -> GltfError {
+    GltfError::Container { problem }
+}

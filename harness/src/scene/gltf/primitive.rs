@@ -1,0 +1,275 @@
+//! From a mesh's primitives to objects in the world.
+
+use ::gltf::Semantic;
+use ::gltf::json::Root;
+use ::gltf::json::mesh::{Mode, Primitive};
+use ::gltf::json::validation::Checked;
+use glam::{DMat3, DMat4, DVec3, Vec3};
+
+use super::accessor::{Elements, INDICES, VECTORS};
+use super::budget::Budget;
+use super::buffers::Buffers;
+use super::error::{GltfError, designation, excerpt, item};
+use super::nodes::ShownNode;
+use super::{MAX_COORDINATE, material};
+use crate::scene::normals::{Averaging, shared_normals};
+use crate::scene::{Mesh, Object};
+
+/// Adds an object for each primitive of triangles that `node` shows.
+pub(super) fn add_objects(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    node: &ShownNode<'_>,
+    budget: &mut Budget,
+    objects: &mut Vec<Object>,
+) -> Result<(), GltfError> {
+    let Some(mesh_index) = node.node.mesh.map(|mesh| mesh.value()) else {
+        return Ok(());
+    };
+    let mesh = item(&root.meshes, "mesh", mesh_index, || node.designation())?;
+    let name = node.node.name.as_deref().or(mesh.name.as_deref());
+    let name = name.map_or_else(|| format!("mesh {mesh_index}"), excerpt);
+    for (index, primitive) in mesh.primitives.iter().enumerate() {
+        let Some(arrangement) = Arrangement::of(primitive.mode) else {
+            continue;
+        };
+        let user = format!(
+            "{}, primitive {index}",
+            designation("mesh", mesh_index, mesh.name.as_deref())
+        );
+        let mut reader = Reader {
+            root,
+            buffers,
+            primitive,
+            user: &user,
+            budget,
+        };
+        let mesh_in_world = reader.mesh(arrangement, node.world)?;
+        let material_index = primitive.material.map(|material| material.value());
+        objects.push(Object {
+            name: match mesh.primitives.len() {
+                1 => name.clone(),
+                _ => format!("{name} / {index}"),
+            },
+            mesh: mesh_in_world,
+            material: material::read(root, material_index, &user)?,
+        });
+    }
+    Ok(())
+}
+
+/// How a list of vertices makes triangles.
+#[derive(Debug, Clone, Copy)]
+enum Arrangement {
+    List,
+    Strip,
+    Fan,
+}
+
+impl Arrangement {
+    /// Nothing for points and lines, and for modes that glTF does not have.
+    fn of(mode: Checked<Mode>) -> Option<Self> {
+        match mode {
+            Checked::Valid(Mode::Triangles) => Some(Self::List),
+            Checked::Valid(Mode::TriangleStrip) => Some(Self::Strip),
+            Checked::Valid(Mode::TriangleFan) => Some(Self::Fan),
+            _ => None,
+        }
+    }
+
+    /// The number of whole triangles; glTF has readers ignore what is left over.
+    fn triangles(self, corners: usize) -> usize {
+        match self {
+            Self::List => corners / 3,
+            Self::Strip | Self::Fan => corners.saturating_sub(2),
+        }
+    }
+
+    /// The places in the list of corners of triangle `k`, in glTF's winding.
+    fn corners(self, k: usize) -> [usize; 3] {
+        match self {
+            Self::List => [3 * k, 3 * k + 1, 3 * k + 2],
+            Self::Strip => [k, k + 1 + k % 2, k + 2 - k % 2],
+            Self::Fan => [k + 1, k + 2, 0],
+        }
+    }
+}
+
+struct Reader<'a> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+    primitive: &'a Primitive,
+    /// The primitive as messages call it.
+    user: &'a str,
+    budget: &'a mut Budget,
+}
+
+impl<'a> Reader<'a> {
+    fn mesh(&mut self, arrangement: Arrangement, world: DMat4) -> Result<Mesh, GltfError> {
+        let positions = self.attribute(&Semantic::Positions)?.ok_or_else(|| {
+            GltfError::part(self.user.to_owned(), "it has no POSITION; export it again")
+        })?;
+        let normals = self.attribute(&Semantic::Normals)?;
+        let indices = match self.primitive.indices {
+            Some(index) => Some(self.elements(index.value(), INDICES)?),
+            None => None,
+        };
+        let vertices = positions.count();
+        if normals.is_some_and(|normals| normals.count() != vertices) {
+            return Err(GltfError::part(
+                self.user.to_owned(),
+                "it has not as many normals as positions; export it again",
+            ));
+        }
+        let corners = indices.map_or(vertices, |indices| indices.count());
+        let triangles = arrangement.triangles(corners);
+        self.budget.take(vertices as u64, triangles as u64)?;
+
+        let positions = self.positions(positions, world)?;
+        let corners = match indices {
+            Some(indices) => self.in_range(indices, vertices)?,
+            // The budget has bounded the vertices below 2²⁶.
+            None => (0..vertices as u32).collect(),
+        };
+        let linear = DMat3::from_mat4(world);
+        let mirrored = linear.determinant() < 0.0;
+        let indices = assemble(&corners, arrangement, mirrored);
+        let normals = match normals {
+            Some(normals) => given_or_shared(
+                normals.vectors(),
+                Cofactors::of(linear),
+                &positions,
+                &indices,
+            ),
+            None => shared_normals(&positions, &indices, Averaging::Angle),
+        };
+        Ok(Mesh {
+            positions,
+            normals,
+            indices,
+        })
+    }
+
+    fn attribute(&self, semantic: &Semantic) -> Result<Option<Elements<'a>>, GltfError> {
+        let attributes = &self.primitive.attributes;
+        let index = attributes.get(&Checked::Valid(semantic.clone()));
+        index
+            .map(|index| self.elements(index.value(), VECTORS))
+            .transpose()
+    }
+
+    fn elements(
+        &self,
+        index: usize,
+        kind: super::accessor::Kind,
+    ) -> Result<Elements<'a>, GltfError> {
+        Elements::of(self.root, self.buffers, index, kind, self.user)
+    }
+
+    fn positions(&self, elements: Elements<'_>, world: DMat4) -> Result<Vec<Vec3>, GltfError> {
+        let mut positions = Vec::with_capacity(elements.count());
+        for (vertex, local) in elements.vectors().enumerate() {
+            let position = world
+                .transform_point3(Vec3::from_array(local).as_dvec3())
+                .as_vec3();
+            // Written so that NaN fails it too.
+            let placed = position
+                .to_array()
+                .iter()
+                .all(|x| x.abs() <= MAX_COORDINATE);
+            if !placed {
+                return Err(GltfError::Position {
+                    primitive: self.user.to_owned(),
+                    vertex,
+                    position: position.to_array(),
+                });
+            }
+            positions.push(position);
+        }
+        Ok(positions)
+    }
+
+    fn in_range(&self, elements: Elements<'_>, vertices: usize) -> Result<Vec<u32>, GltfError> {
+        let mut indices = Vec::with_capacity(elements.count());
+        for (place, index) in elements.indices().enumerate() {
+            if index as usize >= vertices {
+                return Err(GltfError::IndexOutOfRange {
+                    primitive: self.user.to_owned(),
+                    place,
+                    index,
+                    vertices: vertices as u64,
+                });
+            }
+            indices.push(index);
+        }
+        Ok(indices)
+    }
+}
+
+/// A triangle list, without the triangles that repeat a corner (strips turn by them), and turned over
+/// where a mirror has turned them inside out.
+fn assemble(corners: &[u32], arrangement: Arrangement, mirrored: bool) -> Vec<u32> {
+    let count = arrangement.triangles(corners.len());
+    let mut indices = Vec::with_capacity(3 * count);
+    for triangle in 0..count {
+        let [a, b, c] = arrangement.corners(triangle).map(|place| corners[place]);
+        if a == b || b == c || c == a {
+            continue;
+        }
+        indices.extend(if mirrored { [a, c, b] } else { [a, b, c] });
+    }
+    indices
+}
+
+/// The file's normals where they have a direction, else the shared normals of the triangles.
+fn given_or_shared(
+    given: impl Iterator<Item = [f32; 3]>,
+    transform: Cofactors,
+    positions: &[Vec3],
+    indices: &[u32],
+) -> Vec<Vec3> {
+    let given: Vec<Option<Vec3>> = given.map(|normal| transform.apply(normal)).collect();
+    if given.iter().all(Option::is_some) {
+        return given.into_iter().flatten().collect();
+    }
+    let shared = shared_normals(positions, indices, Averaging::Angle);
+    let pairs = given.into_iter().zip(shared);
+    pairs
+        .map(|(given, shared)| given.unwrap_or(shared))
+        .collect()
+}
+
+/// How normals move when points move by a matrix: by its inverse transpose. The matrix of cofactors
+/// is the same up to the determinant's size, and also exists where the matrix flattens.
+#[derive(Debug, Clone, Copy)]
+struct Cofactors {
+    matrix: DMat3,
+    is_identity: bool,
+}
+
+impl Cofactors {
+    fn of(linear: DMat3) -> Self {
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let sign = if linear.determinant() < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Self {
+            matrix: DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign,
+            is_identity: linear == DMat3::IDENTITY,
+        }
+    }
+
+    /// The unit normal, or nothing where there is no direction.
+    fn apply(self, normal: [f32; 3]) -> Option<Vec3> {
+        let normal = Vec3::from_array(normal);
+        // A normal that f32 cannot bring closer to unit length stays as it is, to the last bit.
+        if self.is_identity && (normal.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
+            return Some(normal);
+        }
+        let moved: DVec3 = self.matrix * normal.as_dvec3();
+        let unit = moved.try_normalize()?.as_vec3();
+        unit.is_finite().then_some(unit)
+    }
+}

@@ -1,0 +1,252 @@
+//! What the loader reads, and what it says of files that it cannot read.
+
+use glam::Quat;
+use serde_json::{Value, json};
+
+use super::*;
+use crate::scene::normals::FALLBACK_NORMAL;
+use crate::scene::{Material, glb};
+
+mod refusals;
+mod refused_data;
+
+/// Three corners of a right triangle, then indices 0 1 2 0 as shorts.
+fn binary() -> Vec<u8> {
+    let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let indices: [u16; 4] = [0, 1, 2, 0];
+    let corners = corners.into_iter().flat_map(f32::to_le_bytes);
+    corners
+        .chain(indices.into_iter().flat_map(u16::to_le_bytes))
+        .collect()
+}
+
+/// A file with one triangle, which each test changes.
+fn document() -> Value {
+    json!({
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"name": "test", "nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": "stone"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "materials": [{"name": "gem"}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+        ],
+        "buffers": [{"byteLength": 44}],
+    })
+}
+
+fn file(document: &Value, binary: &[u8]) -> Vec<u8> {
+    glb::container(document.to_string().as_bytes(), binary).unwrap()
+}
+
+fn load_changed(change: impl FnOnce(&mut Value)) -> Result<Scene, SceneError> {
+    let mut document = document();
+    change(&mut document);
+    parse(&file(&document, &binary()), None)
+}
+
+fn only_mesh(scene: &Scene) -> &crate::scene::Mesh {
+    assert_eq!(scene.objects.len(), 1);
+    &scene.objects[0].mesh
+}
+
+#[test]
+fn a_triangle_loads_with_names_and_computed_normals() {
+    let scene = load_changed(|_| ()).unwrap();
+    assert_eq!(
+        (scene.name.as_str(), scene.objects[0].name.as_str()),
+        ("test", "stone")
+    );
+    assert_eq!(scene.objects[0].material, Material::standard());
+    let mesh = only_mesh(&scene);
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(mesh.normals, [Vec3::Z; 3]);
+    assert_eq!(mesh.indices, [0, 1, 2]);
+}
+
+#[test]
+fn buffers_may_be_base64_or_files_beside() {
+    use base64::Engine;
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("my data.bin"), binary()).unwrap();
+    let text = base64::engine::general_purpose::STANDARD.encode(binary());
+    let inline = format!("data:application/octet-stream;base64,{text}");
+    for uri in [
+        "my%20data.bin",
+        "./my data.bin",
+        &inline,
+        inline.trim_end_matches('='),
+    ] {
+        let mut document = document();
+        document["buffers"][0]["uri"] = json!(uri);
+        document["scenes"][0]["name"] = Value::Null;
+        let path = folder.path().join("stone.gltf");
+        std::fs::write(&path, document.to_string()).unwrap();
+        let scene = load(&path).unwrap();
+        assert_eq!(scene.name, "stone");
+        assert_eq!(only_mesh(&scene).indices, [0, 1, 2]);
+    }
+}
+
+#[test]
+fn strips_and_fans_become_lists_without_turning_points() {
+    let strip = load_changed(|d| {
+        d["meshes"][0]["primitives"][0]["mode"] = json!(5);
+        d["accessors"][1]["count"] = json!(4);
+    });
+    // The second triangle is 1 0 2, wound the other way.
+    assert_eq!(only_mesh(&strip.unwrap()).indices, [0, 1, 2, 1, 0, 2]);
+    let fan = load_changed(|d| {
+        d["meshes"][0]["primitives"][0]["mode"] = json!(6);
+        d["accessors"][1]["count"] = json!(4);
+    });
+    assert_eq!(only_mesh(&fan.unwrap()).indices, [1, 2, 0]);
+    let plain = load_changed(|d| {
+        let primitive = d["meshes"][0]["primitives"][0].as_object_mut().unwrap();
+        primitive.remove("indices");
+    });
+    assert_eq!(only_mesh(&plain.unwrap()).indices, [0, 1, 2]);
+}
+
+#[test]
+fn transforms_compose_and_mirrors_turn_the_winding() {
+    let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2).to_array();
+    let scene = load_changed(|d| {
+        d["scenes"][0]["nodes"] = json!([1]);
+        d["nodes"] = json!([
+            {"mesh": 0, "translation": [0, 0, 1], "rotation": turn, "scale": [2, 1, 1]},
+            {"children": [0], "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1]},
+        ]);
+        d["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(2);
+        // The corners again as normals: zero, +x, +y.
+        let corners = d["accessors"][0].clone();
+        d["accessors"].as_array_mut().unwrap().push(corners);
+    });
+    let scene = scene.unwrap();
+    let mesh = only_mesh(&scene);
+    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-6, "{a} is not {b}");
+    near(mesh.positions[0], Vec3::new(5.0, 0.0, 1.0));
+    near(mesh.positions[1], Vec3::new(5.0, 0.0, -1.0));
+    near(mesh.positions[2], Vec3::new(5.0, 1.0, 1.0));
+    assert_eq!(mesh.indices, [0, 2, 1]);
+    // The first normal has no direction, so the triangle's own stands in for it.
+    near(mesh.normals[0], Vec3::NEG_X);
+    near(mesh.normals[1], Vec3::NEG_Z);
+    near(mesh.normals[2], Vec3::Y);
+}
+
+#[test]
+fn an_uneven_scale_keeps_normals_at_right_angles() {
+    let scene = load_changed(|d| {
+        d["nodes"][0]["scale"] = json!([1, 0.25, 3]);
+        d["nodes"][0]["rotation"] = json!([0.2, 0.4, 0.4, 0.8]);
+    });
+    let mesh = only_mesh(scene.as_ref().unwrap()).clone();
+    let [a, b, c] = mesh.triangles().next().unwrap();
+    let across = (b - a).cross(c - a).normalize();
+    assert!(
+        mesh.normals
+            .iter()
+            .all(|normal| normal.distance(across) < 1e-6)
+    );
+}
+
+#[test]
+fn flattened_bodies_load() {
+    let scene = load_changed(|d| d["nodes"][0]["scale"] = json!([0, 0, 0])).unwrap();
+    assert_eq!(only_mesh(&scene).normals, [FALLBACK_NORMAL; 3]);
+    assert_ne!(scene.camera.eye, scene.camera.target);
+}
+
+#[test]
+fn materials_say_colour_and_index() {
+    let scene = load_changed(|d| {
+        d["extensionsRequired"] = json!(KNOWN_EXTENSIONS);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        d["materials"][0] = json!({
+            "name": "ruby",
+            "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.1, 0.2, 1.0]},
+            "extensions": {
+                "KHR_materials_ior": {"ior": 1.768},
+                "KHR_materials_dispersion": {"dispersion": 0.1},
+            },
+        });
+    });
+    let expected = Material {
+        name: "ruby".to_owned(),
+        base_color: Vec3::new(0.9, 0.1, 0.2),
+        ior: 1.768,
+    };
+    assert_eq!(scene.unwrap().objects[0].material, expected);
+}
+
+#[test]
+fn the_first_perspective_camera_is_taken() {
+    let scene = load_changed(|d| {
+        d["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+        d["nodes"] = json!([
+            {"mesh": 0},
+            {"camera": 0},
+            {"camera": 1, "translation": [0, 0, 5], "scale": [2, 2, 2]},
+            {"camera": 2},
+        ]);
+        d["cameras"] = json!([
+            {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 1}},
+            {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}},
+            {"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}},
+        ]);
+    });
+    let camera = scene.unwrap().camera;
+    assert_eq!(
+        (camera.eye, camera.up, camera.vertical_fov),
+        (Vec3::Z * 5.0, Vec3::Y, 0.6)
+    );
+    assert_eq!(camera.target, Vec3::ZERO);
+}
+
+#[test]
+fn a_file_without_scenes_shows_its_roots() {
+    let scene = load_changed(|d| {
+        let root = d.as_object_mut().unwrap();
+        root.remove("scene");
+        root.remove("scenes");
+        root["nodes"] = json!([{"mesh": 0}, {"children": [0]}]);
+    });
+    let scene = scene.unwrap();
+    assert_eq!((scene.name.as_str(), scene.objects.len()), ("scene", 1));
+}
+
+#[test]
+fn a_deep_hierarchy_needs_no_stack() {
+    let depth = 100_000;
+    let scene = load_changed(|d| {
+        let chain = (1..depth).map(|child| json!({"children": [child]}));
+        d["nodes"] = chain.chain([json!({"mesh": 0})]).collect();
+    });
+    assert_eq!(scene.unwrap().objects.len(), 1);
+}
+
+#[test]
+fn interleaved_and_unaligned_data_is_read() {
+    let mut data = vec![7];
+    for corner in binary()[..36].chunks(12) {
+        data.extend(corner);
+        data.extend([9; 5]);
+    }
+    data.extend([0, 1, 2]);
+    let mut document = document();
+    document["bufferViews"] = json!([
+        {"buffer": 0, "byteOffset": 1, "byteLength": 46, "byteStride": 17},
+        {"buffer": 0, "byteOffset": 52, "byteLength": 3},
+    ]);
+    document["accessors"][1]["componentType"] = json!(5121);
+    document["buffers"][0]["byteLength"] = json!(data.len());
+    let scene = parse(&file(&document, &data), None).unwrap();
+    assert_eq!(only_mesh(&scene).positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+}

@@ -1,0 +1,61 @@
+//! A triangle mesh in world space.
+
+use glam::Vec3;
+
+use super::normals::{Averaging, shared_normals};
+
+/// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
+///
+/// The loader and the cuts of this crate always give meshes whose three parts fit together:
+/// `normals` is as long as `positions`, every normal has unit length, `indices` is a multiple of
+/// three long and every index is below `positions.len()`. Triangles wind counter-clockwise seen
+/// from outside.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Vertex positions. Unit: the scene's own length unit.
+    pub positions: Vec<Vec3>,
+    /// A unit normal for each position, pointing out of the body.
+    pub normals: Vec<Vec3>,
+    /// Three indices into `positions` for each triangle.
+    pub indices: Vec<u32>,
+}
+
+impl Mesh {
+    /// A mesh whose normals are averaged over the triangles about each position; see
+    /// [`shared_normals`] for what happens to degenerate triangles.
+    #[must_use]
+    pub fn with_shared_normals(
+        positions: Vec<Vec3>,
+        indices: Vec<u32>,
+        averaging: Averaging,
+    ) -> Self {
+        let normals = shared_normals(&positions, &indices, averaging);
+        Self {
+            positions,
+            normals,
+            indices,
+        }
+    }
+
+    /// The number of whole triangles.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    /// The corners of each triangle, in winding order. A triangle with an index past the end of
+    /// `positions` is left out.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        self.indices.chunks_exact(3).filter_map(|triangle| {
+            let corner = |k: usize| self.positions.get(triangle[k] as usize).copied();
+            Some([corner(0)?, corner(1)?, corner(2)?])
+        })
+    }
+
+    /// The memory that the three lists hold, in bytes.
+    #[must_use]
+    pub fn byte_size(&self) -> u64 {
+        let vectors = self.positions.len() + self.normals.len();
+        (vectors * size_of::<Vec3>() + self.indices.len() * size_of::<u32>()) as u64
+    }
+}

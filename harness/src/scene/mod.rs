@@ -1,0 +1,161 @@
+//! Scenes: gem cuts made here, and glTF 2.0 files.
+//!
+//! A [`Scene`] is a list of triangle meshes with materials, and a camera. [`Scene::open`] takes what a
+//! user types: the name of a built-in scene or the path of a file. World space is glTF's: right-handed,
+//! y up.
+
+use std::path::Path;
+
+use glam::Vec3;
+
+mod built_in;
+mod camera;
+pub mod cuts;
+pub mod environment_map;
+mod error;
+pub mod fuzz;
+pub mod glb;
+pub mod gltf;
+pub mod mesh;
+pub mod normals;
+pub mod polyhedron;
+
+pub use built_in::{BUILT_IN, BuiltIn};
+pub use camera::Camera;
+pub use error::SceneError;
+pub use mesh::Mesh;
+pub use normals::Averaging;
+
+/// What a body is made of, as far as glTF says it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// The material's name, or `default`.
+    pub name: String,
+    /// Base colour factor, linear RGB, each 0 to 1.
+    pub base_color: Vec3,
+    /// Refractive index relative to air at the sodium D line, at least 1.
+    pub ior: f32,
+}
+
+impl Material {
+    /// glTF's default material: white, with refractive index 1.5.
+    #[must_use]
+    pub fn standard() -> Self {
+        Self {
+            name: "default".to_owned(),
+            base_color: Vec3::ONE,
+            ior: 1.5,
+        }
+    }
+}
+
+/// One body of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// The node's name, or the mesh's.
+    pub name: String,
+    /// Its surface in world space.
+    pub mesh: Mesh,
+    /// Its material.
+    pub material: Material,
+}
+
+/// Bodies and a camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The built-in's name, the glTF scene's name, or the file's.
+    pub name: String,
+    /// The bodies, in the file's order.
+    pub objects: Vec<Object>,
+    /// Where to look at them from.
+    pub camera: Camera,
+}
+
+/// An axis-aligned box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// The least coordinates.
+    pub min: Vec3,
+    /// The greatest coordinates.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The smallest box about `points`; a box without size at the origin if there are none.
+    #[must_use]
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        let grow = |bounds: Self, point: Vec3| Self {
+            min: bounds.min.min(point),
+            max: bounds.max.max(point),
+        };
+        let box_of = |point| Self {
+            min: point,
+            max: point,
+        };
+        let mut points = points.into_iter();
+        let first = points.next().map_or(box_of(Vec3::ZERO), box_of);
+        points.fold(first, grow)
+    }
+
+    /// The middle of the box.
+    #[must_use]
+    pub fn centre(&self) -> Vec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// Half the diagonal: the radius of a sphere about the centre that holds the box.
+    #[must_use]
+    pub fn radius(&self) -> f32 {
+        0.5 * self.min.distance(self.max)
+    }
+}
+
+impl Scene {
+    /// The scene that a user names on the command line: a built-in name, or else a .glb or .gltf file.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownName`] for a word that is neither a built-in nor looks like a file, and
+    /// what [`gltf::load`] says of a file.
+    pub fn open(argument: &str) -> Result<Self, SceneError> {
+        let path = Path::new(argument);
+        let extension = path.extension().map(|e| e.to_ascii_lowercase());
+        let looks_like_a_file =
+            extension.is_some_and(|e| e == "glb" || e == "gltf") || argument.contains(['/', '\\']);
+        let is_built_in = BUILT_IN.iter().any(|scene| scene.name == argument);
+        if !is_built_in && (looks_like_a_file || path.is_file()) {
+            gltf::load(path)
+        } else {
+            Self::named(argument)
+        }
+    }
+
+    /// The built-in scene called `name`; see [`BUILT_IN`].
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownName`] with the nearest built-in name if there is none called `name`.
+    pub fn named(name: &str) -> Result<Self, SceneError> {
+        built_in::build(name)
+    }
+
+    /// The box about all vertices; without size at the origin if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        Bounds::of(vertices(&self.objects))
+    }
+
+    /// The number of triangles of all bodies.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        let counts = self.objects.iter().map(|o| o.mesh.triangle_count());
+        counts.sum()
+    }
+}
+
+/// All vertex positions of `objects`.
+fn vertices(objects: &[Object]) -> impl Iterator<Item = Vec3> + Clone + '_ {
+    let meshes = objects.iter().map(|object| &object.mesh);
+    meshes.flat_map(|mesh| mesh.positions.iter().copied())
+}
+
+#[cfg(test)]
+mod tests;

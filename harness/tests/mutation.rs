@@ -1,0 +1,301 @@
+//! Every operator, comparison and constant of every module's functions, changed one at a time: the property tests of the module
+//! must notice each.
+//!
+//! Mutants run in child processes (this same program, as a worker), two at a time; one that takes over 10 s hangs, and counts
+//! as caught. A mutant that no input can tell from the original is listed, with the reason, in `equivalent_mutants.txt`; at
+//! most 5 % may be.
+
+use lapidary_harness::check;
+use lapidary_harness::cookbook;
+use lapidary_harness::dispatch::shape::Shape;
+use lapidary_harness::dispatch::{Kernel, KernelModule};
+use lapidary_harness::formula::{Formula, Words};
+use lapidary_harness::formulas;
+use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use lapidary_harness::mutation::{self, Mutant};
+use lapidary_harness::property::tolerance::{Tolerance, number};
+use lapidary_harness::property::{Check, Settings};
+use std::collections::BTreeMap;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
+use std::sync::Mutex;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// A mutant that takes longer hangs.
+const LIMIT: Duration = Duration::from_secs(10);
+/// The start of a worker, its device and its first rows; not held against a mutant.
+const START_LIMIT: Duration = Duration::from_secs(120);
+/// Worker processes.
+const WORKERS: usize = 2;
+/// Most mutants that may be listed as equivalent.
+const MOST_EQUIVALENT: f64 = 0.05;
+/// Rows whose right results a worker keeps.
+const KEPT_ROWS: u64 = 8_192;
+/// Rows for what those do not tell apart.
+const MORE_ROWS: u64 = 131_072;
+/// The argument that makes this program a worker.
+const WORKER: &str = "--worker";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.first().is_some_and(|argument| argument == WORKER) {
+        worker();
+        return ExitCode::SUCCESS;
+    }
+    if arguments.iter().any(|argument| argument == "--list") {
+        println!("mutation: test");
+        return ExitCode::SUCCESS;
+    }
+    // As libtest does: a name filters, here by module or function.
+    let filter = arguments.iter().find(|argument| !argument.starts_with('-')).cloned().unwrap_or_default();
+    coordinate(if filter == "mutation" { "" } else { &filter })
+}
+
+/// A function's mutants in their order, the same in coordinator and workers.
+fn mutants_of(formula: &Formula) -> Vec<Mutant> {
+    let module = cookbook::module(formula.module).expect("a formula's module exists");
+    let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
+    let kernel = mutation::compacted(kernel);
+    // A mutant that makes no valid program is none.
+    mutation::mutants(module, formula.function, &kernel)
+        .into_iter()
+        .filter(|mutant| mutation::apply(&kernel, mutant).is_some())
+        .collect()
+}
+
+fn coordinate(filter: &str) -> ExitCode {
+    let start = Instant::now();
+    let mut jobs: Vec<(usize, usize, String)> = Vec::new();
+    let mut constants = Vec::new();
+    for (index, formula) in formulas::all().iter().enumerate() {
+        for (position, mutant) in mutants_of(formula).iter().enumerate() {
+            let name = mutant.to_string();
+            // A const is met again with every function that uses it, and judged by all of them at the first.
+            let constant = mutant.owner != formula.function;
+            if (constant && constants.contains(&name)) || !format!("{}::{name}", formula.module).contains(filter) {
+                continue;
+            }
+            if constant {
+                constants.push(name.clone());
+            }
+            jobs.push((index, position, name));
+        }
+    }
+    jobs.reverse();
+    let total = jobs.len();
+    let queue = Mutex::new(jobs);
+    let survived = Mutex::new(Vec::new());
+    let hung = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..WORKERS {
+            scope.spawn(|| {
+                let mut worker = None;
+                loop {
+                    let job = queue.lock().expect("no thread panics").pop();
+                    let Some((formula, position, name)) = job else { break };
+                    match judge(&mut worker, formula, position) {
+                        Verdict::Caught => {}
+                        Verdict::Survived => survived.lock().expect("no thread panics").push(name),
+                        Verdict::Hung => hung.lock().expect("no thread panics").push(name),
+                    }
+                }
+            });
+        }
+    });
+    let survived = survived.into_inner().expect("no thread panics");
+    let hung = hung.into_inner().expect("no thread panics");
+    report(filter, total, &survived, &hung, start.elapsed())
+}
+
+fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took: Duration) -> ExitCode {
+    let listed = equivalent_mutants();
+    let (equivalent, missed): (Vec<&String>, Vec<&String>) = survived.iter().partition(|name| listed.contains_key(*name));
+    let stale: Vec<&String> = listed.keys().filter(|name| filter.is_empty() && !survived.contains(name)).collect();
+    for name in hung {
+        println!("hung, so caught: {name}");
+    }
+    for name in &missed {
+        println!("SURVIVED: {name}");
+    }
+    for name in &stale {
+        println!("STALE: listed as equivalent, but caught or gone: {name}");
+    }
+    let caught = total - survived.len();
+    let share = equivalent.len() as f64 / total.max(1) as f64;
+    println!(
+        "mutation score: {caught} of {total} mutants caught ({:.1} %), {} equivalent and listed ({:.1} %, at most 5 %), {} survived, {} hung, {:.0} s",
+        100.0 * caught as f64 / total.max(1) as f64,
+        equivalent.len(),
+        100.0 * share,
+        missed.len(),
+        hung.len(),
+        took.as_secs_f64()
+    );
+    let passed = total > 0 && missed.is_empty() && stale.is_empty() && share <= MOST_EQUIVALENT;
+    println!("\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n", if passed { "ok" } else { "FAILED" }, u8::from(passed), u8::from(!passed));
+    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Name and reason of each listed mutant.
+fn equivalent_mutants() -> BTreeMap<String, String> {
+    let text = include_str!("equivalent_mutants.txt");
+    let mut listed = BTreeMap::new();
+    let mut reason = String::new();
+    for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+        match line.strip_prefix('#') {
+            // A reason stands over the mutants that it is for.
+            Some(comment) => comment.trim().clone_into(&mut reason),
+            None => {
+                assert!(!reason.is_empty(), "equivalent_mutants.txt: `{line}` has no reason");
+                listed.insert(line.to_owned(), reason.clone());
+            }
+        }
+    }
+    listed
+}
+
+enum Verdict {
+    Caught,
+    Survived,
+    Hung,
+}
+
+/// A child and the lines that it answers.
+struct Worker {
+    child: Child,
+    stdin: ChildStdin,
+    answers: Receiver<String>,
+    started: bool,
+}
+
+impl Worker {
+    fn spawn() -> Worker {
+        let program = std::env::current_exe().expect("this program has a path");
+        let mut child = Command::new(program)
+            .arg(WORKER)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("a worker starts");
+        let stdin = child.stdin.take().expect("piped");
+        let stdout = BufReader::new(child.stdout.take().expect("piped"));
+        let (sender, answers) = channel();
+        std::thread::spawn(move || {
+            for line in stdout.lines().map_while(Result::ok) {
+                if sender.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        Worker { child, stdin, answers, started: false }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // It may have ended by itself; either way it is gone.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdict {
+    let active = worker.get_or_insert_with(Worker::spawn);
+    let limit = if active.started { LIMIT } else { START_LIMIT };
+    let asked = writeln!(active.stdin, "{formula} {position}").and_then(|()| active.stdin.flush());
+    let answer = match asked {
+        Ok(()) => active.answers.recv_timeout(limit),
+        Err(_) => Err(RecvTimeoutError::Disconnected),
+    };
+    active.started = true;
+    match answer.as_deref() {
+        Ok("survived") => Verdict::Survived,
+        Ok(_) => Verdict::Caught,
+        Err(RecvTimeoutError::Timeout) => {
+            *worker = None;
+            Verdict::Hung
+        }
+        // The driver crashed on the mutant, which is noticed.
+        Err(RecvTimeoutError::Disconnected) => {
+            *worker = None;
+            Verdict::Caught
+        }
+    }
+}
+
+/// Inputs of a formula with their right results, computed once for all of its mutants.
+struct Kept<'gpu> {
+    formula: &'static Formula,
+    kernel: KernelModule,
+    tolerance: Tolerance,
+    arguments: Words,
+    mirrored: Vec<Words>,
+    exact: Vec<Vec<f64>>,
+    gpu: &'gpu Gpu,
+}
+
+fn worker() {
+    let gpu = Gpu::shared(&AdapterChoice::platform_default()).expect("an adapter");
+    let mut kept: BTreeMap<&'static str, Kept<'static>> = BTreeMap::new();
+    let mut listed: BTreeMap<usize, Vec<Mutant>> = BTreeMap::new();
+    for line in std::io::stdin().lines().map_while(Result::ok) {
+        let mut numbers = line.split(' ').map(|number| number.parse::<usize>().expect("the coordinator's numbers"));
+        let (index, position) = (numbers.next().expect("two numbers"), numbers.next().expect("two numbers"));
+        let formula = &formulas::all()[index];
+        let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula))[position];
+        // The function's own tests first, then those of the functions that call it.
+        let mut judges: Vec<&'static Formula> = formulas::all().iter().filter(|other| other.module == formula.module).collect();
+        judges.sort_by_key(|other| other.function != formula.function);
+        let caught = judges.into_iter().any(|judge| {
+            kept.entry(judge.function).or_insert_with(|| Kept::new(gpu, judge)).catches(mutant)
+        });
+        println!("{}", if caught { "caught" } else { "survived" });
+    }
+}
+
+impl<'gpu> Kept<'gpu> {
+    fn new(gpu: &'gpu Gpu, formula: &'static Formula) -> Self {
+        let module = cookbook::module(formula.module).expect("a formula's module exists");
+        let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
+        let seed = Settings::default().seed;
+        let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(seed, row));
+        let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
+        let scalars: Vec<_> = formula.arguments.iter().flat_map(Shape::scalars).collect();
+        let mut mirrored = Vec::new();
+        let mut exact = Vec::new();
+        for row in &rows {
+            let mut words = Words::new();
+            (formula.mirror)(row, &mut words);
+            mirrored.push(words);
+            let numbers: Vec<f64> = row.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
+            let mut result = Vec::new();
+            (formula.oracle)(&numbers, &mut result);
+            exact.push(result);
+        }
+        let tolerance = check::tolerance(gpu, formula);
+        Kept { formula, kernel: mutation::compacted(kernel), tolerance, arguments: rows.concat(), mirrored, exact, gpu }
+    }
+
+    fn catches(&self, mutant: &Mutant) -> bool {
+        let Some(mutated) = mutation::apply(&self.kernel, mutant) else { return false };
+        let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
+        let mut results = Words::new();
+        if kernel.run(&self.arguments, &mut results).is_err() {
+            return true;
+        }
+        let rows = self.arguments.chunks_exact(kernel.argument_words()).zip(results.chunks_exact(kernel.result_words()));
+        let broken = rows.zip(self.mirrored.iter().zip(&self.exact)).any(|((arguments, result), (mirrored, exact))| {
+            !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
+                || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
+        });
+        if broken {
+            return true;
+        }
+        let settings = Settings { cases: MORE_ROWS, seed: Settings::default().seed + 1 };
+        let report = Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
+        report.map_or(true, |report| report.failed > 0)
+    }
+}
+

@@ -1,0 +1,242 @@
+// environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the map; the convention is
+// that of Khronos's glTF Sample Renderer and three.js: +Y up, u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
+//
+// Angles are counted in turns (1 turn = 2 pi), since a texture coordinate is one: quarter turns are then exact, and
+// u and v stay inside [0, 1] with no clamp. The module brings its own arctangent and sine, because WGSL
+// grants an atan2 4096 ulp (2.4e-4 in u: one texel of a 4096 map) and a sine 2^-11 (a "unit" vector 5e-4 off).
+
+// Angle of the point (x, y) in turns, counterclockwise from +x.
+// The arctangent of a ratio in [0, 1], unfolded over the octants; a polynomial in odd powers, fitted by Remez's exchange to
+// least relative error (1.0e-7) of atan(ratio) / 2 pi.
+// Returns: turns in [-1/2, 1/2]; 0 at the origin; 1/2 on the negative x axis, for either sign of a zero y.
+// Units: turns; x and y in any common unit.
+// Domain: x, y zero or of magnitude in [2^-126, 2^126].
+// Outside: finite; a subnormal may count as zero.
+// Accuracy: lavapipe 6 ulp; portable 12 ulp
+fn environment_turns(y: f32, x: f32) -> f32 {
+    let longer = max(abs(x), abs(y));
+    let shorter = min(abs(x), abs(y));
+    var ratio = 0.0f;
+    if longer > 0.0f {
+        ratio = shorter / longer;
+    }
+    let s = ratio * ratio;
+    var turns = ratio * (0.15915492f - s * (0.053049512f - s * (0.031782802f - s * (0.022312697f
+        - s * (0.015779087f - s * (0.009467554f - s * (0.0038598904f - s * 0.00074695825f)))))));
+    if abs(y) > abs(x) {
+        turns = 0.25f - turns;
+    }
+    if x < 0.0f {
+        turns = 0.5f - turns;
+    }
+    return select(turns, -turns, y < 0.0f);
+}
+
+// Length of the vector (a, b), safe from overflow and underflow of the squares.
+// Returns: sqrt(a^2 + b^2).
+// Units: that of a and b.
+// Domain: a, b zero or of magnitude in [2^-126, 2^126].
+// Outside: finite; a subnormal may count as zero.
+// Accuracy: lavapipe 3 ulp; portable 12 ulp
+fn environment_hypot(a: f32, b: f32) -> f32 {
+    let longer = max(abs(a), abs(b));
+    var ratio = 0.0f;
+    if longer > 0.0f {
+        ratio = min(abs(a), abs(b)) / longer;
+    }
+    return longer * sqrt(1.0f + ratio * ratio);
+}
+
+// Sine of an angle in turns, of any size.
+// The angle is brought to the nearest whole turn, then folded at +-1/4, both without rounding; there it is a polynomial in
+// odd powers, fitted by Remez's exchange to least relative error (5.3e-9) of sin(2 pi t). The cosine is
+// -environment_sine(turns - 0.25f).
+// Returns: sin(2 pi turns) in [-1, 1], to rounding; exactly 0 at every half turn.
+// Units: turns.
+// Domain: any finite angle.
+// Outside: nothing is outside.
+// Accuracy: lavapipe 5 ulp; portable 8 ulp
+fn environment_sine(turns: f32) -> f32 {
+    let wrapped = turns - round(turns);
+    let folded = clamp(wrapped, -0.5f - wrapped, 0.5f - wrapped);
+    let s = folded * folded;
+    return folded * (6.2831855f - s * (41.34168f - s * (81.602234f - s * (76.57499f - s * 39.710918f))));
+}
+
+// Latitude-longitude coordinates of a direction.
+// The polar angle is taken from both legs of its triangle, so that it has all its digits at the poles too, and no
+// step normalises, so that the length does not matter.
+// Returns: u, v in [0, 1]: u = 1/2 + atan2(z, x) / 2 pi, so -x is the seam (1 on it, 0 just behind), +x the middle; v = 0 at
+// +Y (zenith), 1/2 at the horizon, 1 at -Y. At both poles u = 1/2.
+// Units: fractions of the map.
+// Domain: not zero; each component zero or of magnitude in [2^-126, 2^126].
+// Outside: (1/2, 0) for the zero vector; subnormal components may count as zero.
+// Accuracy: lavapipe 1.5e-7 abs; portable 5e-7 abs
+fn environment_uv_from_direction(direction: vec3f) -> vec2f {
+    let u = 0.5f + environment_turns(direction.z, direction.x);
+    let v = 2.0f * environment_turns(environment_hypot(direction.x, direction.z), direction.y);
+    return vec2f(u, v);
+}
+
+// The same by normalize and acos, as it is usually written: acos amplifies the rounding of y without bound at the poles.
+// Returns: environment_uv_from_direction(direction), v to about 1e-4 near the poles.
+// Units: fractions of the map.
+// Domain: lengths in [1e-15, 1e15], angle to the poles at least 0.1 radians.
+// Outside: v jumps to the pole within 3e-4 radians of it, up to 1.1e-4 off; at the pole u is 1 for x = -0; lengths whose square
+// over- or underflows (1e-23, 1e19) give another direction or no number.
+// Accuracy: naive
+fn environment_uv_from_direction_naive(direction: vec3f) -> vec2f {
+    let unit = normalize(direction);
+    return vec2f(0.5f + atan2(unit.z, unit.x) * 0.15915494f, acos(unit.y) * 0.31830987f);
+}
+
+// Direction of latitude-longitude coordinates: the inverse of environment_uv_from_direction.
+// u - 1/2 turns are an azimuth; that half turn is in the signs, since subtracting it would round a small u.
+// Returns: unit direction; +-Y exactly up to its length at v = 0 and v = 1, whatever u.
+// Units: fractions of the map.
+// Domain: u, v in [0, 1].
+// Outside: u repeats with period 1; v runs on over the pole, down the other side.
+// Accuracy: lavapipe 8 ulp; portable 20 ulp
+fn environment_direction_from_uv(uv: vec2f) -> vec3f {
+    let polar = 0.5f * uv.y;
+    let sin_polar = environment_sine(polar);
+    let cos_polar = -environment_sine(polar - 0.25f);
+    let sin_azimuth = -environment_sine(uv.x);
+    let cos_azimuth = environment_sine(uv.x - 0.25f);
+    return vec3f(sin_polar * cos_azimuth, cos_polar, sin_polar * sin_azimuth);
+}
+
+// The four texels around a point of the map and how to blend them.
+struct EnvironmentTexels {
+    // Column and row of the texel at the lower coordinates.
+    lower: vec2u,
+    // Column and row of the texel at the higher coordinates.
+    upper: vec2u,
+    // Share of `upper` in each direction.
+    weight: vec2f,
+}
+
+// Texels and weights of a bilinear lookup, for maps whose format the sampler cannot filter (32-bit float).
+// Longitude closes on itself, so columns wrap; latitude ends at the poles, so rows are clamped. The radiance is
+// mix(mix(t[lower.x, lower.y], t[upper.x, lower.y], weight.x), mix(t[lower.x, upper.y], t[upper.x, upper.y], weight.x), weight.y).
+// Returns: columns below size.x, rows below size.y, weights in [0, 1].
+// Units: texels; texel i covers [i, i + 1] / size and has its value in the middle.
+// Domain: u in [0, 4], v in [0, 1]; size from 1 to 16384.
+// Outside: u of either sign repeats, less exactly below 0, as long as it is finite; v is clamped.
+// Accuracy: lavapipe lower 2 backward, upper 2 backward, weight 1e-7 abs + 2 backward; portable lower 4 backward, upper 4 backward, weight 2e-7 abs + 4 backward
+fn environment_texels(uv: vec2f, size: vec2u) -> EnvironmentTexels {
+    // A texel's value sits in its middle, half a texel from its edge.
+    let column = (uv.x - floor(uv.x)) * f32(size.x) - 0.5f;
+    let row = clamp(uv.y * f32(size.y) - 0.5f, 0.0f, f32(size.y) - 1.0f);
+    // Left of the first middle the column is -1: one width more makes it the last.
+    let left = u32(floor(column) + f32(size.x)) % size.x;
+    let top = u32(floor(row));
+    let lower = vec2u(left, top);
+    let upper = vec2u((left + 1u) % size.x, min(top + 1u, size.y - 1u));
+    return EnvironmentTexels(lower, upper, vec2f(column - floor(column), row - floor(row)));
+}
+
+// The same with both coordinates clamped, as a sampler left at its default does: a seam down the -x meridian.
+// Returns: environment_texels(uv, size) away from the borders.
+// Units: texels.
+// Domain: u in [1 / size.x, 1 - 1 / size.x], v in [1 / size.y, 1 - 1 / size.y].
+// Outside: half a texel from the seam, the texel across it is missed.
+// Accuracy: naive
+fn environment_texels_naive(uv: vec2f, size: vec2u) -> EnvironmentTexels {
+    let corner = uv * vec2f(size) - 0.5f;
+    let lower = vec2u(max(floor(corner), vec2f(0.0f)));
+    let upper = min(lower + 1u, size - 1u);
+    return EnvironmentTexels(lower, upper, corner - floor(corner));
+}
+
+// How much of a rectangular, soft-edged light a direction meets.
+// The light hangs square to `axis`, one unit away, its vertical along `up`; directions are projected onto its plane
+// (gnomonic projection), where each edge is a smoothstep over `softness` to both sides.
+// Returns: coverage in [0, 1]: 0 outside and for the whole half space behind, 1 inside.
+// Units: none; sizes are in units of the light's distance, that is tangents of angles.
+// Domain: |direction| = |axis| = |up| = 1, axis . up = 0, axis . direction at most 0 or at least 2^-100; softness in
+// [1/256, 1]; each of half_size in [softness, 8].
+// Outside: any length of direction gives the same, as long as products stay finite; softness 0 has no edge to divide by.
+// Accuracy: lavapipe 6 ulp + 3 backward; portable 16 ulp + 8 backward
+fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
+    let depth = dot(direction, axis);
+    // The projection knows no sign: -axis would land in the middle of the light.
+    if depth <= 0.0f {
+        return 0.0f;
+    }
+    let right = cross(up, axis);
+    let position = vec2f(dot(direction, right), dot(direction, up)) / depth;
+    let inside = (half_size + softness - abs(position)) / (2.0f * softness);
+    let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));
+    let coverage = t * t * (3.0f - 2.0f * t);
+    return coverage.x * coverage.y;
+}
+
+// The same without a look at the sign of the depth: every light shines a second time, from behind.
+// Returns: environment_softbox(...) for axis . direction > 0.
+// Units: as environment_softbox.
+// Domain: as environment_softbox, and axis . direction > 0.
+// Outside: the light's mirror image for axis . direction < 0.
+// Accuracy: naive
+fn environment_softbox_naive(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
+    let depth = dot(direction, axis);
+    let right = cross(up, axis);
+    let position = vec2f(dot(direction, right), dot(direction, up)) / depth;
+    let inside = (half_size + softness - abs(position)) / (2.0f * softness);
+    let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));
+    let coverage = t * t * (3.0f - 2.0f * t);
+    return coverage.x * coverage.y;
+}
+
+// Radiance of a dome that runs from `ground` straight below to `zenith` straight above.
+// The square keeps the horizon near the ground's: a gem is seen against the dark.
+// Returns: ground (1 - w) + zenith w with w = ((1 + y) / 2)^2.
+// Units: linear radiance, that of `ground` and `zenith`.
+// Domain: |direction| = 1; ground, zenith >= 0.
+// Outside: y beyond +-1 extrapolates.
+// Accuracy: lavapipe 4 ulp + 1 backward; portable 10 ulp + 1 backward
+fn environment_dome(direction: vec3f, ground: vec3f, zenith: vec3f) -> vec3f {
+    let height = 0.5f + 0.5f * direction.y;
+    let weight = height * height;
+    return ground * (1.0f - weight) + zenith * weight;
+}
+
+// A jeweller's studio: black flags with few, small, bright lights between them.
+// A brilliant shows what its facets mirror. Contrast makes scintillation and narrow lights make fire, so most of the sphere
+// is dark, and the lights stand at many elevations, from 74 degrees down to 20, where the crown gathers light, and, weak, below.
+// Axes and ups are rational unit vectors (Pythagorean quadruples), so that they are orthogonal as written.
+// Returns: linear Rec. 709 radiance, each channel in [0.0099, 20.1]; continuous. No two lights overlap.
+// Units: radiance, 1 = diffuse white at exposure 1.
+// Domain: |direction| = 1.
+// Outside: lights do not depend on the length, the dome extrapolates.
+// Accuracy: lavapipe 8 ulp + 3 backward; portable 24 ulp + 12 backward
+fn environment_studio(direction: vec3f) -> vec3f {
+    // Surround: black velvet below, a dim and slightly blue tent above.
+    let surround = environment_dome(direction, vec3f(0.012f, 0.011f, 0.010f), vec3f(0.10f, 0.12f, 0.16f));
+    // Key: a square softbox, high at the front left, slightly warm.
+    let key = vec3f(9.0f, 8.4f, 7.2f) * environment_softbox(direction,
+        vec3f(-2.0f, 6.0f, 3.0f) / 7.0f, vec3f(6.0f, 3.0f, -2.0f) / 7.0f, vec2f(0.28f, 0.28f), 0.05f);
+    // Overhead: a long neutral strip just behind the zenith; the table and the upper halves mirror it.
+    let overhead = vec3f(13.0f, 13.0f, 13.0f) * environment_softbox(direction,
+        vec3f(0.0f, 24.0f, -7.0f) / 25.0f, vec3f(0.0f, 7.0f, 24.0f) / 25.0f, vec2f(0.70f, 0.06f), 0.03f);
+    // Two upright strips, cool from the right and warm from the back left: the bezels' sides differ in colour.
+    let cool_strip = vec3f(7.0f, 8.6f, 10.0f) * environment_softbox(direction,
+        vec3f(6.0f, 3.0f, 2.0f) / 7.0f, vec3f(-2.0f, 6.0f, -3.0f) / 7.0f, vec2f(0.08f, 0.45f), 0.04f);
+    let warm_strip = vec3f(9.0f, 7.2f, 5.0f) * environment_softbox(direction,
+        vec3f(-2.0f, 1.0f, -2.0f) / 3.0f, vec3f(2.0f, 2.0f, -1.0f) / 3.0f, vec2f(0.09f, 0.40f), 0.04f);
+    // Three sparks: too small to light the stone, bright enough for dispersion to draw them out into colours.
+    let back_spark = vec3f(20.0f, 19.0f, 17.0f) * environment_softbox(direction,
+        vec3f(4.0f, 7.0f, -4.0f) / 9.0f, vec3f(1.0f, 4.0f, 8.0f) / 9.0f, vec2f(0.08f, 0.08f), 0.03f);
+    let front_spark = vec3f(15.0f, 16.0f, 18.0f) * environment_softbox(direction,
+        vec3f(1.0f, 2.0f, 2.0f) / 3.0f, vec3f(-2.0f, 2.0f, -1.0f) / 3.0f, vec2f(0.07f, 0.07f), 0.03f);
+    let low_spark = vec3f(16.0f, 16.0f, 16.0f) * environment_softbox(direction,
+        vec3f(2.0f, 3.0f, -6.0f) / 7.0f, vec3f(6.0f, 2.0f, 3.0f) / 7.0f, vec2f(0.06f, 0.06f), 0.03f);
+    // Two weak cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
+    let back_card = vec3f(0.8f, 0.85f, 0.9f) * environment_softbox(direction,
+        vec3f(0.0f, -3.0f, -4.0f) / 5.0f, vec3f(0.0f, 4.0f, -3.0f) / 5.0f, vec2f(0.60f, 0.20f), 0.10f);
+    let front_card = vec3f(0.6f, 0.55f, 0.5f) * environment_softbox(direction,
+        vec3f(0.0f, -5.0f, 12.0f) / 13.0f, vec3f(0.0f, 12.0f, 5.0f) / 13.0f, vec2f(0.50f, 0.14f), 0.10f);
+    return surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card;
+}

@@ -1,0 +1,236 @@
+// proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
+//
+// The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
+// triangle, and its translates tile P. A refracted ray meets P in one tile, whose facet normal points from the tile's centroid to o.
+
+// A triangle's image through the centre: one tile of plane P, and the lattice of all tiles.
+struct ProxyGeometryPlane {
+    // Image of the triangle's first vertex.
+    origin: vec3f,
+    // From there to the image of the second vertex.
+    edge_first: vec3f,
+    // And to the image of the third.
+    edge_second: vec3f,
+}
+
+struct ProxyGeometryHit {
+    // Where the ray meets the plane; where it started, on a miss.
+    point: vec3f,
+    // Along the ray, in units of its direction's length; 0 on a miss.
+    distance: f32,
+    // False where the plane is behind the ray, through its start, or parallel to it.
+    hit: bool,
+}
+
+// One tile of plane P. Its vertices follow the orientation of the image: (first, second, third) as the triangle's.
+struct ProxyGeometryFacet {
+    vertex_first: vec3f,
+    vertex_second: vec3f,
+    vertex_third: vec3f,
+    // Whole lattice steps along the two edges.
+    cell: vec2i,
+    // Whether it is the cell's other half: the image turned by a half turn.
+    turned: bool,
+}
+
+// A ray nearer than this to parallel (the sine of its angle to the plane) misses. A dot product of unit vectors is off by
+// up to 3 * 2^-24, so at 2^-20 the distance along the ray is known to a fifth; below, it is noise.
+const PROXY_GEOMETRY_PARALLEL: f32 = 9.5367431640625e-7f;
+
+// Image of a point through the centre of the proxy. The line from a vertex through the centre meets plane P exactly here,
+// for every vertex, so no intersection is computed and none of the vertices is special.
+// Returns: 2 centre - position.
+// Units: lengths in, length out.
+// Domain: any, up to 1e37.
+// Outside: overflows beyond.
+// Accuracy: lavapipe 1 ulp + 1 backward; portable 1 ulp + 1 backward
+fn proxy_geometry_image(centre: vec3f, position: vec3f) -> vec3f {
+    return 2.0f * centre - position;
+}
+
+// Plane P and its lattice from a triangle and the centre. The edges are differences of the vertices themselves: taken
+// between images they would lose digits to a centre that is far away.
+// Returns: ProxyGeometryPlane.
+// Units: lengths in, lengths out.
+// Domain: any, up to 1e37.
+// Outside: overflows beyond.
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: vec3f, position_third: vec3f) -> ProxyGeometryPlane {
+    return ProxyGeometryPlane(
+        proxy_geometry_image(centre, position_first),
+        position_first - position_second,
+        position_first - position_third,
+    );
+}
+
+// Unit normal of a triangle, counter-clockwise seen from where it points. Edges are scaled to size 1 first: their cross
+// product and its square leave the range of f32 for triangles of size 1e-10 and of 1e10.
+// Returns: unit normal; zero for a degenerate triangle, one whose edges' cross product is zero in f32.
+// Units: lengths in, none out.
+// Domain: size of the triangle in [1e-30, 1e30], sine of the angle at the first vertex at least 1e-6.
+// Outside: finite; zero or ill-conditioned.
+// Accuracy: lavapipe 7 ulp + 3 backward; portable 11 ulp + 5 backward
+fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
+    let first = position_second - position_first;
+    let second = position_third - position_first;
+    let first_size = max(max(abs(first.x), abs(first.y)), abs(first.z));
+    let second_size = max(max(abs(second.x), abs(second.y)), abs(second.z));
+    if (min(first_size, second_size) == 0.0f) {
+        return vec3f(0.0f);
+    }
+    // Neither edge is longer than √3 now, and neither so short that the square of the sine could underflow.
+    let perpendicular = cross(first / first_size, second / second_size);
+    let squared = dot(perpendicular, perpendicular);
+    if (squared == 0.0f) {
+        return vec3f(0.0f);
+    }
+    return perpendicular / sqrt(squared);
+}
+
+// The normal as one writes it: normalize(cross).
+// Returns: unit normal.
+// Units: lengths in, none out.
+// Domain: size of the triangle in [1e-4, 1e4], sine of the angle at the first vertex at least 1e-2.
+// Outside: not a number for degenerate, very small and very large triangles.
+// Accuracy: naive
+fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
+    return normalize(cross(position_second - position_first, position_third - position_first));
+}
+
+// Where a ray meets the plane through `plane_point` with unit normal `normal`. From a triangle with plane P at height h under
+// it, entering along r this is t = 2 h / -(n . r). The sign of the normal does not matter.
+// Returns: ProxyGeometryHit.
+// Units: lengths; `direction` and `normal` are unit vectors.
+// Domain: |direction| = |normal| = 1, positions up to 1e30.
+// Outside: for positions beyond, overflows.
+// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward; portable point 7 ulp + 6 backward, distance 9 ulp + 6 backward, hit 6 backward
+fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
+    let slope = dot(normal, direction);
+    let height = dot(normal, plane_point - position);
+    if (abs(slope) <= PROXY_GEOMETRY_PARALLEL || height * sign(slope) <= 0.0f) {
+        return ProxyGeometryHit(position, 0.0f, false);
+    }
+    let distance = height / slope;
+    return ProxyGeometryHit(position + distance * direction, distance, true);
+}
+
+// The intersection without its cases.
+// Returns: ProxyGeometryHit with `hit` true always.
+// Units: lengths; `direction` and `normal` are unit vectors.
+// Domain: as above, for a ray that does meet the plane ahead of it.
+// Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind it.
+// Accuracy: naive
+fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
+    let distance = dot(normal, plane_point - position) / dot(normal, direction);
+    return ProxyGeometryHit(position + distance * direction, distance, true);
+}
+
+// Coordinates of a point of plane P on the lattice: point = origin + x edge_first + y edge_second. By cross products,
+// which keep their digits on slivers, where the usual Gram determinant cancels; scaled to the longest edge against overflow.
+// Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-30 of the longest edge squared).
+// Units: lengths in, none out.
+// Domain: size of the triangle in [1e-30, 1e30], distance of the point at most 1e6 of it, sine of the angle times the ratio of the edges at least 1e-4.
+// Outside: finite; ill-conditioned.
+// Accuracy: lavapipe 8 ulp + 3 backward; portable 14 ulp + 5 backward
+fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
+    let extent = max(abs(edge_first), abs(edge_second));
+    let size = max(max(extent.x, extent.y), extent.z);
+    if (size == 0.0f) {
+        return vec2f(0.0f);
+    }
+    let offset = (point - origin) / size;
+    let first = edge_first / size;
+    let second = edge_second / size;
+    let perpendicular = cross(first, second);
+    let squared = dot(perpendicular, perpendicular);
+    // 2^-60, the square of the limit stated above.
+    if (squared < 8.673617379884035e-19f) {
+        return vec2f(0.0f);
+    }
+    return vec2f(dot(cross(offset, second), perpendicular), dot(cross(first, offset), perpendicular)) / squared;
+}
+
+// The coordinates by the Gram matrix of the edges, as barycentric coordinates are usually computed.
+// Returns: the two coordinates.
+// Units: lengths in, none out.
+// Domain: size of the triangle in [1e-3, 1e3], sine of the angle at least 0.1.
+// Outside: loses twice the digits that the triangle's thinness costs; not a number for degenerate, tiny and huge ones.
+// Accuracy: naive
+fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
+    let offset = point - origin;
+    let first_first = dot(edge_first, edge_first);
+    let first_second = dot(edge_first, edge_second);
+    let second_second = dot(edge_second, edge_second);
+    let offset_first = dot(offset, edge_first);
+    let offset_second = dot(offset, edge_second);
+    return vec2f(
+        second_second * offset_first - first_second * offset_second,
+        first_first * offset_second - first_second * offset_first,
+    ) / (first_first * second_second - first_second * first_second);
+}
+
+// The tile of plane P that holds a point. A point on an edge or a vertex belongs to exactly one tile: cells are half open, and a
+// cell's diagonal belongs to the half that is not turned.
+// Returns: ProxyGeometryFacet.
+// Units: lengths.
+// Domain: as proxy_geometry_coordinates.
+// Outside: as there; cells beyond 2^31 are clamped to it.
+// Accuracy: lavapipe vertex_first 6 ulp + 6 backward, vertex_second 6 ulp + 6 backward, vertex_third 6 ulp + 6 backward, cell 6 backward, turned 6 backward; portable vertex_first 9 ulp + 10 backward, vertex_second 9 ulp + 10 backward, vertex_third 9 ulp + 10 backward, cell 10 backward, turned 10 backward
+fn proxy_geometry_facet(plane: ProxyGeometryPlane, point: vec3f) -> ProxyGeometryFacet {
+    let coordinates = proxy_geometry_coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
+    let cell = floor(coordinates);
+    let within = coordinates - cell;
+    let turned = within.x + within.y > 1.0f;
+    // The turned half starts at the far corner of the cell and runs backwards along both edges.
+    let corner = select(cell, cell + vec2f(1.0f), turned);
+    let way = select(1.0f, -1.0f, turned);
+    let vertex = plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second;
+    return ProxyGeometryFacet(
+        vertex,
+        vertex + way * plane.edge_first,
+        vertex + way * plane.edge_second,
+        vec2i(cell),
+        turned,
+    );
+}
+
+// Normal of a tile, eq. (8) and (9): from its centroid to the centre of the proxy, turned so that it faces the ray.
+// Scaled to size 1 before it is normalized, so that stones of size 1e-20 and of 1e19 keep theirs.
+// Returns: unit normal with normal . direction <= 0; against the ray where centroid and centre coincide.
+// Units: lengths in, none out; `direction` is a unit vector.
+// Domain: |direction| = 1, distance between centroid and centre 0 or in [1e-30, 1e30].
+// Outside: overflows beyond.
+// Accuracy: lavapipe 6 ulp + 5 backward; portable 10 ulp + 7 backward
+fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f) -> vec3f {
+    let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0f;
+    let size = max(max(abs(to_centre.x), abs(to_centre.y)), abs(to_centre.z));
+    if (size == 0.0f) {
+        return -direction;
+    }
+    let scaled = to_centre / size;
+    let normal = scaled / sqrt(dot(scaled, scaled));
+    return select(normal, -normal, dot(normal, direction) > 0.0f);
+}
+
+// Eq. (8) and (9) as they stand.
+// Returns: unit normal.
+// Units: lengths in, none out.
+// Domain: distance between centroid and centre in [1e-15, 1e15].
+// Outside: zero, infinite or not a number where the square of the distance leaves the range of f32.
+// Accuracy: naive
+fn proxy_geometry_facet_normal_naive(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f) -> vec3f {
+    return normalize(centre - (vertex_first + vertex_second + vertex_third) / 3.0f);
+}
+
+// The plane that a ray meets after it was reflected at a tile: the tile's image through the same centre, as the triangle's
+// image made plane P. It lies parallel to P on the centre's other side.
+// Returns: ProxyGeometryPlane.
+// Units: lengths.
+// Domain: any, up to 1e37.
+// Outside: overflows beyond.
+// Accuracy: lavapipe origin 1 ulp + 1 backward, edge_first 0.5 ulp, edge_second 0.5 ulp; portable origin 1 ulp + 1 backward, edge_first 1 ulp, edge_second 1 ulp
+fn proxy_geometry_next_plane(centre: vec3f, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
+    return proxy_geometry_plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third);
+}

@@ -1,0 +1,57 @@
+// display: supersamples averaged in linear light, put before a backdrop, exposed, tone-mapped and encoded.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: IEC 61966-2-1:1999 (encoding); Khronos PBR Neutral tone mapper.
+// requires: srgb
+//
+// sRGB is encoded here rather than by an `*-srgb` target, so that every driver rounds alike.
+
+// Samples along each side of a pixel.
+override SAMPLES: u32 = 4u;
+
+struct DisplayFrame {
+    // Where this tile starts in the picture, and the picture's size, in pixels.
+    tile: vec2f,
+    size: vec2f,
+    // Radiance is multiplied by this before the tone curve.
+    exposure: f32,
+}
+
+@group(0) @binding(0) var<uniform> frame: DisplayFrame;
+@group(0) @binding(1) var samples: texture_2d<f32>;
+
+struct DisplayOutput {
+    // Linear radiance before the exposure, without the backdrop; alpha is the share of samples that are covered.
+    @location(0) linear: vec4f,
+    // Tone-mapped and encoded, opaque.
+    @location(1) encoded: vec4f,
+}
+
+// One triangle that covers the target.
+@vertex
+fn display_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
+    return vec4f(4.0f * corner - 1.0f, 0.0f, 1.0f);
+}
+
+// A dark seamless paper: a soft light behind the stone that falls off towards the picture's edges. Linear RGB.
+fn display_backdrop(pixel: vec2f) -> vec3f {
+    let shorter = min(frame.size.x, frame.size.y);
+    let from_light = (pixel - vec2f(0.5f, 0.55f) * frame.size) / shorter;
+    let falloff = exp(-3.0f * dot(from_light, from_light));
+    return mix(vec3f(0.006f, 0.007f, 0.010f), vec3f(0.055f, 0.062f, 0.078f), falloff);
+}
+
+@fragment
+fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
+    let pixel = vec2u(position.xy);
+    var sum = vec4f(0.0f);
+    for (var row = 0u; row < SAMPLES; row++) {
+        for (var column = 0u; column < SAMPLES; column++) {
+            sum += textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
+        }
+    }
+    let average = sum / f32(SAMPLES * SAMPLES);
+    let behind = display_backdrop(frame.tile + position.xy);
+    let exposed = frame.exposure * average.rgb + (1.0f - average.a) * behind;
+    return DisplayOutput(average, vec4f(srgb_encode_color(srgb_tone_curve(exposed)), 1.0f));
+}
