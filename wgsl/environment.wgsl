@@ -196,7 +196,7 @@ fn environment_softbox_naive(direction: vec3f, axis: vec3f, up: vec3f, half_size
 // Units: linear radiance, that of `ground` and `zenith`.
 // Domain: |direction| = 1; ground, zenith >= 0.
 // Outside: y beyond +-1 extrapolates.
-// Accuracy: lavapipe 4 ulp + 1 backward; portable 10 ulp + 1 backward
+// Accuracy: lavapipe 4 ulp + 3 backward; portable 10 ulp + 6 backward
 fn environment_dome(direction: vec3f, ground: vec3f, zenith: vec3f) -> vec3f {
     let height = 0.5f + 0.5f * direction.y;
     let weight = height * height;

@@ -6,6 +6,7 @@ pub mod cookbook;
 pub mod dispatch;
 pub mod formula;
 pub mod formulas;
+pub mod gallery;
 pub mod gpu;
 pub mod mutation;
 pub mod nearest;

@@ -63,15 +63,17 @@ pub fn plane(centre: Vec3, position_first: Vec3, position_second: Vec3, position
 
 /// Unit normal of a triangle, zero for a degenerate one.
 pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
-    let first = position_second - position_first;
-    let second = position_third - position_first;
-    let first_size = first.x.abs().max(first.y.abs()).max(first.z.abs());
-    let second_size = second.x.abs().max(second.y.abs()).max(second.z.abs());
-    if first_size.min(second_size) == 0.0 {
+    let edge_first = position_second - position_first;
+    let edge_second = position_third - position_first;
+    let size_first = edge_first.x.abs().max(edge_first.y.abs()).max(edge_first.z.abs());
+    let size_second = edge_second.x.abs().max(edge_second.y.abs()).max(edge_second.z.abs());
+    if size_first.min(size_second) == 0.0 {
         return Vec3::ZERO;
     }
-    // Neither edge is longer than √3 now, and neither so short that the square of the sine could underflow.
-    let perpendicular = (first / first_size).cross(second / second_size);
+    let first = edge_first / size_first;
+    let second = edge_second / size_second;
+    let apart = if first.dot(second) < 0.0 { second + first } else { second - first };
+    let perpendicular = first.cross(apart);
     let squared = perpendicular.dot(perpendicular);
     if squared == 0.0 {
         return Vec3::ZERO;

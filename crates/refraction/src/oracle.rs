@@ -24,16 +24,17 @@ pub fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
     direction_at(angle, tangent, normal)
 }
 
-/// cos² θ_t as 1 - sin² θ_t, factored so that f64 keeps its digits near total internal reflection.
+/// cos² θ_t as 1 - sin² θ_t, with sin² θ_i = (1 - cos θ_i)(1 + cos θ_i); near grazing incidence, where 1 - sin θ_i would lose cos² θ_i,
+/// by the complement of the angle.
 pub fn radicand(cosine: f64, relative_index: f64) -> f64 {
-    let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
-    let sine_transmitted = sine / relative_index;
+    let squared_sine = (1.0 - cosine) * (1.0 + cosine);
     if cosine < 0.5 {
-        // Near grazing 1 - sine loses c²; n - sin θ_i = (n - 1) + (1 - sin θ_i), with 1 - sin θ_i = 2 sin²((π/2 - θ_i)/2).
+        // n - sin θ_i = (n - 1) + (1 - sin θ_i), with 1 - sin θ_i = 2 sin²((π/2 - θ_i)/2).
         let complement = 2.0 * (0.5 * cosine.asin()).sin().powi(2);
+        let sine = squared_sine.sqrt();
         ((relative_index - 1.0) + complement) * (relative_index + sine) / (relative_index * relative_index)
     } else {
-        (1.0 - sine_transmitted) * (1.0 + sine_transmitted)
+        1.0 - squared_sine / (relative_index * relative_index)
     }
 }
 

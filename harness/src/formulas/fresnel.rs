@@ -7,6 +7,9 @@ use lapidary_fresnel::{self as mirror, oracle};
 
 const M: &str = "fresnel";
 
+/// What 16 ulp, the accuracy line's forward term, are just below 1.
+const AT_ONE: f64 = 16.0 / (1 << 24) as f64;
+
 /// Relative indices in [1/4, 4]: anywhere, and 1 ± every magnitude down to the last place.
 fn relative_index(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
@@ -70,13 +73,13 @@ fn exact() -> Formula {
         .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
         .invariant("1 under total internal reflection, away from its edge", |(c, n), reflectance: f32| {
             let past = (f64::from(n) - 1.0) * (f64::from(n) + 1.0) + f64::from(c.clamp(0.0, 1.0)).powi(2);
-            if past < -1e-5 { near("reflectance", reflectance.into(), 1.0, 2e-7) } else { Ok(()) }
+            if past < -1e-5 { near("reflectance", reflectance.into(), 1.0, AT_ONE) } else { Ok(()) }
         })
         .invariant("1 at grazing incidence, 0 without an interface", |(c, n), reflectance: f32| {
             if n == 1.0 {
                 near("reflectance", reflectance.into(), 0.0, 0.0)
             } else if c <= 0.0 {
-                near("reflectance", reflectance.into(), 1.0, 2e-7)
+                near("reflectance", reflectance.into(), 1.0, AT_ONE)
             } else {
                 Ok(())
             }
@@ -84,7 +87,9 @@ fn exact() -> Formula {
         // Helmholtz reciprocity: the same ray backwards is reflected as strongly.
         .pair("reciprocity", reversed, |(c, n), reflectance: f32, backwards: f32| {
             let well_conditioned = (n - 1.0).abs() > 0.05 && (0.05..=1.0).contains(&c) && !total(c * 0.95, n);
-            if well_conditioned { near("difference", f64::from(reflectance - backwards), 0.0, 2e-5) } else { Ok(()) }
+            // The reversed cosine is rounded, and near its critical angle the reflectance changes as 1 / c² with it.
+            let slack = 2e-6 + 2e-7 / f64::from(c).powi(2);
+            if well_conditioned { near("difference", f64::from(reflectance - backwards), 0.0, slack) } else { Ok(()) }
         })
         .hard_case("index one step below 1, 60 degrees", (0.5, below_one), (&[8.881_788_533e-15], 4e-21), (NAIVE, 1e-14))
         .hard_case("index one step below 1, 45.6 degrees", (0.7, below_one), (&[1.850_341_349e-15], 1e-21), (NAIVE, 1e-15))
@@ -155,7 +160,7 @@ fn schlick() -> Formula {
         })
         .invariant("1 under total internal reflection, away from its edge", |(c, n), reflectance: f32| {
             let past = (f64::from(n) - 1.0) * (f64::from(n) + 1.0) + f64::from(c.clamp(0.0, 1.0)).powi(2);
-            if past < -1e-5 { near("reflectance", reflectance.into(), 1.0, 4e-7) } else { Ok(()) }
+            if past < -1e-5 { near("reflectance", reflectance.into(), 1.0, AT_ONE) } else { Ok(()) }
         })
         .build()
 }

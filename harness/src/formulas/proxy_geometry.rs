@@ -118,8 +118,8 @@ fn ray_and_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
 fn tile_and_ray(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3, Vec3) {
     let [first, second, third] = triangle(draws);
     let centroid = (first.as_dvec3() + second.as_dvec3() + third.as_dvec3()) / 3.0;
-    let extent = f64::from(first.distance(second).max(first.distance(third)).max(first.abs().max_element()));
-    let away = if draws.below(4) == 0 { f64::from(draws.magnitude(-10, 3)) } else { 1.0 };
+    let extent = [second - first, third - first, first].map(|v| f64::from(v.abs().max_element())).into_iter().fold(0.0, f64::max);
+    let away = if draws.below(4) == 0 { f64::from(draws.magnitude(-10, 0)) } else { 1.0 };
     let centre = (centroid + extent * away * draws.direction()).as_vec3();
     (centre, first, second, third, draws.unit_vector())
 }

@@ -7,8 +7,11 @@ use crate::dispatch::shape::{Leaf, Scalar, Shape};
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
 const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
 
-/// Corners of the input box that are tried where it has too many to try all.
-const MOST_CORNERS: u64 = 256;
+/// Corners of the input box that are tried where it has too many to try all, at first and once more in earnest.
+const MOST_CORNERS: [u64; 2] = [256, 1024];
+
+/// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
+const BISECTIONS: usize = 30;
 
 /// An oracle on numbers.
 pub type OracleFn<'a> = &'a dyn Fn(&[f64], &mut Vec<f64>);
@@ -77,16 +80,21 @@ impl Tolerance {
             // The formula's own fault: mirror or oracle does not hold over its domain.
             return Verdict { ulp: f64::INFINITY, ratio: f64::INFINITY, nonfinite };
         }
-        let ulp = self.floats().map(|(leaf, _)| in_ulps(leaf, gpu, exact)).fold(0.0, f64::max);
+        // Beyond a discrete difference the floats belong to another case, and their distance says nothing.
+        let ulp = if self.discrete_fields_agree(gpu, exact) {
+            self.floats().map(|(leaf, _)| in_ulps(leaf, gpu, exact)).fold(0.0, f64::max)
+        } else {
+            0.0
+        };
         let plain = self.ratio(gpu, mirror, exact, None);
         let wants_backward = plain > 1.0 && self.results.iter().any(|(_, bound)| bound.backward > 0.0);
-        let ratio = if wants_backward {
-            Spread::of(self, arguments, exact, gpu, mirror, oracle)
-                .map_or(f64::INFINITY, |spread| self.ratio(gpu, mirror, exact, Some(&spread)))
-                .min(plain)
-        } else {
-            plain
-        };
+        let mut ratio = plain;
+        for effort in [Effort::Corners, Effort::Boundaries] {
+            if wants_backward && ratio > 1.0 {
+                let spread = Spread::of(self, effort, arguments, exact, [gpu, mirror], oracle);
+                ratio = spread.map_or(ratio, |spread| ratio.min(self.ratio(gpu, mirror, exact, Some(&spread))));
+            }
+        }
         Verdict { ulp, ratio, nonfinite }
     }
 
@@ -94,40 +102,42 @@ impl Tolerance {
         self.results.iter().filter(|(leaf, _)| leaf.scalar == Scalar::F32)
     }
 
+    fn discrete_fields_agree(&self, words: &[u32], exact: &[f64]) -> bool {
+        self.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32).all(|(leaf, _)| {
+            (leaf.start..leaf.start + leaf.length).all(|index| number(leaf.scalar, words[index]) == exact[index])
+        })
+    }
+
     /// The worst error over allowed error; discrete fields that differ count as infinite.
     fn ratio(&self, gpu: &[u32], mirror: &[u32], exact: &[f64], spread: Option<&Spread>) -> f64 {
+        // With a spread, the oracle has already been met at the inputs where it gives these very discrete values.
+        let agree = self.discrete_fields_agree(gpu, exact) && self.discrete_fields_agree(mirror, exact);
+        if spread.is_none() && !agree {
+            return f64::INFINITY;
+        }
         let mut worst: f64 = 0.0;
-        for (leaf, bound) in &self.results {
+        for (leaf, bound) in self.floats() {
             let range = leaf.start..leaf.start + leaf.length;
-            if leaf.scalar != Scalar::F32 {
-                // With a spread, the oracle has already been met at the inputs where it gives these very values.
-                let differs = |words: &[u32]| {
-                    range.clone().any(|index| number(leaf.scalar, words[index]) != exact[index])
-                };
-                if spread.is_none() && (differs(gpu) || differs(mirror)) {
-                    return f64::INFINITY;
-                }
-                continue;
-            }
-            let scale = largest(&exact[range.clone()]);
+            let (low, high) = match spread {
+                Some(spread) => (&spread.low[range.clone()], &spread.high[range.clone()]),
+                None => (&exact[range.clone()], &exact[range.clone()]),
+            };
+            // As a vector's ulp is that of its largest component, so its range is that of the component that varies most.
+            let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
+            let scale = largest(low).max(largest(high));
             let allowed = bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED;
             let mut between: f64 = 0.0;
-            let mut widest: f64 = allowed;
-            for index in range {
-                let (low, high) =
-                    spread.map_or((exact[index], exact[index]), |spread| (spread.low[index], spread.high[index]));
+            for (index, (low, high)) in range.zip(low.iter().zip(high)) {
+                let middle = 0.5 * (low + high);
                 let from_gpu = f64::from(f32::from_bits(gpu[index]));
                 let from_mirror = f64::from(f32::from_bits(mirror[index]));
                 for value in [from_gpu, from_mirror] {
-                    let outside = (low - value).max(value - high).max(0.0);
-                    worst = worst.max(ratio_of(outside, allowed));
+                    worst = worst.max(ratio_of(((value - middle).abs() - half).max(0.0), allowed));
                 }
                 between = between.max((from_gpu - from_mirror).abs());
-                widest = widest.max(allowed + (high - low));
             }
-            let same_branch = spread.is_none_or(|spread| spread.gpu_and_mirror_agree);
-            if same_branch {
-                worst = worst.max(ratio_of(between, widest));
+            if spread.is_none_or(|spread| spread.gpu_and_mirror_agree) {
+                worst = worst.max(ratio_of(between, allowed + 2.0 * half));
             }
         }
         worst
@@ -137,6 +147,16 @@ impl Tolerance {
 /// A NaN in either counts as failing.
 fn ratio_of(error: f64, allowed: f64) -> f64 {
     if error <= allowed { error / allowed } else if error.is_nan() { f64::INFINITY } else { error / allowed }
+}
+
+/// How hard to look for the oracle's range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Effort {
+    /// The corners of the box and the middles of its faces.
+    Corners,
+    /// More corners, and on the way from each to the next every place where a discrete result changes: the rounded result may well lie
+    /// right there.
+    Boundaries,
 }
 
 /// The range of the oracle over inputs that are off by up to `backward` ulp, among those with the same discrete results.
@@ -150,60 +170,71 @@ impl Spread {
     /// Nothing where no such input gives the discrete results that the shader or the mirror gave.
     fn of(
         tolerance: &Tolerance,
+        effort: Effort,
         arguments: &[u32],
         exact: &[f64],
-        gpu: &[u32],
-        mirror: &[u32],
+        [gpu, mirror]: [&[u32]; 2],
         oracle: OracleFn<'_>,
     ) -> Option<Spread> {
         let backward = tolerance.results.iter().map(|(_, bound)| bound.backward).fold(0.0, f64::max);
         let (centre, steps) = input_box(&tolerance.arguments, arguments, backward);
-        let discrete = |words: &[u32]| -> Vec<(usize, f64)> {
-            let leaves = tolerance.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32);
-            leaves
-                .flat_map(|(leaf, _)| {
-                    (leaf.start..leaf.start + leaf.length).map(|index| (index, number(leaf.scalar, words[index])))
-                })
-                .collect()
+        let places: Vec<(usize, Scalar)> = tolerance
+            .results
+            .iter()
+            .filter(|(leaf, _)| leaf.scalar != Scalar::F32)
+            .flat_map(|(leaf, _)| (leaf.start..leaf.start + leaf.length).map(|index| (index, leaf.scalar)))
+            .collect();
+        let discrete = |words: &[u32]| -> Vec<f64> {
+            places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
         };
-        let (from_gpu, from_mirror) = (discrete(gpu), discrete(mirror));
+        let wanted = [discrete(gpu), discrete(mirror)];
+        let mut met = [false; 2];
         let mut spread = Spread {
             low: vec![f64::INFINITY; exact.len()],
             high: vec![f64::NEG_INFINITY; exact.len()],
-            gpu_and_mirror_agree: from_gpu == from_mirror,
+            gpu_and_mirror_agree: wanted[0] == wanted[1],
         };
-        let (mut gpu_met, mut mirror_met) = (false, false);
         let mut result = Vec::with_capacity(exact.len());
-        let mut visit = |values: &[f64]| {
+        // The oracle's discrete results at a point; none where the step left its domain.
+        let mut visit = |values: &[f64]| -> Option<Vec<f64>> {
             result.clear();
             oracle(values, &mut result);
             if result.iter().any(|value| !value.is_finite()) {
-                // The step left the oracle's domain.
-                return;
+                return None;
             }
-            let agrees = |wanted: &[(usize, f64)]| wanted.iter().all(|(index, value)| result[*index] == *value);
-            let (as_gpu, as_mirror) = (agrees(&from_gpu), agrees(&from_mirror));
-            gpu_met |= as_gpu;
-            mirror_met |= as_mirror;
-            if as_gpu || as_mirror {
+            let found: Vec<f64> = places.iter().map(|(index, _)| result[*index]).collect();
+            let agrees = [found == wanted[0], found == wanted[1]];
+            met = [met[0] | agrees[0], met[1] | agrees[1]];
+            if agrees[0] || agrees[1] {
                 for (index, value) in result.iter().enumerate() {
                     spread.low[index] = spread.low[index].min(*value);
                     spread.high[index] = spread.high[index].max(*value);
                 }
             }
+            Some(found)
+        };
+        // From corner to corner, not out from the centre: all lines through one point cross a boundary near that point.
+        let mut previous = centre.clone();
+        let mut at_previous = visit(&centre);
+        let mut walk = |point: &[f64]| {
+            let at_point = visit(point);
+            if effort == Effort::Boundaries {
+                boundaries(&previous, point, (0.0, &at_previous), (1.0, &at_point), BISECTIONS, &mut visit);
+                previous.copy_from_slice(point);
+                at_previous = at_point;
+            }
         };
         let mut point = centre.clone();
-        visit(&point);
         for (index, step) in steps.iter().enumerate().filter(|(_, step)| **step > 0.0) {
             for sign in [-1.0, 1.0] {
                 point[index] = centre[index] + sign * step;
-                visit(&point);
+                walk(&point);
             }
             point[index] = centre[index];
         }
         let moving: Vec<usize> = (0..steps.len()).filter(|index| steps[*index] > 0.0).collect();
         let all = moving.len() < 8;
-        let corners = if all { 1u64 << moving.len() } else { MOST_CORNERS };
+        let corners = if all { 1u64 << moving.len() } else { MOST_CORNERS[effort as usize] };
         for corner in 0..corners {
             // Where there are too many corners, a fixed pseudo-random selection, each with its opposite.
             let scattered = (corner / 2 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -212,10 +243,30 @@ impl Spread {
                 let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
                 point[*index] = centre[*index] + sign * steps[*index];
             }
-            visit(&point);
+            walk(&point);
         }
-        (gpu_met && mirror_met).then_some(spread)
+        (met[0] && met[1]).then_some(spread)
     }
+}
+
+/// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far as
+/// `halvings` tell them apart.
+fn boundaries(
+    from: &[f64],
+    to: &[f64],
+    near: (f64, &Option<Vec<f64>>),
+    far: (f64, &Option<Vec<f64>>),
+    halvings: usize,
+    visit: &mut dyn FnMut(&[f64]) -> Option<Vec<f64>>,
+) {
+    if near.1 == far.1 || halvings == 0 {
+        return;
+    }
+    let middle = 0.5 * (near.0 + far.0);
+    let point: Vec<f64> = from.iter().zip(to).map(|(from, to)| from + middle * (to - from)).collect();
+    let found = visit(&point);
+    boundaries(from, to, near, (middle, &found), halvings - 1, visit);
+    boundaries(from, to, (middle, &found), far, halvings - 1, visit);
 }
 
 /// The inputs as numbers, and how far each may be off.

@@ -1,0 +1,172 @@
+//! A folder that is complete or absent: filled aside, then put in place of an older one, and only of one that it wrote.
+
+use super::GalleryError;
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// Lists the files of a folder that [`replace`] wrote, itself excluded, one path a line.
+pub const MARKER: &str = ".lapidary-gallery";
+
+/// What file managers leave behind in a folder that was only looked at.
+const LITTER: [&str; 3] = [".DS_Store", "Thumbs.db", "desktop.ini"];
+
+/// Lets `fill` write into an empty folder and puts that in place of `out`, which may be absent, empty or an earlier
+/// result. Returns the folder's absolute path.
+///
+/// # Errors
+/// What `fill` returns; [`GalleryError::Foreign`] where `out` holds anything that an earlier call did not write; and
+/// what the file system refuses. In each case `out` is as it was.
+pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>) -> Result<PathBuf, GalleryError> {
+    let failed = |source: io::Error| GalleryError::Write { path: out.to_owned(), source };
+    // An existing folder by its own name, so that a link to it stays a link.
+    let out = match out.canonicalize() {
+        Ok(existing) => existing,
+        Err(_) => std::path::absolute(out).map_err(failed)?,
+    };
+    refuse_foreign(&out)?;
+    let parent = out.parent().ok_or_else(|| failed(io::Error::other("it has no folder around it")))?;
+    fs::create_dir_all(parent).map_err(failed)?;
+
+    let aside = tempfile::Builder::new().prefix(".lapidary-gallery-").tempdir_in(parent).map_err(failed)?;
+    // A temporary folder is private to its owner; the folder inside it has the usual permissions.
+    let (new, old) = (aside.path().join("new"), aside.path().join("old"));
+    fs::create_dir(&new).map_err(failed)?;
+    fill(&new)?;
+    let mut names = files(&new).map_err(failed)?;
+    names.sort();
+    fs::write(new.join(MARKER), names.join("\n") + "\n").map_err(failed)?;
+
+    let exists = fs::symlink_metadata(&out).is_ok();
+    if exists {
+        fs::rename(&out, &old).map_err(failed)?;
+    }
+    if let Err(source) = fs::rename(&new, &out) {
+        if exists && fs::rename(&old, &out).is_err() {
+            // The older gallery stays findable rather than being deleted with the temporary folder.
+            let _kept = aside.keep();
+        }
+        return Err(failed(source));
+    }
+    Ok(out)
+}
+
+/// Fails where `out` is there and is neither empty nor made of files that [`replace`] wrote.
+fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
+    let failed = |source: io::Error| GalleryError::Read { path: out.to_owned(), source };
+    if fs::symlink_metadata(out).is_err() {
+        return Ok(());
+    }
+    if !out.is_dir() {
+        return Err(GalleryError::NotAFolder { out: out.to_owned() });
+    }
+    let written = match fs::read_to_string(out.join(MARKER)) {
+        Ok(list) => Some(list),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(failed(error)),
+    };
+    // Without the marker one look at the top is enough: the folder may be somebody's home.
+    let mut found = match &written {
+        Some(_) => files(out).map_err(failed)?,
+        None => entries(out).map_err(failed)?.into_iter().map(|(name, _)| name).collect(),
+    };
+    found.sort();
+    let ours = |name: &String| {
+        let last = name.rsplit('/').next().unwrap_or(name);
+        let listed = written.as_deref().unwrap_or_default().lines().any(|line| line == name);
+        name == MARKER || LITTER.contains(&last) || listed
+    };
+    match found.into_iter().find(|name| !ours(name)) {
+        Some(name) => Err(GalleryError::Foreign { out: out.to_owned(), name }),
+        None => Ok(()),
+    }
+}
+
+/// What lies in a folder: names, and whether each is a folder itself. A link is not, whatever it leads to.
+fn entries(folder: &Path) -> io::Result<Vec<(String, bool)>> {
+    fs::read_dir(folder)?
+        .map(|entry| {
+            let entry = entry?;
+            Ok((entry.file_name().to_string_lossy().into_owned(), entry.file_type()?.is_dir()))
+        })
+        .collect()
+}
+
+/// The files below a folder, by their paths from it with `/` between the parts.
+fn files(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for (name, is_folder) in entries(folder)? {
+        if is_folder {
+            let below = files(&folder.join(&name))?;
+            names.extend(below.into_iter().map(|file| format!("{name}/{file}")));
+        } else {
+            names.push(name);
+        }
+    }
+    Ok(names)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fill(text: &'static str) -> impl FnOnce(&Path) -> Result<(), GalleryError> {
+        move |folder| {
+            fs::create_dir(folder.join("images")).expect("a new folder");
+            fs::write(folder.join("images/a.png"), text).expect("a new file");
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_result_replaces_an_empty_folder_and_an_earlier_result() {
+        let around = tempfile::tempdir().expect("temporary folder");
+        let out = around.path().join("deep/out");
+        fs::create_dir_all(&out).expect("a new folder");
+        for text in ["first", "second"] {
+            let written = replace(&out, fill(text)).expect("nothing foreign");
+            assert_eq!(fs::read_to_string(written.join("images/a.png")).expect("written"), text);
+            fs::write(out.join(".DS_Store"), "looked at").expect("writable");
+        }
+        assert_eq!(fs::read_dir(around.path().join("deep")).expect("readable").count(), 1, "nothing is left aside");
+    }
+
+    #[test]
+    fn a_foreign_folder_or_file_is_refused_and_kept() {
+        let around = tempfile::tempdir().expect("temporary folder");
+        let out = around.path().join("out");
+        fs::create_dir(&out).expect("a new folder");
+        fs::write(out.join("thesis.tex"), "years").expect("writable");
+        let error = replace(&out, fill("x")).expect_err("foreign");
+        assert!(error.to_string().contains("thesis.tex"), "{error}");
+        assert_eq!(fs::read_to_string(out.join("thesis.tex")).expect("kept"), "years");
+        assert!(matches!(replace(&out.join("thesis.tex"), fill("x")), Err(GalleryError::NotAFolder { .. })));
+    }
+
+    #[test]
+    fn a_file_that_was_added_to_a_result_is_refused_and_kept() {
+        let around = tempfile::tempdir().expect("temporary folder");
+        let out = around.path().join("out");
+        replace(&out, fill("x")).expect("nothing is there");
+        fs::write(out.join("images/mine.png"), "mine").expect("writable");
+        assert!(matches!(replace(&out, fill("y")), Err(GalleryError::Foreign { .. })));
+        assert_eq!(fs::read_to_string(out.join("images/mine.png")).expect("kept"), "mine");
+        assert_eq!(fs::read_to_string(out.join("images/a.png")).expect("kept"), "x");
+    }
+
+    #[test]
+    fn a_failed_run_leaves_what_was_there() {
+        let around = tempfile::tempdir().expect("temporary folder");
+        let out = around.path().join("out");
+        let fail = |folder: &Path| {
+            fs::write(folder.join("half"), "half").expect("writable");
+            Err(GalleryError::NotAFolder { out: folder.to_owned() })
+        };
+        assert!(replace(&out, fail).is_err());
+        assert_eq!(fs::read_dir(around.path()).expect("readable").count(), 0);
+        replace(&out, fill("x")).expect("nothing is there");
+        assert!(replace(&out, fail).is_err());
+        assert_eq!(fs::read_to_string(out.join("images/a.png")).expect("kept"), "x");
+    }
+}

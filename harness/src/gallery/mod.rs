@@ -1,0 +1,161 @@
+//! The gallery: a static site that shows every picture, and every technique with its equation, its functions and what
+//! they promise, and its complete WGSL to copy. One page with its pictures beside it, read from disk without a network.
+
+mod folder;
+mod highlight;
+mod markdown;
+mod page;
+mod section;
+mod text;
+
+use std::{
+    collections::HashSet,
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// One rendered picture of the gallery.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Its name; the picture of the brilliant, by this name, opens the page.
+    pub title: String,
+    /// The PNG, which is copied into the gallery.
+    pub file: PathBuf,
+    /// What it shows, in a paragraph of plain text with `` `code` ``.
+    pub paragraph: String,
+    /// The command that renders it again.
+    pub command: String,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+}
+
+/// What the gallery shows, beside the cookbook itself.
+#[derive(Clone, Debug)]
+pub struct Site<'a> {
+    /// The device that rendered the pictures, and its driver.
+    pub adapter: String,
+    /// The scenes.
+    pub pictures: &'a [Picture],
+    /// Figures of single modules, each with its module's name; may be empty.
+    pub figures: &'a [(String, Picture)],
+}
+
+/// Why there is no gallery. Whatever was at its place is still there, untouched.
+#[derive(Debug, thiserror::Error)]
+pub enum GalleryError {
+    /// A picture is not where it was said to be.
+    #[error("picture `{title}`: {} cannot be copied: {source}; render it again with `{command}`", file.display())]
+    Picture {
+        /// The picture's title.
+        title: String,
+        /// Its file.
+        file: PathBuf,
+        /// The command that renders it.
+        command: String,
+        /// The file system's reason.
+        source: io::Error,
+    },
+    /// A figure's module does not exist.
+    #[error("figure `{title}` belongs to module `{module}`, which the cookbook does not have")]
+    UnknownModule {
+        /// The figure's title.
+        title: String,
+        /// The module that it names.
+        module: String,
+    },
+    /// The folder holds something that is not of a gallery.
+    #[error(
+        "{} holds `{name}`, which `cook gallery` did not write and would have to delete; \
+        name another folder with --out, or move `{name}` away",
+        out.display()
+    )]
+    Foreign {
+        /// The folder.
+        out: PathBuf,
+        /// The first such file, by its path from the folder.
+        name: String,
+    },
+    /// There is a file of that name.
+    #[error("{} is not a folder; name another one with --out", out.display())]
+    NotAFolder {
+        /// The path.
+        out: PathBuf,
+    },
+    /// The folder cannot be read.
+    #[error("{} cannot be read: {source}; name another folder with --out", path.display())]
+    Read {
+        /// The folder.
+        path: PathBuf,
+        /// The file system's reason.
+        source: io::Error,
+    },
+    /// The folder cannot be written or replaced.
+    #[error("{} cannot be written: {source}; name another folder with --out, on a disk with room", path.display())]
+    Write {
+        /// The folder or file.
+        path: PathBuf,
+        /// The file system's reason.
+        source: io::Error,
+    },
+}
+
+/// A picture with its place in the gallery, `images/NAME.png`.
+#[derive(Clone, Debug)]
+struct Placed<'a> {
+    picture: &'a Picture,
+    module: Option<&'a str>,
+    place: String,
+}
+
+/// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is complete or as it
+/// was before; the same site gives the same bytes.
+///
+/// # Errors
+/// Where a picture is missing, a figure's module is unknown, the file system refuses, or `out` holds anything that an
+/// earlier call did not write.
+pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
+    if let Some((module, figure)) = site.figures.iter().find(|(name, _)| crate::cookbook::module(name).is_none()) {
+        return Err(GalleryError::UnknownModule { title: figure.title.clone(), module: module.clone() });
+    }
+    let pictures = site.pictures.iter().map(|picture| (None, picture));
+    let figures = site.figures.iter().map(|(module, figure)| (Some(module.as_str()), figure));
+    let placed = place(pictures.chain(figures));
+    let folder = folder::replace(out, |folder| {
+        let images = folder.join("images");
+        fs::create_dir(&images).map_err(|source| GalleryError::Write { path: images, source })?;
+        for Placed { picture, place, .. } in &placed {
+            fs::copy(&picture.file, folder.join(place)).map_err(|source| GalleryError::Picture {
+                title: picture.title.clone(),
+                file: picture.file.clone(),
+                command: picture.command.clone(),
+                source,
+            })?;
+        }
+        let index = folder.join("index.html");
+        let text = page::page(&site.adapter, &placed);
+        fs::write(&index, text).map_err(|source| GalleryError::Write { path: index, source })
+    })?;
+    Ok(folder.join("index.html"))
+}
+
+/// Gives each picture a file name of its own, after its title.
+fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> Vec<Placed<'a>> {
+    let mut taken = HashSet::new();
+    pictures
+        .map(|(module, picture)| {
+            let title: String = picture.title.chars().filter(|c| c.is_ascii()).collect();
+            let stem = text::slug(&format!("{} {title}", module.unwrap_or_default()));
+            let stem = if stem.is_empty() { "picture".to_owned() } else { stem };
+            let mut name = stem.clone();
+            let mut count = 1;
+            while !taken.insert(name.clone()) {
+                count += 1;
+                name = format!("{stem}-{count}");
+            }
+            Placed { picture, module, place: format!("images/{name}.png") }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;
