@@ -24,15 +24,19 @@ struct ProxyGeometryHit {
     hit: bool,
 }
 
+// Which tile of plane P.
+struct ProxyGeometryCell {
+    // Whole lattice steps along the two edges.
+    steps: vec2i,
+    // Whether it is the cell's other half: the image turned by a half turn.
+    turned: bool,
+}
+
 // One tile of plane P. Its vertices follow the orientation of the image: (first, second, third) as the triangle's.
 struct ProxyGeometryFacet {
     vertex_first: vec3f,
     vertex_second: vec3f,
     vertex_third: vec3f,
-    // Whole lattice steps along the two edges.
-    cell: vec2i,
-    // Whether it is the cell's other half: the image turned by a half turn.
-    turned: bool,
 }
 
 // A ray nearer than this to parallel (the sine of its angle to the plane) misses. A dot product of unit vectors is off by
@@ -72,7 +76,7 @@ fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: v
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-30, 1e30], sine of the angle at the first vertex at least 1e-6.
 // Outside: finite; zero or ill-conditioned.
-// Accuracy: lavapipe 5 ulp + 2 backward; portable 9 ulp + 5 backward
+// Accuracy: lavapipe 5 ulp + 3 backward; portable 9 ulp + 6 backward
 fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
     let edge_first = position_second - position_first;
     let edge_second = position_third - position_first;
@@ -134,7 +138,7 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
 // which keep their digits on slivers, where the usual Gram determinant cancels; scaled to the longest edge against overflow.
 // Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-30 of the longest edge squared).
 // Units: lengths in, none out.
-// Domain: size of the triangle in [1e-30, 1e30], distance of the point at most 1e6 of it, sine of the angle times the ratio of the edges at least 1e-4.
+// Domain: size of the triangle in [1e-27, 1e27], distance of the point at most 100 of it, sine of the angle times the ratio of the edges at least 1e-4.
 // Outside: finite; ill-conditioned.
 // Accuracy: lavapipe 8 ulp + 3 backward; portable 14 ulp + 5 backward
 fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
@@ -174,30 +178,36 @@ fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec
     ) / (first_first * second_second - first_second * first_second);
 }
 
-// The tile of plane P that holds a point. A point on an edge or a vertex belongs to exactly one tile: cells are half open, and a
+// The tile that holds a point of plane P. A point on an edge or a vertex belongs to exactly one tile: cells are half open, and a
 // cell's diagonal belongs to the half that is not turned.
+// Returns: ProxyGeometryCell.
+// Units: lattice coordinates, as proxy_geometry_coordinates gives them.
+// Domain: coordinates up to 2^22, beyond which f32 has no halves.
+// Outside: as the formula gives; cells beyond 2^31 are clamped to it.
+// Accuracy: lavapipe steps 0 ulp, turned 1 backward; portable steps 0 ulp, turned 1 backward
+fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
+    let corner = floor(coordinates);
+    let within = coordinates - corner;
+    let short = (corner + 1.0f) - coordinates;
+    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits.
+    let turned = within.x > short.y || within.y > short.x;
+    return ProxyGeometryCell(vec2i(corner), turned);
+}
+
+// The vertices of a tile, each from its own place on the lattice, so that tiles share theirs to the last bit.
 // Returns: ProxyGeometryFacet.
 // Units: lengths.
-// Domain: as proxy_geometry_coordinates.
-// Outside: as there; cells beyond 2^31 are clamped to it.
-// Accuracy: lavapipe vertex_first 6 ulp + 12 backward, vertex_second 6 ulp + 12 backward, vertex_third 6 ulp + 12 backward,
-//   cell 12 backward, turned 12 backward; portable vertex_first 9 ulp + 20 backward, vertex_second 9 ulp + 20 backward,
-//   vertex_third 9 ulp + 20 backward, cell 20 backward, turned 20 backward
-fn proxy_geometry_facet(plane: ProxyGeometryPlane, point: vec3f) -> ProxyGeometryFacet {
-    let coordinates = proxy_geometry_coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
-    let cell = floor(coordinates);
-    let within = coordinates - cell;
-    let turned = within.x + within.y > 1.0f;
+// Domain: size of the triangle in [1e-27, 1e27], at most 100 steps.
+// Outside: exact steps up to 2^24; overflows beyond 1e37.
+// Accuracy: lavapipe vertex_first 2 ulp + 2 backward, vertex_second 2 ulp + 2 backward, vertex_third 2 ulp + 2 backward; portable vertex_first 3 ulp + 4 backward, vertex_second 3 ulp + 4 backward, vertex_third 3 ulp + 4 backward
+fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.
-    let corner = select(cell, cell + vec2f(1.0f), turned);
-    let way = select(1.0f, -1.0f, turned);
-    let vertex = plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second;
+    let corner = vec2f(cell.steps) + select(0.0f, 1.0f, cell.turned);
+    let way = select(1.0f, -1.0f, cell.turned);
     return ProxyGeometryFacet(
-        vertex,
-        vertex + way * plane.edge_first,
-        vertex + way * plane.edge_second,
-        vec2i(cell),
-        turned,
+        plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second,
+        plane.origin + (corner.x + way) * plane.edge_first + corner.y * plane.edge_second,
+        plane.origin + corner.x * plane.edge_first + (corner.y + way) * plane.edge_second,
     );
 }
 

@@ -125,7 +125,8 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
         var internal = gem_environment(direction);
         if (hit.hit) {
             let plane = ProxyGeometryPlane(input.plane_origin, input.edge_first, input.edge_second);
-            let facet = proxy_geometry_facet(plane, hit.point);
+            let coordinates = proxy_geometry_coordinates(hit.point, plane.origin, plane.edge_first, plane.edge_second);
+            let facet = proxy_geometry_facet(plane, proxy_geometry_cell(coordinates));
             let facet_normal = proxy_geometry_facet_normal(input.centre, facet.vertex_first, facet.vertex_second, facet.vertex_third, entering.direction);
             internal = gem_internal(entering.direction, facet_normal);
         }

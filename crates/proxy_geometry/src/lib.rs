@@ -29,6 +29,15 @@ pub struct ProxyGeometryHit {
     pub hit: bool,
 }
 
+/// Which tile of plane P.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProxyGeometryCell {
+    /// Whole lattice steps along the two edges.
+    pub steps: IVec2,
+    /// Whether it is the cell's other half: the image turned by a half turn.
+    pub turned: bool,
+}
+
 /// One tile of plane P.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryFacet {
@@ -38,10 +47,6 @@ pub struct ProxyGeometryFacet {
     pub vertex_second: Vec3,
     /// The third.
     pub vertex_third: Vec3,
-    /// Whole lattice steps along the two edges.
-    pub cell: IVec2,
-    /// Whether it is the cell's other half: the image turned by a half turn.
-    pub turned: bool,
 }
 
 /// A ray nearer than this to parallel (the sine of its angle to the plane) misses.
@@ -136,22 +141,25 @@ pub fn coordinates_naive(point: Vec3, origin: Vec3, edge_first: Vec3, edge_secon
     ) / (first_first * second_second - first_second * first_second)
 }
 
-/// The tile of plane P that holds a point.
-pub fn facet(plane: ProxyGeometryPlane, point: Vec3) -> ProxyGeometryFacet {
-    let coordinates = coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
-    let cell = coordinates.floor();
-    let within = coordinates - cell;
-    let turned = within.x + within.y > 1.0;
+/// The tile that holds a point of plane P.
+pub fn cell(coordinates: Vec2) -> ProxyGeometryCell {
+    let corner = coordinates.floor();
+    let within = coordinates - corner;
+    let short = (corner + 1.0) - coordinates;
+    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits.
+    let turned = within.x > short.y || within.y > short.x;
+    ProxyGeometryCell { steps: corner.as_ivec2(), turned }
+}
+
+/// The vertices of a tile, each from its own place on the lattice.
+pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.
-    let corner = if turned { cell + Vec2::ONE } else { cell };
-    let way = if turned { -1.0 } else { 1.0 };
-    let vertex = plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second;
+    let corner = cell.steps.as_vec2() + if cell.turned { 1.0 } else { 0.0 };
+    let way = if cell.turned { -1.0 } else { 1.0 };
     ProxyGeometryFacet {
-        vertex_first: vertex,
-        vertex_second: vertex + way * plane.edge_first,
-        vertex_third: vertex + way * plane.edge_second,
-        cell: cell.as_ivec2(),
-        turned,
+        vertex_first: plane.origin + corner.x * plane.edge_first + corner.y * plane.edge_second,
+        vertex_second: plane.origin + (corner.x + way) * plane.edge_first + corner.y * plane.edge_second,
+        vertex_third: plane.origin + corner.x * plane.edge_first + (corner.y + way) * plane.edge_second,
     }
 }
 

@@ -26,6 +26,15 @@ pub struct ProxyGeometryHit {
     pub hit: bool,
 }
 
+/// Which tile of plane P.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProxyGeometryCell {
+    /// Whole lattice steps along the two edges.
+    pub steps: IVec2,
+    /// Whether it is the cell's other half.
+    pub turned: bool,
+}
+
 /// One tile of plane P.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryFacet {
@@ -35,10 +44,6 @@ pub struct ProxyGeometryFacet {
     pub vertex_second: DVec3,
     /// The third.
     pub vertex_third: DVec3,
-    /// Whole lattice steps along the two edges.
-    pub cell: IVec2,
-    /// Whether it is the cell's other half.
-    pub turned: bool,
 }
 
 /// The point of which `centre` is the midpoint with `position`.
@@ -105,8 +110,7 @@ pub fn coordinates(point: DVec3, origin: DVec3, edge_first: DVec3, edge_second: 
 }
 
 /// The tile among those about the rounded coordinates that holds the point, by its half-open inequalities.
-pub fn facet(plane: ProxyGeometryPlane, point: DVec3) -> ProxyGeometryFacet {
-    let coordinates = coordinates(point, plane.origin, plane.edge_first, plane.edge_second);
+pub fn cell(coordinates: DVec2) -> ProxyGeometryCell {
     let near = coordinates.round();
     for (dx, dy) in [(-1.0, -1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0)] {
         let cell = near + DVec2::new(dx, dy);
@@ -114,18 +118,23 @@ pub fn facet(plane: ProxyGeometryPlane, point: DVec3) -> ProxyGeometryFacet {
         if coordinates.cmplt(cell).any() || coordinates.cmpge(cell + DVec2::ONE).any() {
             continue;
         }
-        let within = coordinates - cell;
-        let turned = within.y > 1.0 - within.x;
-        let corners = if turned {
-            [DVec2::new(1.0, 1.0), DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0)]
-        } else {
-            [DVec2::ZERO, DVec2::X, DVec2::Y]
-        };
-        let lattice = DMat3::from_cols(plane.edge_first, plane.edge_second, plane.origin);
-        let [vertex_first, vertex_second, vertex_third] = corners.map(|corner| lattice * (cell + corner).extend(1.0));
-        return ProxyGeometryFacet { vertex_first, vertex_second, vertex_third, cell: cell.as_ivec2(), turned };
+        let below_diagonal = coordinates.x - cell.x <= (cell.y + 1.0) - coordinates.y;
+        return ProxyGeometryCell { steps: cell.as_ivec2(), turned: !below_diagonal };
     }
     unreachable!("the four cells about the nearest lattice point hold the point")
+}
+
+/// The corners of the tile in homogeneous lattice coordinates, by the lattice's matrix.
+pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
+    let corners = if cell.turned {
+        [DVec2::new(1.0, 1.0), DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0)]
+    } else {
+        [DVec2::ZERO, DVec2::X, DVec2::Y]
+    };
+    let lattice = DMat3::from_cols(plane.edge_first, plane.edge_second, plane.origin);
+    let [vertex_first, vertex_second, vertex_third] =
+        corners.map(|corner| lattice * (cell.steps.as_dvec2() + corner).extend(1.0));
+    ProxyGeometryFacet { vertex_first, vertex_second, vertex_third }
 }
 
 /// The direction from the centroid, found vertex by vertex, to the centre; the larger of its angles to the ray.

@@ -4,20 +4,15 @@ use super::near;
 use crate::formula::{Formula, formula};
 use crate::mirror_struct;
 use crate::property::draws::Draws;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, IVec2, Vec2, Vec3};
 use lapidary_proxy_geometry::{
-    self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryFacet, ProxyGeometryHit, ProxyGeometryPlane, oracle,
+    self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit, ProxyGeometryPlane, oracle,
 };
 
 mirror_struct!(lapidary_proxy_geometry, ProxyGeometryPlane { origin, edge_first, edge_second });
 mirror_struct!(lapidary_proxy_geometry, ProxyGeometryHit { point, distance, hit });
-mirror_struct!(lapidary_proxy_geometry, ProxyGeometryFacet {
-    vertex_first,
-    vertex_second,
-    vertex_third,
-    cell,
-    turned
-});
+mirror_struct!(lapidary_proxy_geometry, ProxyGeometryCell { steps, turned });
+mirror_struct!(lapidary_proxy_geometry, ProxyGeometryFacet { vertex_first, vertex_second, vertex_third });
 
 const M: &str = "proxy_geometry";
 
@@ -52,7 +47,14 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let size = f64::from(size(draws, -95, 95));
     let (first, second) = edges(draws, -19, 6);
     let corner = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
-    [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3())
+    let at = |corner: DVec3| [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3());
+    // Away from the origin, rounding of the positions can turn a thin triangle about its long side, or flatten it: kept
+    // where it turns it by less than a hundredth of a radian.
+    let shifted = at(corner);
+    let farthest = shifted.map(|vertex| f64::from(vertex.abs().max_element())).into_iter().fold(0.0, f64::max);
+    let shortest = shifted[0].as_dvec3().distance(shifted[1].as_dvec3()).min(shifted[0].as_dvec3().distance(shifted[2].as_dvec3()));
+    let turn = f64::from(f32::EPSILON) * farthest / (shortest * thinness(shifted));
+    if turn < 0.01 { shifted } else { at(DVec3::ZERO) }
 }
 
 /// Sine of the angle at the first vertex, in f64.
@@ -61,10 +63,12 @@ fn thinness([first, second, third]: [Vec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / ((b - a).length() * (c - a).length())
 }
 
-/// A lattice, a point in its plane that is up to a thousand cells away, on an edge or a vertex in a third of the cases.
+/// A lattice, a point in its plane that is up to a hundred cells away, on an edge or a vertex in half of the cases, but for
+/// thin lattices, where a point's own rounding moves it by more than a cell is wide.
 fn lattice_point(draws: &mut Draws<'_>) -> (ProxyGeometryPlane, Vec3) {
     let size = f64::from(size(draws, -90, 90));
     let (first, second) = edges(draws, -9, 3);
+    let thin = first.cross(second).length() < 0.1 * second.length();
     let origin = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
     let plane = ProxyGeometryPlane {
         origin: (size * origin).as_vec3(),
@@ -72,14 +76,14 @@ fn lattice_point(draws: &mut Draws<'_>) -> (ProxyGeometryPlane, Vec3) {
         edge_second: (size * second).as_vec3(),
     };
     let cell = |draws: &mut Draws<'_>| match draws.below(3) {
-        0 => f64::from(draws.below(2001)) - 1000.0,
+        0 => f64::from(draws.below(201)) - 100.0,
         _ => f64::from(draws.below(5)) - 2.0,
     };
     let whole = (cell(draws), cell(draws));
     let within = match draws.below(6) {
-        0 => (0.0, 0.0),
-        1 => (f64::from(draws.between(0.0, 1.0)), 0.0),
-        2 => {
+        0 if !thin => (0.0, 0.0),
+        1 if !thin => (f64::from(draws.between(0.0, 1.0)), 0.0),
+        2 if !thin => {
             let along = f64::from(draws.between(0.0, 1.0));
             (along, 1.0 - along)
         }
@@ -139,7 +143,7 @@ pub(super) fn formulas() -> Vec<Formula> {
 fn plane_formulas() -> Vec<Formula> {
     let facet = |draws: &mut Draws<'_>| {
         let [vertex_first, vertex_second, vertex_third] = triangle(draws);
-        ProxyGeometryFacet { vertex_first, vertex_second, vertex_third, cell: glam::IVec2::ZERO, turned: draws.below(2) == 1 }
+        ProxyGeometryFacet { vertex_first, vertex_second, vertex_third }
     };
     vec![
         formula(M, "proxy_geometry_image", mirror::image, oracle::image, |draws| (position(draws), position(draws)))
@@ -176,7 +180,7 @@ fn plane_formulas() -> Vec<Formula> {
             let facet = facet(draws);
             (draws.in_cube() * facet.vertex_first.abs().max_element(), facet)
         })
-        .edge("a turned tile", |(_, facet)| facet.turned)
+        .edge("size below 1e-20", |(_, facet)| facet.vertex_first.abs().max(facet.vertex_second.abs()).max_element() < 1e-20)
         .build(),
     ]
 }
@@ -365,21 +369,47 @@ fn lattice_formulas() -> Vec<Formula> {
         })
         .benign(2e-4)
         .build(),
-        formula(M, "proxy_geometry_facet", mirror::facet, oracle::facet, lattice_point)
-            .edge("a tile that is not turned", |(plane, point)| !oracle_facet(plane, point).turned)
-            .edge("a turned tile", |(plane, point)| oracle_facet(plane, point).turned)
-            .edge("on a vertex", |(plane, point)| point == plane.origin)
-            .edge("hundreds of cells away", |(plane, point)| oracle_facet(plane, point).cell.abs().max_element() > 200)
-            .edge("negative cells", |(plane, point)| oracle_facet(plane, point).cell.x < 0)
-            .build(),
+        formula(M, "proxy_geometry_cell", mirror::cell, oracle::cell, |draws| {
+            let coordinate = |draws: &mut Draws<'_>| match draws.below(4) {
+                0 => draws.below(201) as f32 - 100.0,
+                1 => draws.signed(-40, 21),
+                _ => draws.between(-4.0, 4.0),
+            };
+            let first = coordinate(draws);
+            // On the diagonal of a cell in a quarter of the cases.
+            (if draws.below(4) == 0 {
+                Vec2::new(first, draws.below(9) as f32 - 4.0 - first)
+            } else {
+                Vec2::new(first, coordinate(draws))
+            },)
+        })
+        .edge("not turned", |(at,)| !mirror::cell(at).turned)
+        .edge("turned", |(at,)| mirror::cell(at).turned)
+        .edge("on a vertex", |(at,)| at == at.floor())
+        .edge("on an edge", |(at,)| at.x == at.x.floor() && at.y != at.y.floor())
+        .edge("on a diagonal", |(at,)| (at - at.floor()).element_sum() == 1.0)
+        .edge("just below 0", |(at,)| at.x < 0.0 && at.x > -1e-6)
+        .edge("negative steps", |(at,)| at.x < -1.0 && at.y < -1.0)
+        .edge("a million cells away", |(at,)| at.x.abs() > 1e6)
+        .build(),
+        formula(M, "proxy_geometry_facet", mirror::facet, oracle::facet, |draws| {
+            let (plane, _) = lattice_point(draws);
+            let step = |draws: &mut Draws<'_>| draws.below(201) as i32 - 100;
+            (plane, ProxyGeometryCell { steps: IVec2::new(step(draws), step(draws)), turned: draws.below(2) == 1 })
+        })
+        .edge("not turned", |(_, cell)| !cell.turned)
+        .edge("turned", |(_, cell)| cell.turned)
+        .edge("the image itself", |(_, cell)| cell.steps == IVec2::ZERO && !cell.turned)
+        .edge("negative steps", |(_, cell)| cell.steps.x < 0 && cell.steps.y < 0)
+        // The two halves of a cell share its diagonal, so that facets meet without a gap.
+        .pair(
+            "the halves of a cell share their diagonal",
+            |(plane, cell)| (plane, ProxyGeometryCell { turned: !cell.turned, ..cell }),
+            |_, one: ProxyGeometryFacet, other: ProxyGeometryFacet| {
+                let gap = (one.vertex_second - other.vertex_third).abs() + (one.vertex_third - other.vertex_second).abs();
+                near("gap", gap.max_element().into(), 0.0, 0.0)
+            },
+        )
+        .build(),
     ]
-}
-
-fn oracle_facet(plane: ProxyGeometryPlane, point: Vec3) -> oracle::ProxyGeometryFacet {
-    let exact = oracle::ProxyGeometryPlane {
-        origin: plane.origin.as_dvec3(),
-        edge_first: plane.edge_first.as_dvec3(),
-        edge_second: plane.edge_second.as_dvec3(),
-    };
-    oracle::facet(exact, point.as_dvec3())
 }

@@ -3,6 +3,7 @@
 
 use crate::cookbook::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
+use super::draws::mix;
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
 const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
@@ -233,12 +234,12 @@ impl Spread {
             point[index] = centre[index];
         }
         let moving: Vec<usize> = (0..steps.len()).filter(|index| steps[*index] > 0.0).collect();
-        let all = moving.len() < 8;
-        let corners = if all { 1u64 << moving.len() } else { MOST_CORNERS[effort as usize] };
+        let most = MOST_CORNERS[effort as usize];
+        let all = 1u64.checked_shl(moving.len() as u32).is_some_and(|corners| corners <= most);
+        let corners = if all { 1u64 << moving.len() } else { most };
         for corner in 0..corners {
-            // Where there are too many corners, a fixed pseudo-random selection, each with its opposite.
-            let scattered = (corner / 2 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            let signs = if all { corner } else { scattered ^ (corner % 2).wrapping_neg() };
+            // Where there are too many corners, a fixed pseudo-random selection.
+            let signs = if all { corner } else { mix(corner) };
             for (bit, index) in moving.iter().enumerate() {
                 let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
                 point[*index] = centre[*index] + sign * steps[*index];
