@@ -13,3 +13,4 @@ pub mod nearest;
 pub mod property;
 pub mod render;
 pub mod scene;
+pub mod snapshot;

@@ -2,8 +2,14 @@
 //! for a check that failed, 2 for bad usage or bad input, with one clear line on stderr.
 
 mod check;
+mod copy;
+mod gallery;
+mod list;
 mod progress;
 mod render;
+mod scene;
+mod snapshots;
+mod test;
 
 use clap::{Parser, Subcommand};
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
@@ -41,8 +47,14 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Gallery(gallery::Arguments),
+    Test(test::Arguments),
     Check(check::Arguments),
+    List(list::Arguments),
+    Copy(copy::Arguments),
     Render(render::Arguments),
+    Scene(scene::Arguments),
+    Snapshots(snapshots::Arguments),
 }
 
 /// What every command may use.
@@ -69,8 +81,14 @@ pub(crate) fn run() -> ExitCode {
     };
     let context = Context { adapter: arguments.adapter.unwrap_or_else(AdapterChoice::platform_default) };
     let outcome = match arguments.command {
+        Command::Gallery(arguments) => gallery::run(&context, &arguments),
+        Command::Test(arguments) => test::run(&context, &arguments),
         Command::Check(arguments) => check::run(&context, &arguments),
+        Command::List(arguments) => list::run(&arguments),
+        Command::Copy(arguments) => copy::run(&arguments),
         Command::Render(arguments) => render::run(&context, &arguments),
+        Command::Scene(arguments) => scene::run(&arguments),
+        Command::Snapshots(arguments) => snapshots::run(&context, &arguments),
     };
     match outcome {
         Ok(Outcome::Passed) => ExitCode::SUCCESS,

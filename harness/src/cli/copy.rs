@@ -1,0 +1,162 @@
+//! `cook copy`.
+
+use super::{Failure, Outcome};
+use lapidary_harness::cookbook::translate::{Target, translate};
+use lapidary_harness::cookbook::{self, Module, Recipe};
+use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
+use lapidary_harness::nearest;
+use lapidary_harness::render::file;
+use std::io::Write as _;
+use std::path::PathBuf;
+
+/// One self-contained file to paste: modules, or a recipe with all that it requires.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv")]
+pub(super) struct Arguments {
+    /// Modules, or one recipe. SPIR-V and GLSL hold entry points: there, name one function as MODULE::FUNCTION (it is
+    /// wrapped in a compute kernel); for GLSL also one entry point of a recipe, as gem::gem_fragment.
+    #[arg(required = true, value_name = "MODULE|RECIPE")]
+    names: Vec<String>,
+    /// The effects of a recipe that are on; as the recipe has them where left out.
+    #[arg(long, value_delimiter = ',', value_name = "a,b")]
+    effects: Option<Vec<String>>,
+    /// The shading language.
+    #[arg(long, value_enum, default_value = "wgsl")]
+    to: Target,
+    /// Where to write it; stdout where left out.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// What the names stand for.
+enum Selection {
+    Modules(Vec<&'static Module>),
+    Function(&'static Module, String),
+    Recipe(&'static Recipe, Option<String>),
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let selection = select(&arguments.names)?;
+    if arguments.effects.is_some() && !matches!(selection, Selection::Recipe(..)) {
+        return Err(Failure("--effects is for a recipe; a module has none".to_owned()));
+    }
+    let bytes = match &selection {
+        Selection::Modules(modules) => of_modules(modules, arguments.to)?,
+        Selection::Function(module, function) => of_function(module, function, arguments.to)?,
+        Selection::Recipe(recipe, entry) => {
+            let source = with_effects(recipe, arguments.effects.as_deref())?;
+            of_source(&source, recipe.name, arguments.to, entry.as_deref())?
+        }
+    };
+    match &arguments.out {
+        Some(path) => {
+            file::replace(path, &bytes)?;
+            println!("{}", path.display());
+        }
+        None => std::io::stdout().write_all(&bytes)?,
+    }
+    Ok(Outcome::Passed)
+}
+
+fn select(names: &[String]) -> Result<Selection, Failure> {
+    let mut modules: Vec<&'static Module> = Vec::new();
+    for name in names {
+        let (name, part) = name.split_once("::").map_or((name.as_str(), None), |(name, part)| (name, Some(part)));
+        let alone = names.len() == 1;
+        if let Some(recipe) = cookbook::recipe(name) {
+            if !alone {
+                return Err(Failure(format!("`{name}` is a recipe, which holds its modules already; copy it alone")));
+            }
+            return Ok(Selection::Recipe(recipe, part.map(str::to_owned)));
+        }
+        let Some(module) = cookbook::module(name) else {
+            let known: Vec<&str> = cookbook::modules().iter().map(|module| module.name).chain(cookbook::recipes().iter().map(|recipe| recipe.name)).collect();
+            return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
+        };
+        if let Some(function) = part {
+            let Some(found) = module.function(function) else {
+                let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
+                return Err(Failure(format!("module `{name}` has no function `{function}`{}", nearest::suggest(function, &known))));
+            };
+            if !alone {
+                return Err(Failure(format!("`{name}::{function}` is one function; copy it alone")));
+            }
+            return Ok(Selection::Function(module, found.name.clone()));
+        }
+        if !modules.iter().any(|known| known.name == module.name) {
+            modules.push(module);
+        }
+    }
+    Ok(Selection::Modules(modules))
+}
+
+fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
+    let names: Vec<&str> = modules.iter().map(|module| module.name).collect();
+    if to.needs_entry_point() {
+        let first = &modules[0].functions[0].name;
+        let message = format!("this language holds entry points; name one function, such as {}::{first}", names[0]);
+        return Err(Failure(message));
+    }
+    of_source(&cookbook::compose(&names, ""), &names.join("+"), to, None)
+}
+
+fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
+    let kernel = KernelModule::reflect(module.source, module.name, function)?;
+    if to == Target::Wgsl {
+        // The text itself, comments and all.
+        let text = format!("{}\n{}", module.source, dispatch::kernel_source(&kernel.signature));
+        return Ok(text.into_bytes());
+    }
+    let mut ir = kernel.module;
+    naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
+    let info = dispatch::validate(&ir).map_err(|error| Failure(error.to_string()))?;
+    translate(&ir, &info, to, Some((ENTRY_POINT, naga::ShaderStage::Compute))).map_err(Failure)
+}
+
+fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Result<Vec<u8>, Failure> {
+    if to == Target::Wgsl {
+        return Ok(source.as_bytes().to_vec());
+    }
+    let (ir, info) = dispatch::parse(source, name)?;
+    let points: Vec<String> = ir.entry_points.iter().map(|point| format!("{name}::{}", point.name)).collect();
+    let entry = match entry {
+        None => None,
+        Some(entry) => match ir.entry_points.iter().find(|point| point.name == entry) {
+            Some(point) => Some((entry, point.stage)),
+            None => return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", ")))),
+        },
+    };
+    if to == Target::Glsl && entry.is_none() {
+        return Err(Failure(format!("GLSL holds one entry point; name one of {}", points.join(", "))));
+    }
+    // The writers know no overrides: each takes its default here.
+    let constants = naga::back::PipelineConstants::default();
+    let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, entry.map(|(name, stage)| (stage, name)), &constants)
+        .map_err(|error| Failure(error.to_string()))?;
+    translate(&ir, &info, to, entry).map_err(Failure)
+}
+
+/// The recipe with its effects switched, in the text itself, so that every language follows.
+fn with_effects(recipe: &Recipe, effects: Option<&[String]>) -> Result<String, Failure> {
+    let source = recipe.compose();
+    let Some(effects) = effects else { return Ok(source) };
+    let known: Vec<String> = source.lines().filter_map(effect_of).collect();
+    if let Some(unknown) = effects.iter().find(|effect| !known.contains(effect)) {
+        let names: Vec<&str> = known.iter().map(String::as_str).collect();
+        return Err(Failure(format!("recipe `{}` has no effect `{unknown}`{}", recipe.name, nearest::suggest(unknown, &names))));
+    }
+    let lines: Vec<String> = source
+        .lines()
+        .map(|line| match effect_of(line) {
+            None => line.to_owned(),
+            Some(effect) => format!("override EFFECT_{}: bool = {};", effect.to_uppercase(), effects.contains(&effect)),
+        })
+        .collect();
+    Ok(lines.join("\n") + "\n")
+}
+
+/// The effect that a line declares, by its module's name.
+fn effect_of(line: &str) -> Option<String> {
+    let name = line.strip_prefix("override EFFECT_")?.split(':').next()?;
+    Some(name.trim().to_lowercase())
+}

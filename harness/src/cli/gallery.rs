@@ -1,0 +1,68 @@
+//! `cook gallery`.
+
+use super::{Context, Failure, Outcome, progress};
+use lapidary_harness::cookbook;
+use lapidary_harness::gallery::{self, Picture, Site};
+use lapidary_harness::render::file;
+use lapidary_harness::scene::BUILT_IN;
+use lapidary_harness::snapshot::{self, PNG_SIDE, SHOTS};
+use std::path::{Path, PathBuf};
+
+/// Renders every picture and builds the gallery, a static page that needs no network.
+#[derive(clap::Args)]
+#[command(after_help = "Example: ./cook gallery --open")]
+pub(super) struct Arguments {
+    /// Where to write it; target/gallery of the cookbook where left out.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Show it in the browser.
+    #[arg(long)]
+    open: bool,
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/gallery"));
+    let gpu = context.gpu()?;
+    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let rendered = tempfile::tempdir()?;
+    let bar = progress::bar(SHOTS.len() as u64, "rendering");
+    let mut pictures = Vec::new();
+    for shot in &SHOTS {
+        bar.set_message(shot.name);
+        let [seen, _] = snapshot::render_shot(gpu, shot, &source)?;
+        let path = rendered.path().join(format!("{}.png", shot.name));
+        file::write(&seen, &path)?;
+        let of_scene = BUILT_IN.iter().find(|built_in| built_in.name == shot.scene).map_or("", |built_in| built_in.description);
+        pictures.push(Picture {
+            title: shot.title.to_owned(),
+            file: path,
+            paragraph: if shot.paragraph.is_empty() { of_scene } else { shot.paragraph }.to_owned(),
+            command: shot.command(),
+            size: (PNG_SIDE, PNG_SIDE),
+        });
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &[] })?;
+    let index = index.canonicalize().unwrap_or(index);
+    println!("{}", index.display());
+    if arguments.open {
+        open(&index)?;
+    }
+    Ok(Outcome::Passed)
+}
+
+/// Hands the page to the system's own opener.
+fn open(page: &Path) -> Result<(), Failure> {
+    let (program, first) = match std::env::consts::OS {
+        "macos" => ("open", None),
+        "windows" => ("cmd", Some(["/C", "start", ""])),
+        _ => ("xdg-open", None),
+    };
+    let mut command = std::process::Command::new(program);
+    command.args(first.into_iter().flatten()).arg(page);
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        _ => Err(Failure(format!("no browser could be opened with `{program}`; open {} yourself", page.display()))),
+    }
+}

@@ -1,0 +1,54 @@
+//! `cook list`.
+
+use super::{Failure, Outcome};
+use lapidary_harness::cookbook;
+use lapidary_harness::dispatch::{self, shape::Signature};
+use serde::Serialize;
+
+/// Modules and functions: signature and promised accuracy of each.
+#[derive(clap::Args)]
+#[command(after_help = "Example: ./cook list --json")]
+pub(super) struct Arguments {
+    /// One JSON document on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Row {
+    module: &'static str,
+    function: String,
+    signature: String,
+    accuracy: String,
+    summary: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let mut rows = Vec::new();
+    for module in cookbook::modules() {
+        let (ir, _) = dispatch::parse(module.source, module.name)?;
+        for function in &module.functions {
+            rows.push(Row {
+                module: module.name,
+                signature: Signature::reflect(&ir, &function.name)?.to_string(),
+                function: function.name.clone(),
+                accuracy: function.accuracy.to_string(),
+                summary: function.summary.clone(),
+            });
+        }
+    }
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&rows)?);
+        return Ok(Outcome::Passed);
+    }
+    for module in cookbook::modules() {
+        println!("{}: {}", module.name, module.header.purpose);
+        for row in rows.iter().filter(|row| row.module == module.name) {
+            println!("  {}\n      {}", row.signature, row.accuracy);
+        }
+    }
+    for recipe in cookbook::recipes() {
+        println!("recipe {}: requires {}", recipe.name, recipe.requires.join(", "));
+    }
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,24 @@
+//! `cook scene`.
+
+use super::{Failure, Outcome};
+use lapidary_harness::render::file;
+use lapidary_harness::scene::{Scene, glb};
+use std::path::PathBuf;
+
+/// Writes a built-in scene as a glTF 2.0 binary, mesh, material and camera, to be opened elsewhere.
+#[derive(clap::Args)]
+#[command(after_help = "Example: ./cook scene brilliant --out harness/assets/brilliant.glb")]
+pub(super) struct Arguments {
+    /// brilliant, octahedron, step_cut, prism or bunny_stone.
+    name: String,
+    /// Where to write it.
+    #[arg(long, value_name = "F.glb")]
+    out: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let bytes = glb::write(&Scene::named(&arguments.name)?)?;
+    file::replace(&arguments.out, &bytes)?;
+    println!("{}", arguments.out.display());
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,56 @@
+//! `cook snapshots`.
+
+use super::{Context, Failure, Outcome, progress};
+use lapidary_harness::cookbook;
+use lapidary_harness::snapshot::{self, SHOTS};
+
+/// Renders the committed pictures again and compares them, or accepts the new ones.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  ./cook snapshots\n  ./cook snapshots --accept")]
+pub(super) struct Arguments {
+    /// Make the new pictures the references. Look at them first.
+    #[arg(long)]
+    accept: bool,
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let gpu = context.gpu()?;
+    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let folder = snapshot::folder();
+    let bar = progress::bar(SHOTS.len() as u64, "rendering");
+    let mut outcome = Outcome::Passed;
+    let mut lines = Vec::new();
+    for shot in &SHOTS {
+        bar.set_message(shot.name);
+        let pictures = snapshot::render_shot(gpu, shot, &source)?;
+        if arguments.accept {
+            snapshot::accept(shot, &pictures, &folder)?;
+            lines.push(format!("{:<24} accepted", shot.name));
+        } else {
+            match snapshot::compare(shot, &pictures, &folder) {
+                Ok(comparison) => {
+                    let verdict = if comparison.holds() { "same" } else { "DIFFERENT" };
+                    lines.push(format!(
+                        "{:<24} {verdict}: FLIP {:.4} (at most {}), relative RMSE {:.4} (at most {})",
+                        shot.name,
+                        comparison.flip,
+                        snapshot::MOST_FLIP,
+                        comparison.rmse,
+                        snapshot::MOST_RMSE
+                    ));
+                    if !comparison.holds() {
+                        outcome = Outcome::Failed;
+                    }
+                }
+                Err(error) => {
+                    lines.push(format!("{:<24} FAILED: {error}", shot.name));
+                    outcome = Outcome::Failed;
+                }
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    lines.iter().for_each(|line| println!("{line}"));
+    Ok(outcome)
+}

@@ -1,0 +1,218 @@
+//! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
+
+use crate::gpu::Gpu;
+use crate::render::{self, Picture, RenderError, Rung, Settings, file};
+use crate::scene::{Scene, SceneError};
+use std::path::{Path, PathBuf};
+
+/// Side of the PNG that is looked at.
+pub const PNG_SIDE: u32 = 512;
+/// Side of the EXR that holds linear radiance.
+pub const EXR_SIDE: u32 = 256;
+/// Largest committed file in bytes.
+pub const LARGEST_FILE: u64 = 512 * 1024;
+/// Largest mean FLIP. Another driver moves single facet edges by a sample (below 0.001); a turn of 1° gives above 0.02.
+pub const MOST_FLIP: f32 = 0.005;
+/// Largest RMSE in linear radiance, relative to the reference's root mean square.
+pub const MOST_RMSE: f32 = 0.05;
+
+/// A picture of the gem recipe.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot {
+    /// Its file's name.
+    pub name: &'static str,
+    /// What the gallery calls it.
+    pub title: &'static str,
+    /// The built-in scene.
+    pub scene: &'static str,
+    /// How much of the light's way is followed.
+    pub rung: Rung,
+    /// The proxy's centre by the paper's eq. (4).
+    pub paper_centre: bool,
+    /// What it shows; where empty, the scene's own description.
+    pub paragraph: &'static str,
+}
+
+/// Every committed picture.
+pub const SHOTS: [Shot; 7] = [
+    Shot { paragraph: "", ..shot("brilliant", "Round brilliant, diamond", "brilliant") },
+    Shot { ..shot("octahedron", "Octahedron, diamond", "octahedron") },
+    Shot { ..shot("step_cut", "Step cut, emerald", "step_cut") },
+    Shot { ..shot("prism", "Pentagonal prism, quartz", "prism") },
+    Shot { ..shot("bunny_stone", "Bunny, glass", "bunny_stone") },
+    Shot {
+        rung: Rung::Surface,
+        paragraph: "The cheapest rung, and what many games ship: exact Fresnel reflection at the surface, and nothing of \
+            what goes on inside. Compare it with the full stone to see what one internal hit buys.",
+        ..shot("brilliant_surface", "Round brilliant, surface reflection alone", "brilliant")
+    },
+    Shot {
+        paper_centre: true,
+        paragraph: "The same stone with the proxy's centre by the paper's eq. (4) instead of the regularised least squares. \
+            The facets seen inside differ where the normals of a triangle lie close together: the paper's centre runs off \
+            there, and depends on the order of the vertices.",
+        ..shot("brilliant_paper_centre", "Round brilliant, the paper's centre", "brilliant")
+    },
+];
+
+const fn shot(name: &'static str, title: &'static str, scene: &'static str) -> Shot {
+    Shot { name, title, scene, rung: Rung::ProxyOne, paper_centre: false, paragraph: "" }
+}
+
+impl Shot {
+    /// How to render it at `side` pixels.
+    pub fn settings(&self, side: u32) -> Settings {
+        Settings { rung: self.rung, paper_centre: self.paper_centre, ..Settings::of_size(side, side) }
+    }
+
+    /// The command that renders it.
+    pub fn command(&self) -> String {
+        let rung = if self.rung == Rung::Surface { " --rung surface" } else { "" };
+        let centre = if self.paper_centre { " --centre paper" } else { "" };
+        format!("./cook render {}{rung}{centre} --out {}.png", self.scene, self.name)
+    }
+}
+
+/// Where the pictures of the gem recipe are.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots/gem")
+}
+
+/// Why a snapshot does not hold.
+#[derive(Debug, thiserror::Error)]
+pub enum SnapshotError {
+    /// No reference: it is never made by itself.
+    #[error("{}: missing; look at the new picture, then accept it with `./cook snapshots --accept`", .0.display())]
+    Missing(PathBuf),
+    /// A reference that cannot be decoded.
+    #[error("{path}: unreadable: {reason}; restore it from version control")]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// The decoder's word.
+        reason: String,
+    },
+    /// A reference of another size.
+    #[error("{path}: is {found:?} pixels, expected {expected:?}; accept a new one with `./cook snapshots --accept`")]
+    Size {
+        /// Which file.
+        path: PathBuf,
+        /// Its size.
+        found: (u32, u32),
+        /// The size rendered.
+        expected: (u32, u32),
+    },
+    /// A file too large to commit.
+    #[error("{path}: {bytes} bytes, at most {LARGEST_FILE} are committed")]
+    TooLarge {
+        /// Which file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
+    },
+    /// No picture to compare.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// No scene to render.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A picture could not be written.
+    #[error(transparent)]
+    File(#[from] file::FileError),
+}
+
+/// How far a picture is from its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Mean FLIP of the PNGs, 0 to 1.
+    pub flip: f32,
+    /// RMSE of linear radiance over the reference's root mean square.
+    pub rmse: f32,
+}
+
+impl Comparison {
+    /// Whether the pictures count as the same.
+    pub fn holds(&self) -> bool {
+        // A NaN does not hold.
+        self.flip <= MOST_FLIP && self.rmse <= MOST_RMSE
+    }
+}
+
+/// Renders `shot` with `source`, the composed gem recipe, as PNG and as EXR would hold it.
+pub fn render_shot(gpu: &Gpu, shot: &Shot, source: &str) -> Result<[Picture; 2], SnapshotError> {
+    let scene = Scene::named(shot.scene)?;
+    render_scene(gpu, shot, &scene, source)
+}
+
+/// The same for another scene in the shot's place.
+pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Result<[Picture; 2], SnapshotError> {
+    let render = |side| render::render_with(gpu, scene, &shot.settings(side), source, &mut |_, _| {});
+    Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
+}
+
+/// Compares new pictures with the references in `folder`. Where they differ too much, the new PNG and a picture of the
+/// difference are left beside the reference, as `<name>.new.png` and `<name>.difference.png`.
+pub fn compare(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
+    let png = folder.join(format!("{}.png", shot.name));
+    let exr = folder.join(format!("{}.exr", shot.name));
+    let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
+    let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
+    let new: Vec<u8> = seen.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    let flip = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
+    let map = nv_flip::flip(flip(reference.as_raw()), flip(&new), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    let comparison = Comparison {
+        flip: nv_flip::FlipPool::from_image(&map).mean(),
+        rmse: relative_rmse(&linear.linear, reference_linear.as_raw()),
+    };
+    let beside = ["new", "difference"].map(|kind| folder.join(format!("{}.{kind}.png", shot.name)));
+    if comparison.holds() {
+        // What an earlier failure left is out of date.
+        for path in beside {
+            let _ = std::fs::remove_file(path);
+        }
+    } else {
+        file::write(seen, &beside[0])?;
+        let colored = map.apply_color_lut(&nv_flip::magma_lut()).to_vec();
+        let pixels: Vec<[u8; 4]> = colored.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
+        let encode = |reason| file::FileError::Encode { path: beside[1].clone(), reason };
+        let bytes = file::png(seen.width, seen.height, &pixels).map_err(encode)?;
+        file::replace(&beside[1], &bytes)?;
+    }
+    Ok(comparison)
+}
+
+/// Makes new pictures the references.
+pub fn accept(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<(), SnapshotError> {
+    std::fs::create_dir_all(folder).map_err(|error| file::FileError::Write { path: folder.to_owned(), error })?;
+    for (picture, extension) in [(seen, "png"), (linear, "exr")] {
+        let path = folder.join(format!("{}.{extension}", shot.name));
+        file::write(picture, &path)?;
+        let bytes = std::fs::metadata(&path).map_or(0, |metadata| metadata.len());
+        if bytes > LARGEST_FILE {
+            return Err(SnapshotError::TooLarge { path, bytes });
+        }
+    }
+    Ok(())
+}
+
+fn read(path: &Path, expected: (u32, u32)) -> Result<image::DynamicImage, SnapshotError> {
+    if !path.exists() {
+        return Err(SnapshotError::Missing(path.to_owned()));
+    }
+    let image = image::open(path)
+        .map_err(|error| SnapshotError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
+    let found = (image.width(), image.height());
+    if found != expected {
+        return Err(SnapshotError::Size { path: path.to_owned(), found, expected });
+    }
+    Ok(image)
+}
+
+fn relative_rmse(new: &[[f32; 4]], reference: &[f32]) -> f32 {
+    let (mut error, mut power) = (0.0, 0.0);
+    for (new, reference) in new.iter().flatten().zip(reference) {
+        error += f64::from(new - reference).powi(2);
+        power += f64::from(*reference).powi(2);
+    }
+    (error / power).sqrt() as f32
+}
