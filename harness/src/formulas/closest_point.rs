@@ -108,8 +108,9 @@ fn benign_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let normal_i = draws.direction();
     let angle = 0.5 + 2.1 * draws.unit();
     let normal_j = tilted(draws, normal_i, angle);
-    let apart = draws.direction() + 0.5 * normal_i;
-    (Vec3::ZERO, normal_i.as_vec3(), apart.as_vec3(), normal_j.as_vec3())
+    let origin = draws.in_cube();
+    let apart = origin.as_dvec3() + draws.direction() + 0.5 * normal_i;
+    (origin, normal_i.as_vec3(), apart.as_vec3(), normal_j.as_vec3())
 }
 
 fn angle_between(a: Vec3, b: Vec3) -> f64 {

@@ -249,7 +249,7 @@ fn texel_formulas() -> Vec<Formula> {
             let size = UVec2::new(4 + draws.below(60), 4 + draws.below(60));
             // Well inside a cell of texel middles, so that rounding does not decide on the column.
             let at = |draws: &mut Draws<'_>, side: u32| {
-                (0.6 + draws.below(side - 2) as f32 + draws.between(0.0, 0.8)) / side as f32
+                (0.6 + draws.below(side - 1) as f32 + draws.between(0.0, 0.8)) / side as f32
             };
             let u = at(draws, size.x);
             (Vec2::new(u, at(draws, size.y)), size)
@@ -290,8 +290,12 @@ fn light_formulas() -> Vec<Formula> {
             let up = draws.perpendicular(axis);
             let softness = draws.between(0.25, 1.0);
             let half_size = Vec2::splat(softness) + Vec2::new(draws.between(0.0, 1.0), draws.between(0.0, 1.0));
-            // In the middle or in the inner half of the soft edge, where the value is not nearly 0.
-            let reach = half_size.as_dvec2() * (2.0 * DVec2::new(draws.unit(), draws.unit()) - 1.0);
+            // In the middle or in the inner half of the soft edge, where the value is not nearly 0, or well beyond the edge.
+            let reach = if draws.below(8) == 0 {
+                2.0 * half_size.as_dvec2() + DVec2::ONE
+            } else {
+                half_size.as_dvec2() * (2.0 * DVec2::new(draws.unit(), draws.unit()) - 1.0)
+            };
             let d = (axis + reach.x * up.cross(axis) + reach.y * up).normalize();
             (d.as_vec3(), axis.as_vec3(), up.as_vec3(), half_size, softness)
         })

@@ -228,7 +228,8 @@ fn normal_formulas() -> Vec<Formula> {
         .build(),
         formula(M, "proxy_geometry_face_normal_naive", mirror::face_normal_naive, oracle::face_normal, |draws| {
             let (first, second) = edges(draws, -3, 2);
-            (Vec3::ZERO, first.as_vec3(), second.as_vec3())
+            let corner = draws.in_cube();
+            (corner, corner + first.as_vec3(), corner + second.as_vec3())
         })
         .benign(1e-4)
         .build(),
@@ -338,6 +339,8 @@ fn lattice_formulas() -> Vec<Formula> {
             match draws.below(16) {
                 0 => (point, plane.origin, Vec3::ZERO, Vec3::ZERO),
                 1 => (point, plane.origin, plane.edge_first, plane.edge_first),
+                // Degenerate in a way that no rounding of the input mends.
+                3 => (point, plane.origin, plane.edge_first, Vec3::ZERO),
                 2 => {
                     // About the limit of what counts as degenerate, |e1 × e2| = 2⁻³⁰.
                     let thin = 2f32.powi(-30) * draws.between(0.95, 1.05);
@@ -348,6 +351,7 @@ fn lattice_formulas() -> Vec<Formula> {
         })
         .edge("no triangle at all", |(_, _, e1, e2)| e1 == Vec3::ZERO && e2 == Vec3::ZERO)
         .edge("parallel edges", |(_, _, e1, e2)| e1 == e2 && e1 != Vec3::ZERO)
+        .edge("one edge zero", |(_, _, e1, e2)| e1 != Vec3::ZERO && e2 == Vec3::ZERO)
         .edge("just degenerate", |(_, _, e1, e2)| (0.99..1.0).contains(&(e1.cross(e2).length() * 2f32.powi(30))))
         .edge("just not degenerate", |(_, _, e1, e2)| (1.0..1.007).contains(&(e1.cross(e2).length() * 2f32.powi(30))))
         .edge("size below 1e-20", |(_, _, e1, e2)| e1.length().max(e2.length()) < 1e-20 && e1 != e2)
@@ -365,7 +369,8 @@ fn lattice_formulas() -> Vec<Formula> {
         formula(M, "proxy_geometry_coordinates_naive", mirror::coordinates_naive, oracle::coordinates, |draws| {
             let (first, second) = edges(draws, -1, 1);
             let at = Vec2::new(draws.between(0.5, 3.0), draws.between(0.5, 3.0)).as_dvec2();
-            ((at.x * first + at.y * second).as_vec3(), Vec3::ZERO, first.as_vec3(), second.as_vec3())
+            let origin = draws.in_cube();
+            (origin + (at.x * first + at.y * second).as_vec3(), origin, first.as_vec3(), second.as_vec3())
         })
         .benign(2e-4)
         .build(),

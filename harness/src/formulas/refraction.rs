@@ -205,15 +205,24 @@ pub(super) fn formulas() -> Vec<Formula> {
             )
             .build(),
         formula(M, "refraction_refract_naive", mirror::refract_naive, oracle::refract, |draws| {
-            // Either side of the critical angle, at a distance from it.
-            if draws.below(3) == 0 {
-                let (incident, normal) = { let cosine = draws.between(0.2, 0.6); incidence(draws, cosine) };
-                (incident, normal, draws.between(0.25, 0.5))
-            } else {
-                benign_refraction_inputs(draws)
+            // Either side of the critical angle, at a distance from it, and just inside it.
+            match draws.below(4) {
+                0 => {
+                    let cosine = draws.between(0.2, 0.6);
+                    let (incident, normal) = incidence(draws, cosine);
+                    (incident, normal, draws.between(0.25, 0.5))
+                }
+                1 => {
+                    let index = draws.between(0.5, 0.8);
+                    let squared_cosine_transmitted = draws.between(0.004, 0.015);
+                    let cosine = (1.0 - index * index * (1.0 - squared_cosine_transmitted)).sqrt();
+                    let (incident, normal) = incidence(draws, cosine);
+                    (incident, normal, index)
+                }
+                _ => benign_refraction_inputs(draws),
             }
         })
-        .benign(1e-5)
+        .benign(2e-5)
         .build(),
         formula(M, "refraction_refract_builtin", mirror::refract_builtin, oracle::refract, benign_refraction_inputs)
             .benign(1e-5)

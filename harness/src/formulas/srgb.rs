@@ -13,6 +13,18 @@ const ENCODE_THRESHOLD: f32 = 0.003_130_8;
 /// Where the pieces of the decoding meet.
 const DECODE_THRESHOLD: f32 = 0.040_45;
 
+/// Where they meet in the standard's drafts.
+const DRAFT_THRESHOLD: f32 = 0.039_28;
+
+/// The curve of the drafts, its power by logarithms.
+fn decode_of_the_drafts(encoded: f64) -> f64 {
+    if encoded <= f64::from(DRAFT_THRESHOLD) {
+        encoded / 12.92
+    } else {
+        (2.4 * ((encoded + 0.055) / 1.055).ln()).exp()
+    }
+}
+
 /// A light or a code value: about a threshold, of every magnitude, in range, out of range.
 fn value(draws: &mut Draws<'_>, threshold: f32) -> f32 {
     match draws.below(8) {
@@ -101,8 +113,13 @@ fn decoding_formulas() -> Vec<Formula> {
             .hard_case("a code of -0.06", (-0.06,), (&[0.0], 0.0), ("srgb_decode_naive", 4e-3))
             .hard_case("a code of 1e19", (1e19,), (&[1.0], 2e-6), ("srgb_decode_naive", f64::INFINITY))
             .build(),
-        formula(M, "srgb_decode_naive", mirror::decode_naive, oracle::decode, |draws| {
-            (if draws.below(2) == 0 { draws.between(0.001, 0.039_28) } else { draws.between(0.040_46, 1.0) },)
+        // Judged as what it is, the curve with the drafts' threshold; that this is not the standard's is a hard case above.
+        formula(M, "srgb_decode_naive", mirror::decode_naive, decode_of_the_drafts, |draws| {
+            (match draws.below(4) {
+                0 => draws.nudged(DRAFT_THRESHOLD, 1),
+                1 => draws.between(0.001, 0.042),
+                _ => draws.between(0.042, 1.0),
+            },)
         })
         .benign(1e-5)
         .build(),
