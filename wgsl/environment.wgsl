@@ -207,14 +207,14 @@ fn environment_dome(direction: vec3f, ground: vec3f, zenith: vec3f) -> vec3f {
 // A brilliant shows what its facets mirror. Contrast makes scintillation and narrow lights make fire, so most of the sphere
 // is dark, and the lights stand at many elevations, from 74 degrees down to 20, where the crown gathers light, and, weak, below.
 // Axes and ups are rational unit vectors (Pythagorean quadruples), so that they are orthogonal as written.
-// Returns: linear Rec. 709 radiance, each channel in [0.0099, 20.1]; continuous. No two lights overlap.
+// Returns: linear Rec. 709 radiance, each channel in [0.0239, 20.4]; continuous. No two lights overlap.
 // Units: radiance, 1 = diffuse white at exposure 1.
 // Domain: |direction| = 1.
 // Outside: lights do not depend on the length, the dome extrapolates.
 // Accuracy: lavapipe 8 ulp + 3 backward; portable 24 ulp + 12 backward
 fn environment_studio(direction: vec3f) -> vec3f {
-    // Surround: black velvet below, a dim and slightly blue tent above.
-    let surround = environment_dome(direction, vec3f(0.012f, 0.011f, 0.010f), vec3f(0.10f, 0.12f, 0.16f));
+    // Surround: dark paper below, a dim and slightly blue tent above.
+    let surround = environment_dome(direction, vec3f(0.025f, 0.024f, 0.026f), vec3f(0.26f, 0.30f, 0.38f));
     // Key: a square softbox, high at the front left, slightly warm.
     let key = vec3f(9.0f, 8.4f, 7.2f) * environment_softbox(direction,
         vec3f(-2.0f, 6.0f, 3.0f) / 7.0f, vec3f(6.0f, 3.0f, -2.0f) / 7.0f, vec2f(0.28f, 0.28f), 0.05f);
@@ -233,10 +233,10 @@ fn environment_studio(direction: vec3f) -> vec3f {
         vec3f(1.0f, 2.0f, 2.0f) / 3.0f, vec3f(-2.0f, 2.0f, -1.0f) / 3.0f, vec2f(0.07f, 0.07f), 0.03f);
     let low_spark = vec3f(16.0f, 16.0f, 16.0f) * environment_softbox(direction,
         vec3f(2.0f, 3.0f, -6.0f) / 7.0f, vec3f(6.0f, 2.0f, 3.0f) / 7.0f, vec2f(0.06f, 0.06f), 0.03f);
-    // Two weak cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
-    let back_card = vec3f(0.8f, 0.85f, 0.9f) * environment_softbox(direction,
+    // Two cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
+    let back_card = vec3f(2.6f, 2.75f, 2.9f) * environment_softbox(direction,
         vec3f(0.0f, -3.0f, -4.0f) / 5.0f, vec3f(0.0f, 4.0f, -3.0f) / 5.0f, vec2f(0.60f, 0.20f), 0.10f);
-    let front_card = vec3f(0.6f, 0.55f, 0.5f) * environment_softbox(direction,
+    let front_card = vec3f(2.0f, 1.85f, 1.7f) * environment_softbox(direction,
         vec3f(0.0f, -5.0f, 12.0f) / 13.0f, vec3f(0.0f, 12.0f, 5.0f) / 13.0f, vec2f(0.50f, 0.14f), 0.10f);
     return surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card;
 }

@@ -1,13 +1,13 @@
 //! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
 
 use crate::cookbook::{self, header::FunctionDoc};
-use crate::dispatch::shape::Scalar;
+use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel, KernelModule};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
 use crate::property::persistence::{PersistenceError, Regressions};
-use crate::property::tolerance::Tolerance;
+use crate::property::tolerance::{Tolerance, number};
 use crate::property::{Check, Report, Settings};
 use serde::Serialize;
 
@@ -57,6 +57,8 @@ pub struct Row {
     pub shrunk_input: Option<String>,
     /// What the worst input broke; null where nothing failed.
     pub reason: Option<String>,
+    /// Hard cases that do not hold, by name, with the distance from the limit.
+    pub broken_hard_cases: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// Wall-clock time.
@@ -66,7 +68,7 @@ pub struct Row {
 impl Row {
     /// Whether the formula holds.
     pub fn passed(&self) -> bool {
-        self.failed == 0 && self.missed_edges.is_empty()
+        self.failed == 0 && self.missed_edges.is_empty() && self.broken_hard_cases.is_empty()
     }
 }
 
@@ -144,13 +146,37 @@ pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings)
     let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }
         .run(settings, &replayed)
         .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+    // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
+    let mut broken = Vec::new();
+    for case in &formula.hard_cases {
+        let distance = distance_from_limit(&mut kernel, &case.arguments, &case.limit, &formula.result)
+            .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+        // A NaN is no distance within the bound.
+        if !(distance <= case.bound) {
+            broken.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
+        }
+    }
     if let (Source::Cookbook, Some(shrunk)) = (source, &report.shrunk) {
         regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
     }
-    Ok(row(formula, &report))
+    Ok(row(formula, &report, broken))
 }
 
-fn row(formula: &Formula, report: &Report) -> Row {
+/// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
+pub fn distance_from_limit(
+    kernel: &mut Kernel<'_>,
+    arguments: &Words,
+    limit: &[f64],
+    result: &Shape,
+) -> Result<f64, DispatchError> {
+    let mut words = Words::new();
+    kernel.run(arguments, &mut words)?;
+    let distances = words.iter().zip(result.scalars()).zip(limit).map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
+    // f64::max would lose a NaN.
+    Ok(distances.fold(0.0, |worst: f64, distance| if distance.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(distance) }))
+}
+
+fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Row {
     Row {
         module: formula.module.to_owned(),
         function: formula.function.to_owned(),
@@ -164,6 +190,7 @@ fn row(formula: &Formula, report: &Report) -> Row {
         worst_input: spell(formula, &report.worst),
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
         reason: report.reason.clone(),
+        broken_hard_cases,
         missed_edges: report.missed_edges().collect(),
         seconds: report.seconds,
     }

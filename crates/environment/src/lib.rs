@@ -146,8 +146,8 @@ pub fn dome(direction: Vec3, ground: Vec3, zenith: Vec3) -> Vec3 {
 /// A jeweller's studio: black flags with few, small, bright lights between them.
 #[rustfmt::skip] // a light is two lines, as in the shader
 pub fn studio(direction: Vec3) -> Vec3 {
-    // Surround: black velvet below, a dim and slightly blue tent above.
-    let surround = dome(direction, Vec3::new(0.012, 0.011, 0.010), Vec3::new(0.10, 0.12, 0.16));
+    // Surround: dark paper below, a dim and slightly blue tent above.
+    let surround = dome(direction, Vec3::new(0.025, 0.024, 0.026), Vec3::new(0.26, 0.30, 0.38));
     // Key: a square softbox, high at the front left, slightly warm.
     let key = Vec3::new(9.0, 8.4, 7.2) * softbox(direction,
         Vec3::new(-2.0, 6.0, 3.0) / 7.0, Vec3::new(6.0, 3.0, -2.0) / 7.0, Vec2::new(0.28, 0.28), 0.05);
@@ -166,10 +166,10 @@ pub fn studio(direction: Vec3) -> Vec3 {
         Vec3::new(1.0, 2.0, 2.0) / 3.0, Vec3::new(-2.0, 2.0, -1.0) / 3.0, Vec2::new(0.07, 0.07), 0.03);
     let low_spark = Vec3::new(16.0, 16.0, 16.0) * softbox(direction,
         Vec3::new(2.0, 3.0, -6.0) / 7.0, Vec3::new(6.0, 2.0, 3.0) / 7.0, Vec2::new(0.06, 0.06), 0.03);
-    // Two weak cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
-    let back_card = Vec3::new(0.8, 0.85, 0.9) * softbox(direction,
+    // Two cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
+    let back_card = Vec3::new(2.6, 2.75, 2.9) * softbox(direction,
         Vec3::new(0.0, -3.0, -4.0) / 5.0, Vec3::new(0.0, 4.0, -3.0) / 5.0, Vec2::new(0.60, 0.20), 0.10);
-    let front_card = Vec3::new(0.6, 0.55, 0.5) * softbox(direction,
+    let front_card = Vec3::new(2.0, 1.85, 1.7) * softbox(direction,
         Vec3::new(0.0, -5.0, 12.0) / 13.0, Vec3::new(0.0, 12.0, 5.0) / 13.0, Vec2::new(0.50, 0.14), 0.10);
     surround + key + overhead + cool_strip + warm_strip + back_spark + front_spark + low_spark + back_card + front_card
 }

@@ -161,7 +161,7 @@ pub fn studio(direction: DVec3) -> DVec3 {
             0.03,
         ),
         (
-            [0.8, 0.85, 0.9],
+            [2.6, 2.75, 2.9],
             [0.0, -3.0, -4.0],
             [0.0, 4.0, -3.0],
             5.0,
@@ -169,7 +169,7 @@ pub fn studio(direction: DVec3) -> DVec3 {
             0.10,
         ),
         (
-            [0.6, 0.55, 0.5],
+            [2.0, 1.85, 1.7],
             [0.0, -5.0, 12.0],
             [0.0, 12.0, 5.0],
             13.0,
@@ -179,8 +179,8 @@ pub fn studio(direction: DVec3) -> DVec3 {
     ];
     let surround = dome(
         direction,
-        DVec3::new(0.012, 0.011, 0.010),
-        DVec3::new(0.10, 0.12, 0.16),
+        DVec3::new(0.025, 0.024, 0.026),
+        DVec3::new(0.26, 0.30, 0.38),
     );
     LIGHTS.iter().fold(
         surround,

@@ -104,6 +104,9 @@ fn print_table(rows: &[Row], adapter: &str) {
         if let Some(shrunk) = &row.shrunk_input {
             println!("  shrunk input: {shrunk}");
         }
+        for case in &row.broken_hard_cases {
+            println!("  hard case {case}");
+        }
         for edge in &row.missed_edges {
             println!("  the inputs never reached: {edge}; run more --cases");
         }

@@ -310,12 +310,12 @@ fn light_formulas() -> Vec<Formula> {
         .build(),
         formula(M, "environment_studio", mirror::studio, oracle::studio, studio_direction)
             .edge("in a light", |(d,)| mirror::studio(d).max_element() > 5.0)
-            .edge("in the dark", |(d,)| mirror::studio(d).max_element() < 0.05)
+            .edge("in the dark", |(d,)| mirror::studio(d).max_element() < 0.06)
             .edge("zenith", |(d,)| d == Vec3::Y)
             .edge("nadir", |(d,)| d == Vec3::NEG_Y)
             .invariant("within its stated range", |_, radiance: Vec3| {
-                within("least", radiance.min_element().into(), 0.0099, 20.1)?;
-                within("greatest", radiance.max_element().into(), 0.0099, 20.1)
+                within("least", radiance.min_element().into(), 0.0239, 20.4)?;
+                within("greatest", radiance.max_element().into(), 0.0239, 20.4)
             })
             .build(),
     ]

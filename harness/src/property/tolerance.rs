@@ -278,8 +278,12 @@ fn input_box(leaves: &[Leaf], words: &[u32], backward: f64) -> (Vec<f64>, Vec<f6
         let values: Vec<f64> =
             words[leaf.start..leaf.start + leaf.length].iter().map(|word| number(leaf.scalar, *word)).collect();
         let scale = largest(&values);
-        // A subnormal may be read as zero.
-        let step = if leaf.scalar == Scalar::F32 { (backward * ulp_of(scale)).max(scale.min(FLUSHED)) } else { 0.0 };
+        // Zero is exact; a subnormal may be read as zero.
+        let step = match leaf.scalar {
+            Scalar::F32 if scale >= FLUSHED => backward * ulp_of(scale),
+            Scalar::F32 => scale,
+            _ => 0.0,
+        };
         steps.extend(std::iter::repeat_n(step, values.len()));
         centre.extend(values);
     }

@@ -23,7 +23,7 @@ pub const BUILT_IN: [BuiltIn; 5] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
-            the girdle's 16. Seen from 35° off the table's axis, so that pavilion facets show through \
+            the girdle's 16. Seen from 27° off the table's axis, so that pavilion facets show through \
             the table. The stone to judge internal reflection and fire by.",
     },
     BuiltIn {
@@ -58,6 +58,9 @@ const QUARTZ: f32 = 1.54428;
 /// Refractive index of crown glass, and glTF's default.
 const GLASS: f32 = 1.5;
 
+/// What light through an emerald is multiplied by, linear RGB: a vivid bluish green, by eye.
+const EMERALD_GREEN: Vec3 = Vec3::new(0.16, 0.72, 0.42);
+
 /// A short portrait lens: about 27° from edge to edge.
 const VERTICAL_FOV: f32 = 0.47;
 
@@ -69,22 +72,22 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     match name {
         "brilliant" => {
             let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
-            Ok(stone_scene(name, &stone, "diamond", DIAMOND, (35.0, 17.0)))
+            Ok(stone_scene(name, &stone, clear("diamond", DIAMOND), (27.0, 11.0)))
         }
         "octahedron" => Ok(stone_scene(
             name,
             &octahedron()?,
-            "diamond",
-            DIAMOND,
+            clear("diamond", DIAMOND),
             (65.0, 25.0),
         )),
         "step_cut" => {
             let stone = step_cut(&StepCutParameters::EMERALD)?;
-            Ok(stone_scene(name, &stone, "beryl", BERYL, (35.0, 20.0)))
+            let emerald = Material { base_color: EMERALD_GREEN, ..clear("beryl", BERYL) };
+            Ok(stone_scene(name, &stone, emerald, (35.0, 20.0)))
         }
         "prism" => {
             let stone = prism(&PrismParameters::PENTAGONAL)?;
-            Ok(stone_scene(name, &stone, "quartz", QUARTZ, (70.0, 10.0)))
+            Ok(stone_scene(name, &stone, clear("quartz", QUARTZ), (70.0, 10.0)))
         }
         "bunny_stone" => bunny(name),
         _ => Err(SceneError::UnknownName {
@@ -98,30 +101,26 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
 fn stone_scene(
     name: &str,
     stone: &Polyhedron,
-    material: &str,
-    ior: f32,
+    material: Material,
     (polar, azimuth): (f32, f32),
 ) -> Scene {
     let object = Object {
         name: name.to_owned(),
         mesh: stone.to_mesh(Averaging::default()),
-        material: Material {
-            name: material.to_owned(),
-            base_color: Vec3::ONE,
-            ior,
-        },
+        material,
     };
     framed(name, vec![object], direction(polar, azimuth))
+}
+
+/// A colourless material.
+fn clear(name: &str, ior: f32) -> Material {
+    Material { name: name.to_owned(), base_color: Vec3::ONE, ior }
 }
 
 fn bunny(name: &str) -> Result<Scene, SceneError> {
     let mut scene = gltf::parse(BUNNY, None)?;
     for object in &mut scene.objects {
-        object.material = Material {
-            name: "glass".to_owned(),
-            base_color: Vec3::ONE,
-            ior: GLASS,
-        };
+        object.material = clear("glass", GLASS);
     }
     Ok(framed(name, scene.objects, direction(75.0, 15.0)))
 }

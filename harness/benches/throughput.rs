@@ -1,0 +1,36 @@
+//! How fast the harness itself is: `cargo bench --profile dev`, which serves from the build that `cook` runs from.
+
+use lapidary_harness::check::{self, Source};
+use lapidary_harness::formulas;
+use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use lapidary_harness::property::{Check, Settings};
+use lapidary_harness::scene::fuzz;
+
+/// Cases in one sample.
+const CASES: u64 = 1 << 20;
+
+fn main() {
+    divan::main();
+}
+
+/// Property tests, generation, shader, mirror, oracle and comparison included; `item/s` are cases a second.
+#[divan::bench(args = ["refraction_refract", "fresnel_dielectric", "closest_point_centre"], sample_count = 5, sample_size = 1)]
+fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
+    let gpu = Gpu::shared(&AdapterChoice::platform_default()).expect("an adapter");
+    let formula = formulas::of_function(function).expect("the function has a formula");
+    let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+    let tolerance = check::tolerance(gpu, formula);
+    bencher.counter(divan::counter::ItemsCount::new(CASES)).bench_local(|| {
+        let settings = Settings { cases: CASES, ..Settings::default() };
+        let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
+        assert_eq!(report.failed, 0);
+    });
+}
+
+/// The loader on mutated files: 100,000 of them, none may panic.
+#[divan::bench(sample_count = 1, sample_size = 1)]
+fn loader_fuzz(bencher: divan::Bencher<'_, '_>) {
+    bencher.counter(divan::counter::ItemsCount::new(fuzz::BENCHMARK_CASES)).bench_local(|| {
+        fuzz::run(fuzz::BENCHMARK_CASES).unwrap_or_else(|fault| panic!("{fault}"))
+    });
+}

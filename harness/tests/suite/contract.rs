@@ -1,0 +1,323 @@
+//! The module contract: the cookbook keeps it, and each rule notices a module that does not.
+
+use lapidary_harness::check;
+use lapidary_harness::cookbook::accuracy_line::Accuracy;
+use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition};
+use lapidary_harness::cookbook::translate::{Target, translate};
+use lapidary_harness::cookbook::{modules, recipes};
+use lapidary_harness::dispatch::shape::Signature;
+use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
+use lapidary_harness::formulas;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+#[test]
+fn every_module_keeps_the_contract() {
+    let findings: Vec<Finding> = modules().iter().flat_map(|module| lint(module.name, module.source)).collect();
+    assert!(findings.is_empty(), "{}", spell(&findings));
+}
+
+#[test]
+fn all_modules_compile_as_one() {
+    let sources: Vec<(&str, &str)> = modules().iter().map(|module| (module.name, module.source)).collect();
+    let findings = lint_composition(&sources);
+    assert!(findings.is_empty(), "{}", spell(&findings));
+}
+
+#[test]
+fn every_file_is_registered_and_has_its_four_places() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let in_folder = |folder: &str| -> BTreeSet<String> {
+        let files = std::fs::read_dir(root.join(folder)).expect("the cookbook's folder");
+        let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
+        names.filter_map(|name| name.strip_suffix(".wgsl").map(str::to_owned)).collect()
+    };
+    let names = |names: &mut dyn Iterator<Item = &'static str>| -> BTreeSet<String> { names.map(str::to_owned).collect() };
+    assert_eq!(in_folder("wgsl"), names(&mut modules().iter().map(|module| module.name)));
+    assert_eq!(in_folder("wgsl/recipes"), names(&mut recipes().iter().map(|recipe| recipe.name)));
+    for module in modules() {
+        assert!(root.join("crates").join(module.name).join("src/oracle.rs").is_file(), "{}", module.name);
+        assert!(root.join("docs").join(format!("{}.md", module.name)).is_file(), "{}", module.name);
+    }
+}
+
+#[test]
+fn every_function_has_one_formula_and_every_formula_a_function() {
+    let documented: Vec<&str> = modules().iter().flat_map(|module| &module.functions).map(|f| f.name.as_str()).collect();
+    let mut bound: Vec<&str> = formulas::all().iter().map(|formula| formula.function).collect();
+    let mut wanted = documented;
+    wanted.sort_unstable();
+    bound.sort_unstable();
+    assert_eq!(bound, wanted);
+}
+
+#[test]
+fn every_signature_is_the_mirrors() {
+    for module in modules() {
+        let (ir, _) = dispatch::parse(module.source, module.name).unwrap_or_else(|error| panic!("{error}"));
+        for formula in formulas::all().iter().filter(|formula| formula.module == module.name) {
+            let signature = Signature::reflect(&ir, formula.function).unwrap_or_else(|error| panic!("{error}"));
+            signature.expect(&formula.arguments, &formula.result).unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+}
+
+#[test]
+fn naive_forms_and_no_others_have_a_benign_domain() {
+    for formula in formulas::all() {
+        let naive = check::documentation(formula).accuracy == Accuracy::Naive;
+        assert_eq!(naive, formula.benign.is_some(), "{}", formula.function);
+    }
+}
+
+#[test]
+fn every_recipe_compiles_with_the_modules_that_it_requires() {
+    for recipe in recipes() {
+        assert!(!recipe.requires.is_empty(), "{}", recipe.name);
+        for name in &recipe.requires {
+            // `compose` leaves an unknown name out without a word.
+            assert!(modules().iter().any(|module| module.name == *name), "{} requires `{name}`", recipe.name);
+        }
+        let (ir, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
+        assert!(!ir.entry_points.is_empty(), "{}", recipe.name);
+        assert!(dispatch::parse(recipe.source, recipe.name).is_err(), "{} uses no module's function", recipe.name);
+    }
+}
+
+#[test]
+fn every_function_can_be_written_in_every_language() {
+    let entry = Some((ENTRY_POINT, naga::ShaderStage::Compute));
+    for formula in formulas::all() {
+        let module = modules().iter().find(|module| module.name == formula.module).expect("a formula's module");
+        let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("valid WGSL");
+        let info = dispatch::validate(&kernel.module).expect("valid IR");
+        for target in [Target::Wgsl, Target::Spirv, Target::Hlsl, Target::Msl, Target::Glsl] {
+            let bytes = translate(&kernel.module, &info, target, entry)
+                .unwrap_or_else(|error| panic!("{} in {target:?}: {error}", formula.function));
+            if target == Target::Spirv {
+                // SPIR-V's magic number, little endian.
+                assert_eq!(bytes[..4], [0x03, 0x02, 0x23, 0x07], "{}", formula.function);
+            } else {
+                let text = String::from_utf8(bytes).expect("text");
+                assert!(text.contains(formula.function), "{} in {target:?} is called otherwise", formula.function);
+            }
+        }
+    }
+}
+
+#[test]
+fn glsl_without_an_entry_point_is_refused() {
+    let module = &modules()[0];
+    let (ir, info) = dispatch::parse(module.source, module.name).expect("valid WGSL");
+    assert!(translate(&ir, &info, Target::Glsl, None).expect_err("no entry point").contains("entry point"));
+}
+
+/// A module that keeps the contract. Each test below breaks one thing.
+const SAMPLE: &str = "\
+// sample: a module for the tests of the contract's rules.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: none; 1.0 and 0x10 in a comment are no literals.
+
+const SAMPLE_HALF: f32 = 0.5f;
+
+struct SamplePair {
+    first: f32,
+    second: f32,
+}
+
+// Halves both numbers.
+// Returns: SamplePair, each number
+//   halved.
+// Units: none.
+// Domain: any.
+// Outside: none is.
+// Accuracy: lavapipe first 1 ulp, second 1 ulp; portable first 1 ulp, second 1 ulp
+fn sample_halved(first: f32, second: f32) -> SamplePair {
+    return SamplePair(first * SAMPLE_HALF, second * SAMPLE_HALF);
+}
+";
+
+/// The line before which a statement can be put into the function's body.
+const BODY: &str = "    return SamplePair(";
+
+fn spell(findings: &[Finding]) -> String {
+    findings.iter().map(|finding| format!("{finding}\n")).collect()
+}
+
+/// The sample with every `from` replaced by `to`.
+fn changed(from: &str, to: &str) -> String {
+    assert!(SAMPLE.contains(from), "the sample holds no `{from}`");
+    SAMPLE.replace(from, to)
+}
+
+/// Asserts that the change makes findings, all by `rule`, and returns them.
+fn breaks(rule: Rule, from: &str, to: &str) -> Vec<Finding> {
+    let source = changed(from, to);
+    let findings = lint("sample", &source);
+    assert!(!findings.is_empty(), "nothing is found in\n{source}");
+    assert!(findings.iter().all(|finding| finding.rule == rule), "{}{source}", spell(&findings));
+    findings
+}
+
+/// Asserts that a statement in the function's body makes findings, all by `rule`.
+fn statement_breaks(rule: Rule, statement: &str) {
+    breaks(rule, BODY, &format!("    {statement}\n{BODY}"));
+}
+
+/// Asserts that a global declaration makes findings, all by `rule`.
+fn declaration_breaks(rule: Rule, declaration: &str) {
+    breaks(rule, "struct SamplePair", &format!("{declaration}\n\nstruct SamplePair"));
+}
+
+#[test]
+fn a_correct_module_gives_no_finding() {
+    let findings = lint("sample", SAMPLE);
+    assert!(findings.is_empty(), "{}", spell(&findings));
+}
+
+#[test]
+fn invalid_wgsl_is_found() {
+    breaks(Rule::Valid, "second * SAMPLE_HALF", "second * missing");
+    breaks(Rule::Valid, "second * SAMPLE_HALF", "second * 2u");
+    breaks(Rule::Valid, "return SamplePair", "retrun SamplePair");
+    // naga refuses two underscores at the start by itself.
+    statement_breaks(Rule::Valid, "let __half = first;");
+}
+
+#[test]
+fn a_wrong_header_is_found_on_its_line() {
+    for (line, from, to) in [
+        (1, "// sample: ", "// other: "),
+        (1, "// sample: ", "// sample "),
+        (2, "MIT-0 OR Apache-2.0", "GPL-3.0-only"),
+        (2, "// SPDX-License-Identifier: MIT-0 OR Apache-2.0\n", ""),
+        (3, "// Source: ", "// From: "),
+    ] {
+        let findings = breaks(Rule::Header, from, to);
+        assert_eq!(findings[0].line, line, "{}", spell(&findings));
+    }
+}
+
+#[test]
+fn a_wrong_function_comment_is_found() {
+    for (from, to) in [
+        ("// Units: none.\n", ""),
+        ("// Units: none.\n// Domain: any.\n", "// Domain: any.\n// Units: none.\n"),
+        ("// Domain: any.\n", "// Domain: any.\n// Domain: all.\n"),
+        ("// Units: none.", "// Units:"),
+        ("// Halves both numbers.\n", ""),
+        // A blank line parts the comment from its function.
+        ("\nfn sample_halved", "\n\nfn sample_halved"),
+        // A function that does not start its line is not seen, and must not pass for that.
+        ("\nfn sample_halved", "\n@must_use fn sample_halved"),
+        ("lavapipe first 1 ulp, second 1 ulp", "lavapipe first 1 cm, second 1 ulp"),
+        ("lavapipe first 1 ulp, second 1 ulp; portable", "portable"),
+        ("lavapipe first 1 ulp, second 1 ulp", "lavapipe first 1 ulp"),
+        ("lavapipe first 1 ulp, second 1 ulp", "lavapipe second 1 ulp, first 1 ulp"),
+        ("portable first 1 ulp, second 1 ulp", "portable 1 ulp"),
+    ] {
+        breaks(Rule::FunctionComment, from, to);
+    }
+}
+
+#[test]
+fn a_function_without_a_result_is_found() {
+    let nothing = "// Does nothing.\n// Returns: nothing.\n// Units: none.\n// Domain: any.\n// Outside: none is.\n\
+        // Accuracy: naive\nfn sample_nothing(first: f32) {\n}\n\n// Halves both";
+    let findings = breaks(Rule::FunctionComment, "// Halves both", nothing);
+    assert!(findings[0].message.contains("`sample_nothing` returns nothing"), "{}", spell(&findings));
+}
+
+#[test]
+fn anything_but_functions_structs_and_consts_is_found() {
+    declaration_breaks(Rule::PureFunctions, "@group(0u) @binding(0u) var<uniform> sample_scale: f32;");
+    declaration_breaks(Rule::PureFunctions, "var<private> sample_state: f32;");
+    declaration_breaks(Rule::PureFunctions, "override sample_scale: f32 = 2.0f;");
+    declaration_breaks(Rule::PureFunctions, "@compute @workgroup_size(64u) fn sample_main() {}");
+    declaration_breaks(Rule::PureFunctions, "alias SampleScalar = f32;");
+    declaration_breaks(Rule::PureFunctions, "const_assert SAMPLE_HALF < 1.0f;");
+    declaration_breaks(Rule::PureFunctions, "const_assert(SAMPLE_HALF < 1.0f);");
+}
+
+#[test]
+fn a_directive_is_found() {
+    // Directives stand before every declaration.
+    for directive in
+        ["requires readonly_and_readwrite_storage_textures;", "diagnostic(off, derivative_uniformity);", "diagnostic (off, derivative_uniformity);"]
+    {
+        breaks(Rule::PureFunctions, "const SAMPLE_HALF", &format!("{directive}\n\nconst SAMPLE_HALF"));
+    }
+}
+
+#[test]
+fn a_name_without_the_modules_prefix_is_found() {
+    for (from, to) in [("sample_halved", "halved"), ("SamplePair", "Pair"), ("SAMPLE_HALF", "HALF"), ("SAMPLE_HALF", "sample_HALF")] {
+        let findings = breaks(Rule::Prefix, from, to);
+        assert!(findings[0].message.contains(&format!("`{to}`")) && findings[0].line > 3, "{}", spell(&findings));
+    }
+}
+
+#[test]
+fn a_name_that_would_be_changed_is_found() {
+    statement_breaks(Rule::Identifier, "let half_ = first * 2.0f;");
+    statement_breaks(Rule::Identifier, "let half__way = first * 2.0f;");
+    statement_breaks(Rule::Identifier, "var half_ = first;");
+    breaks(Rule::Identifier, "second", "second_");
+    breaks(Rule::Identifier, "SamplePair", "SamplePair_");
+    breaks(Rule::Identifier, "sample_halved", "sample__halved");
+    // A member, which is also an argument here; only for the member does the last digit matter.
+    let findings = breaks(Rule::Identifier, "first", "first1");
+    assert_eq!(findings.len(), 1, "{}", spell(&findings));
+}
+
+#[test]
+fn a_name_lost_among_others_is_found() {
+    // naga keeps one name an expression: here that of the second `let`.
+    statement_breaks(Rule::Identifier, "let half_ = first * 2.0f;\n    let whole = half_;");
+    // And it keeps no name of a const.
+    statement_breaks(Rule::Identifier, "const HALF_ = 2.0f;");
+}
+
+#[test]
+fn a_literal_without_a_type_is_found() {
+    // The last ends in a digit that looks like a suffix.
+    for literal in ["1.0", "1", "1.", "0x10", "1e5", "1e-5", ".5", "0xff"] {
+        statement_breaks(Rule::Literal, &format!("let number = {literal};"));
+    }
+    statement_breaks(Rule::Literal, "let number = vec2f(1.0, 2.0f);");
+}
+
+#[test]
+fn what_only_looks_like_a_literal_is_not_found() {
+    for statement in
+        ["let x1 = vec3f(first);", "let turn = mat4x4f();", "let number = 1e-5f + .5f;", "let number = first; // 1.0 and 3", "let number = -3i;", "let number = 0x10u;"]
+    {
+        let findings = lint("sample", &changed(BODY, &format!("    {statement}\n{BODY}")));
+        assert!(findings.is_empty(), "{statement}: {}", spell(&findings));
+    }
+}
+
+#[test]
+fn a_comparison_with_itself_is_found() {
+    for statement in [
+        "let x = first * 2.0f;\n    let odd = x != x;",
+        "let odd = first == first;",
+        "let pair = SamplePair(first, second);\n    let odd = pair.second != pair.second;",
+        "var x = first;\n    let odd = x != x;",
+        "let v = vec3f(first);\n    let odd = v != v;",
+    ] {
+        statement_breaks(Rule::SelfComparison, statement);
+    }
+    let different = "let pair = SamplePair(first, second);\n    let odd = pair.first != pair.second;";
+    assert!(lint("sample", &changed(BODY, &format!("    {different}\n{BODY}"))).is_empty());
+}
+
+#[test]
+fn modules_that_clash_are_found() {
+    let other = changed("sample", "other").replace("Sample", "Other").replace("SAMPLE", "OTHER");
+    assert!(lint_composition(&[("sample", SAMPLE), ("other", &other)]).is_empty());
+    let clash = other.replace("OtherPair", "SamplePair");
+    let findings = lint_composition(&[("sample", SAMPLE), ("other", &clash)]);
+    // In this order and in the other.
+    assert_eq!(findings.iter().map(|finding| finding.rule).collect::<Vec<_>>(), [Rule::Composition; 2], "{}", spell(&findings));
+}

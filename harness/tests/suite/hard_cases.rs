@@ -1,0 +1,42 @@
+//! The catalogue of hard cases, on both sides: the stable form holds its limit, and the naive form fails there by as much as is
+//! stated. Where nothing fails, it is no hard case.
+
+use lapidary_harness::check::{self, Source, distance_from_limit};
+use lapidary_harness::formulas;
+
+#[test]
+fn each_stable_form_holds_and_each_naive_form_fails() {
+    let gpu = super::gpu();
+    let mut faults = Vec::new();
+    let mut count = 0;
+    for formula in formulas::all() {
+        for case in &formula.hard_cases {
+            count += 1;
+            let name = format!("{}: {}", formula.function, case.name);
+            let mut stable = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+            let distance = distance_from_limit(&mut stable, &case.arguments, &case.limit, &formula.result).expect("runs");
+            // A NaN does not hold.
+            if !(distance <= case.bound) {
+                faults.push(format!("{name}: the stable form is off by {distance:e}, at most {:e}", case.bound));
+            }
+            let naive = formulas::of_function(case.naive).unwrap_or_else(|| panic!("{name}: no formula `{}`", case.naive));
+            assert!(naive.benign.is_some(), "{name}: `{}` is not a naive form", case.naive);
+            let mut kernel = check::kernel(gpu, naive, Source::Cookbook).expect("the cookbook's WGSL compiles");
+            let error = distance_from_limit(&mut kernel, &case.naive_arguments, &case.limit, &naive.result).expect("runs");
+            let fails = if case.naive_error.is_infinite() { !error.is_finite() } else { !(error < case.naive_error) };
+            if !fails {
+                faults.push(format!("{name}: the naive form is off by {error:e} only, stated {:e}", case.naive_error));
+            }
+        }
+    }
+    assert!(count >= 40, "the catalogue holds {count} cases");
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn each_module_has_hard_cases() {
+    for module in lapidary_harness::cookbook::modules() {
+        let count: usize = formulas::all().iter().filter(|f| f.module == module.name).map(|f| f.hard_cases.len()).sum();
+        assert!(count > 0, "{} has none", module.name);
+    }
+}

@@ -1,0 +1,20 @@
+//! The tests that need the whole harness: a GPU, the compiled-in cookbook, or the real `cook` binary.
+
+mod adapter;
+mod bad_input;
+mod cli;
+mod comparator;
+mod contract;
+mod dispatch;
+mod formulas;
+mod hard_cases;
+mod loader_fuzz;
+mod program;
+mod snapshots;
+
+use lapidary_harness::gpu::{AdapterChoice, Gpu};
+
+/// The process's one device. A missing adapter fails the test: a suite that skips itself checks nothing.
+fn gpu() -> &'static Gpu {
+    Gpu::shared(&AdapterChoice::platform_default()).unwrap_or_else(|error| panic!("{error}"))
+}

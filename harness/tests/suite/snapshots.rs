@@ -1,0 +1,100 @@
+//! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
+
+use lapidary_harness::cookbook;
+use lapidary_harness::scene::Scene;
+use lapidary_harness::snapshot::{self, Comparison, SHOTS, Shot, SnapshotError};
+use std::path::Path;
+
+fn source() -> String {
+    cookbook::recipe("gem").expect("the recipe exists").compose()
+}
+
+fn brilliant() -> &'static Shot {
+    SHOTS.iter().find(|shot| shot.name == "brilliant").expect("the shot exists")
+}
+
+/// The committed folder's copy, so that a planted failure leaves its pictures elsewhere.
+fn copy_of(folder: &Path) -> tempfile::TempDir {
+    let copy = tempfile::tempdir().expect("a folder");
+    for entry in std::fs::read_dir(folder).expect("the committed pictures") {
+        let entry = entry.expect("an entry");
+        std::fs::copy(entry.path(), copy.path().join(entry.file_name())).expect("copied");
+    }
+    copy
+}
+
+#[test]
+fn every_picture_is_as_it_was() {
+    for shot in &SHOTS {
+        let pictures = snapshot::render_shot(super::gpu(), shot, &source()).expect("rendered");
+        let comparison = snapshot::compare(shot, &pictures, &snapshot::folder()).expect(shot.name);
+        assert!(comparison.holds(), "{}: {comparison:?}; see the new picture and the difference beside it", shot.name);
+    }
+}
+
+/// Compares a picture with something wrong in it; its new picture and the difference must be left beside the reference.
+fn planted(scene: &Scene, source: &str) -> Comparison {
+    let copy = copy_of(&snapshot::folder());
+    let pictures = snapshot::render_scene(super::gpu(), brilliant(), scene, source).expect("rendered");
+    let comparison = snapshot::compare(brilliant(), &pictures, copy.path()).expect("compared");
+    for kind in ["new", "difference"] {
+        assert_eq!(copy.path().join(format!("brilliant.{kind}.png")).exists(), !comparison.holds(), "{kind}");
+    }
+    comparison
+}
+
+#[test]
+fn a_literal_equation_3_is_seen() {
+    let literal = source().replace("return closest_point_centre(", "return closest_point_centre_literal(");
+    assert_ne!(literal, source());
+    let comparison = planted(&Scene::named("brilliant").expect("built in"), &literal);
+    assert!(!comparison.holds(), "{comparison:?}");
+}
+
+#[test]
+fn a_turn_of_one_degree_is_seen() {
+    let mut scene = Scene::named("brilliant").expect("built in");
+    let turn = glam::Quat::from_rotation_y(1f32.to_radians());
+    scene.camera.eye = turn * scene.camera.eye;
+    scene.camera.target = turn * scene.camera.target;
+    scene.camera.up = turn * scene.camera.up;
+    let comparison = planted(&scene, &source());
+    assert!(!comparison.holds(), "{comparison:?}");
+}
+
+#[test]
+fn swapped_channels_are_seen() {
+    let swapped = source().replace("return vec4f(radiance, 1.0f);", "return vec4f(radiance.bgr, 1.0f);");
+    assert_ne!(swapped, source());
+    let comparison = planted(&Scene::named("brilliant").expect("built in"), &swapped);
+    assert!(!comparison.holds(), "{comparison:?}");
+}
+
+#[test]
+fn a_missing_reference_fails_and_is_not_made() {
+    let empty = tempfile::tempdir().expect("a folder");
+    let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
+    let error = snapshot::compare(brilliant(), &pictures, empty.path()).expect_err("no reference");
+    assert!(matches!(error, SnapshotError::Missing(_)), "{error}");
+    assert_eq!(std::fs::read_dir(empty.path()).expect("the folder").count(), 0);
+}
+
+#[test]
+fn an_unreadable_reference_fails() {
+    let copy = copy_of(&snapshot::folder());
+    std::fs::write(copy.path().join("brilliant.png"), b"not a picture").expect("written");
+    let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
+    let error = snapshot::compare(brilliant(), &pictures, copy.path()).expect_err("no picture");
+    assert!(matches!(error, SnapshotError::Unreadable { .. }), "{error}");
+}
+
+#[test]
+fn the_committed_pictures_are_small() {
+    let sizes: Vec<u64> = std::fs::read_dir(snapshot::folder())
+        .expect("the committed pictures")
+        .map(|entry| entry.and_then(|entry| entry.metadata()).expect("metadata").len())
+        .collect();
+    assert_eq!(sizes.len(), 2 * SHOTS.len());
+    assert!(sizes.iter().all(|size| *size <= snapshot::LARGEST_FILE));
+    assert!(sizes.iter().sum::<u64>() <= 24 << 20);
+}
