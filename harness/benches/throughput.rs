@@ -30,7 +30,7 @@ fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
 /// The loader on mutated files: 100,000 of them, none may panic.
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn loader_fuzz(bencher: divan::Bencher<'_, '_>) {
-    bencher.counter(divan::counter::ItemsCount::new(fuzz::BENCHMARK_CASES)).bench_local(|| {
-        fuzz::run(fuzz::BENCHMARK_CASES).unwrap_or_else(|fault| panic!("{fault}"))
-    });
+    bencher
+        .counter(divan::counter::ItemsCount::new(fuzz::BENCHMARK_CASES))
+        .bench_local(|| fuzz::run(fuzz::BENCHMARK_CASES).unwrap_or_else(|fault| panic!("{fault}")));
 }

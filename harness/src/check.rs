@@ -96,7 +96,8 @@ pub fn documentation(formula: &Formula) -> &'static FunctionDoc {
 pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError> {
     let promised = |formula: &&Formula| formula.benign.is_none();
     let Some(filter) = filter else { return Ok(formulas::all().iter().filter(promised).collect()) };
-    let (module, function) = filter.split_once("::").map_or((filter, None), |(module, function)| (module, Some(function)));
+    let (module, function) =
+        filter.split_once("::").map_or((filter, None), |(module, function)| (module, Some(function)));
     let Some(module) = cookbook::module(module) else {
         let names: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
         return Err(CheckError::Unknown(format!("no module `{module}`{}", crate::nearest::suggest(module, &names))));
@@ -171,9 +172,16 @@ pub fn distance_from_limit(
 ) -> Result<f64, DispatchError> {
     let mut words = Words::new();
     kernel.run(arguments, &mut words)?;
-    let distances = words.iter().zip(result.scalars()).zip(limit).map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
+    let distances = words
+        .iter()
+        .zip(result.scalars())
+        .zip(limit)
+        .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
     // f64::max would lose a NaN.
-    Ok(distances.fold(0.0, |worst: f64, distance| if distance.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(distance) }))
+    Ok(distances.fold(
+        0.0,
+        |worst: f64, distance| if distance.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(distance) },
+    ))
 }
 
 fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Row {
@@ -183,10 +191,11 @@ fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Ro
         cases: report.cases,
         failed: report.failed,
         nonfinite: report.nonfinite,
-        max_ulp: report.max_ulp,
-        p99_ulp: report.ulps.quantile(0.99),
-        median_ulp: report.ulps.quantile(0.5),
-        worst_ratio: report.worst_ratio,
+        // JSON has no infinity.
+        max_ulp: report.max_ulp.min(f64::MAX),
+        p99_ulp: report.ulps.quantile(0.99).min(f64::MAX),
+        median_ulp: report.ulps.quantile(0.5).min(f64::MAX),
+        worst_ratio: report.worst_ratio.min(f64::MAX),
         worst_input: spell(formula, &report.worst),
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
         reason: report.reason.clone(),

@@ -29,10 +29,12 @@ impl AdapterChoice {
 }
 
 impl std::str::FromStr for AdapterChoice {
-    type Err = std::convert::Infallible;
+    type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Ok(match text {
+            // Every name holds the empty one, so it would choose at random.
+            "" => return Err("expected lavapipe, any, or part of an adapter's name"),
             "lavapipe" => Self::Lavapipe,
             "any" => Self::Any,
             name => Self::Named(name.to_owned()),
@@ -81,7 +83,9 @@ pub enum GpuError {
         reason: String,
     },
     /// The process holds a device already, and holds one only.
-    #[error("this process already runs on adapter `{opened}`; `{choice}` would be a second device")]
+    #[error(
+        "this process already runs on adapter `{opened}`; `{choice}` would be a second device; choose one --adapter for all"
+    )]
     AlreadyOpen {
         /// The name of the open adapter.
         opened: String,
@@ -141,11 +145,12 @@ impl Gpu {
             return Err(GpuError::NoAdapter { choice: choice.clone(), offered });
         };
         let info = adapter.get_info();
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("lapidary"),
-            ..wgpu::DeviceDescriptor::default()
-        }))
-        .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+                label: Some("lapidary"),
+                ..wgpu::DeviceDescriptor::default()
+            }))
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         Ok(Gpu { device, queue, info, chosen: choice.clone() })
     }
 
@@ -177,12 +182,7 @@ impl Gpu {
     }
 
     /// Waits for everything submitted and hands the bytes of a `MAP_READ` buffer to `read`.
-    pub fn read_back<T>(
-        &self,
-        buffer: &wgpu::Buffer,
-        size: u64,
-        read: impl FnOnce(&[u8]) -> T,
-    ) -> Result<T, GpuError> {
+    pub fn read_back<T>(&self, buffer: &wgpu::Buffer, size: u64, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         let failed = |reason: String| GpuError::Device { what: "reading results back".to_owned(), reason };
         let (sender, receiver) = std::sync::mpsc::channel();
         let slice = buffer.slice(..size);
@@ -191,10 +191,7 @@ impl Gpu {
             let _ = sender.send(result);
         });
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
-        receiver
-            .recv()
-            .map_err(|error| failed(error.to_string()))?
-            .map_err(|error| failed(error.to_string()))?;
+        receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))?;
         let value = read(&slice.get_mapped_range().map_err(|error| failed(error.to_string()))?);
         buffer.unmap();
         Ok(value)

@@ -160,7 +160,10 @@ fn mixes(arena: &naga::Arena<Expression>, left: Handle<Expression>, right: Handl
     };
     let vector = |handle: Handle<Expression>| {
         matches!(arena[handle], Expression::Compose { .. } | Expression::Splat { .. })
-            || matches!(&arena[handle], Expression::Math { fun: naga::MathFunction::Cross | naga::MathFunction::Normalize, .. })
+            || matches!(
+                &arena[handle],
+                Expression::Math { fun: naga::MathFunction::Cross | naga::MathFunction::Normalize, .. }
+            )
     };
     (scalar(right) && vector(left)) || (scalar(left) && vector(right))
 }
@@ -193,7 +196,9 @@ fn literals(literal: Literal) -> Vec<Literal> {
         // Neither a factor nor a sign changes 0.
         Literal::F32(0.0) => vec![Literal::F32(NUDGE - 1.0)],
         Literal::F32(value) => vec![Literal::F32(value * NUDGE), Literal::F32(-value), Literal::F32(0.0)],
-        Literal::I32(value) => vec![Literal::I32(value.wrapping_add(1)), Literal::I32(value.wrapping_neg()), Literal::I32(0)],
+        Literal::I32(value) => {
+            vec![Literal::I32(value.wrapping_add(1)), Literal::I32(value.wrapping_neg()), Literal::I32(0)]
+        }
         Literal::U32(value) => vec![Literal::U32(value.wrapping_add(1)), Literal::U32(0)],
         Literal::Bool(value) => vec![Literal::Bool(!value)],
         _ => Vec::new(),

@@ -55,7 +55,8 @@ fn main() -> ExitCode {
 /// A function's mutants in their order, the same in coordinator and workers.
 fn mutants_of(formula: &Formula) -> Vec<Mutant> {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
+    let kernel =
+        KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
     let kernel = mutation::compacted(kernel);
     // A mutant that makes no valid program is none.
     mutation::mutants(module, formula.function, &kernel)
@@ -110,7 +111,8 @@ fn coordinate(filter: &str) -> ExitCode {
 
 fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took: Duration) -> ExitCode {
     let listed = equivalent_mutants();
-    let (equivalent, missed): (Vec<&String>, Vec<&String>) = survived.iter().partition(|name| listed.contains_key(*name));
+    let (equivalent, missed): (Vec<&String>, Vec<&String>) =
+        survived.iter().partition(|name| listed.contains_key(*name));
     let stale: Vec<&String> = listed.keys().filter(|name| filter.is_empty() && !survived.contains(name)).collect();
     for name in hung {
         println!("hung, so caught: {name}");
@@ -133,7 +135,12 @@ fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took
         took.as_secs_f64()
     );
     let passed = total > 0 && missed.is_empty() && stale.is_empty() && share <= MOST_EQUIVALENT;
-    println!("\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n", if passed { "ok" } else { "FAILED" }, u8::from(passed), u8::from(!passed));
+    println!(
+        "\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n",
+        if passed { "ok" } else { "FAILED" },
+        u8::from(passed),
+        u8::from(!passed)
+    );
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
@@ -246,11 +253,12 @@ fn worker() {
         let formula = &formulas::all()[index];
         let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula))[position];
         // The function's own tests first, then those of the functions that call it.
-        let mut judges: Vec<&'static Formula> = formulas::all().iter().filter(|other| other.module == formula.module).collect();
+        let mut judges: Vec<&'static Formula> =
+            formulas::all().iter().filter(|other| other.module == formula.module).collect();
         judges.sort_by_key(|other| other.function != formula.function);
-        let caught = judges.into_iter().any(|judge| {
-            kept.entry(judge.function).or_insert_with(|| Kept::new(gpu, judge)).catches(mutant)
-        });
+        let caught = judges
+            .into_iter()
+            .any(|judge| kept.entry(judge.function).or_insert_with(|| Kept::new(gpu, judge)).catches(mutant));
         println!("{}", if caught { "caught" } else { "survived" });
     }
 }
@@ -258,7 +266,8 @@ fn worker() {
 impl<'gpu> Kept<'gpu> {
     fn new(gpu: &'gpu Gpu, formula: &'static Formula) -> Self {
         let module = cookbook::module(formula.module).expect("a formula's module exists");
-        let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
+        let kernel =
+            KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
         let seed = Settings::default().seed;
         let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(seed, row));
         let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
@@ -285,7 +294,8 @@ impl<'gpu> Kept<'gpu> {
         if kernel.run(&self.arguments, &mut results).is_err() {
             return true;
         }
-        let rows = self.arguments.chunks_exact(kernel.argument_words()).zip(results.chunks_exact(kernel.result_words()));
+        let rows =
+            self.arguments.chunks_exact(kernel.argument_words()).zip(results.chunks_exact(kernel.result_words()));
         let broken = rows.zip(self.mirrored.iter().zip(&self.exact)).any(|((arguments, result), (mirrored, exact))| {
             !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
                 || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
@@ -294,8 +304,8 @@ impl<'gpu> Kept<'gpu> {
             return true;
         }
         let settings = Settings { cases: MORE_ROWS, seed: Settings::default().seed + 1 };
-        let report = Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
+        let report =
+            Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
         report.map_or(true, |report| report.failed > 0)
     }
 }
-

@@ -123,10 +123,7 @@ fn least_squares(mut rows: Vec<[f64; 4]>) -> DVec3 {
 }
 
 /// Eq. (4), (5) with the closest points of one pair of lines per vertex, and weights |n_i| |n_k| sin(angle).
-fn weighted_points(
-    parameters: fn(DVec3, DVec3, DVec3, DVec3) -> DVec2,
-    lines: [(DVec3, DVec3); 3],
-) -> Option<DVec3> {
+fn weighted_points(parameters: fn(DVec3, DVec3, DVec3, DVec3) -> DVec2, lines: [(DVec3, DVec3); 3]) -> Option<DVec3> {
     let mut total = 0.0;
     let mut sum = DVec3::ZERO;
     for i in 0..3 {

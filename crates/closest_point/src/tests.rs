@@ -37,12 +37,7 @@ fn largest(vector: DVec3) -> f64 {
 }
 
 /// Error in ulp of `value`, less what an input error of `backward` ulp moves the truth to first order.
-fn excess<const N: usize>(
-    value: DVec3,
-    truth: impl Fn([DVec3; N]) -> DVec3,
-    inputs: [DVec3; N],
-    backward: f64,
-) -> f64 {
+fn excess<const N: usize>(value: DVec3, truth: impl Fn([DVec3; N]) -> DVec3, inputs: [DVec3; N], backward: f64) -> f64 {
     assert!(value.is_finite(), "{value} for {inputs:?}");
     let exact = truth(inputs);
     let mut allowed = DVec3::ZERO;
@@ -216,9 +211,8 @@ fn centre_is_bounded_and_does_not_depend_on_the_first_vertex() {
         let v = triangle(&mut random, angle);
         let o = centre(v[0], v[1], v[2], v[3], v[4], v[5]);
         let p = fallback(v[0], v[2], v[4]);
-        let squared: f64 = (0..3)
-            .map(|i| (p - v[2 * i]).as_dvec3().reject_from(v[2 * i + 1].as_dvec3()).length_squared())
-            .sum();
+        let squared: f64 =
+            (0..3).map(|i| (p - v[2 * i]).as_dvec3().reject_from(v[2 * i + 1].as_dvec3()).length_squared()).sum();
         let slack = 1e-5 * f64::from(largest_component(p).max(largest_component(o)).max(largest_component(v[0])));
         assert!((o - p).as_dvec3().length() <= 32.0 * squared.sqrt() * (1.0 + 1e-5) + slack, "{v:?}");
         let turned = centre(v[2], v[3], v[4], v[5], v[0], v[1]).as_dvec3();
@@ -254,7 +248,10 @@ fn table_is_current() {
         for [l, m, n] in [all, one] {
             let stable = centre(corners[0], l, corners[1], m, corners[2], n).z;
             let paper = centre_paper(corners[0], l, corners[1], m, corners[2], n).z;
-            table += &format!(" {stable:.2} | {} |", if paper.abs() < 1e3 { format!("{paper:.2}") } else { format!("{paper:.0e}") });
+            table += &format!(
+                " {stable:.2} | {} |",
+                if paper.abs() < 1e3 { format!("{paper:.2}") } else { format!("{paper:.0e}") }
+            );
         }
         table += "\n";
     }

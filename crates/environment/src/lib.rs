@@ -54,10 +54,7 @@ pub fn uv_from_direction(direction: Vec3) -> Vec2 {
 /// The same by normalize and acos.
 pub fn uv_from_direction_naive(direction: Vec3) -> Vec2 {
     let unit = direction / direction.length();
-    Vec2::new(
-        0.5 + unit.z.atan2(unit.x) * 0.15915494,
-        unit.y.acos() * 0.31830987,
-    )
+    Vec2::new(0.5 + unit.z.atan2(unit.x) * 0.15915494, unit.y.acos() * 0.31830987)
 }
 
 /// Unit direction of latitude-longitude coordinates.
@@ -91,11 +88,7 @@ pub fn texels(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     let top = row.floor() as u32;
     let lower = UVec2::new(left, top);
     let upper = UVec2::new((left + 1) % size.x, (top + 1).min(size.y - 1));
-    EnvironmentTexels {
-        lower,
-        upper,
-        weight: Vec2::new(column - column.floor(), row - row.floor()),
-    }
+    EnvironmentTexels { lower, upper, weight: Vec2::new(column - column.floor(), row - row.floor()) }
 }
 
 /// The same with both coordinates clamped.
@@ -103,11 +96,7 @@ pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     let corner = uv * size.as_vec2() - 0.5;
     let lower = corner.floor().max(Vec2::ZERO).as_uvec2();
     let upper = (lower + 1).min(size - 1);
-    EnvironmentTexels {
-        lower,
-        upper,
-        weight: corner - corner.floor(),
-    }
+    EnvironmentTexels { lower, upper, weight: corner - corner.floor() }
 }
 
 /// How much of a rectangular, soft-edged light a direction meets, in [0, 1].

@@ -25,21 +25,14 @@ pub fn hypot(a: f64, b: f64) -> f64 {
 /// The library's sine, the angle first brought to the nearest half turn, whose parity is the sign.
 pub fn sine(turns: f64) -> f64 {
     let half_turns = (2.0 * turns).round();
-    let sign = if half_turns.rem_euclid(2.0) == 0.0 {
-        1.0
-    } else {
-        -1.0
-    };
+    let sign = if half_turns.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
     sign * (TAU * (turns - 0.5 * half_turns)).sin()
 }
 
 /// The polar angle by Kahan's formula, 2 atan(|d - |d| y| / |d + |d| y|) with y the zenith.
 pub fn uv_from_direction(direction: DVec3) -> DVec2 {
     let zenith = direction.length() * DVec3::Y;
-    let polar = 2.0
-        * (direction - zenith)
-            .length()
-            .atan2((direction + zenith).length());
+    let polar = 2.0 * (direction - zenith).length().atan2((direction + zenith).length());
     DVec2::new(0.5 + turns(direction.z, direction.x), polar / PI)
 }
 
@@ -104,97 +97,21 @@ pub fn dome(direction: DVec3, ground: DVec3, zenith: DVec3) -> DVec3 {
 pub fn studio(direction: DVec3) -> DVec3 {
     type Light = ([f64; 3], [f64; 3], [f64; 3], f64, [f64; 2], f64);
     const LIGHTS: [Light; 9] = [
-        (
-            [9.0, 8.4, 7.2],
-            [-2.0, 6.0, 3.0],
-            [6.0, 3.0, -2.0],
-            7.0,
-            [0.28, 0.28],
-            0.05,
-        ),
-        (
-            [13.0, 13.0, 13.0],
-            [0.0, 24.0, -7.0],
-            [0.0, 7.0, 24.0],
-            25.0,
-            [0.70, 0.06],
-            0.03,
-        ),
-        (
-            [7.0, 8.6, 10.0],
-            [6.0, 3.0, 2.0],
-            [-2.0, 6.0, -3.0],
-            7.0,
-            [0.08, 0.45],
-            0.04,
-        ),
-        (
-            [9.0, 7.2, 5.0],
-            [-2.0, 1.0, -2.0],
-            [2.0, 2.0, -1.0],
-            3.0,
-            [0.09, 0.40],
-            0.04,
-        ),
-        (
-            [20.0, 19.0, 17.0],
-            [4.0, 7.0, -4.0],
-            [1.0, 4.0, 8.0],
-            9.0,
-            [0.08, 0.08],
-            0.03,
-        ),
-        (
-            [15.0, 16.0, 18.0],
-            [1.0, 2.0, 2.0],
-            [-2.0, 2.0, -1.0],
-            3.0,
-            [0.07, 0.07],
-            0.03,
-        ),
-        (
-            [16.0, 16.0, 16.0],
-            [2.0, 3.0, -6.0],
-            [6.0, 2.0, 3.0],
-            7.0,
-            [0.06, 0.06],
-            0.03,
-        ),
-        (
-            [2.6, 2.75, 2.9],
-            [0.0, -3.0, -4.0],
-            [0.0, 4.0, -3.0],
-            5.0,
-            [0.60, 0.20],
-            0.10,
-        ),
-        (
-            [2.0, 1.85, 1.7],
-            [0.0, -5.0, 12.0],
-            [0.0, 12.0, 5.0],
-            13.0,
-            [0.50, 0.14],
-            0.10,
-        ),
+        ([9.0, 8.4, 7.2], [-2.0, 6.0, 3.0], [6.0, 3.0, -2.0], 7.0, [0.28, 0.28], 0.05),
+        ([13.0, 13.0, 13.0], [0.0, 24.0, -7.0], [0.0, 7.0, 24.0], 25.0, [0.70, 0.06], 0.03),
+        ([7.0, 8.6, 10.0], [6.0, 3.0, 2.0], [-2.0, 6.0, -3.0], 7.0, [0.08, 0.45], 0.04),
+        ([9.0, 7.2, 5.0], [-2.0, 1.0, -2.0], [2.0, 2.0, -1.0], 3.0, [0.09, 0.40], 0.04),
+        ([20.0, 19.0, 17.0], [4.0, 7.0, -4.0], [1.0, 4.0, 8.0], 9.0, [0.08, 0.08], 0.03),
+        ([15.0, 16.0, 18.0], [1.0, 2.0, 2.0], [-2.0, 2.0, -1.0], 3.0, [0.07, 0.07], 0.03),
+        ([16.0, 16.0, 16.0], [2.0, 3.0, -6.0], [6.0, 2.0, 3.0], 7.0, [0.06, 0.06], 0.03),
+        ([2.6, 2.75, 2.9], [0.0, -3.0, -4.0], [0.0, 4.0, -3.0], 5.0, [0.60, 0.20], 0.10),
+        ([2.0, 1.85, 1.7], [0.0, -5.0, 12.0], [0.0, 12.0, 5.0], 13.0, [0.50, 0.14], 0.10),
     ];
-    let surround = dome(
-        direction,
-        DVec3::new(0.025, 0.024, 0.026),
-        DVec3::new(0.26, 0.30, 0.38),
-    );
-    LIGHTS.iter().fold(
-        surround,
-        |radiance, (tint, axis, up, length, half_size, softness)| {
-            let axis = DVec3::from_array(*axis) / *length;
-            let up = DVec3::from_array(*up) / *length;
-            let coverage = softbox(
-                direction,
-                axis,
-                up,
-                DVec2::from_array(*half_size),
-                *softness,
-            );
-            radiance.max(surround + DVec3::from_array(*tint) * coverage)
-        },
-    )
+    let surround = dome(direction, DVec3::new(0.025, 0.024, 0.026), DVec3::new(0.26, 0.30, 0.38));
+    LIGHTS.iter().fold(surround, |radiance, (tint, axis, up, length, half_size, softness)| {
+        let axis = DVec3::from_array(*axis) / *length;
+        let up = DVec3::from_array(*up) / *length;
+        let coverage = softbox(direction, axis, up, DVec2::from_array(*half_size), *softness);
+        radiance.max(surround + DVec3::from_array(*tint) * coverage)
+    })
 }

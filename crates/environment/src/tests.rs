@@ -8,10 +8,7 @@ struct Lcg(u64);
 impl Lcg {
     /// Uniform in [0, 1).
     fn unit(&mut self) -> f32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 40) as f32 / (1u64 << 24) as f32
     }
     /// Uniform in (-1, 1).
@@ -45,18 +42,11 @@ fn report(what: &str, worst: f64, bound: f64) {
 
 /// How far `f` moves when each component of `input` moves by `ulps` of the largest: what `ulps` backward allow.
 fn backward(ulps: f64, input: Vec3, f: impl Fn(DVec3) -> DVec3) -> f64 {
-    let (exact, step) = (
-        f(input.as_dvec3()),
-        ulps * ulp(f64::from(input.abs().max_element())),
-    );
+    let (exact, step) = (f(input.as_dvec3()), ulps * ulp(f64::from(input.abs().max_element())));
     DVec3::AXES
         .iter()
         .map(|&axis| {
-            let moved = |sign: f64| {
-                (f(input.as_dvec3() + sign * step * axis) - exact)
-                    .abs()
-                    .max_element()
-            };
+            let moved = |sign: f64| (f(input.as_dvec3() + sign * step * axis) - exact).abs().max_element();
             moved(1.0).max(moved(-1.0))
         })
         .sum()
@@ -70,22 +60,8 @@ fn angles_match_the_oracle() {
         let (x, y) = match i % 4 {
             0 => (rng.signed(), rng.signed()),
             1 => (rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0)),
-            2 => (
-                rng.magnitude(-1.0, 1.0),
-                if i % 8 == 2 {
-                    0.0
-                } else {
-                    rng.magnitude(-30.0, 1.0)
-                },
-            ),
-            _ => (
-                if i % 8 == 3 {
-                    0.0
-                } else {
-                    rng.magnitude(-30.0, 1.0)
-                },
-                rng.magnitude(-1.0, 1.0),
-            ),
+            2 => (rng.magnitude(-1.0, 1.0), if i % 8 == 2 { 0.0 } else { rng.magnitude(-30.0, 1.0) }),
+            _ => (if i % 8 == 3 { 0.0 } else { rng.magnitude(-30.0, 1.0) }, rng.magnitude(-1.0, 1.0)),
         };
         let (wide_x, wide_y) = (f64::from(x), f64::from(y));
         let exact = oracle::turns(wide_y, wide_x);
@@ -113,31 +89,16 @@ fn map_coordinates_match_the_oracle() {
     for i in 0..1_000_000 {
         let direction = match i % 4 {
             0 => rng.direction(),
-            1 => Vec3::new(
-                rng.magnitude(-126.0, 126.0),
-                rng.magnitude(-126.0, 126.0),
-                rng.magnitude(-126.0, 126.0),
-            ),
-            2 => Vec3::new(
-                rng.magnitude(-30.0, 0.0),
-                rng.magnitude(0.0, 0.0),
-                rng.magnitude(-30.0, 0.0),
-            ),
+            1 => Vec3::new(rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0)),
+            2 => Vec3::new(rng.magnitude(-30.0, 0.0), rng.magnitude(0.0, 0.0), rng.magnitude(-30.0, 0.0)),
             _ => Vec3::new(-1.0, rng.signed(), rng.magnitude(-40.0, -10.0)),
         };
         let uv = uv_from_direction(direction);
-        assert!(
-            uv.min_element() >= 0.0 && uv.max_element() <= 1.0,
-            "{direction} {uv}"
-        );
+        assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{direction} {uv}");
         let exact = oracle::uv_from_direction(direction.as_dvec3());
         worst[0] = worst[0].max((uv.as_dvec2() - exact).abs().max_element());
         let unit = direction.as_dvec3().normalize();
-        worst[1] = worst[1].max(
-            (direction_from_uv(uv).as_dvec3() - unit)
-                .abs()
-                .max_element(),
-        );
+        worst[1] = worst[1].max((direction_from_uv(uv).as_dvec3() - unit).abs().max_element());
 
         let uv = if i % 4 == 0 {
             Vec2::new(rng.unit(), rng.magnitude(-30.0, 0.0).abs())
@@ -146,16 +107,12 @@ fn map_coordinates_match_the_oracle() {
         };
         let exact = oracle::direction_from_uv(uv.as_dvec2());
         let got = direction_from_uv(uv);
-        worst[2] = worst[2]
-            .max((got.as_dvec3() - exact).abs().max_element() / ulp(exact.abs().max_element()));
+        worst[2] = worst[2].max((got.as_dvec3() - exact).abs().max_element() / ulp(exact.abs().max_element()));
         worst[3] = worst[3].max((got.as_dvec3().length() - 1.0).abs());
         if unit.y.abs() < 0.9 && i % 4 == 0 {
             let naive = uv_from_direction_naive(direction);
-            worst[4] = worst[4].max(
-                (naive.as_dvec2() - oracle::uv_from_direction(direction.as_dvec3()))
-                    .abs()
-                    .max_element(),
-            );
+            worst[4] =
+                worst[4].max((naive.as_dvec2() - oracle::uv_from_direction(direction.as_dvec3())).abs().max_element());
         }
     }
     report("uv_from_direction abs", worst[0], 1.5e-7);
@@ -193,10 +150,7 @@ fn naive_coordinates_fail_where_the_docs_say_so() {
         Vec3::new(3e19, 4e19, 0.0),
     ] {
         let exact = oracle::uv_from_direction(direction.as_dvec3());
-        let (stable, naive) = (
-            uv_from_direction(direction),
-            uv_from_direction_naive(direction),
-        );
+        let (stable, naive) = (uv_from_direction(direction), uv_from_direction_naive(direction));
         println!(
             "{direction}: exact {exact}, stable off {:e}, naive {naive} off {:e}",
             (stable.as_dvec2() - exact).abs().max_element(),
@@ -216,10 +170,7 @@ fn texels_match_the_oracle() {
         let size = match i % 3 {
             0 => UVec2::new(1 + (8.0 * rng.unit()) as u32, 1 + (8.0 * rng.unit()) as u32),
             1 => UVec2::new(2048, 1024),
-            _ => UVec2::new(
-                1 + (16383.0 * rng.unit()) as u32,
-                1 + (16383.0 * rng.unit()) as u32,
-            ),
+            _ => UVec2::new(1 + (16383.0 * rng.unit()) as u32, 1 + (16383.0 * rng.unit()) as u32),
         };
         let uv = match i % 5 {
             0 => Vec2::new(4.0 * rng.unit(), rng.unit()),
@@ -228,10 +179,7 @@ fn texels_match_the_oracle() {
                 (rng.unit() * size.y as f32).floor() / size.y as f32,
             ),
             2 => Vec2::new([0.0, 1.0, 0.5, 2.0][i % 4], [0.0, 1.0, 0.5, 1.0][i % 4]),
-            3 => Vec2::new(
-                rng.magnitude(-40.0, 0.0).abs(),
-                rng.magnitude(-40.0, 0.0).abs(),
-            ),
+            3 => Vec2::new(rng.magnitude(-40.0, 0.0).abs(), rng.magnitude(-40.0, 0.0).abs()),
             _ => Vec2::new(rng.unit(), rng.unit()),
         };
         let got = texels(uv, size);
@@ -263,11 +211,7 @@ fn texels_match_the_oracle() {
     // The hard case: on the seam both neighbours count.
     let size = UVec2::new(8, 4);
     for u in [0.0, 1.0, 0.999] {
-        println!(
-            "u {u}: {:?}\n  naive {:?}",
-            texels(Vec2::new(u, 0.5), size),
-            texels_naive(Vec2::new(u, 0.5), size)
-        );
+        println!("u {u}: {:?}\n  naive {:?}", texels(Vec2::new(u, 0.5), size), texels_naive(Vec2::new(u, 0.5), size));
     }
     for _ in 0..100_000 {
         let uv = Vec2::new(0.125 + 0.75 * rng.unit(), 0.25 + 0.5 * rng.unit());
@@ -288,9 +232,7 @@ fn softbox_matches_the_oracle() {
         let softness = (0.004 + rng.unit() * 0.5).min(half_size.min_element());
         // Around the edges, where everything happens.
         let reach = (half_size + softness) * 1.2;
-        let mut direction =
-            (axis + reach.x * rng.signed() * up.cross(axis) + reach.y * rng.signed() * up)
-                .normalize();
+        let mut direction = (axis + reach.x * rng.signed() * up.cross(axis) + reach.y * rng.signed() * up).normalize();
         if i % 4 == 0 {
             direction = rng.direction();
         }
@@ -310,29 +252,21 @@ fn softbox_matches_the_oracle() {
         }
         lit += usize::from(exact > 0.0);
         if direction.dot(axis) > 0.0 {
-            naive_differs = naive_differs
-                .max((softbox_naive(direction, axis, up, half_size, softness) - got).abs());
+            naive_differs = naive_differs.max((softbox_naive(direction, axis, up, half_size, softness) - got).abs());
         }
     }
     println!("lit {lit}");
     report("softbox beyond 6 ulp, of 3 backward", worst, 1.0);
     assert_eq!(naive_differs, 0.0);
     let naive = softbox_naive(Vec3::NEG_Z, Vec3::Z, Vec3::Y, Vec2::ONE, 0.5);
-    assert_eq!(
-        (
-            softbox(Vec3::NEG_Z, Vec3::Z, Vec3::Y, Vec2::ONE, 0.5),
-            naive
-        ),
-        (0.0, 1.0)
-    );
+    assert_eq!((softbox(Vec3::NEG_Z, Vec3::Z, Vec3::Y, Vec2::ONE, 0.5), naive), (0.0, 1.0));
 }
 
 #[test]
 fn dome_and_studio_match_the_oracle() {
     let mut rng = Lcg(5);
     let (mut dome_worst, mut studio_worst) = (0.0f64, 0.0f64);
-    let (mut low, mut high, mut mean, mut lit, mut upper) =
-        (Vec3::MAX, Vec3::ZERO, DVec3::ZERO, 0, 0);
+    let (mut low, mut high, mut mean, mut lit, mut upper) = (Vec3::MAX, Vec3::ZERO, DVec3::ZERO, 0, 0);
     let count = 2_000_000;
     for i in 0..count {
         let direction = rng.direction();
@@ -349,23 +283,16 @@ fn dome_and_studio_match_the_oracle() {
         if error > 0.0 {
             studio_worst = studio_worst.max(error / backward(3.0, direction, oracle::studio));
         }
-        let (ground, zenith) = (
-            Vec3::new(rng.unit(), rng.unit(), rng.unit()),
-            Vec3::new(rng.unit(), rng.unit(), rng.unit()),
-        );
+        let (ground, zenith) =
+            (Vec3::new(rng.unit(), rng.unit(), rng.unit()), Vec3::new(rng.unit(), rng.unit(), rng.unit()));
         let truth = |d: DVec3| oracle::dome(d, ground.as_dvec3(), zenith.as_dvec3());
         let exact = truth(direction.as_dvec3());
-        let error = (dome(direction, ground, zenith).as_dvec3() - exact)
-            .abs()
-            .max_element()
-            - backward(1.0, direction, truth);
+        let error =
+            (dome(direction, ground, zenith).as_dvec3() - exact).abs().max_element() - backward(1.0, direction, truth);
         dome_worst = dome_worst.max(error / ulp(exact.max_element()));
     }
     report("dome ulp beyond 1 backward", dome_worst, 4.0);
     report("studio beyond 8 ulp, of 3 backward", studio_worst, 1.0);
-    println!(
-        "studio from {low} to {high}, mean {mean}, upper hemisphere lit {:.3}",
-        lit as f64 / upper as f64
-    );
+    println!("studio from {low} to {high}, mean {mean}, upper hemisphere lit {:.3}", lit as f64 / upper as f64);
     assert!(low.min_element() >= 0.0239 && high.max_element() <= 20.4);
 }

@@ -48,19 +48,12 @@ fn input(random: &mut Random) -> (f32, f32) {
 }
 
 /// The error of `mirror` in ulp that remains after an input error of `backward` ulp is allowed for.
-fn excess(
-    mirror: fn(f32, f32) -> f32,
-    oracle: fn(f64, f64) -> f64,
-    (cosine, index): (f32, f32),
-    backward: f64,
-) -> f64 {
+fn excess(mirror: fn(f32, f32) -> f32, oracle: fn(f64, f64) -> f64, (cosine, index): (f32, f32), backward: f64) -> f64 {
     let exact = oracle(f64::from(cosine), f64::from(index));
     let (mut low, mut high) = (exact, exact);
-    for (i, j) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)] {
-        let near = oracle(
-            f64::from(cosine) + i * backward * ulp(cosine),
-            f64::from(index) + j * backward * ulp(index),
-        );
+    for (i, j) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)]
+    {
+        let near = oracle(f64::from(cosine) + i * backward * ulp(cosine), f64::from(index) + j * backward * ulp(index));
         (low, high) = (low.min(near), high.max(near));
     }
     let value = f64::from(mirror(cosine, index));

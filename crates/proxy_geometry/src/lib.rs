@@ -164,7 +164,13 @@ pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometr
 }
 
 /// Normal of a tile, eq. (8) and (9), turned so that it faces the ray.
-pub fn facet_normal(centre: Vec3, vertex_first: Vec3, vertex_second: Vec3, vertex_third: Vec3, direction: Vec3) -> Vec3 {
+pub fn facet_normal(
+    centre: Vec3,
+    vertex_first: Vec3,
+    vertex_second: Vec3,
+    vertex_third: Vec3,
+    direction: Vec3,
+) -> Vec3 {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0;
     let size = to_centre.x.abs().max(to_centre.y.abs()).max(to_centre.z.abs());
     if size == 0.0 {

@@ -52,8 +52,14 @@ pub fn image(centre: DVec3, position: DVec3) -> DVec3 {
 }
 
 /// Edges as differences of images.
-pub fn plane(centre: DVec3, position_first: DVec3, position_second: DVec3, position_third: DVec3) -> ProxyGeometryPlane {
-    let [first, second, third] = [position_first, position_second, position_third].map(|x| image(centre - position_first, x - position_first));
+pub fn plane(
+    centre: DVec3,
+    position_first: DVec3,
+    position_second: DVec3,
+    position_third: DVec3,
+) -> ProxyGeometryPlane {
+    let [first, second, third] =
+        [position_first, position_second, position_third].map(|x| image(centre - position_first, x - position_first));
     ProxyGeometryPlane { origin: first + position_first, edge_first: second - first, edge_second: third - first }
 }
 
@@ -75,7 +81,10 @@ pub fn intersect(position: DVec3, direction: DVec3, plane_point: DVec3, normal: 
     let unit = height.abs();
     let descent = (position + unit * direction - plane_point).dot(normal) - height;
     // Descends by less than the sine allows, or away from the plane.
-    if unit == 0.0 || (direction.dot(normal)).abs() <= f64::from(crate::PROXY_GEOMETRY_PARALLEL) || descent * height >= 0.0 {
+    if unit == 0.0
+        || (direction.dot(normal)).abs() <= f64::from(crate::PROXY_GEOMETRY_PARALLEL)
+        || descent * height >= 0.0
+    {
         return miss;
     }
     // The first estimate by the two heights, then one secant step, since they cancel for far points.
@@ -145,7 +154,8 @@ pub fn facet_normal(
     vertex_third: DVec3,
     direction: DVec3,
 ) -> DVec3 {
-    let to_centre = [vertex_first, vertex_second, vertex_third].iter().map(|vertex| (centre - vertex) / 3.0).sum::<DVec3>();
+    let to_centre =
+        [vertex_first, vertex_second, vertex_third].iter().map(|vertex| (centre - vertex) / 3.0).sum::<DVec3>();
     if to_centre == DVec3::ZERO {
         return -direction;
     }

@@ -94,11 +94,7 @@ pub fn tone_curve_naive(color: Vec3) -> Vec3 {
     let start = 0.76f32;
     let desaturation = 0.15f32;
     let smallest = color.x.min(color.y.min(color.z));
-    let offset = if smallest < 0.08 {
-        smallest - 6.25 * smallest * smallest
-    } else {
-        0.04
-    };
+    let offset = if smallest < 0.08 { smallest - 6.25 * smallest * smallest } else { 0.04 };
     let base = color - offset;
     let peak = base.x.max(base.y.max(base.z));
     if peak < start {

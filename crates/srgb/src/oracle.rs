@@ -12,32 +12,20 @@ pub fn encode(light: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if decode_power(middle) < display {
-            low = middle
-        } else {
-            high = middle
-        }
+        if decode_power(middle) < display { low = middle } else { high = middle }
     }
     high
 }
 
 /// The power law through logarithms.
 pub fn encode_gamma(light: f64) -> f64 {
-    if light <= 0.0 {
-        0.0
-    } else {
-        (light.min(1.0).ln() / 2.2).exp()
-    }
+    if light <= 0.0 { 0.0 } else { (light.min(1.0).ln() / 2.2).exp() }
 }
 
 /// Line and power: [`decode_power`] takes a fifth root instead of a power.
 pub fn decode(encoded: f64) -> f64 {
     let code = encoded.clamp(0.0, 1.0);
-    if code <= f64::from(0.04045f32) {
-        code * (1.0 / 12.92)
-    } else {
-        decode_power(code)
-    }
+    if code <= f64::from(0.04045f32) { code * (1.0 / 12.92) } else { decode_power(code) }
 }
 
 /// t^2.4 = t^2 (t^2)^(1/5), the fifth root by Newton's iteration from above.
@@ -72,11 +60,7 @@ pub fn tone_curve(color: DVec3) -> DVec3 {
     let radiance = color.max(DVec3::ZERO);
     let smallest = radiance.min_element();
     let knee = 2.0 * 0.04;
-    let toe = if smallest < knee {
-        0.5 * smallest * (smallest / knee)
-    } else {
-        0.5 * knee + (smallest - knee)
-    };
+    let toe = if smallest < knee { 0.5 * smallest * (smallest / knee) } else { 0.5 * knee + (smallest - knee) };
     let base = (radiance - smallest) + toe;
     let peak = base.max_element();
     let start = 0.8 - 0.04;

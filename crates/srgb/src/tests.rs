@@ -8,10 +8,7 @@ struct Lcg(u64);
 impl Lcg {
     /// Uniform in [0, 1).
     fn unit(&mut self) -> f32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 40) as f32 / (1u64 << 24) as f32
     }
     /// Magnitudes spread evenly over the exponents from 2^low to 2^high.
@@ -34,10 +31,8 @@ fn report(what: &str, worst: f64, bound: f64) {
     assert!(worst <= bound, "{what}: {worst:e} > {bound:e}");
 }
 
-const EDGES: [f32; 14] = [
-    -1e19, -1.0, -1e-20, 0.0, 1e-30, 0.0031307, 0.0031308, 0.0031309, 0.04044, 0.04045, 0.04046,
-    1.0, 1.0000001, 1e19,
-];
+const EDGES: [f32; 14] =
+    [-1e19, -1.0, -1e-20, 0.0, 1e-30, 0.0031307, 0.0031308, 0.0031309, 0.04044, 0.04045, 0.04046, 1.0, 1.0000001, 1e19];
 
 #[test]
 fn transfer_function_matches_the_oracle() {
@@ -53,13 +48,10 @@ fn transfer_function_matches_the_oracle() {
         }))
         .collect();
     for x in inputs {
-        let relative = |got: f32, exact: f64| {
-            (f64::from(got) - exact).abs() / exact.max(f64::from(f32::MIN_POSITIVE))
-        };
+        let relative = |got: f32, exact: f64| (f64::from(got) - exact).abs() / exact.max(f64::from(f32::MIN_POSITIVE));
         worst[0] = worst[0].max(relative(encode(x), oracle::encode(f64::from(x))));
         worst[1] = worst[1].max(relative(decode(x), oracle::decode(f64::from(x))));
-        worst[2] =
-            worst[2].max((f64::from(encode_gamma(x)) - oracle::encode_gamma(f64::from(x))).abs());
+        worst[2] = worst[2].max((f64::from(encode_gamma(x)) - oracle::encode_gamma(f64::from(x))).abs());
     }
     report("encode rel", worst[0], 1.2e-6);
     report("decode rel", worst[1], 1.2e-6);
@@ -93,11 +85,7 @@ fn luminance_weights_follow_from_the_primaries() {
     let xyz = |x: f64, y: f64| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
     let primaries = glam::DMat3::from_cols(xyz(0.64, 0.33), xyz(0.30, 0.60), xyz(0.15, 0.06));
     let weights = primaries.inverse() * xyz(0.3127, 0.3290);
-    for (axis, weight) in [
-        (DVec3::X, weights.x),
-        (DVec3::Y, weights.y),
-        (DVec3::Z, weights.z),
-    ] {
+    for (axis, weight) in [(DVec3::X, weights.x), (DVec3::Y, weights.y), (DVec3::Z, weights.z)] {
         assert!((oracle::luminance(axis) - weight).abs() < 0.5e-4);
     }
 }
@@ -120,10 +108,7 @@ fn colours_match_the_oracle() {
         }
         let exact = oracle::tone_curve(color.as_dvec3());
         let got = tone_curve(color);
-        assert!(
-            got.min_element() >= 0.0 && got.max_element() <= 1.0 + 3e-7,
-            "{color} {got}"
-        );
+        assert!(got.min_element() >= 0.0 && got.max_element() <= 1.0 + 3e-7, "{color} {got}");
         worst[0] = worst[0].max(vector_ulps(got, exact));
         let positive = color.abs();
         let exact = oracle::luminance(positive.as_dvec3());
@@ -149,30 +134,18 @@ fn naive_forms_fail_where_the_docs_say_so() {
         assert!(stable <= 6.0 && vector_ulps(naive, exact) > 50.0);
     }
     let naive = tone_curve_naive(Vec3::splat(-1.0));
-    println!(
-        "grey -1: naive {naive}, stable {}",
-        tone_curve(Vec3::splat(-1.0))
-    );
+    println!("grey -1: naive {naive}, stable {}", tone_curve(Vec3::splat(-1.0)));
     assert_eq!(encode_naive(0.0), -0.055);
     assert!(encode_naive(-1e-20).is_nan());
     assert!(encode_naive(5e-4) < 0.0 && encode(5e-4) > 0.006);
-    println!(
-        "encode 5e-4 {} naive {}; 1e19 naive {}",
-        encode(5e-4),
-        encode_naive(5e-4),
-        encode_naive(1e19)
-    );
+    println!("encode 5e-4 {} naive {}; 1e19 naive {}", encode(5e-4), encode_naive(5e-4), encode_naive(1e19));
     println!(
         "decode 0.04 {:e} naive {:e} oracle {:e}",
         decode(0.04),
         decode_naive(0.04),
         oracle::decode(f64::from(0.04f32))
     );
-    println!(
-        "decode -0.06 naive {:e}, 1e19 {:e}",
-        decode_naive(-0.06),
-        decode_naive(1e19)
-    );
+    println!("decode -0.06 naive {:e}, 1e19 {:e}", decode_naive(-0.06), decode_naive(1e19));
     assert!((decode_naive(0.04) / decode(0.04) - 1.0).abs() > 1e-4);
 }
 
@@ -190,14 +163,8 @@ fn naive_forms_hold_on_benign_inputs() {
         worst[1] = worst[1].max((f64::from(decode_naive(code)) - exact).abs() / exact);
         let mut channel = || rng.magnitude(-6.0, 6.0);
         let color = Vec3::new(channel(), channel(), channel());
-        worst[2] = worst[2].max(vector_ulps(
-            tone_curve_naive(color),
-            oracle::tone_curve(color.as_dvec3()),
-        ));
+        worst[2] = worst[2].max(vector_ulps(tone_curve_naive(color), oracle::tone_curve(color.as_dvec3())));
     }
-    println!(
-        "benign naive: encode {:e} rel, decode {:e} rel, tone curve {} ulp",
-        worst[0], worst[1], worst[2]
-    );
+    println!("benign naive: encode {:e} rel, decode {:e} rel, tone curve {} ulp", worst[0], worst[1], worst[2]);
     assert!(worst[0] < 1.2e-6 && worst[1] < 1.2e-6 && worst[2] < 150.0);
 }

@@ -1,14 +1,16 @@
 //! `cook check`.
 
-use super::{Context, Failure, Outcome};
+use super::{Context, Failure, Outcome, output};
 use lapidary_harness::check::{self, Row, Source};
-use lapidary_harness::cookbook;
+use lapidary_harness::formula::Formula;
 use lapidary_harness::property::{DEFAULT_CASES, Settings};
 use std::path::PathBuf;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --wgsl my_engine/refraction.wgsl")]
+#[command(
+    after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --wgsl my_engine/refraction.wgsl"
+)]
 pub(super) struct Arguments {
     /// A module, or one function of it as MODULE::FUNCTION; all where left out.
     #[arg(value_name = "MODULE[::FUNCTION]")]
@@ -37,11 +39,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         }
     };
     let source = copy.as_ref().map_or(Source::Cookbook, |(path, text)| Source::Copy(path, text));
-    let filter = match (&arguments.filter, source) {
-        (None, Source::Copy(path, text)) => Some(module_of(path, text)?),
-        (filter, _) => filter.clone(),
+    let formulas = match (&arguments.filter, source) {
+        (None, Source::Copy(path, text)) => functions_of(path, text)?,
+        (filter, _) => check::select(filter.as_deref())?,
     };
-    let formulas = check::select(filter.as_deref())?;
     let gpu = context.gpu()?;
     let settings = Settings { cases: arguments.cases, seed: arguments.seed };
     // All signatures first, so that a wrong one is said before minutes of testing.
@@ -57,32 +58,42 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     bar.finish_and_clear();
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&rows)?);
+        output::line(&serde_json::to_string_pretty(&rows)?.to_string())?;
     } else {
-        print_table(&rows, &gpu.describe());
+        output::bytes(table(&rows, &gpu.describe()).as_bytes())?;
     }
     Ok(if rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
 
-/// The module whose functions a user's file holds, where the user did not say.
-fn module_of(path: &str, text: &str) -> Result<String, Failure> {
-    let holds = |module: &&cookbook::Module| module.functions.iter().any(|function| text.contains(&function.name));
-    let mut found = cookbook::modules().iter().filter(holds);
-    match (found.next(), found.next()) {
-        (Some(module), None) => Ok(module.name.to_owned()),
-        (None, _) => Err(Failure(format!("{path}: holds no function of the cookbook; name one: cook check MODULE::FUNCTION --wgsl {path}"))),
-        (Some(_), Some(_)) => Err(Failure(format!("{path}: holds functions of several modules; name one: cook check MODULE --wgsl {path}"))),
+/// The formulas of the functions that a user's file defines, where the user did not say which to test.
+fn functions_of(path: &str, text: &str) -> Result<Vec<&'static Formula>, Failure> {
+    let defined = |formula: &&Formula| {
+        let definition = format!("fn {}(", formula.function);
+        text.lines().any(|line| line.split("//").next().unwrap_or_default().contains(&definition))
+    };
+    let found: Vec<&Formula> = check::select(None)?.into_iter().filter(defined).collect();
+    if found.is_empty() {
+        let message = format!("{path}: defines no function of the cookbook; keep the names, or see `./cook list`");
+        return Err(Failure(message));
     }
+    Ok(found)
 }
 
-fn print_table(rows: &[Row], adapter: &str) {
-    println!("on {adapter}; forward error against the f64 oracle in ulp, and the worst error over the allowed one");
-    println!(
+fn table(rows: &[Row], adapter: &str) -> String {
+    use std::fmt::Write as _;
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "on {adapter}; forward error against the f64 oracle in ulp, and the worst error over the allowed one"
+    );
+    let _ = writeln!(
+        text,
         "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7}",
         "function", "cases", "failed", "nonfinite", "max ulp", "p99", "median", "of bound", "seconds"
     );
     for row in rows {
-        println!(
+        let _ = writeln!(
+            text,
             "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7.2}",
             row.function,
             row.cases,
@@ -96,21 +107,22 @@ fn print_table(rows: &[Row], adapter: &str) {
         );
     }
     for row in rows.iter().filter(|row| !row.passed()) {
-        println!("\nFAILED {}", row.function);
+        let _ = writeln!(text, "\nFAILED {}", row.function);
         if let Some(reason) = &row.reason {
-            println!("  {reason}");
-            println!("  worst input:  {}", row.worst_input);
+            let _ = writeln!(text, "  {reason}");
+            let _ = writeln!(text, "  worst input:  {}", row.worst_input);
         }
         if let Some(shrunk) = &row.shrunk_input {
-            println!("  shrunk input: {shrunk}");
+            let _ = writeln!(text, "  shrunk input: {shrunk}");
         }
         for case in &row.broken_hard_cases {
-            println!("  hard case {case}");
+            let _ = writeln!(text, "  hard case {case}");
         }
         for edge in &row.missed_edges {
-            println!("  the inputs never reached: {edge}; run more --cases");
+            let _ = writeln!(text, "  the inputs never reached: {edge}; run more --cases");
         }
     }
+    text
 }
 
 /// Three digits, in whichever notation is shorter.

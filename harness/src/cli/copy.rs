@@ -1,17 +1,18 @@
 //! `cook copy`.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, output};
 use lapidary_harness::cookbook::translate::{Target, translate};
 use lapidary_harness::cookbook::{self, Module, Recipe};
 use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_harness::nearest;
 use lapidary_harness::render::file;
-use std::io::Write as _;
 use std::path::PathBuf;
 
 /// One self-contained file to paste: modules, or a recipe with all that it requires.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv")]
+#[command(
+    after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv"
+)]
 pub(super) struct Arguments {
     /// Modules, or one recipe. SPIR-V and GLSL hold entry points: there, name one function as MODULE::FUNCTION (it is
     /// wrapped in a compute kernel); for GLSL also one entry point of a recipe, as gem::gem_fragment.
@@ -51,9 +52,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.out {
         Some(path) => {
             file::replace(path, &bytes)?;
-            println!("{}", path.display());
+            output::line(&path.display().to_string())?;
         }
-        None => std::io::stdout().write_all(&bytes)?,
+        None => output::bytes(&bytes)?,
     }
     Ok(Outcome::Passed)
 }
@@ -70,13 +71,20 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
             return Ok(Selection::Recipe(recipe, part.map(str::to_owned)));
         }
         let Some(module) = cookbook::module(name) else {
-            let known: Vec<&str> = cookbook::modules().iter().map(|module| module.name).chain(cookbook::recipes().iter().map(|recipe| recipe.name)).collect();
+            let known: Vec<&str> = cookbook::modules()
+                .iter()
+                .map(|module| module.name)
+                .chain(cookbook::recipes().iter().map(|recipe| recipe.name))
+                .collect();
             return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
         };
         if let Some(function) = part {
             let Some(found) = module.function(function) else {
                 let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
-                return Err(Failure(format!("module `{name}` has no function `{function}`{}", nearest::suggest(function, &known))));
+                return Err(Failure(format!(
+                    "module `{name}` has no function `{function}`{}",
+                    nearest::suggest(function, &known)
+                )));
             };
             if !alone {
                 return Err(Failure(format!("`{name}::{function}` is one function; copy it alone")));
@@ -123,7 +131,9 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
         None => None,
         Some(entry) => match ir.entry_points.iter().find(|point| point.name == entry) {
             Some(point) => Some((entry, point.stage)),
-            None => return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", ")))),
+            None => {
+                return Err(Failure(format!("`{name}` has no entry point `{entry}`; there are {}", points.join(", "))));
+            }
         },
     };
     if to == Target::Glsl && entry.is_none() {
@@ -131,8 +141,13 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
     }
     // The writers know no overrides: each takes its default here.
     let constants = naga::back::PipelineConstants::default();
-    let (ir, info) = naga::back::pipeline_constants::process_overrides(&ir, &info, entry.map(|(name, stage)| (stage, name)), &constants)
-        .map_err(|error| Failure(error.to_string()))?;
+    let (ir, info) = naga::back::pipeline_constants::process_overrides(
+        &ir,
+        &info,
+        entry.map(|(name, stage)| (stage, name)),
+        &constants,
+    )
+    .map_err(|error| Failure(error.to_string()))?;
     translate(&ir, &info, to, entry).map_err(Failure)
 }
 
@@ -140,16 +155,24 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
 fn with_effects(recipe: &Recipe, effects: Option<&[String]>) -> Result<String, Failure> {
     let source = recipe.compose();
     let Some(effects) = effects else { return Ok(source) };
+    // `--effects ""` switches all of them off.
+    let effects: Vec<&String> = effects.iter().filter(|effect| !effect.is_empty()).collect();
     let known: Vec<String> = source.lines().filter_map(effect_of).collect();
     if let Some(unknown) = effects.iter().find(|effect| !known.contains(effect)) {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
-        return Err(Failure(format!("recipe `{}` has no effect `{unknown}`{}", recipe.name, nearest::suggest(unknown, &names))));
+        return Err(Failure(format!(
+            "recipe `{}` has no effect `{unknown}`{}",
+            recipe.name,
+            nearest::suggest(unknown, &names)
+        )));
     }
     let lines: Vec<String> = source
         .lines()
         .map(|line| match effect_of(line) {
             None => line.to_owned(),
-            Some(effect) => format!("override EFFECT_{}: bool = {};", effect.to_uppercase(), effects.contains(&effect)),
+            Some(effect) => {
+                format!("override EFFECT_{}: bool = {};", effect.to_uppercase(), effects.contains(&&effect))
+            }
         })
         .collect();
     Ok(lines.join("\n") + "\n")

@@ -1,6 +1,6 @@
 //! `cook gallery`.
 
-use super::{Context, Failure, Outcome, progress};
+use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/gallery"));
     let gpu = context.gpu()?;
-    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let source = cookbook::recipe_source("gem");
     let rendered = tempfile::tempdir()?;
     let bar = progress::bar(SHOTS.len() as u64, "rendering");
     let mut pictures = Vec::new();
@@ -32,7 +32,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         let [seen, _] = snapshot::render_shot(gpu, shot, &source)?;
         let path = rendered.path().join(format!("{}.png", shot.name));
         file::write(&seen, &path)?;
-        let of_scene = BUILT_IN.iter().find(|built_in| built_in.name == shot.scene).map_or("", |built_in| built_in.description);
+        let of_scene =
+            BUILT_IN.iter().find(|built_in| built_in.name == shot.scene).map_or("", |built_in| built_in.description);
         pictures.push(Picture {
             title: shot.title.to_owned(),
             file: path,
@@ -45,7 +46,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     bar.finish_and_clear();
     let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &[] })?;
     let index = index.canonicalize().unwrap_or(index);
-    println!("{}", index.display());
+    output::line(&index.display().to_string())?;
     if arguments.open {
         open(&index)?;
     }

@@ -1,6 +1,6 @@
 //! `cook list`.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, output};
 use lapidary_harness::cookbook;
 use lapidary_harness::dispatch::{self, shape::Signature};
 use serde::Serialize;
@@ -38,17 +38,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     }
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&rows)?);
+        output::line(&serde_json::to_string_pretty(&rows)?.to_string())?;
         return Ok(Outcome::Passed);
     }
     for module in cookbook::modules() {
-        println!("{}: {}", module.name, module.header.purpose);
+        output::line(&format!("{}: {}", module.name, module.header.purpose))?;
         for row in rows.iter().filter(|row| row.module == module.name) {
-            println!("  {}\n      {}", row.signature, row.accuracy);
+            output::line(&format!("  {}\n      {}", row.signature, row.accuracy))?;
         }
     }
     for recipe in cookbook::recipes() {
-        println!("recipe {}: requires {}", recipe.name, recipe.requires.join(", "));
+        output::line(&format!("recipe {}: requires {}", recipe.name, recipe.requires.join(", ")))?;
     }
     Ok(Outcome::Passed)
 }

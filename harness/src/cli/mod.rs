@@ -5,6 +5,7 @@ mod check;
 mod copy;
 mod gallery;
 mod list;
+mod output;
 mod progress;
 mod render;
 mod scene;

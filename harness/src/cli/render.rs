@@ -1,9 +1,9 @@
 //! `cook render`.
 
-use super::{Context, Failure, Outcome, progress};
+use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::nearest;
-use lapidary_harness::render::file::Format;
+use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{self, Environment, RUNGS, Rung, Settings};
 use lapidary_harness::scene::Scene;
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -11,7 +11,9 @@ use std::path::PathBuf;
 
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  ./cook render brilliant\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr")]
+#[command(
+    after_help = "Examples:\n  ./cook render brilliant\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
+)]
 pub(super) struct Arguments {
     /// brilliant, octahedron, step_cut, prism, bunny_stone, or a glTF 2.0 file.
     scene: String,
@@ -36,7 +38,8 @@ pub(super) struct Arguments {
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let parsed = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
+    let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
     parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
 }
 
@@ -57,6 +60,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let scene = Scene::open(&arguments.scene)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
+    file::check_writable(&out)?;
     let environment = match &arguments.environment {
         None => Environment::Studio,
         Some(path) => Environment::Map(EnvironmentMap::load(path)?),
@@ -69,14 +73,14 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         exposure: arguments.exposure,
         ..Settings::of_size(width, height)
     };
-    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let source = cookbook::recipe_source("gem");
     let bar = progress::bar(0, "rendering");
     let picture = render::render_with(context.gpu()?, &scene, &settings, &source, &mut |done, total| {
         bar.set_length(total);
         bar.set_position(done);
     })?;
     bar.finish_and_clear();
-    render::file::write(&picture, &out)?;
-    println!("{}", out.display());
+    file::write(&picture, &out)?;
+    output::line(&out.display().to_string())?;
     Ok(Outcome::Passed)
 }

@@ -1,6 +1,6 @@
 //! `cook scene`.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, output};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::{Scene, glb};
 use std::path::PathBuf;
@@ -19,6 +19,6 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let bytes = glb::write(&Scene::named(&arguments.name)?)?;
     file::replace(&arguments.out, &bytes)?;
-    println!("{}", arguments.out.display());
+    output::line(&arguments.out.display().to_string())?;
     Ok(Outcome::Passed)
 }

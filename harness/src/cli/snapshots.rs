@@ -1,6 +1,6 @@
 //! `cook snapshots`.
 
-use super::{Context, Failure, Outcome, progress};
+use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::snapshot::{self, SHOTS};
 
@@ -15,7 +15,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let gpu = context.gpu()?;
-    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let source = cookbook::recipe_source("gem");
     let folder = snapshot::folder();
     let bar = progress::bar(SHOTS.len() as u64, "rendering");
     let mut outcome = Outcome::Passed;
@@ -51,6 +51,6 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         bar.inc(1);
     }
     bar.finish_and_clear();
-    lines.iter().for_each(|line| println!("{line}"));
+    output::line(&lines.join("\n"))?;
     Ok(outcome)
 }

@@ -28,6 +28,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if let Some(filter) = &arguments.filter {
         command.arg("--").arg(filter);
     }
-    let status = command.status().map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;
+    let status =
+        command.status().map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;
     Ok(if status.success() { Outcome::Passed } else { Outcome::Failed })
 }

@@ -130,8 +130,11 @@ impl fmt::Display for FieldBound {
         }
         let Bound { ulp, absolute, relative, backward } = self.bound;
         let terms = [(ulp, "ulp"), (absolute, "abs"), (relative, "rel"), (backward, "backward")];
-        let mut terms: Vec<String> =
-            terms.iter().filter(|(number, _)| *number != 0.0).map(|(number, unit)| format!("{number} {unit}")).collect();
+        let mut terms: Vec<String> = terms
+            .iter()
+            .filter(|(number, _)| *number != 0.0)
+            .map(|(number, unit)| format!("{number} {unit}"))
+            .collect();
         if terms.is_empty() {
             terms.push("0 ulp".to_owned());
         }
@@ -157,9 +160,16 @@ mod tests {
 
     #[test]
     fn a_broken_line_is_refused() {
-        for line in
-            ["", "exact", "lavapipe 3 ulp", "portable 3 ulp; lavapipe 3 ulp", "lavapipe 3; portable 3 ulp", "lavapipe 3 cm; portable 3 ulp", "lavapipe inf ulp; portable 1 ulp", "lavapipe -1 ulp; portable 1 ulp"]
-        {
+        for line in [
+            "",
+            "exact",
+            "lavapipe 3 ulp",
+            "portable 3 ulp; lavapipe 3 ulp",
+            "lavapipe 3; portable 3 ulp",
+            "lavapipe 3 cm; portable 3 ulp",
+            "lavapipe inf ulp; portable 1 ulp",
+            "lavapipe -1 ulp; portable 1 ulp",
+        ] {
             assert!(Accuracy::parse(line).is_err(), "{line}");
         }
     }

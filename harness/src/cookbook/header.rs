@@ -53,17 +53,22 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
     let fault = |line: usize, message: &str| HeaderFault { line, message: message.to_owned() };
     let mut lines = source.lines();
     let first = lines.next().and_then(|line| line.strip_prefix("// ")).and_then(|line| line.split_once(": "));
-    let Some((name, purpose)) = first else {
+    let Some((name, purpose)) = first.filter(|(name, purpose)| !name.is_empty() && !purpose.trim().is_empty()) else {
         return Err(fault(1, "expected `// <module>: <purpose in one line>`"));
     };
     let licence = lines.next().and_then(|line| line.strip_prefix("// SPDX-License-Identifier: "));
     if licence != Some(LICENCE) {
         return Err(fault(2, &format!("expected `// SPDX-License-Identifier: {LICENCE}`")));
     }
-    let Some(source_line) = lines.next().and_then(|line| line.strip_prefix("// Source: ")) else {
+    let source_line = lines.next().and_then(|line| line.strip_prefix("// Source: "));
+    let Some(source_line) = source_line.filter(|source| !source.trim().is_empty()) else {
         return Err(fault(3, "expected `// Source: <paper, book or specification, with equation numbers>`"));
     };
-    Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), source: source_line.to_owned() })
+    // A source may run on, up to an empty comment line or the end of the comment.
+    let more =
+        lines.map_while(|line| line.strip_prefix("// ").map(str::trim)).filter(|line| !line.starts_with("requires:"));
+    let source = std::iter::once(source_line.trim()).chain(more).collect::<Vec<_>>().join(" ");
+    Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), source })
 }
 
 /// Reads the comment of every function of a module.
@@ -98,7 +103,10 @@ fn parse_function(name: &str, line: usize, comment: &[&str]) -> Result<FunctionD
     }
     let found: Vec<Option<usize>> = parts.iter().skip(1).map(|(tag, _)| *tag).collect();
     if found != (0..TAGS.len()).map(Some).collect::<Vec<_>>() {
-        return Err(fault(format!("expected the tags {} once each, in this order", TAGS.map(|tag| format!("{tag}:")).join(" "))));
+        return Err(fault(format!(
+            "expected the tags {} once each, in this order",
+            TAGS.map(|tag| format!("{tag}:")).join(" ")
+        )));
     }
     if let Some((tag, _)) = parts.iter().find(|(_, text)| text.is_empty()) {
         return Err(fault(format!("{} is empty", tag.map_or("the summary", |tag| TAGS[tag]))));

@@ -128,12 +128,20 @@ fn check_purity(source: &str, module: &naga::Module, report: &mut Report<'_>) {
         (module.entry_points.len(), "an entry point"),
     ];
     for (_, what) in held.iter().filter(|(count, _)| *count > 0) {
-        report(Rule::PureFunctions, 0, format!("{what} belongs in a recipe; a module holds functions, structs and consts"));
+        report(
+            Rule::PureFunctions,
+            0,
+            format!("{what} belongs in a recipe; a module holds functions, structs and consts"),
+        );
     }
     for (line, code) in code_lines(source) {
-        let word = code.split_whitespace().next().unwrap_or_default();
-        if ["enable", "requires", "diagnostic", "alias", "const_assert"].contains(&word.trim_end_matches('(')) {
-            report(Rule::PureFunctions, line, format!("`{word}` does not survive pasting after other text; leave it out"));
+        let word = identifiers(code).next().unwrap_or_default();
+        if ["enable", "requires", "diagnostic", "alias", "const_assert"].contains(&word) {
+            report(
+                Rule::PureFunctions,
+                line,
+                format!("`{word}` does not survive pasting after other text; leave it out"),
+            );
         }
     }
 }
@@ -157,10 +165,11 @@ fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Rep
             report(Rule::Prefix, line_of(source, found), message);
         }
     }
-    for found in identifiers(module) {
-        if found.ends_with('_') || found.contains("__") {
+    // In the text, since naga keeps no name of a local const, and one only of two names for the same value.
+    for (line, code) in code_lines(source) {
+        for found in identifiers(code).filter(|found| found.ends_with('_') || found.contains("__")) {
             let message = format!("`{found}`: naga renames what ends in `_` or holds `__`, and naga_oil refuses it");
-            report(Rule::Identifier, line_of(source, &found), message);
+            report(Rule::Identifier, line, message);
         }
     }
     for (_, ty) in module.types.iter() {
@@ -174,23 +183,10 @@ fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Rep
     }
 }
 
-/// Every name that the module gives: globals, members, arguments, locals.
-fn identifiers(module: &naga::Module) -> Vec<String> {
-    let mut names = Vec::new();
-    for (_, ty) in module.types.iter() {
-        names.extend(ty.name.clone());
-        if let naga::TypeInner::Struct { members, .. } = &ty.inner {
-            names.extend(members.iter().filter_map(|member| member.name.clone()));
-        }
-    }
-    names.extend(module.constants.iter().filter_map(|(_, constant)| constant.name.clone()));
-    for (_, function) in module.functions.iter() {
-        names.extend(function.name.clone());
-        names.extend(function.arguments.iter().filter_map(|argument| argument.name.clone()));
-        names.extend(function.local_variables.iter().filter_map(|(_, local)| local.name.clone()));
-        names.extend(function.named_expressions.values().cloned());
-    }
-    names
+/// The identifiers and keywords of a line, in order.
+fn identifiers(code: &str) -> impl Iterator<Item = &str> {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    code.split(move |c| !word(c)).filter(|token| token.starts_with(|c: char| c.is_alphabetic() || c == '_'))
 }
 
 fn check_self_comparison(source: &str, module: &naga::Module, report: &mut Report<'_>) {
@@ -201,7 +197,9 @@ fn check_self_comparison(source: &str, module: &naga::Module, report: &mut Repor
             if equality && same(function, *left, *right) {
                 let line = function.expressions.get_span(handle).location(source).line_number as usize;
                 let name = function.name.as_deref().unwrap_or_default();
-                let message = format!("`{name}` compares a value with itself: naga emits an ordered comparison, so this never finds a NaN; test bits, or keep NaN out");
+                let message = format!(
+                    "`{name}` compares a value with itself: naga emits an ordered comparison, so this never finds a NaN; test bits, or keep NaN out"
+                );
                 report(Rule::SelfComparison, line, message);
             }
         }
@@ -226,8 +224,15 @@ fn same(function: &Function, left: Handle<Expression>, right: Handle<Expression>
 fn check_literals(source: &str, report: &mut Report<'_>) {
     for (line, code) in code_lines(source) {
         for literal in numeric_literals(code) {
-            if !literal.ends_with(['f', 'u', 'i']) {
-                let message = format!("literal `{literal}` carries no type: write `{literal}f`, `{literal}u` or `{literal}i`");
+            // The f of 0xff is a digit.
+            let typed = if literal.starts_with("0x") && !literal.contains(['p', 'P']) {
+                literal.ends_with(['u', 'i'])
+            } else {
+                literal.ends_with(['f', 'u', 'i'])
+            };
+            if !typed {
+                let message =
+                    format!("literal `{literal}` carries no type: write `{literal}f`, `{literal}u` or `{literal}i`");
                 report(Rule::Literal, line, message);
             }
         }
@@ -250,7 +255,8 @@ fn numeric_literals(code: &str) -> Vec<&str> {
             while at < bytes.len() && (bytes[at].is_ascii_alphanumeric() || bytes[at] == b'_') {
                 at += 1;
             }
-        } else if bytes[at].is_ascii_digit() || (bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit)) {
+        } else if bytes[at].is_ascii_digit() || (bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit))
+        {
             let exponent: &[u8] = if code[at..].starts_with("0x") { b"pP" } else { b"eE" };
             while at < bytes.len()
                 && (bytes[at].is_ascii_alphanumeric()
@@ -269,5 +275,8 @@ fn numeric_literals(code: &str) -> Vec<&str> {
 
 /// The first line on which `word` stands, from 1; 0 where it does not.
 fn line_of(source: &str, word: &str) -> usize {
-    source.lines().position(|line| line.split("//").next().unwrap_or_default().contains(word)).map_or(0, |line| line + 1)
+    source
+        .lines()
+        .position(|line| line.split("//").next().unwrap_or_default().contains(word))
+        .map_or(0, |line| line + 1)
 }

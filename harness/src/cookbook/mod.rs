@@ -103,9 +103,21 @@ fn requires(source: &'static str) -> Vec<&'static str> {
         .unwrap_or_default()
 }
 
-/// Modules one after another in the order of `names`, then `last`. Unknown names are left to the caller to refuse.
+/// The whole shader of a recipe that is known to exist.
+///
+/// # Panics
+/// Where there is no such recipe: names in the harness are fixed, and a user's is looked up first.
+pub fn recipe_source(name: &str) -> String {
+    recipe(name).unwrap_or_else(|| panic!("no recipe `{name}`")).compose()
+}
+
+/// Modules one after another in the order of `names`, then `last`.
+///
+/// # Panics
+/// Where a module is unknown: recipes are compiled in, and a user's names are looked up first.
 pub fn compose(names: &[&str], last: &str) -> String {
-    let mut parts: Vec<&str> = names.iter().filter_map(|name| module(name)).map(|module| module.source).collect();
+    let known = |name: &&str| module(name).unwrap_or_else(|| panic!("no module `{name}`")).source;
+    let mut parts: Vec<&str> = names.iter().map(known).collect();
     if !last.is_empty() {
         parts.push(last);
     }

@@ -63,12 +63,18 @@ pub fn translate(
                 return Err("GLSL needs an entry point".to_owned());
             };
             let options = back::glsl::Options { version: back::glsl::Version::Desktop(450), ..Default::default() };
-            let pipeline =
-                back::glsl::PipelineOptions { shader_stage, entry_point: name.to_owned(), multiview: None };
+            let pipeline = back::glsl::PipelineOptions { shader_stage, entry_point: name.to_owned(), multiview: None };
             let mut text = String::new();
-            back::glsl::Writer::new(&mut text, module, info, &options, &pipeline, naga::proc::BoundsCheckPolicies::default())
-                .and_then(|mut writer| writer.write())
-                .map_err(|error| error.to_string())?;
+            back::glsl::Writer::new(
+                &mut text,
+                module,
+                info,
+                &options,
+                &pipeline,
+                naga::proc::BoundsCheckPolicies::default(),
+            )
+            .and_then(|mut writer| writer.write())
+            .map_err(|error| error.to_string())?;
             Ok(text.into_bytes())
         }
     }

@@ -122,9 +122,9 @@ fn convert(
     }
     let parts: Vec<String> = match shape {
         Shape::Scalar(_) | Shape::Vector(..) => return bools(shape, expression),
-        Shape::Array(element, length) => (0..*length)
-            .map(|index| convert(element, &format!("{expression}[{index}]"), type_name, bools))
-            .collect(),
+        Shape::Array(element, length) => {
+            (0..*length).map(|index| convert(element, &format!("{expression}[{index}]"), type_name, bools)).collect()
+        }
         Shape::Struct(_, fields) => fields
             .iter()
             .map(|(name, shape)| convert(shape, &format!("{expression}.{name}"), type_name, bools))

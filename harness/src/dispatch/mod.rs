@@ -34,8 +34,8 @@ pub enum DispatchError {
 pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), DispatchError> {
     let module = naga::front::wgsl::parse_str(source)
         .map_err(|error| DispatchError::Source(error.emit_to_string_with_path(source, path)))?;
-    let info = validate(&module)
-        .map_err(|error| DispatchError::Source(error.emit_to_string_with_path(source, path)))?;
+    let info =
+        validate(&module).map_err(|error| DispatchError::Source(error.emit_to_string_with_path(source, path)))?;
     Ok((module, info))
 }
 

@@ -130,11 +130,14 @@ impl Shape {
             naga::TypeInner::Struct { members, .. } => {
                 let fields = members
                     .iter()
-                    .map(|member| {
-                        Ok((member.name.clone().unwrap_or_default(), Self::of_type(module, member.ty)?))
-                    })
+                    .map(|member| Ok((member.name.clone().unwrap_or_default(), Self::of_type(module, member.ty)?)))
                     .collect::<Result<_, String>>()?;
                 Ok(Shape::Struct(named(ty), fields))
+            }
+            naga::TypeInner::Image { .. } => Err("a texture cannot be passed through a buffer".to_owned()),
+            naga::TypeInner::Sampler { .. } => Err("a sampler cannot be passed through a buffer".to_owned()),
+            naga::TypeInner::Pointer { .. } | naga::TypeInner::ValuePointer { .. } => {
+                Err("a pointer cannot be passed through a buffer".to_owned())
             }
             _ => Err(format!("`{}` cannot be passed through a buffer", named(ty))),
         }
@@ -191,11 +194,8 @@ impl Signature {
         let Some((_, found)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)) else {
             return Err(SignatureError::Missing { function: function.to_owned() });
         };
-        let unsupported = |part: String, reason: String| SignatureError::Unsupported {
-            function: function.to_owned(),
-            part,
-            reason,
-        };
+        let unsupported =
+            |part: String, reason: String| SignatureError::Unsupported { function: function.to_owned(), part, reason };
         let arguments = found
             .arguments
             .iter()

@@ -2,8 +2,8 @@
 
 use super::shape::{Scalar, Shape};
 use glam::{
-    BVec2, BVec3, BVec4, DMat2, DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2,
-    UVec3, UVec4, Vec2, Vec3, Vec4,
+    BVec2, BVec3, BVec4, DMat2, DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2, UVec3,
+    UVec4, Vec2, Vec3, Vec4,
 };
 
 /// A value of a mirror: it has the shape of a WGSL type.

@@ -53,7 +53,9 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
         2 => (first, first),
         3 => (DVec3::ZERO, DVec3::ZERO),
         4 => (first, 3.0 * first),
-        5 | 6 => (first, f64::from(draws.between(0.0, 1.0)) * first + 0.003 * f64::from(draws.between(0.1, 2.0)) * across),
+        5 | 6 => {
+            (first, f64::from(draws.between(0.0, 1.0)) * first + 0.003 * f64::from(draws.between(0.1, 2.0)) * across)
+        }
         7 => (first, first + 1e-3 * f64::from(draws.between(0.1, 2.0)) * draws.direction()),
         _ => (first, f64::from(draws.between(-1.0, 1.5)) * first + f64::from(draws.between(0.2, 1.5)) * across),
     };
@@ -173,22 +175,58 @@ fn line_formulas() -> Vec<Formula> {
             .pair("the lines exchanged exchange the parameters", |(x_i, n_i, x_j, n_j)| (x_j, n_j, x_i, n_i), {
                 |_, t: Vec2, other: Vec2| {
                     let scale = f64::from(t.abs().max_element());
-                    near("difference", (t.as_dvec2() - glam::DVec2::new(other.y.into(), other.x.into())).length(), 0.0, 1e-5 * scale)
+                    near(
+                        "difference",
+                        (t.as_dvec2() - glam::DVec2::new(other.y.into(), other.x.into())).length(),
+                        0.0,
+                        1e-5 * scale,
+                    )
                 }
             })
-            .hard_case("an angle of 1e-2", at_angle([0.599_970_04, 0.009_999_501, 0.799_960_1]), (&[-99.979_914_605_189_62, -100.004_908_535_909_37], 6e-5), (NAIVE, 0.05))
-            .hard_case("an angle of 1e-3", at_angle([0.599_999_7, 0.000_999_999_6, 0.799_999_65]), (&[-999.971_369_6, -999.991_834_5], 5e-4), (NAIVE, 40.0))
-            .hard_case("an angle of 1e-4", at_angle([0.6, 1e-4, 0.8]), (&[-9_999.980_252_612_671, -10_000.000_252_621_254], 8e-3), (NAIVE, f64::INFINITY))
-            .hard_case("an angle of 1e-7", at_angle([0.6, 1e-7, 0.8]), (&[-9_999_999.863_139_018, -9_999_999.883_139_025], 8.0), (NAIVE, f64::INFINITY))
+            .hard_case(
+                "an angle of 1e-2",
+                at_angle([0.599_970_04, 0.009_999_501, 0.799_960_1]),
+                (&[-99.979_914_605_189_62, -100.004_908_535_909_37], 6e-5),
+                (NAIVE, 0.05),
+            )
+            .hard_case(
+                "an angle of 1e-3",
+                at_angle([0.599_999_7, 0.000_999_999_6, 0.799_999_65]),
+                (&[-999.971_369_6, -999.991_834_5], 5e-4),
+                (NAIVE, 40.0),
+            )
+            .hard_case(
+                "an angle of 1e-4",
+                at_angle([0.6, 1e-4, 0.8]),
+                (&[-9_999.980_252_612_671, -10_000.000_252_621_254], 8e-3),
+                (NAIVE, f64::INFINITY),
+            )
+            .hard_case(
+                "an angle of 1e-7",
+                at_angle([0.6, 1e-7, 0.8]),
+                (&[-9_999_999.863_139_018, -9_999_999.883_139_025], 8.0),
+                (NAIVE, f64::INFINITY),
+            )
             .hard_case("parallel normals", at_angle([0.6, 0.0, 0.8]), (&[0.0, 0.0], 0.0), (NAIVE, f64::INFINITY))
-            .hard_case("two axes, where a sphere cannot tell t_i from t_j", (Vec3::ZERO, Vec3::X, Vec3::new(2.0, 3.0, 0.0), Vec3::Y), (&[2.0, -3.0], 0.0), ("closest_point_parameters_literal", 5.0))
+            .hard_case(
+                "two axes, where a sphere cannot tell t_i from t_j",
+                (Vec3::ZERO, Vec3::X, Vec3::new(2.0, 3.0, 0.0), Vec3::Y),
+                (&[2.0, -3.0], 0.0),
+                ("closest_point_parameters_literal", 5.0),
+            )
             .build(),
         formula(M, "closest_point_parameters_dot", mirror::parameters_dot, oracle::parameters_dot, benign_lines)
             .benign(1e-4)
             .build(),
-        formula(M, "closest_point_parameters_literal", mirror::parameters_literal, oracle::parameters_literal, benign_lines)
-            .benign(1e-4)
-            .build(),
+        formula(
+            M,
+            "closest_point_parameters_literal",
+            mirror::parameters_literal,
+            oracle::parameters_literal,
+            benign_lines,
+        )
+        .benign(1e-4)
+        .build(),
     ]
 }
 
@@ -198,7 +236,8 @@ fn fallback_formulas() -> Vec<Formula> {
     let below = |size: f64| {
         let third = size / 3.0;
         // √2 of the longest edge, less what the fading takes of it.
-        let depth = std::f64::consts::SQRT_2 * size / (1.0 + (2.0 * f64::from(lapidary_closest_point::CLOSEST_POINT_SLIVER)).powi(2)).sqrt();
+        let depth = std::f64::consts::SQRT_2 * size
+            / (1.0 + (2.0 * f64::from(lapidary_closest_point::CLOSEST_POINT_SLIVER)).powi(2)).sqrt();
         [third, third, -depth]
     };
     let corner = Vec3::new(1.0, 2.0, 3.0);
@@ -209,7 +248,9 @@ fn fallback_formulas() -> Vec<Formula> {
         })
         .edge("two equal corners", |(a, b, c)| a == b && b != c)
         .edge("three equal corners", |(a, b, c)| a == b && b == c)
-        .edge("collinear", |(a, b, c)| a != b && a != c && (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()) == Vec3::ZERO)
+        .edge("collinear", |(a, b, c)| {
+            a != b && a != c && (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()) == Vec3::ZERO
+        })
         .edge("size below 1e-18", |(a, b, c)| a != b && extent([a, b, c]) < 1e-18)
         .edge("size above 1e18", |(a, b, c)| extent([a, b, c]) > 1e18)
         .invariant("no farther than the longest edge from the centroid", |(a, b, c), p: Vec3| {
@@ -217,14 +258,28 @@ fn fallback_formulas() -> Vec<Formula> {
             let scale = extent([a, b, c]) + f64::from(a.abs().max_element());
             near("excess", (p.as_dvec3().distance(centroid) - extent([a, b, c])).max(0.0), 0.0, 1e-5 * scale)
         })
-        .pair("twice the size, twice as far", |(a, b, c)| (2.0 * a, 2.0 * b, 2.0 * c), |_, p: Vec3, doubled: Vec3| {
-            near("difference", (2.0 * p - doubled).as_dvec3().length(), 0.0, 1e-6 * p.as_dvec3().length())
-        })
+        .pair(
+            "twice the size, twice as far",
+            |(a, b, c)| (2.0 * a, 2.0 * b, 2.0 * c),
+            |_, p: Vec3, doubled: Vec3| {
+                near("difference", (2.0 * p - doubled).as_dvec3().length(), 0.0, 1e-6 * p.as_dvec3().length())
+            },
+        )
         .hard_case("edges of 1e-20", right_angled(1e-20), (&below(f64::from(1e-20f32)), 1e-26), (NAIVE, f64::INFINITY))
         .hard_case("edges of 1e19", right_angled(1e19), (&below(1e19), 1e13), (NAIVE, 1e18))
-        .hard_case("two equal corners", (corner, corner, corner + Vec3::X), (&[4.0 / 3.0, 2.0, 3.0], 1e-6), (NAIVE, f64::INFINITY))
+        .hard_case(
+            "two equal corners",
+            (corner, corner, corner + Vec3::X),
+            (&[4.0 / 3.0, 2.0, 3.0], 1e-6),
+            (NAIVE, f64::INFINITY),
+        )
         .hard_case("three equal corners", (corner, corner, corner), (&[1.0, 2.0, 3.0], 0.0), (NAIVE, f64::INFINITY))
-        .hard_case("collinear corners", (Vec3::ZERO, Vec3::X, 3.0 * Vec3::X), (&[4.0 / 3.0, 0.0, 0.0], 1e-6), (NAIVE, f64::INFINITY))
+        .hard_case(
+            "collinear corners",
+            (Vec3::ZERO, Vec3::X, 3.0 * Vec3::X),
+            (&[4.0 / 3.0, 0.0, 0.0], 1e-6),
+            (NAIVE, f64::INFINITY),
+        )
         .build(),
         formula(M, "closest_point_fallback_naive", mirror::fallback_naive, oracle::fallback_naive, |draws| {
             let place = Vec3::splat(3.0) + draws.in_cube();
@@ -261,16 +316,19 @@ fn centre_formulas() -> Vec<Formula> {
                 let face = (b - a).cross(c - a).normalize_or_zero();
                 (mirror::centre(a, n_a, b, n_b, c, n_c) - a).dot(face) > 0.0
             })
-            .invariant("no farther from the fallback than the regularisation allows", |(a, n_a, b, n_b, c, n_c), o: Vec3| {
-                let p = oracle::fallback(a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
-                let residual: f64 = [(a, n_a), (b, n_b), (c, n_c)]
-                    .iter()
-                    .map(|(x, n)| (x.as_dvec3() - p).cross(n.as_dvec3()).length_squared())
-                    .sum();
-                let most = residual.sqrt() / (2.0 * f64::from(CLOSEST_POINT_REGULARISATION).sqrt());
-                let distance = o.as_dvec3().distance(p);
-                near("excess", (distance - most).max(0.0), 0.0, 1e-4 * (most + p.length()))
-            })
+            .invariant(
+                "no farther from the fallback than the regularisation allows",
+                |(a, n_a, b, n_b, c, n_c), o: Vec3| {
+                    let p = oracle::fallback(a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+                    let residual: f64 = [(a, n_a), (b, n_b), (c, n_c)]
+                        .iter()
+                        .map(|(x, n)| (x.as_dvec3() - p).cross(n.as_dvec3()).length_squared())
+                        .sum();
+                    let most = residual.sqrt() / (2.0 * f64::from(CLOSEST_POINT_REGULARISATION).sqrt());
+                    let distance = o.as_dvec3().distance(p);
+                    near("excess", (distance - most).max(0.0), 0.0, 1e-4 * (most + p.length()))
+                },
+            )
             .pair("the order of the corners does not matter", |(a, n_a, b, n_b, c, n_c)| (b, n_b, c, n_c, a, n_a), {
                 |(a, n_a, b, n_b, c, n_c), o: Vec3, other: Vec3| {
                     // The sum's conditioning: the inverse of the angle's square, or of the regularisation.
@@ -280,16 +338,40 @@ fn centre_formulas() -> Vec<Formula> {
                     near("difference", (o - other).as_dvec3().length(), 0.0, 2e-5 * scale * amplified * 64.0)
                 }
             })
-            .hard_case("three nearly equal normals", with(Vec3::new(1e-7, 0.0, 1.0), Vec3::new(-5e-8, 8.66e-8, 1.0), Vec3::new(-5e-8, -8.66e-8, 1.0)), (&[0.0, 0.0, -0.875_617_006_4], 3e-7), (PAPER, 1e6))
-            .hard_case("one normal tilted by 1e-7 inwards", with(Vec3::new(1e-7, 0.0, 1.0), up, up), (&[0.0, 0.0, -0.875_204_232_1], 3e-7), (PAPER, 1e6))
-            .hard_case("one normal tilted by 1e-7 outwards", with(Vec3::new(-1e-7, 0.0, 1.0), up, up), (&[0.0, 0.0, -0.874_794_632_1], 3e-7), (PAPER, 1e6))
+            .hard_case(
+                "three nearly equal normals",
+                with(Vec3::new(1e-7, 0.0, 1.0), Vec3::new(-5e-8, 8.66e-8, 1.0), Vec3::new(-5e-8, -8.66e-8, 1.0)),
+                (&[0.0, 0.0, -0.875_617_006_4], 3e-7),
+                (PAPER, 1e6),
+            )
+            .hard_case(
+                "one normal tilted by 1e-7 inwards",
+                with(Vec3::new(1e-7, 0.0, 1.0), up, up),
+                (&[0.0, 0.0, -0.875_204_232_1], 3e-7),
+                (PAPER, 1e6),
+            )
+            .hard_case(
+                "one normal tilted by 1e-7 outwards",
+                with(Vec3::new(-1e-7, 0.0, 1.0), up, up),
+                (&[0.0, 0.0, -0.874_794_632_1], 3e-7),
+                (PAPER, 1e6),
+            )
             .hard_case(
                 "normals an ulp apart",
-                with(leaning, Vec3::new(leaning.x.next_up(), leaning.y, leaning.z), Vec3::new(leaning.x, leaning.y.next_up(), leaning.z)),
+                with(
+                    leaning,
+                    Vec3::new(leaning.x.next_up(), leaning.y, leaning.z),
+                    Vec3::new(leaning.x, leaning.y.next_up(), leaning.z),
+                ),
                 (&[-0.251_953_560_86, -0.335_938_053_40, -0.559_967_971_75], 5e-7),
                 (PAPER, 1e6),
             )
-            .hard_case("three equal normals", with(up, up, up), (&[0.0, 0.0, -0.874_999_432_1], 3e-7), ("closest_point_centre_literal", f64::INFINITY))
+            .hard_case(
+                "three equal normals",
+                with(up, up, up),
+                (&[0.0, 0.0, -0.874_999_432_1], 3e-7),
+                ("closest_point_centre_literal", f64::INFINITY),
+            )
             .build(),
     ]
 }

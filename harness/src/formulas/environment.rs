@@ -128,9 +128,17 @@ fn angle_formulas() -> Vec<Formula> {
             .edge("behind, below the seam", |(y, x)| x < 0.0 && y < 0.0)
             .edge("on the seam", |(y, x)| x < 0.0 && y == 0.0)
             .edge("steep", |(y, x)| x != 0.0 && y.abs() > 1e30 * x.abs())
-            .pair("mirroring y turns the other way", |(y, x)| (-y, x), |(y, x), turns: f32, other: f32| {
-                if y == 0.0 && x < 0.0 { near("seam", other.into(), turns.into(), 0.0) } else { near("sum", f64::from(turns) + f64::from(other), 0.0, 0.0) }
-            })
+            .pair(
+                "mirroring y turns the other way",
+                |(y, x)| (-y, x),
+                |(y, x), turns: f32, other: f32| {
+                    if y == 0.0 && x < 0.0 {
+                        near("seam", other.into(), turns.into(), 0.0)
+                    } else {
+                        near("sum", f64::from(turns) + f64::from(other), 0.0, 0.0)
+                    }
+                },
+            )
             .build(),
         formula(M, "environment_hypot", mirror::hypot, oracle::hypot, |draws| (coordinate(draws), coordinate(draws)))
             .edge("origin", |(a, b)| a == 0.0 && b == 0.0)
@@ -170,25 +178,35 @@ fn coordinate_formulas() -> Vec<Formula> {
             let back = oracle::direction_from_uv(uv.as_dvec2());
             near("distance", back.distance(d.as_dvec3().normalize()), 0.0, 8e-6)
         })
-        .pair("upside down is 1 - v", |(d,)| (Vec3::new(d.x, -d.y, d.z),), |_, uv: Vec2, other: Vec2| {
-            near("sum of v", f64::from(uv.y) + f64::from(other.y), 1.0, 3e-7)
-        })
-        .hard_case("near the zenith", (Vec3::new(1e-4, 1.0, 2e-4),), (&[0.676_208, 7.117_63e-5], 1e-6), (
-            "environment_uv_from_direction_naive",
-            5e-5,
-        ))
-        .hard_case("near the nadir", (Vec3::new(3e-4, -1.0, 1e-4),), (&[0.551_208, 0.999_899_34], 1e-6), (
-            "environment_uv_from_direction_naive",
-            5e-5,
-        ))
-        .hard_case("length 5e-24", (Vec3::new(3e-24, 4e-24, 0.0),), (&[0.5, 0.204_832_76], 1e-6), (
-            "environment_uv_from_direction_naive",
-            f64::INFINITY,
-        ))
-        .hard_case("length 5e19", (Vec3::new(3e19, 4e19, 0.0),), (&[0.5, 0.204_832_76], 1e-6), (
-            "environment_uv_from_direction_naive",
-            0.1,
-        ))
+        .pair(
+            "upside down is 1 - v",
+            |(d,)| (Vec3::new(d.x, -d.y, d.z),),
+            |_, uv: Vec2, other: Vec2| near("sum of v", f64::from(uv.y) + f64::from(other.y), 1.0, 3e-7),
+        )
+        .hard_case(
+            "near the zenith",
+            (Vec3::new(1e-4, 1.0, 2e-4),),
+            (&[0.676_208, 7.117_63e-5], 1e-6),
+            ("environment_uv_from_direction_naive", 5e-5),
+        )
+        .hard_case(
+            "near the nadir",
+            (Vec3::new(3e-4, -1.0, 1e-4),),
+            (&[0.551_208, 0.999_899_34], 1e-6),
+            ("environment_uv_from_direction_naive", 5e-5),
+        )
+        .hard_case(
+            "length 5e-24",
+            (Vec3::new(3e-24, 4e-24, 0.0),),
+            (&[0.5, 0.204_832_76], 1e-6),
+            ("environment_uv_from_direction_naive", f64::INFINITY),
+        )
+        .hard_case(
+            "length 5e19",
+            (Vec3::new(3e19, 4e19, 0.0),),
+            (&[0.5, 0.204_832_76], 1e-6),
+            ("environment_uv_from_direction_naive", 0.1),
+        )
         .build(),
         formula(
             M,
@@ -198,7 +216,11 @@ fn coordinate_formulas() -> Vec<Formula> {
             // WGSL grants acos 6.8e-5, and atan2 on lavapipe is a polynomial of like quality.
             |draws| {
                 let d = draws.direction();
-                let d = if d.y.abs() > 0.99 || (d.x < 0.0 && d.z.abs() < 1e-3) { glam::DVec3::new(0.6, 0.0, 0.8) } else { d };
+                let d = if d.y.abs() > 0.99 || (d.x < 0.0 && d.z.abs() < 1e-3) {
+                    glam::DVec3::new(0.6, 0.0, 0.8)
+                } else {
+                    d
+                };
                 (d.as_vec3(),)
             },
         )

@@ -91,17 +91,42 @@ fn exact() -> Formula {
             let slack = 2e-6 + 2e-7 / f64::from(c).powi(2);
             if well_conditioned { near("difference", f64::from(reflectance - backwards), 0.0, slack) } else { Ok(()) }
         })
-        .hard_case("index one step below 1, 60 degrees", (0.5, below_one), (&[8.881_788_533e-15], 4e-21), (NAIVE, 1e-14))
-        .hard_case("index one step below 1, 45.6 degrees", (0.7, below_one), (&[1.850_341_349e-15], 1e-21), (NAIVE, 1e-15))
-        .hard_case("index one step below 1, 89.4 degrees", (0.01, below_one), (&[8.890_606_191e-8], 5e-14), (NAIVE, 1e-7))
-        .hard_case("index one step above 1, 45.6 degrees", (0.7, above_one), (&[7.401_361_289e-15], 2e-21), (NAIVE, 1e-15))
+        .hard_case(
+            "index one step below 1, 60 degrees",
+            (0.5, below_one),
+            (&[8.881_788_533e-15], 4e-21),
+            (NAIVE, 1e-14),
+        )
+        .hard_case(
+            "index one step below 1, 45.6 degrees",
+            (0.7, below_one),
+            (&[1.850_341_349e-15], 1e-21),
+            (NAIVE, 1e-15),
+        )
+        .hard_case(
+            "index one step below 1, 89.4 degrees",
+            (0.01, below_one),
+            (&[8.890_606_191e-8], 5e-14),
+            (NAIVE, 1e-7),
+        )
+        .hard_case(
+            "index one step above 1, 45.6 degrees",
+            (0.7, above_one),
+            (&[7.401_361_289e-15], 2e-21),
+            (NAIVE, 1e-15),
+        )
         .hard_case(
             "index 1e-5 above 1, 89.4 degrees",
             (0.01, f32::from_bits(0x3f80_0054)),
             (&[2.079_407_866e-3], 1e-9),
             (NAIVE, 3e-6),
         )
-        .hard_case("index one step above 1, 1e-4 from grazing", (grazing, above_one), (&[0.443_268_811_5], 3e-7), (NAIVE, 5e-3))
+        .hard_case(
+            "index one step above 1, 1e-4 from grazing",
+            (grazing, above_one),
+            (&[0.443_268_811_5], 3e-7),
+            (NAIVE, 5e-3),
+        )
         .hard_case("no interface, grazing", (grazing, 1.0), (&[0.0], 0.0), (NAIVE, 0.9))
         .hard_case("no interface, a subnormal cosine", (f32::from_bits(1), 1.0), (&[0.0], 0.0), (NAIVE, 0.9))
         .hard_case("no interface, exactly grazing", (0.0, 1.0), (&[0.0], 0.0), (NAIVE, f64::INFINITY))
@@ -140,11 +165,15 @@ fn normal_incidence() -> Formula {
     })
     .edge("equal indices", |(n,)| n == 1.0)
     .edge("into a thinner medium", |(n,)| n < 0.5)
-    .pair("the same from both sides", |(n,)| (1.0 / n,), |(n,), one: f32, other: f32| {
-        // 1 / n is rounded, which the difference n - 1 magnifies.
-        let slack = 4.0 / (1 << 24) as f64 / (f64::from(n) - 1.0).abs().max(1e-7) + 1e-5;
-        near("difference", f64::from(one - other), 0.0, f64::from(one) * slack + 1e-13)
-    })
+    .pair(
+        "the same from both sides",
+        |(n,)| (1.0 / n,),
+        |(n,), one: f32, other: f32| {
+            // 1 / n is rounded, which the difference n - 1 magnifies.
+            let slack = 4.0 / (1 << 24) as f64 / (f64::from(n) - 1.0).abs().max(1e-7) + 1e-5;
+            near("difference", f64::from(one - other), 0.0, f64::from(one) * slack + 1e-13)
+        },
+    )
     .build()
 }
 

@@ -6,7 +6,8 @@ use crate::mirror_struct;
 use crate::property::draws::Draws;
 use glam::{DVec3, IVec2, Vec2, Vec3};
 use lapidary_proxy_geometry::{
-    self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit, ProxyGeometryPlane, oracle,
+    self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit,
+    ProxyGeometryPlane, oracle,
 };
 
 mirror_struct!(lapidary_proxy_geometry, ProxyGeometryPlane { origin, edge_first, edge_second });
@@ -52,7 +53,10 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     // where it turns it by less than a hundredth of a radian.
     let shifted = at(corner);
     let farthest = shifted.map(|vertex| f64::from(vertex.abs().max_element())).into_iter().fold(0.0, f64::max);
-    let shortest = shifted[0].as_dvec3().distance(shifted[1].as_dvec3()).min(shifted[0].as_dvec3().distance(shifted[2].as_dvec3()));
+    let shortest = shifted[0]
+        .as_dvec3()
+        .distance(shifted[1].as_dvec3())
+        .min(shifted[0].as_dvec3().distance(shifted[2].as_dvec3()));
     let turn = f64::from(f32::EPSILON) * farthest / (shortest * thinness(shifted));
     if turn < 0.01 { shifted } else { at(DVec3::ZERO) }
 }
@@ -122,7 +126,10 @@ fn ray_and_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
 fn tile_and_ray(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3, Vec3) {
     let [first, second, third] = triangle(draws);
     let centroid = (first.as_dvec3() + second.as_dvec3() + third.as_dvec3()) / 3.0;
-    let extent = [second - first, third - first, first].map(|v| f64::from(v.abs().max_element())).into_iter().fold(0.0, f64::max);
+    let extent = [second - first, third - first, first]
+        .map(|v| f64::from(v.abs().max_element()))
+        .into_iter()
+        .fold(0.0, f64::max);
     let away = if draws.below(4) == 0 { f64::from(draws.magnitude(-10, 0)) } else { 1.0 };
     let centre = (centroid + extent * away * draws.direction()).as_vec3();
     (centre, first, second, third, draws.unit_vector())
@@ -148,10 +155,14 @@ fn plane_formulas() -> Vec<Formula> {
     vec![
         formula(M, "proxy_geometry_image", mirror::image, oracle::image, |draws| (position(draws), position(draws)))
             .edge("centre far outside the stone", |(centre, x)| centre.length() > 1e3 * x.length())
-            .pair("the image of the image is the point", |(centre, x)| (centre, 2.0 * centre - x), |(centre, x), _, back: Vec3| {
-                let scale = centre.as_dvec3().length() + x.as_dvec3().length();
-                near("distance", back.as_dvec3().distance(x.as_dvec3()), 0.0, scale * UNIT)
-            })
+            .pair(
+                "the image of the image is the point",
+                |(centre, x)| (centre, 2.0 * centre - x),
+                |(centre, x), _, back: Vec3| {
+                    let scale = centre.as_dvec3().length() + x.as_dvec3().length();
+                    near("distance", back.as_dvec3().distance(x.as_dvec3()), 0.0, scale * UNIT)
+                },
+            )
             .build(),
         formula(M, "proxy_geometry_plane", mirror::plane, oracle::plane, |draws| {
             let [a, b, c] = triangle(draws);
@@ -180,7 +191,9 @@ fn plane_formulas() -> Vec<Formula> {
             let facet = facet(draws);
             (draws.in_cube() * facet.vertex_first.abs().max_element(), facet)
         })
-        .edge("size below 1e-20", |(_, facet)| facet.vertex_first.abs().max(facet.vertex_second.abs()).max_element() < 1e-20)
+        .edge("size below 1e-20", |(_, facet)| {
+            facet.vertex_first.abs().max(facet.vertex_second.abs()).max_element() < 1e-20
+        })
         .build(),
     ]
 }
@@ -210,21 +223,35 @@ fn normal_formulas() -> Vec<Formula> {
         .invariant("unit length, or zero", |_, normal: Vec3| {
             if normal == Vec3::ZERO { Ok(()) } else { near("length", normal.as_dvec3().length(), 1.0, UNIT) }
         })
-        .pair("the other winding turns it round", |(a, b, c)| (a, c, b), |_, normal: Vec3, other: Vec3| {
-            near("sum", (normal + other).as_dvec3().length(), 0.0, UNIT)
-        })
-        .hard_case("edges of 1e-20", scaled(tiny), (&[0.0, 0.0, 1.0], 1e-6), ("proxy_geometry_face_normal_naive", f64::INFINITY))
-        .hard_case("edges of 1e19", scaled(huge), (&[0.0, 0.0, 1.0], 1e-6), ("proxy_geometry_face_normal_naive", f64::INFINITY))
+        .pair(
+            "the other winding turns it round",
+            |(a, b, c)| (a, c, b),
+            |_, normal: Vec3, other: Vec3| near("sum", (normal + other).as_dvec3().length(), 0.0, UNIT),
+        )
+        .hard_case(
+            "edges of 1e-20",
+            scaled(tiny),
+            (&[0.0, 0.0, 1.0], 1e-6),
+            ("proxy_geometry_face_normal_naive", f64::INFINITY),
+        )
+        .hard_case(
+            "edges of 1e19",
+            scaled(huge),
+            (&[0.0, 0.0, 1.0], 1e-6),
+            ("proxy_geometry_face_normal_naive", f64::INFINITY),
+        )
         .hard_case(
             "two equal corners",
             (Vec3::X, Vec3::X, Vec3::Y),
             (&[0.0, 0.0, 0.0], 0.0),
             ("proxy_geometry_face_normal_naive", f64::INFINITY),
         )
-        .hard_case("three equal corners", (Vec3::X, Vec3::X, Vec3::X), (&[0.0, 0.0, 0.0], 0.0), (
-            "proxy_geometry_face_normal_naive",
-            f64::INFINITY,
-        ))
+        .hard_case(
+            "three equal corners",
+            (Vec3::X, Vec3::X, Vec3::X),
+            (&[0.0, 0.0, 0.0], 0.0),
+            ("proxy_geometry_face_normal_naive", f64::INFINITY),
+        )
         .build(),
         formula(M, "proxy_geometry_face_normal_naive", mirror::face_normal_naive, oracle::face_normal, |draws| {
             let (first, second) = edges(draws, -3, 2);
@@ -251,16 +278,22 @@ fn normal_formulas() -> Vec<Formula> {
         .invariant("faces the ray", |(_, _, _, _, direction), normal: Vec3| {
             near("cosine", normal.as_dvec3().dot(direction.as_dvec3()).max(0.0), 0.0, UNIT)
         })
-        .hard_case_with("a stone of size 1e-25", tile(1e-25), (&[0.0, 0.0, 1.0], 1e-6), (
-            "proxy_geometry_facet_normal_naive",
-            (tile(1e-25).0, tile(1e-25).1, tile(1e-25).2, tile(1e-25).3),
-            f64::INFINITY,
-        ))
-        .hard_case_with("a stone of size 1e20", tile(1e20), (&[0.0, 0.0, 1.0], 1e-6), (
-            "proxy_geometry_facet_normal_naive",
-            (tile(1e20).0, tile(1e20).1, tile(1e20).2, tile(1e20).3),
-            0.9,
-        ))
+        .hard_case_with(
+            "a stone of size 1e-25",
+            tile(1e-25),
+            (&[0.0, 0.0, 1.0], 1e-6),
+            (
+                "proxy_geometry_facet_normal_naive",
+                (tile(1e-25).0, tile(1e-25).1, tile(1e-25).2, tile(1e-25).3),
+                f64::INFINITY,
+            ),
+        )
+        .hard_case_with(
+            "a stone of size 1e20",
+            tile(1e20),
+            (&[0.0, 0.0, 1.0], 1e-6),
+            ("proxy_geometry_facet_normal_naive", (tile(1e20).0, tile(1e20).1, tile(1e20).2, tile(1e20).3), 0.9),
+        )
         .hard_case_with(
             "h = 0: the centre on the tile's centroid",
             (Vec3::X, Vec3::X, Vec3::X, Vec3::X, ray),
@@ -268,9 +301,15 @@ fn normal_formulas() -> Vec<Formula> {
             ("proxy_geometry_facet_normal_naive", (Vec3::X, Vec3::X, Vec3::X, Vec3::X), f64::INFINITY),
         )
         .build(),
-        formula(M, "proxy_geometry_facet_normal_naive", mirror::facet_normal_naive, oracle::facet_normal_naive, ordinary_tile)
-            .benign(1e-5)
-            .build(),
+        formula(
+            M,
+            "proxy_geometry_facet_normal_naive",
+            mirror::facet_normal_naive,
+            oracle::facet_normal_naive,
+            ordinary_tile,
+        )
+        .benign(1e-5)
+        .build(),
     ]
 }
 
@@ -294,17 +333,24 @@ fn intersection_formulas() -> Vec<Formula> {
             .invariant("a miss stays where it is", |(x, ..), hit: ProxyGeometryHit| {
                 if hit.hit || (hit.point == x && hit.distance == 0.0) { Ok(()) } else { Err(format!("{hit:?}")) }
             })
-            .invariant("a hit is ahead", |_, hit: ProxyGeometryHit| {
-                if !hit.hit || hit.distance > 0.0 { Ok(()) } else { Err(format!("{hit:?}")) }
-            })
-            .hard_case("plane P parallel to the ray", parallel, (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0), (
-                "proxy_geometry_intersect_naive",
-                f64::INFINITY,
-            ))
-            .hard_case("h < 0: the plane behind the ray", behind, (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0), (
-                "proxy_geometry_intersect_naive",
-                1.0,
-            ))
+            .invariant(
+                "a hit is ahead",
+                |_, hit: ProxyGeometryHit| {
+                    if !hit.hit || hit.distance > 0.0 { Ok(()) } else { Err(format!("{hit:?}")) }
+                },
+            )
+            .hard_case(
+                "plane P parallel to the ray",
+                parallel,
+                (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0),
+                ("proxy_geometry_intersect_naive", f64::INFINITY),
+            )
+            .hard_case(
+                "h < 0: the plane behind the ray",
+                behind,
+                (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0),
+                ("proxy_geometry_intersect_naive", 1.0),
+            )
             .hard_case(
                 "h = 0, parallel: the ray in the plane",
                 (Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z),
@@ -357,8 +403,18 @@ fn lattice_formulas() -> Vec<Formula> {
         .edge("size below 1e-20", |(_, _, e1, e2)| e1.length().max(e2.length()) < 1e-20 && e1 != e2)
         .edge("size above 1e19", |(_, _, e1, e2)| e1.abs().max(e2.abs()).max_element() > 1e19)
         .hard_case("a sliver of sine 1/512", sliver, (&[3.0, -2.5], 1e-5), ("proxy_geometry_coordinates_naive", 1e-3))
-        .hard_case("edges of 1e-20", square(tiny), (&[0.25, 0.5], 1e-6), ("proxy_geometry_coordinates_naive", f64::INFINITY))
-        .hard_case("edges of 1e19", square(huge), (&[0.25, 0.5], 1e-6), ("proxy_geometry_coordinates_naive", f64::INFINITY))
+        .hard_case(
+            "edges of 1e-20",
+            square(tiny),
+            (&[0.25, 0.5], 1e-6),
+            ("proxy_geometry_coordinates_naive", f64::INFINITY),
+        )
+        .hard_case(
+            "edges of 1e19",
+            square(huge),
+            (&[0.25, 0.5], 1e-6),
+            ("proxy_geometry_coordinates_naive", f64::INFINITY),
+        )
         .hard_case(
             "parallel edges",
             (Vec3::X, Vec3::ZERO, Vec3::X, Vec3::X),
@@ -411,7 +467,8 @@ fn lattice_formulas() -> Vec<Formula> {
             "the halves of a cell share their diagonal",
             |(plane, cell)| (plane, ProxyGeometryCell { turned: !cell.turned, ..cell }),
             |_, one: ProxyGeometryFacet, other: ProxyGeometryFacet| {
-                let gap = (one.vertex_second - other.vertex_third).abs() + (one.vertex_third - other.vertex_second).abs();
+                let gap =
+                    (one.vertex_second - other.vertex_third).abs() + (one.vertex_third - other.vertex_second).abs();
                 near("gap", gap.max_element().into(), 0.0, 0.0)
             },
         )

@@ -131,14 +131,18 @@ pub(super) fn formulas() -> Vec<Formula> {
         .edge("equal indices", |(_, index)| index == 1.0)
         .edge("normal incidence", |(cosine, _)| cosine == 1.0)
         .edge("grazing incidence", |(cosine, _)| cosine < 1e-30)
-        .hard_case("equal indices at a grazing cosine of 1e-4", (1e-4, 1.0), (&[f64::from(1e-4f32).powi(2)], 1e-15), (
-            "refraction_radicand_naive",
-            9e-9,
-        ))
-        .hard_case("equal indices at a grazing cosine of 1e-15", (1e-15, 1.0), (&[f64::from(1e-15f32).powi(2)], 1e-37), (
-            "refraction_radicand_naive",
-            9e-31,
-        ))
+        .hard_case(
+            "equal indices at a grazing cosine of 1e-4",
+            (1e-4, 1.0),
+            (&[f64::from(1e-4f32).powi(2)], 1e-15),
+            ("refraction_radicand_naive", 9e-9),
+        )
+        .hard_case(
+            "equal indices at a grazing cosine of 1e-15",
+            (1e-15, 1.0),
+            (&[f64::from(1e-15f32).powi(2)], 1e-37),
+            ("refraction_radicand_naive", 9e-31),
+        )
         .hard_case(
             "an index one ulp above 1",
             (1e-4, barely_denser),

@@ -18,11 +18,7 @@ const DRAFT_THRESHOLD: f32 = 0.039_28;
 
 /// The curve of the drafts, its power by logarithms.
 fn decode_of_the_drafts(encoded: f64) -> f64 {
-    if encoded <= f64::from(DRAFT_THRESHOLD) {
-        encoded / 12.92
-    } else {
-        (2.4 * ((encoded + 0.055) / 1.055).ln()).exp()
-    }
+    if encoded <= f64::from(DRAFT_THRESHOLD) { encoded / 12.92 } else { (2.4 * ((encoded + 0.055) / 1.055).ln()).exp() }
 }
 
 /// A light or a code value: about a threshold, of every magnitude, in range, out of range.
@@ -73,9 +69,17 @@ fn encoding_formulas() -> Vec<Formula> {
                 let light = f64::from(x).clamp(0.0, 1.0);
                 near("light", oracle::decode(code.into()), light, 2.4 * 6e-6 * light + 1e-37)
             })
-            .pair("rises", |(x,)| (x * 1.01,), |(x,), code: f32, other: f32| {
-                if (other >= code) == (x >= 0.0) || other == code { Ok(()) } else { Err(format!("{code} at {x}, then {other}")) }
-            })
+            .pair(
+                "rises",
+                |(x,)| (x * 1.01,),
+                |(x,), code: f32, other: f32| {
+                    if (other >= code) == (x >= 0.0) || other == code {
+                        Ok(())
+                    } else {
+                        Err(format!("{code} at {x}, then {other}"))
+                    }
+                },
+            )
             .hard_case("black", (0.0,), (&[0.0], 0.0), ("srgb_encode_naive", 0.05))
             .hard_case("light of -1e-20", (-1e-20,), (&[0.0], 0.0), ("srgb_encode_naive", f64::INFINITY))
             .hard_case("light of 5e-4", (5e-4,), (&[6.46e-3], 1e-8), ("srgb_encode_naive", 0.01))
@@ -109,7 +113,12 @@ fn decoding_formulas() -> Vec<Formula> {
             .edge("negative", |(x,)| x < 0.0)
             .edge("above white", |(x,)| x > 1.0)
             .invariant("display light", |_, light: f32| near("middle", f64::from(light) - 0.5, 0.0, 0.5 + 6e-6))
-            .hard_case("a code between the two thresholds", (0.04,), (&[0.04 / 12.92], 1e-8), ("srgb_decode_naive", 4e-7))
+            .hard_case(
+                "a code between the two thresholds",
+                (0.04,),
+                (&[0.04 / 12.92], 1e-8),
+                ("srgb_decode_naive", 4e-7),
+            )
             .hard_case("a code of -0.06", (-0.06,), (&[0.0], 0.0), ("srgb_decode_naive", 4e-3))
             .hard_case("a code of 1e19", (1e19,), (&[1.0], 2e-6), ("srgb_decode_naive", f64::INFINITY))
             .build(),
@@ -135,17 +144,19 @@ fn decoding_formulas() -> Vec<Formula> {
 
 fn tone_formulas() -> Vec<Formula> {
     vec![
-        formula(M, "srgb_luminance", mirror::luminance, oracle::luminance, |draws| {
-            (radiance(draws).max(Vec3::ZERO),)
-        })
-        .edge("white", |(c,)| c.x == c.y && c.y == c.z && c.x > 0.0)
-        .edge("black", |(c,)| c == Vec3::ZERO)
-        .invariant("between the smallest and the largest channel", |(c,), luminance: f32| {
-            let (low, high) = (f64::from(c.min_element()), f64::from(c.max_element()));
-            let value = f64::from(luminance);
-            if value >= low * (1.0 - 1e-6) && value <= high * (1.0 + 1e-6) { Ok(()) } else { Err(format!("{value} of {c}")) }
-        })
-        .build(),
+        formula(M, "srgb_luminance", mirror::luminance, oracle::luminance, |draws| (radiance(draws).max(Vec3::ZERO),))
+            .edge("white", |(c,)| c.x == c.y && c.y == c.z && c.x > 0.0)
+            .edge("black", |(c,)| c == Vec3::ZERO)
+            .invariant("between the smallest and the largest channel", |(c,), luminance: f32| {
+                let (low, high) = (f64::from(c.min_element()), f64::from(c.max_element()));
+                let value = f64::from(luminance);
+                if value >= low * (1.0 - 1e-6) && value <= high * (1.0 + 1e-6) {
+                    Ok(())
+                } else {
+                    Err(format!("{value} of {c}"))
+                }
+            })
+            .build(),
         formula(M, "srgb_tone_curve", mirror::tone_curve, oracle::tone_curve, |draws| (radiance(draws),))
             .edge("in the toe", |(c,)| c.min_element() > 0.0 && c.min_element() < 0.08)
             .edge("on the shoulder", |(c,)| c.max_element() > 0.8)
@@ -162,8 +173,18 @@ fn tone_formulas() -> Vec<Formula> {
                     Ok(())
                 }
             })
-            .hard_case("a grey of 1e-5", (Vec3::splat(1e-5),), (&[6.25e-10; 3], 1e-15), ("srgb_tone_curve_naive", 1e-13))
-            .hard_case("a grey of 1e-8", (Vec3::splat(1e-8),), (&[6.25e-16; 3], 1e-21), ("srgb_tone_curve_naive", 1e-16))
+            .hard_case(
+                "a grey of 1e-5",
+                (Vec3::splat(1e-5),),
+                (&[6.25e-10; 3], 1e-15),
+                ("srgb_tone_curve_naive", 1e-13),
+            )
+            .hard_case(
+                "a grey of 1e-8",
+                (Vec3::splat(1e-8),),
+                (&[6.25e-16; 3], 1e-21),
+                ("srgb_tone_curve_naive", 1e-16),
+            )
             .hard_case("a grey of -1", (Vec3::splat(-1.0),), (&[0.0; 3], 0.0), ("srgb_tone_curve_naive", 0.9))
             .build(),
         formula(M, "srgb_tone_curve_naive", mirror::tone_curve_naive, oracle::tone_curve, |draws| {

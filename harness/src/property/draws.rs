@@ -315,10 +315,11 @@ mod tests {
     fn it_serves_as_a_proptest_strategy() {
         let mut runner = TestRunner::deterministic();
         let domain = Domain::new(|draws| draws.between(-1.0, 1.0));
-        runner.run(&domain, |value| {
-            proptest::prop_assert!((-1.0..=1.0).contains(&value));
-            Ok(())
-        })
-        .expect("in range");
+        runner
+            .run(&domain, |value| {
+                proptest::prop_assert!((-1.0..=1.0).contains(&value));
+                Ok(())
+            })
+            .expect("in range");
     }
 }

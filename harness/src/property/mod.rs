@@ -108,7 +108,8 @@ impl Check<'_, '_> {
             edges: self.formula.edges.iter().map(|edge| (edge.name, 0)).collect(),
             seconds: 0.0,
         };
-        let mut worst_row = None;
+        // Apart from the report's worst, which may be a replayed row: those have no draws to shrink by.
+        let mut worst_random: Option<(u64, f64)> = None;
         if !replayed.is_empty() {
             self.batch(&replayed.concat(), &mut report)?;
         }
@@ -123,15 +124,16 @@ impl Check<'_, '_> {
                     row.copy_from_slice(&domain.row(settings.seed, first + (task * ROWS_PER_TASK + index) as u64));
                 }
             });
-            if let Some(index) = self.batch(&arguments, &mut report)? {
-                worst_row = Some(first + index as u64);
+            let (index, badness) = self.batch(&arguments, &mut report)?;
+            if badness > 1.0 && worst_random.is_none_or(|(_, worst)| badness > worst) {
+                worst_random = Some((first + index as u64, badness));
             }
             first += rows as u64;
         }
         if report.failed > 0 {
-            // A replayed row has no draws to shrink by: it was shrunk when it was written down.
-            report.shrunk = Some(match worst_row {
-                Some(row) => self.shrink(settings.seed, row, report.worst_ratio)?,
+            report.shrunk = Some(match worst_random {
+                Some((row, badness)) => self.shrink(settings.seed, row, badness)?,
+                // A replayed row was shrunk when it was written down.
                 None => report.worst.clone(),
             });
         }
@@ -140,11 +142,11 @@ impl Check<'_, '_> {
         Ok(report)
     }
 
-    /// Tests a batch and adds it to the report; returns the index of its worst row where that is the worst so far.
-    fn batch(&mut self, arguments: &[u32], report: &mut Report) -> Result<Option<usize>, DispatchError> {
+    /// Tests a batch and adds it to the report; returns the index of its worst row, and how badly that fails.
+    fn batch(&mut self, arguments: &[u32], report: &mut Report) -> Result<(usize, f64), DispatchError> {
         let width = self.kernel.argument_words();
         let batch = self.judge(arguments)?;
-        let mut worst = None;
+        let mut worst = (0, -1.0);
         for (index, (verdict, broken)) in batch.verdicts.iter().zip(&batch.broken).enumerate() {
             let fails = !verdict.holds() || broken.is_some();
             report.failed += u64::from(fails);
@@ -156,7 +158,9 @@ impl Check<'_, '_> {
                 report.worst_ratio = badness;
                 report.worst = arguments[index * width..(index + 1) * width].to_vec();
                 report.reason = broken.clone().or_else(|| (!verdict.holds()).then(|| describe(verdict)));
-                worst = Some(index);
+            }
+            if badness > worst.1 {
+                worst = (index, badness);
             }
         }
         report.cases += batch.verdicts.len() as u64;

@@ -64,8 +64,7 @@ impl Regressions {
             if bits.is_empty() {
                 continue;
             }
-            let row: Option<Words> =
-                bits.split_whitespace().map(|word| u32::from_str_radix(word, 16).ok()).collect();
+            let row: Option<Words> = bits.split_whitespace().map(|word| u32::from_str_radix(word, 16).ok()).collect();
             match row {
                 Some(row) if row.len() == words => rows.push(row),
                 _ => return Err(PersistenceError::Line { path, line: index + 1, expected: words }),

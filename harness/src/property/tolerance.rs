@@ -1,9 +1,9 @@
 //! Whether a result is right: the comparison of a shader's row with the mirror's and with the oracle's, under the
 //! bounds of the function's `Accuracy:` line.
 
+use super::draws::mix;
 use crate::cookbook::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
-use super::draws::mix;
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
 const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
@@ -46,15 +46,22 @@ pub struct Tolerance {
 impl Tolerance {
     /// The tolerance for a function of these shapes. `bounds` holds one bound per field of the result, as
     /// `Accuracy::check_fields` has made sure.
+    ///
+    /// # Panics
+    /// Where a field has none.
     pub fn new(arguments: &[Shape], result: &Shape, bounds: &[FieldBound]) -> Tolerance {
-        let arguments = Shape::Struct(String::new(), arguments.iter().map(|shape| (String::new(), shape.clone())).collect());
+        let arguments =
+            Shape::Struct(String::new(), arguments.iter().map(|shape| (String::new(), shape.clone())).collect());
         let results = result
             .leaves()
             .into_iter()
             .map(|leaf| {
                 let field = leaf.path.split(['.', '[']).next().unwrap_or_default().to_owned();
-                let bound = bounds.iter().find(|bound| bound.field.as_deref().is_none_or(|name| name == field));
-                (leaf, bound.map_or(Bound::default(), |bound| bound.bound))
+                let bound = bounds
+                    .iter()
+                    .find(|bound| bound.field.as_deref().is_none_or(|name| name == field))
+                    .unwrap_or_else(|| panic!("no bound for `{field}`, though Accuracy::check_fields passed"));
+                (leaf, bound.bound)
             })
             .collect();
         Tolerance { arguments: arguments.leaves(), results }
@@ -68,10 +75,16 @@ impl Tolerance {
 
     /// Compares the shader's and the mirror's results with the exact one and with each other. `oracle` is called again only
     /// where the plain bounds do not suffice and the line allows `backward` error.
-    pub fn judge(&self, arguments: &[u32], gpu: &[u32], mirror: &[u32], exact: &[f64], oracle: OracleFn<'_>) -> Verdict {
+    pub fn judge(
+        &self,
+        arguments: &[u32],
+        gpu: &[u32],
+        mirror: &[u32],
+        exact: &[f64],
+        oracle: OracleFn<'_>,
+    ) -> Verdict {
         let is_finite = |word: &u32| f32::from_bits(*word).is_finite();
-        let nonfinite =
-            self.floats().any(|(leaf, _)| !gpu[leaf.start..leaf.start + leaf.length].iter().all(is_finite));
+        let nonfinite = self.floats().any(|(leaf, _)| !gpu[leaf.start..leaf.start + leaf.length].iter().all(is_finite));
         if nonfinite {
             return Verdict { ulp: f64::INFINITY, ratio: f64::INFINITY, nonfinite };
         }
@@ -92,8 +105,13 @@ impl Tolerance {
         let mut ratio = plain;
         for effort in [Effort::Corners, Effort::Boundaries] {
             if wants_backward && ratio > 1.0 {
-                let spread = Spread::of(self, effort, arguments, exact, [gpu, mirror], oracle);
-                ratio = spread.map_or(ratio, |spread| ratio.min(self.ratio(gpu, mirror, exact, Some(&spread))));
+                let (centre, steps) = input_box(&self.arguments, arguments, self.backward());
+                let mut search = Search::new(self, gpu, mirror, oracle);
+                let judge = |spread: &Spread| self.ratio(gpu, mirror, exact, Some(spread));
+                search.run(effort, &centre, &steps, |spread| judge(spread) <= 1.0);
+                if search.met == [true; 2] {
+                    ratio = ratio.min(judge(&search.spread));
+                }
             }
         }
         Verdict { ulp, ratio, nonfinite }
@@ -107,6 +125,11 @@ impl Tolerance {
         self.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32).all(|(leaf, _)| {
             (leaf.start..leaf.start + leaf.length).all(|index| number(leaf.scalar, words[index]) == exact[index])
         })
+    }
+
+    /// The largest backward bound of any field.
+    fn backward(&self) -> f64 {
+        self.results.iter().map(|(_, bound)| bound.backward).fold(0.0, f64::max)
     }
 
     /// The worst error over allowed error; discrete fields that differ count as infinite.
@@ -147,7 +170,13 @@ impl Tolerance {
 
 /// A NaN in either counts as failing.
 fn ratio_of(error: f64, allowed: f64) -> f64 {
-    if error <= allowed { error / allowed } else if error.is_nan() { f64::INFINITY } else { error / allowed }
+    if error <= allowed {
+        error / allowed
+    } else if error.is_nan() {
+        f64::INFINITY
+    } else {
+        error / allowed
+    }
 }
 
 /// How hard to look for the oracle's range.
@@ -167,18 +196,25 @@ struct Spread {
     gpu_and_mirror_agree: bool,
 }
 
-impl Spread {
-    /// Nothing where no such input gives the discrete results that the shader or the mirror gave.
-    fn of(
-        tolerance: &Tolerance,
-        effort: Effort,
-        arguments: &[u32],
-        exact: &[f64],
-        [gpu, mirror]: [&[u32]; 2],
-        oracle: OracleFn<'_>,
-    ) -> Option<Spread> {
-        let backward = tolerance.results.iter().map(|(_, bound)| bound.backward).fold(0.0, f64::max);
-        let (centre, steps) = input_box(&tolerance.arguments, arguments, backward);
+/// The oracle's discrete results at a point; none where the point is outside of its domain.
+type Case = Option<Vec<f64>>;
+
+/// A search for the oracle's range in the box about an input.
+struct Search<'a> {
+    oracle: OracleFn<'a>,
+    /// Where the discrete results are.
+    places: Vec<(usize, Scalar)>,
+    /// The shader's discrete results and the mirror's.
+    wanted: [Vec<f64>; 2],
+    /// Whether the oracle has given them.
+    met: [bool; 2],
+    /// The range over the points where it gave either.
+    spread: Spread,
+    result: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(tolerance: &Tolerance, gpu: &[u32], mirror: &[u32], oracle: OracleFn<'a>) -> Self {
         let places: Vec<(usize, Scalar)> = tolerance
             .results
             .iter()
@@ -189,51 +225,71 @@ impl Spread {
             places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
         };
         let wanted = [discrete(gpu), discrete(mirror)];
-        let mut met = [false; 2];
-        let mut spread = Spread {
-            low: vec![f64::INFINITY; exact.len()],
-            high: vec![f64::NEG_INFINITY; exact.len()],
+        let spread = Spread {
+            low: vec![f64::INFINITY; gpu.len()],
+            high: vec![f64::NEG_INFINITY; gpu.len()],
             gpu_and_mirror_agree: wanted[0] == wanted[1],
         };
-        let mut result = Vec::with_capacity(exact.len());
-        // The oracle's discrete results at a point; none where the step left its domain.
-        let mut visit = |values: &[f64]| -> Option<Vec<f64>> {
-            result.clear();
-            oracle(values, &mut result);
-            if result.iter().any(|value| !value.is_finite()) {
-                return None;
+        Self { oracle, places, wanted, met: [false; 2], spread, result: Vec::with_capacity(gpu.len()) }
+    }
+
+    /// Asks the oracle at a point.
+    fn visit(&mut self, point: &[f64]) -> Case {
+        self.result.clear();
+        (self.oracle)(point, &mut self.result);
+        if self.result.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let found: Vec<f64> = self.places.iter().map(|(index, _)| self.result[*index]).collect();
+        let agrees = [found == self.wanted[0], found == self.wanted[1]];
+        self.met = [self.met[0] | agrees[0], self.met[1] | agrees[1]];
+        if agrees[0] || agrees[1] {
+            for (index, value) in self.result.iter().enumerate() {
+                self.spread.low[index] = self.spread.low[index].min(*value);
+                self.spread.high[index] = self.spread.high[index].max(*value);
             }
-            let found: Vec<f64> = places.iter().map(|(index, _)| result[*index]).collect();
-            let agrees = [found == wanted[0], found == wanted[1]];
-            met = [met[0] | agrees[0], met[1] | agrees[1]];
-            if agrees[0] || agrees[1] {
-                for (index, value) in result.iter().enumerate() {
-                    spread.low[index] = spread.low[index].min(*value);
-                    spread.high[index] = spread.high[index].max(*value);
-                }
-            }
-            Some(found)
-        };
+        }
+        Some(found)
+    }
+
+    /// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far
+    /// as `halvings` tell them apart.
+    fn boundaries(&mut self, from: &[f64], to: &[f64], near: (f64, &Case), far: (f64, &Case), halvings: usize) {
+        if near.1 == far.1 || halvings == 0 {
+            return;
+        }
+        let middle = 0.5 * (near.0 + far.0);
+        let point: Vec<f64> = from.iter().zip(to).map(|(from, to)| from + middle * (to - from)).collect();
+        let found = self.visit(&point);
+        self.boundaries(from, to, near, (middle, &found), halvings - 1);
+        self.boundaries(from, to, (middle, &found), far, halvings - 1);
+    }
+
+    /// Searches the corners of the box of `steps` about `centre` and the middles of its faces, until `enough`.
+    fn run(&mut self, effort: Effort, centre: &[f64], steps: &[f64], enough: impl Fn(&Spread) -> bool) {
         // From corner to corner, not out from the centre: all lines through one point cross a boundary near that point.
-        let mut previous = centre.clone();
-        let mut at_previous = visit(&centre);
-        let mut walk = |point: &[f64]| {
-            let at_point = visit(point);
+        let mut previous = centre.to_vec();
+        let mut at_previous = self.visit(centre);
+        let mut walk = |search: &mut Self, point: &[f64]| -> bool {
+            let at_point = search.visit(point);
             if effort == Effort::Boundaries {
-                boundaries(&previous, point, (0.0, &at_previous), (1.0, &at_point), BISECTIONS, &mut visit);
+                search.boundaries(&previous, point, (0.0, &at_previous), (1.0, &at_point), BISECTIONS);
                 previous.copy_from_slice(point);
                 at_previous = at_point;
             }
+            search.met[0] && search.met[1] && enough(&search.spread)
         };
-        let mut point = centre.clone();
-        for (index, step) in steps.iter().enumerate().filter(|(_, step)| **step > 0.0) {
-            for sign in [-1.0, 1.0] {
-                point[index] = centre[index] + sign * step;
-                walk(&point);
-            }
-            point[index] = centre[index];
-        }
         let moving: Vec<usize> = (0..steps.len()).filter(|index| steps[*index] > 0.0).collect();
+        let mut point = centre.to_vec();
+        for index in &moving {
+            for sign in [-1.0, 1.0] {
+                point[*index] = centre[*index] + sign * steps[*index];
+                if walk(self, &point) {
+                    return;
+                }
+            }
+            point[*index] = centre[*index];
+        }
         let most = MOST_CORNERS[effort as usize];
         let all = 1u64.checked_shl(moving.len() as u32).is_some_and(|corners| corners <= most);
         let corners = if all { 1u64 << moving.len() } else { most };
@@ -244,30 +300,11 @@ impl Spread {
                 let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
                 point[*index] = centre[*index] + sign * steps[*index];
             }
-            walk(&point);
+            if walk(self, &point) {
+                return;
+            }
         }
-        (met[0] && met[1]).then_some(spread)
     }
-}
-
-/// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far as
-/// `halvings` tell them apart.
-fn boundaries(
-    from: &[f64],
-    to: &[f64],
-    near: (f64, &Option<Vec<f64>>),
-    far: (f64, &Option<Vec<f64>>),
-    halvings: usize,
-    visit: &mut dyn FnMut(&[f64]) -> Option<Vec<f64>>,
-) {
-    if near.1 == far.1 || halvings == 0 {
-        return;
-    }
-    let middle = 0.5 * (near.0 + far.0);
-    let point: Vec<f64> = from.iter().zip(to).map(|(from, to)| from + middle * (to - from)).collect();
-    let found = visit(&point);
-    boundaries(from, to, near, (middle, &found), halvings - 1, visit);
-    boundaries(from, to, (middle, &found), far, halvings - 1, visit);
 }
 
 /// The inputs as numbers, and how far each may be off.
@@ -310,7 +347,9 @@ pub fn ulp_of(magnitude: f64) -> f64 {
 }
 
 fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| if value.abs() > largest || value.is_nan() { value.abs() } else { largest })
+    values
+        .iter()
+        .fold(0.0, |largest, value| if value.abs() > largest || value.is_nan() { value.abs() } else { largest })
 }
 
 fn in_ulps(leaf: &Leaf, gpu: &[u32], exact: &[f64]) -> f64 {

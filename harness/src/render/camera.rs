@@ -31,10 +31,22 @@ fn tile_from_picture(width: u32, height: u32, tile: Tile) -> Mat4 {
     let middle_x = (2.0 * tile.left as f32 + tile.width as f32) / width as f32 - 1.0;
     let middle_y = 1.0 - (2.0 * tile.top as f32 + tile.height as f32) / height as f32;
     Mat4::from_cols_array(&[
-        scale_x, 0.0, 0.0, 0.0,
-        0.0, scale_y, 0.0, 0.0,
-        0.0, 0.0, 1.0, 0.0,
-        -scale_x * middle_x, -scale_y * middle_y, 0.0, 1.0,
+        scale_x,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        scale_y,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        -scale_x * middle_x,
+        -scale_y * middle_y,
+        0.0,
+        1.0,
     ])
 }
 

@@ -62,11 +62,21 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), FileError> {
     replace(path, &bytes)
 }
 
+/// Whether a file can be written at `path`: asked before hours of rendering, not after.
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    let writable = || {
+        if path.is_dir() {
+            return Err(std::io::Error::from(std::io::ErrorKind::IsADirectory));
+        }
+        tempfile::NamedTempFile::new_in(folder_of(path)).map(drop)
+    };
+    writable().map_err(|error| FileError::Write { path: path.to_owned(), error })
+}
+
 /// Writes bytes to a file beside `path`, then renames it, so that no reader ever meets half of them.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let write = || {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        let mut file = tempfile::NamedTempFile::new_in(folder_of(path))?;
         file.write_all(bytes)?;
         // Temporary files are private; a picture is not.
         #[cfg(unix)]
@@ -78,6 +88,10 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         Ok(())
     };
     write().map_err(|error| FileError::Write { path: path.to_owned(), error })
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Encodes opaque pixels as a PNG without alpha.

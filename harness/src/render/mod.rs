@@ -115,7 +115,7 @@ pub enum RenderError {
 
 /// Renders `scene` with the cookbook's recipe.
 pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, RenderError> {
-    let source = cookbook::recipe("gem").map(cookbook::Recipe::compose).unwrap_or_default();
+    let source = cookbook::recipe_source("gem");
     render_with(gpu, scene, settings, &source, &mut |_, _| {})
 }
 

@@ -47,7 +47,7 @@ impl<'gpu> Pipelines<'gpu> {
             ("CENTRE_PAPER", flag(settings.paper_centre)),
         ];
         let gem = pipeline(gpu, "gem", source, &constants, &[SAMPLE_FORMAT], true)?;
-        let display_source = cookbook::recipe("display").map(cookbook::Recipe::compose).unwrap_or_default();
+        let display_source = cookbook::recipe_source("display");
         let constants = [("SAMPLES", f64::from(SAMPLES))];
         let display = pipeline(gpu, "display", &display_source, &constants, &[SAMPLE_FORMAT, ENCODED_FORMAT], false)?;
         let environment = environment_texture(gpu, &settings.environment)?;
@@ -79,28 +79,30 @@ impl<'gpu> Pipelines<'gpu> {
         })?;
         let color = object.material.base_color;
         let material: [f32; 4] = [color.x, color.y, color.z, object.material.ior];
-        self.gpu.guarded("uploading a mesh", |device| {
-            let storage = wgpu::BufferUsages::STORAGE;
-            let buffer = |contents: &[u8], usage| {
-                device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-            };
-            let buffers = [
-                buffer(bytemuck::cast_slice(&material), wgpu::BufferUsages::UNIFORM),
-                buffer(parts[0], storage),
-                buffer(parts[1], storage),
-                buffer(parts[2], storage),
-            ];
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-                .zip(&buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-                .collect();
-            let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(&object.name),
-                layout: &self.gem.get_bind_group_layout(1),
-                entries: &entries,
-            });
-            Stone { bind_group, vertices }
-        }).map_err(RenderError::from)
+        self.gpu
+            .guarded("uploading a mesh", |device| {
+                let storage = wgpu::BufferUsages::STORAGE;
+                let buffer = |contents: &[u8], usage| {
+                    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+                };
+                let buffers = [
+                    buffer(bytemuck::cast_slice(&material), wgpu::BufferUsages::UNIFORM),
+                    buffer(parts[0], storage),
+                    buffer(parts[1], storage),
+                    buffer(parts[2], storage),
+                ];
+                let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+                    .zip(&buffers)
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                    .collect();
+                let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some(&object.name),
+                    layout: &self.gem.get_bind_group_layout(1),
+                    entries: &entries,
+                });
+                Stone { bind_group, vertices }
+            })
+            .map_err(RenderError::from)
     }
 
     /// Renders one tile into the picture.
@@ -114,18 +116,11 @@ impl<'gpu> Pipelines<'gpu> {
         picture: &mut Picture,
     ) -> Result<(), RenderError> {
         let mut view = [0f32; 20];
-        view[..16].copy_from_slice(
-            &clip_from_world(camera, bounds, settings.width, settings.height, tile).to_cols_array(),
-        );
+        view[..16]
+            .copy_from_slice(&clip_from_world(camera, bounds, settings.width, settings.height, tile).to_cols_array());
         view[16..19].copy_from_slice(&camera.eye.to_array());
-        let frame: [f32; 6] = [
-            tile.left as f32,
-            tile.top as f32,
-            settings.width as f32,
-            settings.height as f32,
-            settings.exposure,
-            0.0,
-        ];
+        let frame: [f32; 6] =
+            [tile.left as f32, tile.top as f32, settings.width as f32, settings.height as f32, settings.exposure, 0.0];
         let readback = self.gpu.guarded("rendering a tile", |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let view = self.uniform_and_texture(&self.gem, bytemuck::cast_slice(&view), &self.environment);
@@ -323,8 +318,7 @@ fn pipeline(
         });
         let targets: Vec<Option<wgpu::ColorTargetState>> =
             formats.iter().map(|format| Some((*format).into())).collect();
-        let compilation_options =
-            || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let compilation_options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         let primitive = wgpu::PrimitiveState {
             // A closed stone shows its front; the display's one triangle has no back to speak of.
             cull_mode: depth.then_some(wgpu::Face::Back),

@@ -3,8 +3,7 @@
 use glam::Vec3;
 
 use super::cuts::{
-    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant,
-    step_cut,
+    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
 use super::polyhedron::Polyhedron;
 use super::{Averaging, Camera, Material, Object, Scene, SceneError, gltf, vertices};
@@ -74,12 +73,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
             let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
             Ok(stone_scene(name, &stone, clear("diamond", DIAMOND), (27.0, 11.0)))
         }
-        "octahedron" => Ok(stone_scene(
-            name,
-            &octahedron()?,
-            clear("diamond", DIAMOND),
-            (65.0, 25.0),
-        )),
+        "octahedron" => Ok(stone_scene(name, &octahedron()?, clear("diamond", DIAMOND), (65.0, 25.0))),
         "step_cut" => {
             let stone = step_cut(&StepCutParameters::EMERALD)?;
             let emerald = Material { base_color: EMERALD_GREEN, ..clear("beryl", BERYL) };
@@ -90,25 +84,13 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
             Ok(stone_scene(name, &stone, clear("quartz", QUARTZ), (70.0, 10.0)))
         }
         "bunny_stone" => bunny(name),
-        _ => Err(SceneError::UnknownName {
-            name: name.to_owned(),
-            nearest: nearest(name),
-        }),
+        _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }
 }
 
 /// One cut stone, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
-fn stone_scene(
-    name: &str,
-    stone: &Polyhedron,
-    material: Material,
-    (polar, azimuth): (f32, f32),
-) -> Scene {
-    let object = Object {
-        name: name.to_owned(),
-        mesh: stone.to_mesh(Averaging::default()),
-        material,
-    };
+fn stone_scene(name: &str, stone: &Polyhedron, material: Material, (polar, azimuth): (f32, f32)) -> Scene {
+    let object = Object { name: name.to_owned(), mesh: stone.to_mesh(Averaging::default()), material };
     framed(name, vec![object], direction(polar, azimuth))
 }
 
@@ -127,11 +109,7 @@ fn bunny(name: &str) -> Result<Scene, SceneError> {
 
 fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     let camera = Camera::framing(vertices(&objects), toward_eye, VERTICAL_FOV);
-    Scene {
-        name: name.to_owned(),
-        objects,
-        camera,
-    }
+    Scene { name: name.to_owned(), objects, camera }
 }
 
 fn direction(polar: f32, azimuth: f32) -> Vec3 {
@@ -143,8 +121,6 @@ fn direction(polar: f32, azimuth: f32) -> Vec3 {
 /// The built-in name most like `name`.
 fn nearest(name: &str) -> &'static str {
     let likeness = |scene: &BuiltIn| strsim::jaro_winkler(name, scene.name);
-    let best = BUILT_IN
-        .iter()
-        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let best = BUILT_IN.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     best.map_or("", |scene| scene.name)
 }

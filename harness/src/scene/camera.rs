@@ -29,17 +29,9 @@ impl Camera {
     /// sphere. Without points, or with all in one place, the camera stands one unit away. A
     /// `toward_eye` without length counts as +z.
     #[must_use]
-    pub fn framing(
-        points: impl Iterator<Item = Vec3> + Clone,
-        toward_eye: Vec3,
-        vertical_fov: f32,
-    ) -> Self {
+    pub fn framing(points: impl Iterator<Item = Vec3> + Clone, toward_eye: Vec3, vertical_fov: f32) -> Self {
         let back = toward_eye.as_dvec3().normalize_or(DVec3::Z);
-        let vertical = if back.y.abs() > 0.999 {
-            DVec3::Z
-        } else {
-            DVec3::Y
-        };
+        let vertical = if back.y.abs() > 0.999 { DVec3::Z } else { DVec3::Y };
         let right = vertical.cross(back).normalize();
         let up = back.cross(right);
         let points = points.map(Vec3::as_dvec3);
@@ -47,11 +39,7 @@ impl Camera {
         let half = (0.5 * f64::from(vertical_fov)).tan();
         let high = Extent::of(points.clone(), up, back, FILL_HEIGHT * half);
         let wide = Extent::of(points.clone(), right, back, FILL_WIDTH * half);
-        let front = points
-            .clone()
-            .map(|p| p.dot(back))
-            .reduce(f64::max)
-            .unwrap_or(0.0);
+        let front = points.clone().map(|p| p.dot(back)).reduce(f64::max).unwrap_or(0.0);
         let rear = points.map(|p| p.dot(back)).reduce(f64::min).unwrap_or(0.0);
         let mut distance = high.distance.max(wide.distance);
         if distance - front <= 1e-6 * distance.abs() {
@@ -87,10 +75,7 @@ impl Extent {
             .map(|(y, w)| (y + w, w - y))
             .reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)));
         let (above, below) = reach.unwrap_or((0.0, 0.0));
-        Self {
-            distance: 0.5 * (above + below) / slope,
-            middle: 0.5 * (above - below),
-        }
+        Self { distance: 0.5 * (above + below) / slope, middle: 0.5 * (above - below) }
     }
 }
 

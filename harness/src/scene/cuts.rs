@@ -69,38 +69,16 @@ impl Checked {
         self.require(proper, parameter, value, "above 0 and at most 100")
     }
 
-    fn require(
-        self,
-        proper: bool,
-        parameter: &'static str,
-        value: f64,
-        range: &'static str,
-    ) -> Result<(), CutError> {
-        let error = CutError::Parameter {
-            cut: self.0,
-            parameter,
-            value,
-            range,
-        };
+    fn require(self, proper: bool, parameter: &'static str, value: f64, range: &'static str) -> Result<(), CutError> {
+        let error = CutError::Parameter { cut: self.0, parameter, value, range };
         if proper { Ok(()) } else { Err(error) }
     }
 
     /// The solid of `planes`, which must have `expected` facets.
     fn solid(self, planes: &[Plane], expected: usize) -> Result<Polyhedron, CutError> {
-        let solid = Polyhedron::from_planes(planes).map_err(|problem| CutError::Open {
-            cut: self.0,
-            problem,
-        })?;
+        let solid = Polyhedron::from_planes(planes).map_err(|problem| CutError::Open { cut: self.0, problem })?;
         let found = solid.planes().len();
-        if found == expected {
-            Ok(solid)
-        } else {
-            Err(CutError::Facets {
-                cut: self.0,
-                expected,
-                found,
-            })
-        }
+        if found == expected { Ok(solid) } else { Err(CutError::Facets { cut: self.0, expected, found }) }
     }
 }
 
@@ -116,15 +94,7 @@ fn outward(azimuth: f64) -> DVec2 {
 pub fn octahedron() -> Result<Polyhedron, CutError> {
     let signs = [1.0, -1.0];
     let planes = signs.map(|x| signs.map(|y| signs.map(|z| DVec3::new(x, y, z))));
-    let planes: Vec<Plane> = planes
-        .iter()
-        .flatten()
-        .flatten()
-        .map(|&normal| Plane {
-            normal,
-            distance: 1.0,
-        })
-        .collect();
+    let planes: Vec<Plane> = planes.iter().flatten().flatten().map(|&normal| Plane { normal, distance: 1.0 }).collect();
     Checked("octahedron").solid(&planes, 8)
 }
 
@@ -144,12 +114,7 @@ pub struct PrismParameters {
 impl PrismParameters {
     /// A closed pentagonal prism, about 2 long. Its caps have the slope of quartz's rhombohedral
     /// faces, 51.8°.
-    pub const PENTAGONAL: Self = Self {
-        sides: 5,
-        radius: 0.45,
-        half_length: 0.6,
-        cap_degrees: 51.8,
-    };
+    pub const PENTAGONAL: Self = Self { sides: 5, radius: 0.45, half_length: 0.6, cap_degrees: 51.8 };
 }
 
 /// A regular prism with `sides` side faces and as many cap faces at each end, or one if flat.
@@ -158,27 +123,12 @@ impl PrismParameters {
 /// [`CutError::Parameter`] for a parameter outside its range.
 pub fn prism(parameters: &PrismParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("prism");
-    let &PrismParameters {
-        sides,
-        radius,
-        half_length,
-        cap_degrees,
-    } = parameters;
-    check.require(
-        (3..=64).contains(&sides),
-        "sides",
-        sides.into(),
-        "from 3 to 64",
-    )?;
+    let &PrismParameters { sides, radius, half_length, cap_degrees } = parameters;
+    check.require((3..=64).contains(&sides), "sides", sides.into(), "from 3 to 64")?;
     check.length("radius", radius)?;
     check.length("half_length", half_length)?;
     let sloped = (0.0..90.0).contains(&cap_degrees);
-    check.require(
-        sloped,
-        "cap_degrees",
-        cap_degrees,
-        "from 0 to below 90 degrees",
-    )?;
+    check.require(sloped, "cap_degrees", cap_degrees, "from 0 to below 90 degrees")?;
 
     let half_turn = std::f64::consts::PI / f64::from(sides);
     let apothem = radius * half_turn.cos();
@@ -186,10 +136,7 @@ pub fn prism(parameters: &PrismParameters) -> Result<Polyhedron, CutError> {
     let mut planes = Vec::with_capacity(3 * sides as usize);
     for side in 0..sides {
         let across = outward(2.0 * half_turn * f64::from(side));
-        planes.push(Plane {
-            normal: across.extend(0.0),
-            distance: apothem,
-        });
+        planes.push(Plane { normal: across.extend(0.0), distance: apothem });
         for up in [1.0, -1.0] {
             let edge = (across * apothem).extend(up * half_length);
             planes.push(Plane::through(edge, (across * sine).extend(up * cosine)));

@@ -109,9 +109,7 @@ impl EnvironmentMap {
         };
         let format = image::guess_format(bytes).ok();
         let format = format.filter(|f| matches!(f, ImageFormat::Hdr | ImageFormat::OpenExr));
-        let format = format.ok_or_else(|| EnvironmentMapError::Format {
-            path: path.to_owned(),
-        })?;
+        let format = format.ok_or_else(|| EnvironmentMapError::Format { path: path.to_owned() })?;
         let reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut decoder = reader.into_decoder().map_err(undecodable)?;
         let (width, height) = decoder.dimensions();
@@ -136,38 +134,24 @@ impl EnvironmentMap {
                 });
             }
         }
-        Ok(Self {
-            width,
-            height,
-            pixels,
-        })
+        Ok(Self { width, height, pixels })
     }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {
-    let unreadable = |reason: String| EnvironmentMapError::Unreadable {
-        path: path.to_owned(),
-        reason,
-    };
+    let unreadable = |reason: String| EnvironmentMapError::Unreadable { path: path.to_owned(), reason };
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
         return Err(unreadable("it is not a regular file".to_owned()));
     }
     if metadata.len() > MAX_FILE_BYTES {
         let size = metadata.len();
-        return Err(unreadable(format!(
-            "it has {size} bytes, more than the {MAX_FILE_BYTES} that are read"
-        )));
+        return Err(unreadable(format!("it has {size} bytes, more than the {MAX_FILE_BYTES} that are read")));
     }
     std::fs::read(path).map_err(|error| unreadable(error.to_string()))
 }
 
-fn check_size(
-    width: u32,
-    height: u32,
-    file_bytes: u64,
-    path: &Path,
-) -> Result<(), EnvironmentMapError> {
+fn check_size(width: u32, height: u32, file_bytes: u64, path: &Path) -> Result<(), EnvironmentMapError> {
     let pixels = u64::from(width) * u64::from(height);
     let rule = if width < 2 || height < 2 {
         "it must have at least 2 x 2; give a latitude-longitude map".to_owned()
@@ -178,12 +162,7 @@ fn check_size(
     } else {
         return Ok(());
     };
-    Err(EnvironmentMapError::Size {
-        path: path.to_owned(),
-        width,
-        height,
-        rule,
-    })
+    Err(EnvironmentMapError::Size { path: path.to_owned(), width, height, rule })
 }
 
 #[cfg(test)]

@@ -12,10 +12,7 @@ use super::gltf::GltfError;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error(
-        "no scene is called {name:?}; did you mean {nearest}? Give one of {} or a .glb or .gltf file",
-        names()
-    )]
+    #[error("no scene is called {name:?}; did you mean {nearest}? Give one of {} or a .glb or .gltf file", names())]
     UnknownName {
         /// What was asked for.
         name: String,

@@ -178,9 +178,7 @@ fn numbers(json: &[u8]) -> Vec<Range> {
     let mut at = 0;
     while at < json.len() {
         let length = json[at..].iter().take_while(|byte| is_part(byte)).count();
-        let after = at
-            .checked_sub(1)
-            .is_some_and(|before| b":[, \n".contains(&json[before]));
+        let after = at.checked_sub(1).is_some_and(|before| b":[, \n".contains(&json[before]));
         if length > 0 && after && json[at..at + length].iter().any(u8::is_ascii_digit) {
             found.push(at..at + length);
         }
@@ -217,9 +215,7 @@ pub fn check(bytes: &[u8]) -> Result<bool, String> {
 fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     let taken: u64 = scene.objects.iter().map(|o| o.mesh.byte_size()).sum();
     if taken > file_bytes * gltf::MAX_EXPANSION {
-        return Err(format!(
-            "{file_bytes} bytes of file became {taken} bytes of mesh"
-        ));
+        return Err(format!("{file_bytes} bytes of file became {taken} bytes of mesh"));
     }
     let camera = &scene.camera;
     let sees = camera.eye.is_finite() && camera.up.is_normalized() && camera.eye != camera.target;
@@ -245,13 +241,8 @@ fn is_sound(mesh: &Mesh) -> bool {
 pub fn run(cases: u32) -> Result<Tally, String> {
     let seeds = seeds().map_err(|error| error.to_string())?;
     let tally = std::cell::Cell::new(Tally::default());
-    let config = Config {
-        cases,
-        failure_persistence: None,
-        ..Config::default()
-    };
-    let mut runner =
-        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let outcome = runner.run(&(any::<bool>(), edits()), |(second, edits)| {
         let bytes = mutate(&seeds[usize::from(second)], &edits);
         let loaded = check(&bytes).map_err(TestCaseError::fail)?;

@@ -24,10 +24,7 @@ pub enum GlbError {
         problem: &'static str,
     },
     /// A .glb counts its bytes in 32 bits.
-    #[error(
-        "the scene needs {bytes} bytes, but a .glb holds at most {}; split it",
-        u32::MAX
-    )]
+    #[error("the scene needs {bytes} bytes, but a .glb holds at most {}; split it", u32::MAX)]
     TooLarge {
         /// What the file would need.
         bytes: u64,
@@ -73,9 +70,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
 pub(super) fn container(json: &[u8], binary: &[u8]) -> Result<Vec<u8>, GlbError> {
     let padded = |length: usize| length.next_multiple_of(4);
     let total = 12 + 8 + padded(json.len()) + 8 + padded(binary.len());
-    let length = u32::try_from(total).map_err(|_| GlbError::TooLarge {
-        bytes: total as u64,
-    })?;
+    let length = u32::try_from(total).map_err(|_| GlbError::TooLarge { bytes: total as u64 })?;
     let mut bytes = Vec::with_capacity(total);
     bytes.extend(b"glTF");
     bytes.extend(2u32.to_le_bytes());
@@ -104,10 +99,7 @@ impl Document {
     fn add(&mut self, object: &Object) -> Result<(), GlbError> {
         let mesh = &object.mesh;
         if let Some(problem) = problem_of(mesh, &object.material) {
-            return Err(GlbError::Object {
-                object: object.name.clone(),
-                problem,
-            });
+            return Err(GlbError::Object { object: object.name.clone(), problem });
         }
         let bounds = Bounds::of(mesh.positions.iter().copied());
         let position = self.vectors(&mesh.positions);
@@ -120,8 +112,7 @@ impl Document {
             json!({"componentType": UNSIGNED_INT, "count": mesh.indices.len(), "type": "SCALAR"}),
             ELEMENT_ARRAY_BUFFER,
         );
-        self.nodes
-            .push(json!({"name": object.name, "mesh": self.meshes.len()}));
+        self.nodes.push(json!({"name": object.name, "mesh": self.meshes.len()}));
         self.meshes.push(json!({
             "name": object.name,
             "primitives": [{
@@ -146,12 +137,7 @@ impl Document {
 
     /// Appends an accessor with a buffer view of its own. All data is of four bytes, so that every
     /// view is aligned.
-    fn accessor(
-        &mut self,
-        data: impl Iterator<Item = u8>,
-        mut accessor: Value,
-        target: u32,
-    ) -> usize {
+    fn accessor(&mut self, data: impl Iterator<Item = u8>, mut accessor: Value, target: u32) -> usize {
         let start = self.binary.len();
         self.binary.extend(data);
         accessor["bufferView"] = json!(self.views.len());
@@ -200,12 +186,7 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
         Some("it has not one normal for each position; compute them again")
     } else if !mesh.indices.iter().all(in_range) {
         Some("an index is past its last vertex; mend the triangles")
-    } else if !mesh
-        .positions
-        .iter()
-        .chain(&mesh.normals)
-        .all(|v| v.is_finite())
-    {
+    } else if !mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()) {
         Some("a position or normal is not finite; mend or remove the vertex")
     } else if !material.base_color.is_finite() || !material.ior.is_finite() {
         Some("its material's colour or refractive index is not finite; mend it")
@@ -232,11 +213,7 @@ fn material(material: &Material) -> Value {
 /// A glTF camera looks along its node's -z with +y up.
 fn camera_pose(camera: &Camera) -> Value {
     let back = (camera.eye - camera.target).normalize_or(Vec3::Z);
-    let right = camera
-        .up
-        .cross(back)
-        .try_normalize()
-        .unwrap_or_else(|| back.any_orthonormal_vector());
+    let right = camera.up.cross(back).try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
     let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
     json!({
         "name": "camera",

@@ -62,14 +62,10 @@ const DEFAULT_VIEW: (f32, Vec3) = (0.47, Vec3::new(0.35, 0.45, 1.0));
 /// # Errors
 /// [`SceneError::File`] with the path and what is wrong.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let in_file = |problem| SceneError::File {
-        path: path.to_owned(),
-        problem,
-    };
+    let in_file = |problem| SceneError::File { path: path.to_owned(), problem };
     let base = path.parent().unwrap_or(Path::new(""));
-    let mut scene = buffers::read_file(path, MAX_FILE_BYTES)
-        .and_then(|bytes| parse_scene(&bytes, Some(base)))
-        .map_err(in_file)?;
+    let mut scene =
+        buffers::read_file(path, MAX_FILE_BYTES).and_then(|bytes| parse_scene(&bytes, Some(base))).map_err(in_file)?;
     if scene.name.is_empty() {
         let stem = path.file_stem().unwrap_or_default();
         scene.name = stem.to_string_lossy().into_owned();
@@ -113,23 +109,13 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
             Camera::framing(vertices(&objects), toward_eye, vertical_fov)
         }
     };
-    Ok(Scene {
-        name: shown.name,
-        objects,
-        camera,
-    })
+    Ok(Scene { name: shown.name, objects, camera })
 }
 
 fn check_asset(root: &Root) -> Result<(), GltfError> {
-    let asked = root
-        .asset
-        .min_version
-        .as_ref()
-        .unwrap_or(&root.asset.version);
+    let asked = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if !root.asset.version.starts_with("2.") || !asked.starts_with("2.") {
-        return Err(GltfError::Version {
-            version: error::excerpt(asked),
-        });
+        return Err(GltfError::Version { version: error::excerpt(asked) });
     }
     let unknown: Vec<String> = root
         .extensions_required
@@ -140,9 +126,7 @@ fn check_asset(root: &Root) -> Result<(), GltfError> {
     if unknown.is_empty() {
         Ok(())
     } else {
-        Err(GltfError::RequiredExtensions {
-            extensions: error::shortened(unknown),
-        })
+        Err(GltfError::RequiredExtensions { extensions: error::shortened(unknown) })
     }
 }
 

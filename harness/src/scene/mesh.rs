@@ -24,17 +24,9 @@ impl Mesh {
     /// A mesh whose normals are averaged over the triangles about each position; see
     /// [`shared_normals`] for what happens to degenerate triangles.
     #[must_use]
-    pub fn with_shared_normals(
-        positions: Vec<Vec3>,
-        indices: Vec<u32>,
-        averaging: Averaging,
-    ) -> Self {
+    pub fn with_shared_normals(positions: Vec<Vec3>, indices: Vec<u32>, averaging: Averaging) -> Self {
         let normals = shared_normals(&positions, &indices, averaging);
-        Self {
-            positions,
-            normals,
-            indices,
-        }
+        Self { positions, normals, indices }
     }
 
     /// The number of whole triangles.

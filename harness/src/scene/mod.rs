@@ -41,11 +41,7 @@ impl Material {
     /// glTF's default material: white, with refractive index 1.5.
     #[must_use]
     pub fn standard() -> Self {
-        Self {
-            name: "default".to_owned(),
-            base_color: Vec3::ONE,
-            ior: 1.5,
-        }
+        Self { name: "default".to_owned(), base_color: Vec3::ONE, ior: 1.5 }
     }
 }
 
@@ -84,14 +80,8 @@ impl Bounds {
     /// The smallest box about `points`; a box without size at the origin if there are none.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
-        let grow = |bounds: Self, point: Vec3| Self {
-            min: bounds.min.min(point),
-            max: bounds.max.max(point),
-        };
-        let box_of = |point| Self {
-            min: point,
-            max: point,
-        };
+        let grow = |bounds: Self, point: Vec3| Self { min: bounds.min.min(point), max: bounds.max.max(point) };
+        let box_of = |point| Self { min: point, max: point };
         let mut points = points.into_iter();
         let first = points.next().map_or(box_of(Vec3::ZERO), box_of);
         points.fold(first, grow)
@@ -119,14 +109,9 @@ impl Scene {
     pub fn open(argument: &str) -> Result<Self, SceneError> {
         let path = Path::new(argument);
         let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        let looks_like_a_file =
-            extension.is_some_and(|e| e == "glb" || e == "gltf") || argument.contains(['/', '\\']);
+        let looks_like_a_file = extension.is_some_and(|e| e == "glb" || e == "gltf") || argument.contains(['/', '\\']);
         let is_built_in = BUILT_IN.iter().any(|scene| scene.name == argument);
-        if !is_built_in && (looks_like_a_file || path.is_file()) {
-            gltf::load(path)
-        } else {
-            Self::named(argument)
-        }
+        if !is_built_in && (looks_like_a_file || path.is_file()) { gltf::load(path) } else { Self::named(argument) }
     }
 
     /// The built-in scene called `name`; see [`BUILT_IN`].

@@ -48,11 +48,7 @@ impl NormalSum {
     /// The unit mean, or [`FALLBACK_NORMAL`] where nothing was added or everything cancelled.
     pub(super) fn normal(self) -> Vec3 {
         let length = self.sum.length();
-        if length > CANCELLED * self.weight {
-            (self.sum / length).as_vec3()
-        } else {
-            FALLBACK_NORMAL
-        }
+        if length > CANCELLED * self.weight { (self.sum / length).as_vec3() } else { FALLBACK_NORMAL }
     }
 }
 
@@ -78,18 +74,13 @@ pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging)
         for k in 0..3 {
             let weight = match averaging {
                 Averaging::Plain => 1.0,
-                Averaging::Angle => {
-                    interior_angle(corners[(k + 2) % 3], corners[k], corners[(k + 1) % 3])
-                }
+                Averaging::Angle => interior_angle(corners[(k + 2) % 3], corners[k], corners[(k + 1) % 3]),
                 Averaging::Area => area,
             };
             sums[welded[vertices[k]]].add(normal, weight);
         }
     }
-    welded
-        .into_iter()
-        .map(|vertex| sums[vertex].normal())
-        .collect()
+    welded.into_iter().map(|vertex| sums[vertex].normal()).collect()
 }
 
 /// For each position the number of its first exact equal, and how many different ones there are.
@@ -130,21 +121,10 @@ mod tests {
 
     /// A unit cube as twelve triangles, each face cut along the diagonal from its first corner.
     fn cube() -> (Vec<Vec3>, Vec<u32>) {
-        let positions = (0..8u8)
-            .map(|k| Vec3::new(f32::from(k & 1), f32::from(k >> 1 & 1), f32::from(k >> 2)))
-            .collect();
-        let faces: [[u32; 4]; 6] = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let indices = faces
-            .iter()
-            .flat_map(|&[a, b, c, d]| [a, b, c, a, c, d])
-            .collect();
+        let positions =
+            (0..8u8).map(|k| Vec3::new(f32::from(k & 1), f32::from(k >> 1 & 1), f32::from(k >> 2))).collect();
+        let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
         (positions, indices)
     }
 

@@ -23,10 +23,7 @@ impl Plane {
     #[must_use]
     pub fn through(point: DVec3, normal: DVec3) -> Self {
         let normal = normal.normalize_or_zero();
-        Self {
-            normal,
-            distance: normal.dot(point),
-        }
+        Self { normal, distance: normal.dot(point) }
     }
 
     /// Signed distance of `point` from the plane, positive outside.
@@ -84,9 +81,7 @@ impl Polyhedron {
     /// [`PolyhedronError`], where the planes are not proper, enclose nothing or leave a side open.
     pub fn from_planes(planes: &[Plane]) -> Result<Self, PolyhedronError> {
         if planes.len() > MAX_PLANES {
-            return Err(PolyhedronError::TooManyPlanes {
-                planes: planes.len(),
-            });
+            return Err(PolyhedronError::TooManyPlanes { planes: planes.len() });
         }
         let planes = unit_planes(planes)?;
         let tolerance = tolerance(&planes);
@@ -96,9 +91,8 @@ impl Polyhedron {
         let mut faces = Vec::new();
         let mut facets = Vec::new();
         for plane in planes {
-            let touched: Vec<usize> = (0..corners.len())
-                .filter(|&k| plane.height(corners[k]).abs() <= tolerance)
-                .collect();
+            let touched: Vec<usize> =
+                (0..corners.len()).filter(|&k| plane.height(corners[k]).abs() <= tolerance).collect();
             if touched.len() >= 3 {
                 faces.push(ordered_loop(plane.normal, touched, &corners, tolerance));
                 facets.push(plane);
@@ -130,11 +124,7 @@ impl Polyhedron {
                 renumbered.collect()
             })
             .collect();
-        Self {
-            planes,
-            vertices,
-            faces,
-        }
+        Self { planes, vertices, faces }
     }
 
     /// The planes that bound a face, in the order of [`Polyhedron::faces`], with unit normals.
@@ -225,9 +215,8 @@ impl Polyhedron {
     /// The normal of a face times its area.
     fn area_vector(&self, face: &[usize]) -> DVec3 {
         let origin = self.vertices[face[0]];
-        let fan = face.windows(2).map(|edge| {
-            (self.vertices[edge[0]] - origin).cross(self.vertices[edge[1]] - origin) * 0.5
-        });
+        let fan =
+            face.windows(2).map(|edge| (self.vertices[edge[0]] - origin).cross(self.vertices[edge[1]] - origin) * 0.5);
         fan.sum()
     }
 
@@ -237,10 +226,7 @@ impl Polyhedron {
         let direction = self.area_vector(face).normalize_or_zero();
         let (mut moment, mut total) = (DVec3::ZERO, 0.0);
         for edge in face.windows(2) {
-            let (u, v) = (
-                self.vertices[edge[0]] - origin,
-                self.vertices[edge[1]] - origin,
-            );
+            let (u, v) = (self.vertices[edge[0]] - origin, self.vertices[edge[1]] - origin);
             let area = 0.5 * u.cross(v).dot(direction);
             moment += (u + v) * (area / 3.0);
             total += area;

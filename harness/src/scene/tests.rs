@@ -6,11 +6,7 @@ fn every_built_in_opens_by_its_name_and_only_those() {
         let scene = Scene::open(built_in.name).unwrap();
         assert_eq!(scene.name, built_in.name);
         assert!(scene.triangle_count() >= 8);
-        assert!(
-            !built_in.description.contains("  "),
-            "{}",
-            built_in.description
-        );
+        assert!(!built_in.description.contains("  "), "{}", built_in.description);
         for object in &scene.objects {
             let mesh = &object.mesh;
             assert_eq!(mesh.normals.len(), mesh.positions.len());
@@ -22,13 +18,9 @@ fn every_built_in_opens_by_its_name_and_only_those() {
 
 #[test]
 fn built_in_materials_have_their_minerals_indices() {
-    for (name, ior) in [
-        ("brilliant", 2.41749),
-        ("octahedron", 2.41749),
-        ("step_cut", 1.577),
-        ("prism", 1.54428),
-        ("bunny_stone", 1.5),
-    ] {
+    for (name, ior) in
+        [("brilliant", 2.41749), ("octahedron", 2.41749), ("step_cut", 1.577), ("prism", 1.54428), ("bunny_stone", 1.5)]
+    {
         assert_eq!(Scene::named(name).unwrap().objects[0].material.ior, ior);
     }
 }
@@ -47,11 +39,7 @@ fn built_in_cameras_frame_their_stones_tightly() {
             0.5 * (across.clone().fold(f32::MIN, f32::max) - across.fold(f32::MAX, f32::min))
         };
         let (height, width) = (seen(camera.up), seen(right));
-        assert!(
-            (0.55..=0.76).contains(&height),
-            "{}: height {height}",
-            built_in.name
-        );
+        assert!((0.55..=0.76).contains(&height), "{}: height {height}", built_in.name);
         assert!(width <= 0.91, "{}: width {width}", built_in.name);
         assert!((25.0..30.0).contains(&camera.vertical_fov.to_degrees()));
     }
@@ -66,17 +54,11 @@ fn the_brilliant_is_seen_from_35_degrees_off_its_table() {
 
 #[test]
 fn misspelt_names_get_the_nearest() {
-    for (name, nearest) in [
-        ("briliant", "brilliant"),
-        ("octaeder", "octahedron"),
-        ("stepcut", "step_cut"),
-        ("bunny", "bunny_stone"),
-    ] {
+    for (name, nearest) in
+        [("briliant", "brilliant"), ("octaeder", "octahedron"), ("stepcut", "step_cut"), ("bunny", "bunny_stone")]
+    {
         let message = Scene::open(name).unwrap_err().to_string();
-        assert!(
-            message.contains(&format!("did you mean {nearest}?")),
-            "{message}"
-        );
+        assert!(message.contains(&format!("did you mean {nearest}?")), "{message}");
     }
     for odd in ["", "\n", "💎"] {
         let message = Scene::open(odd).unwrap_err().to_string();
@@ -88,10 +70,7 @@ fn misspelt_names_get_the_nearest() {
 fn what_looks_like_a_file_is_opened_as_one() {
     for missing in ["briliant.glb", "./brilliant", "stones/a.GLTF"] {
         let message = Scene::open(missing).unwrap_err().to_string();
-        assert!(
-            message.starts_with(&format!("{missing}: the file cannot be read")),
-            "{message}"
-        );
+        assert!(message.starts_with(&format!("{missing}: the file cannot be read")), "{message}");
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("stone.glb");

@@ -32,7 +32,8 @@ fn every_file_is_registered_and_has_its_four_places() {
         let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
         names.filter_map(|name| name.strip_suffix(".wgsl").map(str::to_owned)).collect()
     };
-    let names = |names: &mut dyn Iterator<Item = &'static str>| -> BTreeSet<String> { names.map(str::to_owned).collect() };
+    let names =
+        |names: &mut dyn Iterator<Item = &'static str>| -> BTreeSet<String> { names.map(str::to_owned).collect() };
     assert_eq!(in_folder("wgsl"), names(&mut modules().iter().map(|module| module.name)));
     assert_eq!(in_folder("wgsl/recipes"), names(&mut recipes().iter().map(|recipe| recipe.name)));
     for module in modules() {
@@ -43,7 +44,8 @@ fn every_file_is_registered_and_has_its_four_places() {
 
 #[test]
 fn every_function_has_one_formula_and_every_formula_a_function() {
-    let documented: Vec<&str> = modules().iter().flat_map(|module| &module.functions).map(|f| f.name.as_str()).collect();
+    let documented: Vec<&str> =
+        modules().iter().flat_map(|module| &module.functions).map(|f| f.name.as_str()).collect();
     let mut bound: Vec<&str> = formulas::all().iter().map(|formula| formula.function).collect();
     let mut wanted = documented;
     wanted.sort_unstable();
@@ -242,16 +244,20 @@ fn anything_but_functions_structs_and_consts_is_found() {
 #[test]
 fn a_directive_is_found() {
     // Directives stand before every declaration.
-    for directive in
-        ["requires readonly_and_readwrite_storage_textures;", "diagnostic(off, derivative_uniformity);", "diagnostic (off, derivative_uniformity);"]
-    {
+    for directive in [
+        "requires readonly_and_readwrite_storage_textures;",
+        "diagnostic(off, derivative_uniformity);",
+        "diagnostic (off, derivative_uniformity);",
+    ] {
         breaks(Rule::PureFunctions, "const SAMPLE_HALF", &format!("{directive}\n\nconst SAMPLE_HALF"));
     }
 }
 
 #[test]
 fn a_name_without_the_modules_prefix_is_found() {
-    for (from, to) in [("sample_halved", "halved"), ("SamplePair", "Pair"), ("SAMPLE_HALF", "HALF"), ("SAMPLE_HALF", "sample_HALF")] {
+    for (from, to) in
+        [("sample_halved", "halved"), ("SamplePair", "Pair"), ("SAMPLE_HALF", "HALF"), ("SAMPLE_HALF", "sample_HALF")]
+    {
         let findings = breaks(Rule::Prefix, from, to);
         assert!(findings[0].message.contains(&format!("`{to}`")) && findings[0].line > 3, "{}", spell(&findings));
     }
@@ -289,9 +295,14 @@ fn a_literal_without_a_type_is_found() {
 
 #[test]
 fn what_only_looks_like_a_literal_is_not_found() {
-    for statement in
-        ["let x1 = vec3f(first);", "let turn = mat4x4f();", "let number = 1e-5f + .5f;", "let number = first; // 1.0 and 3", "let number = -3i;", "let number = 0x10u;"]
-    {
+    for statement in [
+        "let x1 = vec3f(first);",
+        "let turn = mat4x4f();",
+        "let number = 1e-5f + .5f;",
+        "let number = first; // 1.0 and 3",
+        "let number = -3i;",
+        "let number = 0x10u;",
+    ] {
         let findings = lint("sample", &changed(BODY, &format!("    {statement}\n{BODY}")));
         assert!(findings.is_empty(), "{statement}: {}", spell(&findings));
     }
@@ -319,5 +330,10 @@ fn modules_that_clash_are_found() {
     let clash = other.replace("OtherPair", "SamplePair");
     let findings = lint_composition(&[("sample", SAMPLE), ("other", &clash)]);
     // In this order and in the other.
-    assert_eq!(findings.iter().map(|finding| finding.rule).collect::<Vec<_>>(), [Rule::Composition; 2], "{}", spell(&findings));
+    assert_eq!(
+        findings.iter().map(|finding| finding.rule).collect::<Vec<_>>(),
+        [Rule::Composition; 2],
+        "{}",
+        spell(&findings)
+    );
 }

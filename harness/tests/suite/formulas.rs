@@ -14,7 +14,13 @@ fn every_formula_holds_over_its_domain() {
         if !row.passed() {
             faults.push(format!(
                 "{}: {} failed, {:?}, worst {}, shrunk {:?}, missed {:?}, {:?}",
-                row.function, row.failed, row.reason, row.worst_input, row.shrunk_input, row.missed_edges, row.broken_hard_cases
+                row.function,
+                row.failed,
+                row.reason,
+                row.worst_input,
+                row.shrunk_input,
+                row.missed_edges,
+                row.broken_hard_cases
             ));
         }
     }

@@ -14,15 +14,18 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
             count += 1;
             let name = format!("{}: {}", formula.function, case.name);
             let mut stable = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
-            let distance = distance_from_limit(&mut stable, &case.arguments, &case.limit, &formula.result).expect("runs");
+            let distance =
+                distance_from_limit(&mut stable, &case.arguments, &case.limit, &formula.result).expect("runs");
             // A NaN does not hold.
             if !(distance <= case.bound) {
                 faults.push(format!("{name}: the stable form is off by {distance:e}, at most {:e}", case.bound));
             }
-            let naive = formulas::of_function(case.naive).unwrap_or_else(|| panic!("{name}: no formula `{}`", case.naive));
+            let naive =
+                formulas::of_function(case.naive).unwrap_or_else(|| panic!("{name}: no formula `{}`", case.naive));
             assert!(naive.benign.is_some(), "{name}: `{}` is not a naive form", case.naive);
             let mut kernel = check::kernel(gpu, naive, Source::Cookbook).expect("the cookbook's WGSL compiles");
-            let error = distance_from_limit(&mut kernel, &case.naive_arguments, &case.limit, &naive.result).expect("runs");
+            let error =
+                distance_from_limit(&mut kernel, &case.naive_arguments, &case.limit, &naive.result).expect("runs");
             let fails = if case.naive_error.is_infinite() { !error.is_finite() } else { !(error < case.naive_error) };
             if !fails {
                 faults.push(format!("{name}: the naive form is off by {error:e} only, stated {:e}", case.naive_error));

@@ -8,7 +8,6 @@ mod contract;
 mod dispatch;
 mod formulas;
 mod hard_cases;
-mod loader_fuzz;
 mod program;
 mod snapshots;
 

@@ -24,14 +24,8 @@ pub struct BrilliantParameters {
 
 impl BrilliantParameters {
     /// Tolkowsky's ideal cut (Diamond Design, 1919), with modern star and lower-half lengths.
-    pub const TOLKOWSKY: Self = Self {
-        table: 0.53,
-        crown_degrees: 34.5,
-        pavilion_degrees: 40.75,
-        star: 0.5,
-        lower_halves: 0.77,
-        girdle: 0.02,
-    };
+    pub const TOLKOWSKY: Self =
+        Self { table: 0.53, crown_degrees: 34.5, pavilion_degrees: 40.75, star: 0.5, lower_halves: 0.77, girdle: 0.02 };
 }
 
 /// A round brilliant with a pointed culet: table, 8 stars, 8 bezels, 16 upper halves, 16 girdle
@@ -42,14 +36,7 @@ impl BrilliantParameters {
 /// parameters together make facets vanish.
 pub fn round_brilliant(parameters: &BrilliantParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("round brilliant");
-    let &BrilliantParameters {
-        table,
-        crown_degrees,
-        pavilion_degrees,
-        star,
-        lower_halves,
-        girdle,
-    } = parameters;
+    let &BrilliantParameters { table, crown_degrees, pavilion_degrees, star, lower_halves, girdle } = parameters;
     check.fraction("table", table)?;
     check.slope("crown_degrees", crown_degrees)?;
     check.slope("pavilion_degrees", pavilion_degrees)?;

@@ -50,20 +50,7 @@ impl StepCutParameters {
 
 const fn steps(steps: [(f64, f64); 3]) -> [Step; 3] {
     let [(a, b), (c, d), (e, f)] = steps;
-    [
-        Step {
-            degrees: a,
-            share: b,
-        },
-        Step {
-            degrees: c,
-            share: d,
-        },
-        Step {
-            degrees: e,
-            share: f,
-        },
-    ]
+    [Step { degrees: a, share: b }, Step { degrees: c, share: d }, Step { degrees: e, share: f }]
 }
 
 /// An emerald cut, its length along x: table, 24 crown facets from the girdle up, 8 girdle facets,
@@ -78,14 +65,7 @@ const fn steps(steps: [(f64, f64); 3]) -> [Step; 3] {
 /// [`CutError::Facets`] where the parameters together make facets vanish.
 pub fn step_cut(parameters: &StepCutParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("step cut");
-    let &StepCutParameters {
-        width,
-        corner,
-        table,
-        girdle,
-        crown,
-        pavilion,
-    } = parameters;
+    let &StepCutParameters { width, corner, table, girdle, crown, pavilion } = parameters;
     check.fraction("width", width)?;
     check.fraction("corner", corner)?;
     check.fraction("table", table)?;
@@ -98,10 +78,7 @@ pub fn step_cut(parameters: &StepCutParameters) -> Result<Polyhedron, CutError> 
     let (pavilion_planes, _) = outline.ring(&pavilion, width, girdle, -1.0);
     let mut planes = vec![Plane::through(DVec3::Z * table_height, DVec3::Z)];
     planes.extend(crown_planes);
-    planes.extend(outline.sides.iter().map(|side| Plane {
-        normal: side.outward.extend(0.0),
-        distance: side.distance,
-    }));
+    planes.extend(outline.sides.iter().map(|side| Plane { normal: side.outward.extend(0.0), distance: side.distance }));
     planes.extend(pavilion_planes);
     check.solid(&planes, 57)
 }
@@ -111,12 +88,7 @@ fn check_steps(check: Checked, part: &'static str, steps: &[Step; 3]) -> Result<
     for step in steps {
         check.slope(part, step.degrees)?;
         let falls = step.degrees < before;
-        check.require(
-            falls,
-            part,
-            step.degrees,
-            "below the slope of the step before it",
-        )?;
+        check.require(falls, part, step.degrees, "below the slope of the step before it")?;
         check.length(part, step.share)?;
         before = step.degrees;
     }
@@ -149,11 +121,7 @@ impl Outline {
                 2 => (width, 1.0),
                 _ => (corner_distance, corner_pace),
             };
-            Side {
-                outward: super::outward(std::f64::consts::FRAC_PI_4 * k as f64),
-                distance,
-                pace,
-            }
+            Side { outward: super::outward(std::f64::consts::FRAC_PI_4 * k as f64), distance, pace }
         });
         Self { sides }
     }

@@ -4,9 +4,7 @@ use super::*;
 
 /// A map with a different colour in each pixel.
 fn coloured(width: u32, height: u32) -> DynamicImage {
-    DynamicImage::ImageRgb32F(ImageBuffer::from_fn(width, height, |x, y| {
-        Rgb([x as f32, y as f32, 0.5])
-    }))
+    DynamicImage::ImageRgb32F(ImageBuffer::from_fn(width, height, |x, y| Rgb([x as f32, y as f32, 0.5])))
 }
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
@@ -38,10 +36,7 @@ fn a_file_is_loaded_and_errors_name_it() {
 
     for missing in [folder.path().join("none.hdr"), folder.path().to_owned()] {
         let message = EnvironmentMap::load(&missing).unwrap_err().to_string();
-        assert!(
-            message.starts_with(&missing.display().to_string()),
-            "{message}"
-        );
+        assert!(message.starts_with(&missing.display().to_string()), "{message}");
         assert!(message.contains("cannot be read"), "{message}");
     }
 }
@@ -51,10 +46,7 @@ fn other_files_are_refused() {
     let png = encoded(&DynamicImage::new_rgb8(4, 4), ImageFormat::Png);
     for bytes in [&b""[..], b"hello", &png] {
         let error = decode(bytes).unwrap_err();
-        assert!(
-            matches!(error, EnvironmentMapError::Format { .. }),
-            "{error}"
-        );
+        assert!(matches!(error, EnvironmentMapError::Format { .. }), "{error}");
     }
 }
 

@@ -43,8 +43,6 @@ fn a_scene_that_breaks_a_promise_is_noticed() {
         check_scene(&scene, 1_000).is_err()
     };
     assert!(broken(|scene| scene.objects[0].mesh.indices[0] = 6));
-    assert!(broken(
-        |scene| scene.objects[0].mesh.positions[0].x = f32::NAN
-    ));
+    assert!(broken(|scene| scene.objects[0].mesh.positions[0].x = f32::NAN));
     assert!(broken(|scene| scene.camera.target = scene.camera.eye));
 }

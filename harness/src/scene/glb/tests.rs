@@ -37,14 +37,8 @@ fn the_container_is_aligned_and_complete() {
     let json: Value = serde_json::from_slice(json).unwrap();
     assert_eq!(json["asset"]["generator"], "Lapidary");
     let extensions = &json["materials"][0]["extensions"];
-    assert_eq!(
-        extensions["KHR_materials_transmission"]["transmissionFactor"],
-        1.0
-    );
-    assert_eq!(
-        extensions["KHR_materials_ior"]["ior"].as_f64().unwrap() as f32,
-        2.41749
-    );
+    assert_eq!(extensions["KHR_materials_transmission"]["transmissionFactor"], 1.0);
+    assert_eq!(extensions["KHR_materials_ior"]["ior"].as_f64().unwrap() as f32, 2.41749);
     assert_eq!(json["accessors"][0]["max"][0], 1.0);
     let length = json["buffers"][0]["byteLength"].as_u64().unwrap() as usize;
     assert!(binary.len() - length < 4);

@@ -25,11 +25,8 @@ pub(super) struct Kind {
 }
 
 /// Positions and normals.
-pub(super) const VECTORS: Kind = Kind {
-    type_: Type::Vec3,
-    components: &[ComponentType::F32],
-    description: "VEC3 of float",
-};
+pub(super) const VECTORS: Kind =
+    Kind { type_: Type::Vec3, components: &[ComponentType::F32], description: "VEC3 of float" };
 
 /// Indices.
 pub(super) const INDICES: Kind = Kind {
@@ -65,29 +62,23 @@ impl<'a> Elements<'a> {
             )));
         }
         if accessor.sparse.is_some() {
-            return Err(wrong(
-                "sparse accessors are not read; export without them".to_owned(),
-            ));
+            return Err(wrong("sparse accessors are not read; export without them".to_owned()));
         }
         let Some(view_index) = accessor.buffer_view else {
-            return Err(wrong(
-                "it has no bufferView, so no data; export it again".to_owned(),
-            ));
+            return Err(wrong("it has no bufferView, so no data; export it again".to_owned()));
         };
-        let view = item(&root.buffer_views, "bufferView", view_index.value(), || {
-            name.clone()
-        })?;
-        let buffer = item(buffers.list(), "buffer", view.buffer.value(), || {
-            format!("bufferView {}", view_index.value())
-        })?;
+        let view = item(&root.buffer_views, "bufferView", view_index.value(), || name.clone())?;
+        let buffer =
+            item(buffers.list(), "buffer", view.buffer.value(), || format!("bufferView {}", view_index.value()))?;
 
         let view_start = view.byte_offset.map_or(0, |offset| offset.0);
         let view_bytes = range(buffer, view_start, view.byte_length.0).ok_or_else(|| {
             let part = format!("bufferView {}", view_index.value());
             let (length, has) = (view.byte_length.0, buffer.len());
-            GltfError::part(part, format!(
-                "it takes {length} bytes from byte {view_start} of a buffer of {has}; export it again"
-            ))
+            GltfError::part(
+                part,
+                format!("it takes {length} bytes from byte {view_start} of a buffer of {has}; export it again"),
+            )
         })?;
 
         let size = component.size() * kind.type_.multiplicity();
@@ -100,9 +91,7 @@ impl<'a> Elements<'a> {
         let count = accessor.count.0;
         let start = accessor.byte_offset.map_or(0, |offset| offset.0);
         // The last element need not be followed by the rest of its stride.
-        let length = count
-            .checked_sub(1)
-            .and_then(|steps| steps.checked_mul(stride as u64)?.checked_add(size as u64));
+        let length = count.checked_sub(1).and_then(|steps| steps.checked_mul(stride as u64)?.checked_add(size as u64));
         let bytes = length.and_then(|length| range(view_bytes, start, length));
         let (Some(bytes), Ok(count)) = (bytes, usize::try_from(count)) else {
             let has = view_bytes.len();
@@ -111,12 +100,7 @@ impl<'a> Elements<'a> {
                  bufferView of {has} bytes; export it again"
             )));
         };
-        Ok(Self {
-            bytes,
-            stride,
-            size,
-            count,
-        })
+        Ok(Self { bytes, stride, size, count })
     }
 
     /// The number of elements, at least one.
@@ -145,10 +129,7 @@ impl<'a> Elements<'a> {
 
 /// A number of up to four bytes, which need not be aligned.
 fn little_endian(bytes: &[u8]) -> u32 {
-    bytes
-        .iter()
-        .rev()
-        .fold(0, |number, &byte| number << 8 | u32::from(byte))
+    bytes.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
 /// `length` bytes from `start`, if there are so many.

@@ -37,9 +37,7 @@ impl Budget {
         // No overflow: both numbers are at most a buffer's length.
         let bytes = vertices * 2 * size_of::<Vec3>() as u64 + triangles * 3 * 4 + OBJECT_BYTES;
         let left = self.bytes.checked_sub(bytes);
-        self.bytes = left.ok_or(GltfError::Expansion {
-            file_bytes: self.file_bytes,
-        })?;
+        self.bytes = left.ok_or(GltfError::Expansion { file_bytes: self.file_bytes })?;
         Ok(())
     }
 }

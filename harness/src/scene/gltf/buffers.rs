@@ -26,25 +26,16 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 );
 
 impl<'a> Buffers<'a> {
-    pub(super) fn load(
-        root: &Root,
-        binary: Option<&'a [u8]>,
-        base: Option<&Path>,
-    ) -> Result<Self, GltfError> {
-        let mut all = Self {
-            buffers: Vec::with_capacity(root.buffers.len()),
-            external_bytes: 0,
-        };
+    pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, base: Option<&Path>) -> Result<Self, GltfError> {
+        let mut all = Self { buffers: Vec::with_capacity(root.buffers.len()), external_bytes: 0 };
         let mut left = MAX_FILE_BYTES;
         for (index, buffer) in root.buffers.iter().enumerate() {
             let length = buffer.byte_length.0;
-            left = left
-                .checked_sub(length)
-                .ok_or_else(|| GltfError::TooLarge {
-                    what: format!("buffer {index}, with those before it,"),
-                    bytes: (MAX_FILE_BYTES - left).saturating_add(length),
-                    limit: MAX_FILE_BYTES,
-                })?;
+            left = left.checked_sub(length).ok_or_else(|| GltfError::TooLarge {
+                what: format!("buffer {index}, with those before it,"),
+                bytes: (MAX_FILE_BYTES - left).saturating_add(length),
+                limit: MAX_FILE_BYTES,
+            })?;
             let bytes = all.bytes_of(index, buffer, binary, base)?;
             all.buffers.push(bytes);
         }
@@ -73,9 +64,7 @@ impl<'a> Buffers<'a> {
         let mut bytes = match (&buffer.uri, binary) {
             (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
             (None, _) => {
-                return Err(wrong(
-                    "it has no uri and no binary chunk; export it again".to_owned(),
-                ));
+                return Err(wrong("it has no uri and no binary chunk; export it again".to_owned()));
             }
             (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
                 Some(data) => decode(data).map_err(wrong)?,
@@ -89,9 +78,7 @@ impl<'a> Buffers<'a> {
         };
         if bytes.len() < length {
             let found = bytes.len();
-            return Err(wrong(format!(
-                "it must have {length} bytes but has {found}; export or download it again"
-            )));
+            return Err(wrong(format!("it must have {length} bytes but has {found}; export or download it again")));
         }
         match &mut bytes {
             Cow::Borrowed(slice) => *slice = &slice[..length],
@@ -103,9 +90,7 @@ impl<'a> Buffers<'a> {
 
 /// The data of a `data:` URI after its scheme.
 fn decode(data: &str) -> Result<Vec<u8>, String> {
-    let (kind, text) = data
-        .split_once(',')
-        .ok_or("its data: URI has no comma; export it again")?;
+    let (kind, text) = data.split_once(',').ok_or("its data: URI has no comma; export it again")?;
     if !kind.ends_with(";base64") {
         return Err("its data: URI is not base64; export it as base64".to_owned());
     }
@@ -116,19 +101,15 @@ fn decode(data: &str) -> Result<Vec<u8>, String> {
 /// The file that a relative URI names.
 fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
     let shown = excerpt(uri);
-    let name = percent_decoded(uri)
-        .ok_or_else(|| format!("its uri {shown:?} is not valid; rename the file"))?;
+    let name = percent_decoded(uri).ok_or_else(|| format!("its uri {shown:?} is not valid; rename the file"))?;
     let scheme = name.split_once(':').map_or("", |(scheme, _)| scheme);
     let absolute = name.starts_with(['/', '\\']) || Path::new(&name).is_absolute();
     // A colon in a later part of a path is part of a file's name.
     if absolute || (!scheme.is_empty() && !scheme.contains('/')) {
-        return Err(format!(
-            "its uri {shown:?} is not a relative path; put the file beside the .gltf"
-        ));
+        return Err(format!("its uri {shown:?} is not a relative path; put the file beside the .gltf"));
     }
-    let base = base.ok_or_else(|| {
-        format!("its uri {shown:?} names a file, but the data did not come from a file; use a .glb")
-    })?;
+    let base = base
+        .ok_or_else(|| format!("its uri {shown:?} names a file, but the data did not come from a file; use a .glb"))?;
     Ok(base.join(name))
 }
 
@@ -145,25 +126,15 @@ fn percent_decoded(uri: &str) -> Option<String> {
             _ => byte,
         });
     }
-    String::from_utf8(bytes)
-        .ok()
-        .filter(|name| !name.contains('\0'))
+    String::from_utf8(bytes).ok().filter(|name| !name.contains('\0'))
 }
 
 /// All bytes of the glTF file at `path`.
 pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, GltfError> {
-    let too_large = |bytes| GltfError::TooLarge {
-        what: "the file".to_owned(),
-        bytes,
-        limit,
-    };
+    let too_large = |bytes| GltfError::TooLarge { what: "the file".to_owned(), bytes, limit };
     let bytes = read_up_to(path, "the file".to_owned(), limit.saturating_add(1))?;
     let length = bytes.len() as u64;
-    if length > limit {
-        Err(too_large(length))
-    } else {
-        Ok(bytes)
-    }
+    if length > limit { Err(too_large(length)) } else { Ok(bytes) }
 }
 
 /// At most `length` bytes of a buffer's file.
@@ -174,10 +145,7 @@ fn read_named(path: &Path, buffer: &str, length: u64) -> Result<Vec<u8>, GltfErr
 
 /// Devices and pipes, which may never end, are refused.
 fn read_up_to(path: &Path, what: String, limit: u64) -> Result<Vec<u8>, GltfError> {
-    let unreadable = |reason: String| GltfError::Unreadable {
-        what: what.clone(),
-        reason,
-    };
+    let unreadable = |reason: String| GltfError::Unreadable { what: what.clone(), reason };
     // Asked before the file is opened, because opening a pipe waits for its other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {

@@ -56,16 +56,7 @@ fn place(world: DMat4, vertical_fov: f32, bounds: &Bounds) -> Option<Camera> {
     let radius = f64::from(bounds.radius());
     let ahead = (bounds.centre().as_dvec3() - eye).dot(forward);
     let floor = (0.01 * radius).max(1e-3 * eye.length()).max(1e-6);
-    let distance = if ahead > floor {
-        ahead
-    } else {
-        radius.max(floor)
-    };
+    let distance = if ahead > floor { ahead } else { radius.max(floor) };
     let point = |v: DVec3| v.as_vec3();
-    Some(Camera {
-        eye: point(eye),
-        target: point(eye + forward * distance),
-        up: point(up),
-        vertical_fov,
-    })
+    Some(Camera { eye: point(eye), target: point(eye + forward * distance), up: point(up), vertical_fov })
 }

@@ -18,23 +18,17 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
     if !bytes.starts_with(b"glTF") {
         let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
         return match first {
-            Some(b'{') => Ok(Container {
-                json: bytes,
-                binary: None,
-            }),
+            Some(b'{') => Ok(Container { json: bytes, binary: None }),
             _ => Err(GltfError::NotGltf),
         };
     }
     let version = word(bytes, 4, "its header")?;
     if version != 2 {
-        return Err(GltfError::Version {
-            version: version.to_string(),
-        });
+        return Err(GltfError::Version { version: version.to_string() });
     }
     let stated = word(bytes, 8, "its header")? as usize;
-    let bytes = bytes
-        .get(..stated)
-        .ok_or_else(|| damaged(format!("it states {stated} bytes but has {}", bytes.len())))?;
+    let bytes =
+        bytes.get(..stated).ok_or_else(|| damaged(format!("it states {stated} bytes but has {}", bytes.len())))?;
     let (kind, json, rest) = chunk(bytes, 12)?;
     if kind != b"JSON" {
         return Err(damaged("its first chunk is not JSON".to_owned()));
@@ -58,16 +52,13 @@ fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), GltfError> {
     let data = end.and_then(|end| bytes.get(start..end));
     match (kind, data) {
         (Some(kind), Some(data)) => Ok((kind, data, start + length)),
-        _ => Err(damaged(format!(
-            "the chunk at byte {at} states {length} bytes but the file ends before"
-        ))),
+        _ => Err(damaged(format!("the chunk at byte {at} states {length} bytes but the file ends before"))),
     }
 }
 
 fn word(bytes: &[u8], at: usize, part: &str) -> Result<u32, GltfError> {
     let word = bytes.get(at..).and_then(|tail| tail.first_chunk());
-    let word =
-        word.ok_or_else(|| damaged(format!("it ends at byte {} inside {part}", bytes.len())))?;
+    let word = word.ok_or_else(|| damaged(format!("it ends at byte {} inside {part}", bytes.len())))?;
     Ok(u32::from_le_bytes(*word))
 }
 

@@ -91,9 +91,7 @@ pub enum GltfError {
         position: [f32; 3],
     },
     /// A triangle of a vertex that does not exist.
-    #[error(
-        "{primitive}: index {place} is {index}, but it has {vertices} vertices; export it again"
-    )]
+    #[error("{primitive}: index {place} is {index}, but it has {vertices} vertices; export it again")]
     IndexOutOfRange {
         /// Which primitive.
         primitive: String,
@@ -126,9 +124,7 @@ pub enum GltfError {
 
 impl GltfError {
     pub(super) fn json(error: ::gltf::json::Error) -> Self {
-        Self::Json {
-            message: shortened([error.to_string()]),
-        }
+        Self::Json { message: shortened([error.to_string()]) }
     }
 
     pub(super) fn part(part: String, problem: impl Into<String>) -> Self {
@@ -144,12 +140,7 @@ pub(super) fn item<'a, T>(
     index: usize,
     from: impl FnOnce() -> String,
 ) -> Result<&'a T, GltfError> {
-    list.get(index).ok_or_else(|| GltfError::Dangling {
-        from: from(),
-        what,
-        index,
-        count: list.len(),
-    })
+    list.get(index).ok_or_else(|| GltfError::Dangling { from: from(), what, index, count: list.len() })
 }
 
 /// `mesh 2`, or with its name `mesh 2 "bunny"`.

@@ -20,14 +20,9 @@ pub(super) fn read(root: &Root, index: Option<usize>, user: &str) -> Result<Mate
     let [red, green, blue, _] = material.pbr_metallic_roughness.base_color_factor.0;
     let color = [red, green, blue];
     if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
-        return Err(wrong(format!(
-            "its baseColorFactor is {color:?}, but each part must lie from 0 to 1"
-        )));
+        return Err(wrong(format!("its baseColorFactor is {color:?}, but each part must lie from 0 to 1")));
     }
-    let extension = material
-        .extensions
-        .as_ref()
-        .and_then(|all| all.ior.as_ref());
+    let extension = material.extensions.as_ref().and_then(|all| all.ior.as_ref());
     let ior = extension.map_or(Material::standard().ior, |ior| ior.ior.0);
     if ior == 0.0 {
         return Err(wrong(
@@ -37,15 +32,10 @@ pub(super) fn read(root: &Root, index: Option<usize>, user: &str) -> Result<Mate
         ));
     }
     if !(ior.is_finite() && ior >= 1.0) {
-        return Err(wrong(format!(
-            "its ior is {ior}, but a refractive index must be finite and at least 1"
-        )));
+        return Err(wrong(format!("its ior is {ior}, but a refractive index must be finite and at least 1")));
     }
     Ok(Material {
-        name: material
-            .name
-            .as_deref()
-            .map_or_else(|| format!("material {index}"), excerpt),
+        name: material.name.as_deref().map_or_else(|| format!("material {index}"), excerpt),
         base_color: Vec3::from_array(color),
         ior,
     })

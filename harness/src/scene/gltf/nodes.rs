@@ -55,9 +55,7 @@ fn orphans(root: &Root) -> Vec<usize> {
             *flag = true;
         }
     }
-    (0..has_parent.len())
-        .filter(|&node| !has_parent[node])
-        .collect()
+    (0..has_parent.len()).filter(|&node| !has_parent[node]).collect()
 }
 
 fn children(node: &Node) -> impl DoubleEndedIterator<Item = usize> {
@@ -66,19 +64,11 @@ fn children(node: &Node) -> impl DoubleEndedIterator<Item = usize> {
 }
 
 /// Visits each node once, without recursion, so that neither cycles nor depth do harm.
-fn walk<'a>(
-    root: &'a Root,
-    roots: &[usize],
-    scene: usize,
-) -> Result<Vec<ShownNode<'a>>, GltfError> {
+fn walk<'a>(root: &'a Root, roots: &[usize], scene: usize) -> Result<Vec<ShownNode<'a>>, GltfError> {
     let mut visited = vec![false; root.nodes.len()];
     let mut shown = Vec::new();
     // Last in, first out: reversed, so that the first comes first.
-    let mut waiting: Vec<_> = roots
-        .iter()
-        .rev()
-        .map(|&k| (k, None, DMat4::IDENTITY))
-        .collect();
+    let mut waiting: Vec<_> = roots.iter().rev().map(|&k| (k, None, DMat4::IDENTITY)).collect();
     while let Some((index, parent, outer)) = waiting.pop() {
         let node = item(&root.nodes, "node", index, || {
             parent.map_or(format!("scene {scene}"), |parent| format!("node {parent}"))
@@ -90,11 +80,7 @@ fn walk<'a>(
             ));
         }
         let world = outer * local(node);
-        waiting.extend(
-            children(node)
-                .rev()
-                .map(|child| (child, Some(index), world)),
-        );
+        waiting.extend(children(node).rev().map(|child| (child, Some(index), world)));
         shown.push(ShownNode { index, node, world });
     }
     Ok(shown)
@@ -113,11 +99,7 @@ fn local(node: &Node) -> DMat4 {
         // Rounded in the file to f32, so that its length is only nearly 1. One without direction
         // turns nothing, which is what exporters mean by four zeros.
         let length = quaternion.length();
-        if length > 0.0 {
-            quaternion / length
-        } else {
-            DQuat::IDENTITY
-        }
+        if length > 0.0 { quaternion / length } else { DQuat::IDENTITY }
     });
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }

@@ -33,17 +33,8 @@ pub(super) fn add_objects(
         let Some(arrangement) = Arrangement::of(primitive.mode) else {
             continue;
         };
-        let user = format!(
-            "{}, primitive {index}",
-            designation("mesh", mesh_index, mesh.name.as_deref())
-        );
-        let mut reader = Reader {
-            root,
-            buffers,
-            primitive,
-            user: &user,
-            budget,
-        };
+        let user = format!("{}, primitive {index}", designation("mesh", mesh_index, mesh.name.as_deref()));
+        let mut reader = Reader { root, buffers, primitive, user: &user, budget };
         let mesh_in_world = reader.mesh(arrangement, node.world)?;
         let material_index = primitive.material.map(|material| material.value());
         objects.push(Object {
@@ -106,9 +97,9 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn mesh(&mut self, arrangement: Arrangement, world: DMat4) -> Result<Mesh, GltfError> {
-        let positions = self.attribute(&Semantic::Positions)?.ok_or_else(|| {
-            GltfError::part(self.user.to_owned(), "it has no POSITION; export it again")
-        })?;
+        let positions = self
+            .attribute(&Semantic::Positions)?
+            .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
         let normals = self.attribute(&Semantic::Normals)?;
         let indices = match self.primitive.indices {
             Some(index) => Some(self.elements(index.value(), INDICES)?),
@@ -135,48 +126,28 @@ impl<'a> Reader<'a> {
         let mirrored = linear.determinant() < 0.0;
         let indices = assemble(&corners, arrangement, mirrored);
         let normals = match normals {
-            Some(normals) => given_or_shared(
-                normals.vectors(),
-                Cofactors::of(linear),
-                &positions,
-                &indices,
-            ),
+            Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
             None => shared_normals(&positions, &indices, Averaging::Angle),
         };
-        Ok(Mesh {
-            positions,
-            normals,
-            indices,
-        })
+        Ok(Mesh { positions, normals, indices })
     }
 
     fn attribute(&self, semantic: &Semantic) -> Result<Option<Elements<'a>>, GltfError> {
         let attributes = &self.primitive.attributes;
         let index = attributes.get(&Checked::Valid(semantic.clone()));
-        index
-            .map(|index| self.elements(index.value(), VECTORS))
-            .transpose()
+        index.map(|index| self.elements(index.value(), VECTORS)).transpose()
     }
 
-    fn elements(
-        &self,
-        index: usize,
-        kind: super::accessor::Kind,
-    ) -> Result<Elements<'a>, GltfError> {
+    fn elements(&self, index: usize, kind: super::accessor::Kind) -> Result<Elements<'a>, GltfError> {
         Elements::of(self.root, self.buffers, index, kind, self.user)
     }
 
     fn positions(&self, elements: Elements<'_>, world: DMat4) -> Result<Vec<Vec3>, GltfError> {
         let mut positions = Vec::with_capacity(elements.count());
         for (vertex, local) in elements.vectors().enumerate() {
-            let position = world
-                .transform_point3(Vec3::from_array(local).as_dvec3())
-                .as_vec3();
+            let position = world.transform_point3(Vec3::from_array(local).as_dvec3()).as_vec3();
             // Written so that NaN fails it too.
-            let placed = position
-                .to_array()
-                .iter()
-                .all(|x| x.abs() <= MAX_COORDINATE);
+            let placed = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
             if !placed {
                 return Err(GltfError::Position {
                     primitive: self.user.to_owned(),
@@ -234,9 +205,7 @@ fn given_or_shared(
     }
     let shared = shared_normals(positions, indices, Averaging::Angle);
     let pairs = given.into_iter().zip(shared);
-    pairs
-        .map(|(given, shared)| given.unwrap_or(shared))
-        .collect()
+    pairs.map(|(given, shared)| given.unwrap_or(shared)).collect()
 }
 
 /// How normals move when points move by a matrix: by its inverse transpose. The matrix of cofactors
@@ -250,11 +219,7 @@ struct Cofactors {
 impl Cofactors {
     fn of(linear: DMat3) -> Self {
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-        let sign = if linear.determinant() < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
         Self {
             matrix: DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign,
             is_identity: linear == DMat3::IDENTITY,

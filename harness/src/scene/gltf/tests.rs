@@ -15,9 +15,7 @@ fn binary() -> Vec<u8> {
     let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let indices: [u16; 4] = [0, 1, 2, 0];
     let corners = corners.into_iter().flat_map(f32::to_le_bytes);
-    corners
-        .chain(indices.into_iter().flat_map(u16::to_le_bytes))
-        .collect()
+    corners.chain(indices.into_iter().flat_map(u16::to_le_bytes)).collect()
 }
 
 /// A file with one triangle, which each test changes.
@@ -59,10 +57,7 @@ fn only_mesh(scene: &Scene) -> &crate::scene::Mesh {
 #[test]
 fn a_triangle_loads_with_names_and_computed_normals() {
     let scene = load_changed(|_| ()).unwrap();
-    assert_eq!(
-        (scene.name.as_str(), scene.objects[0].name.as_str()),
-        ("test", "stone")
-    );
+    assert_eq!((scene.name.as_str(), scene.objects[0].name.as_str()), ("test", "stone"));
     assert_eq!(scene.objects[0].material, Material::standard());
     let mesh = only_mesh(&scene);
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -77,12 +72,7 @@ fn buffers_may_be_base64_or_files_beside() {
     std::fs::write(folder.path().join("my data.bin"), binary()).unwrap();
     let text = base64::engine::general_purpose::STANDARD.encode(binary());
     let inline = format!("data:application/octet-stream;base64,{text}");
-    for uri in [
-        "my%20data.bin",
-        "./my data.bin",
-        &inline,
-        inline.trim_end_matches('='),
-    ] {
+    for uri in ["my%20data.bin", "./my data.bin", &inline, inline.trim_end_matches('=')] {
         let mut document = document();
         document["buffers"][0]["uri"] = json!(uri);
         document["scenes"][0]["name"] = Value::Null;
@@ -150,11 +140,7 @@ fn an_uneven_scale_keeps_normals_at_right_angles() {
     let mesh = only_mesh(scene.as_ref().unwrap()).clone();
     let [a, b, c] = mesh.triangles().next().unwrap();
     let across = (b - a).cross(c - a).normalize();
-    assert!(
-        mesh.normals
-            .iter()
-            .all(|normal| normal.distance(across) < 1e-6)
-    );
+    assert!(mesh.normals.iter().all(|normal| normal.distance(across) < 1e-6));
 }
 
 #[test]
@@ -178,11 +164,7 @@ fn materials_say_colour_and_index() {
             },
         });
     });
-    let expected = Material {
-        name: "ruby".to_owned(),
-        base_color: Vec3::new(0.9, 0.1, 0.2),
-        ior: 1.768,
-    };
+    let expected = Material { name: "ruby".to_owned(), base_color: Vec3::new(0.9, 0.1, 0.2), ior: 1.768 };
     assert_eq!(scene.unwrap().objects[0].material, expected);
 }
 
@@ -203,10 +185,7 @@ fn the_first_perspective_camera_is_taken() {
         ]);
     });
     let camera = scene.unwrap().camera;
-    assert_eq!(
-        (camera.eye, camera.up, camera.vertical_fov),
-        (Vec3::Z * 5.0, Vec3::Y, 0.6)
-    );
+    assert_eq!((camera.eye, camera.up, camera.vertical_fov), (Vec3::Z * 5.0, Vec3::Y, 0.6));
     assert_eq!(camera.target, Vec3::ZERO);
 }
 

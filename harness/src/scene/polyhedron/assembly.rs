@@ -22,14 +22,9 @@ pub(super) fn tolerance(planes: &[Plane]) -> f64 {
 pub(super) fn unit_planes(planes: &[Plane]) -> Result<Vec<Plane>, PolyhedronError> {
     let unit = planes.iter().enumerate().map(|(index, plane)| {
         let length = plane.normal.length();
-        let unit = Plane {
-            normal: plane.normal / length,
-            distance: plane.distance / length,
-        };
+        let unit = Plane { normal: plane.normal / length, distance: plane.distance / length };
         let proper = length > 0.0 && unit.normal.is_finite() && unit.distance.is_finite();
-        proper
-            .then_some(unit)
-            .ok_or(PolyhedronError::BadPlane { plane: index })
+        proper.then_some(unit).ok_or(PolyhedronError::BadPlane { plane: index })
     });
     unit.collect()
 }
@@ -39,8 +34,7 @@ pub(super) fn without_repeats(planes: Vec<Plane>, tolerance: f64) -> Vec<Plane> 
     let mut kept: Vec<Plane> = Vec::with_capacity(planes.len());
     for plane in planes {
         let repeated = |other: &Plane| {
-            other.normal.distance(plane.normal) <= MERGE
-                && (other.distance - plane.distance).abs() <= tolerance
+            other.normal.distance(plane.normal) <= MERGE && (other.distance - plane.distance).abs() <= tolerance
         };
         if !kept.iter().any(repeated) {
             kept.push(plane);
@@ -65,8 +59,7 @@ pub(super) fn corners(planes: &[Plane], tolerance: f64) -> Vec<DVec3> {
                 if planes.iter().any(|plane| plane.height(point) > tolerance) {
                     continue;
                 }
-                let same =
-                    |(other, _): &&mut (DVec3, f64)| other.distance(point) <= 4.0 * tolerance;
+                let same = |(other, _): &&mut (DVec3, f64)| other.distance(point) <= 4.0 * tolerance;
                 match found.iter_mut().find(same) {
                     Some(best) if best.1 < volume => *best = (point, volume),
                     Some(_) => {}
@@ -80,19 +73,10 @@ pub(super) fn corners(planes: &[Plane], tolerance: f64) -> Vec<DVec3> {
 
 /// `touched` ordered counter-clockwise about `normal`, from its highest corner; of several equally
 /// high ones from the first in that order, and on a level face from the least angle.
-pub(super) fn ordered_loop(
-    normal: DVec3,
-    mut touched: Vec<usize>,
-    corners: &[DVec3],
-    tolerance: f64,
-) -> Vec<usize> {
+pub(super) fn ordered_loop(normal: DVec3, mut touched: Vec<usize>, corners: &[DVec3], tolerance: f64) -> Vec<usize> {
     let centre = touched.iter().map(|&k| corners[k]).sum::<DVec3>() / touched.len() as f64;
     // A fixed frame for the level faces, so that they too start alike on every machine.
-    let across = if normal.x.abs() < 0.9 {
-        DVec3::X
-    } else {
-        DVec3::Y
-    };
+    let across = if normal.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
     let right = (across - normal * normal.dot(across)).normalize_or_zero();
     let ahead = normal.cross(right);
     let angle = |k: usize| {
@@ -100,9 +84,7 @@ pub(super) fn ordered_loop(
         offset.dot(ahead).atan2(offset.dot(right))
     };
     touched.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
-    let top = touched
-        .iter()
-        .fold(f64::NEG_INFINITY, |z, &k| z.max(corners[k].z));
+    let top = touched.iter().fold(f64::NEG_INFINITY, |z, &k| z.max(corners[k].z));
     let is_top = |k: usize| corners[k].z >= top - tolerance;
     let start = (0..touched.len()).find(|&k| {
         let before = touched[(k + touched.len() - 1) % touched.len()];

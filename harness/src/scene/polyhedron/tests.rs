@@ -1,24 +1,17 @@
 use super::*;
 use crate::scene::cuts::{
-    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant,
-    step_cut,
+    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
 
 fn plane(x: f64, y: f64, z: f64, distance: f64) -> Plane {
-    Plane {
-        normal: DVec3::new(x, y, z),
-        distance,
-    }
+    Plane { normal: DVec3::new(x, y, z), distance }
 }
 
 fn cube() -> Vec<Plane> {
     [DVec3::X, DVec3::Y, DVec3::Z]
         .into_iter()
         .flat_map(|axis| [axis, -axis])
-        .map(|normal| Plane {
-            normal,
-            distance: 1.0,
-        })
+        .map(|normal| Plane { normal, distance: 1.0 })
         .collect()
 }
 
@@ -67,15 +60,9 @@ fn meshes_wind_outwards_and_are_closed_with_unit_normals() {
             volume += outward.dot(a) / 6.0;
         }
         assert!(volume > 0.1);
-        for edge in mesh
-            .indices
-            .chunks_exact(3)
-            .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
-        {
-            let opposite = mesh
-                .indices
-                .chunks_exact(3)
-                .filter(|t| [(t[1], t[0]), (t[2], t[1]), (t[0], t[2])].contains(&edge));
+        for edge in mesh.indices.chunks_exact(3).flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]) {
+            let opposite =
+                mesh.indices.chunks_exact(3).filter(|t| [(t[1], t[0]), (t[2], t[1]), (t[0], t[2])].contains(&edge));
             assert_eq!(opposite.count(), 1);
         }
     }
@@ -86,10 +73,7 @@ fn mesh_planes_touch_the_mesh() {
     for solid in all_cuts() {
         let mesh = solid.to_mesh(Averaging::Angle);
         for plane in solid.mesh_planes() {
-            let heights = mesh
-                .positions
-                .iter()
-                .map(|p| plane.truncate().dot(*p) - plane.w);
+            let heights = mesh.positions.iter().map(|p| plane.truncate().dot(*p) - plane.w);
             let on = heights.clone().filter(|height| height.abs() < 1e-6).count();
             assert!(on >= 3 && heights.fold(f32::MIN, f32::max) < 1e-6);
         }
@@ -102,11 +86,8 @@ fn triangulation_does_not_enter_the_shared_normals() {
         let by_face = solid.to_mesh(Averaging::Angle);
         // A triangle soup by angle adds up to the same, except at inner vertices, where both give
         // the face's own normal.
-        let by_triangle = Mesh::with_shared_normals(
-            by_face.positions.clone(),
-            by_face.indices.clone(),
-            Averaging::Angle,
-        );
+        let by_triangle =
+            Mesh::with_shared_normals(by_face.positions.clone(), by_face.indices.clone(), Averaging::Angle);
         for (a, b) in by_face.normals.iter().zip(&by_triangle.normals) {
             assert!(a.distance(*b) < 1e-5, "{a} and {b}");
         }
@@ -148,10 +129,7 @@ fn useless_and_repeated_planes_are_dropped() {
     planes.push(plane(1.0, 1.0, 0.0, 2.0)); // touches an edge
     planes.push(plane(1.0, 1.0, 1.0, 3.0)); // touches a corner
     let solid = Polyhedron::from_planes(&planes).unwrap();
-    assert_eq!(
-        solid.planes(),
-        Polyhedron::from_planes(&cube()).unwrap().planes()
-    );
+    assert_eq!(solid.planes(), Polyhedron::from_planes(&cube()).unwrap().planes());
 }
 
 #[test]

@@ -27,10 +27,7 @@ fn files_that_are_not_there_or_not_gltf() {
     let says = |says: &str| {
         let message = load(&path).unwrap_err().to_string();
         let start = format!("{}: ", path.display());
-        assert!(
-            message.starts_with(&start) && message.contains(says),
-            "{message}"
-        );
+        assert!(message.starts_with(&start) && message.contains(says), "{message}");
     };
     says("cannot be read");
     for text in ["", "solid stone", "\u{7f}ELF", "[]"] {
@@ -40,9 +37,7 @@ fn files_that_are_not_there_or_not_gltf() {
     std::fs::write(&path, "{}").unwrap();
     says("its JSON is not valid glTF");
     std::fs::create_dir(folder.path().join("folder.glb")).unwrap();
-    let message = load(&folder.path().join("folder.glb"))
-        .unwrap_err()
-        .to_string();
+    let message = load(&folder.path().join("folder.glb")).unwrap_err().to_string();
     assert!(message.contains("not a regular file"), "{message}");
 }
 
@@ -61,20 +56,12 @@ fn hostile_container_lengths() {
             let mut bytes = file(&document(), &binary());
             bytes[place..place + 4].copy_from_slice(&length.to_le_bytes());
             let message = parse(&bytes, None).unwrap_err().to_string();
-            assert!(
-                message.contains("damaged") || message.contains("JSON"),
-                "{message}"
-            );
+            assert!(message.contains("damaged") || message.contains("JSON"), "{message}");
         }
     }
     let mut bytes = file(&document(), &binary());
     bytes[4] = 1;
-    assert!(
-        parse(&bytes, None)
-            .unwrap_err()
-            .to_string()
-            .contains("version 1")
-    );
+    assert!(parse(&bytes, None).unwrap_err().to_string().contains("version 1"));
 }
 
 #[test]
@@ -82,53 +69,21 @@ fn versions_and_extensions() {
     refused("/asset/version", json!("1.0"), "version 1.0");
     refused("/asset/minVersion", json!("3.0"), "version 3.0");
     let unknown = json!(["KHR_materials_ior", "KHR_draco_mesh_compression", "EXT_x"]);
-    refused(
-        "/extensionsRequired",
-        unknown,
-        "supported: KHR_draco_mesh_compression, EXT_x;",
-    );
+    refused("/extensionsRequired", unknown, "supported: KHR_draco_mesh_compression, EXT_x;");
 }
 
 #[test]
 fn references_to_what_is_not_there() {
-    refused(
-        "/scene",
-        json!(7),
-        "the file refers to scene 7, but the file has 1",
-    );
+    refused("/scene", json!(7), "the file refers to scene 7, but the file has 1");
     refused("/scenes/0/nodes/0", json!(7), "scene 0 refers to node 7");
     refused("/nodes/0/children", json!([7]), "node 0 refers to node 7");
-    refused(
-        "/nodes/0/mesh",
-        json!(7),
-        "node 0 \"stone\" refers to mesh 7",
-    );
-    refused(
-        "/nodes/0/camera",
-        json!(7),
-        "node 0 \"stone\" refers to camera 7",
-    );
+    refused("/nodes/0/mesh", json!(7), "node 0 \"stone\" refers to mesh 7");
+    refused("/nodes/0/camera", json!(7), "node 0 \"stone\" refers to camera 7");
     let primitive = "/meshes/0/primitives/0";
-    refused(
-        &format!("{primitive}/material"),
-        json!(7),
-        "primitive 0 refers to material 7",
-    );
-    refused(
-        &format!("{primitive}/indices"),
-        json!(7),
-        "primitive 0 refers to accessor 7",
-    );
-    refused(
-        "/accessors/0/bufferView",
-        json!(7),
-        "accessor 0 refers to bufferView 7",
-    );
-    refused(
-        "/bufferViews/0/buffer",
-        json!(7),
-        "bufferView 0 refers to buffer 7",
-    );
+    refused(&format!("{primitive}/material"), json!(7), "primitive 0 refers to material 7");
+    refused(&format!("{primitive}/indices"), json!(7), "primitive 0 refers to accessor 7");
+    refused("/accessors/0/bufferView", json!(7), "accessor 0 refers to bufferView 7");
+    refused("/bufferViews/0/buffer", json!(7), "bufferView 0 refers to buffer 7");
     refused("/nodes/0/mesh", json!(-1), "its JSON is not valid glTF");
 }
 
@@ -136,74 +91,38 @@ fn references_to_what_is_not_there() {
 fn nothing_to_show() {
     refused("/nodes/0/mesh", Value::Null, "shows no triangles");
     refused("/scenes/0/nodes", json!([]), "shows no triangles");
-    refused(
-        "/meshes/0/primitives/0/mode",
-        json!(1),
-        "shows no triangles",
-    );
-    refused(
-        "/meshes/0/primitives/0/mode",
-        json!(99),
-        "shows no triangles",
-    );
+    refused("/meshes/0/primitives/0/mode", json!(1), "shows no triangles");
+    refused("/meshes/0/primitives/0/mode", json!(99), "shows no triangles");
 }
 
 #[test]
 fn nodes_that_are_no_tree() {
-    refused(
-        "/nodes/0/children",
-        json!([0]),
-        "node 0 \"stone\": it is reached twice",
-    );
-    refused(
-        "/nodes",
-        json!([{"children": [1]}, {"children": [0]}]),
-        "node 0: it is reached twice",
-    );
-    refused(
-        "/nodes",
-        json!([{"children": [1, 1]}, {"mesh": 0}]),
-        "node 1: it is reached twice",
-    );
+    refused("/nodes/0/children", json!([0]), "node 0 \"stone\": it is reached twice");
+    refused("/nodes", json!([{"children": [1]}, {"children": [0]}]), "node 0: it is reached twice");
+    refused("/nodes", json!([{"children": [1, 1]}, {"mesh": 0}]), "node 1: it is reached twice");
 }
 
 #[test]
 fn materials_and_cameras_out_of_range() {
-    for (ior, says) in [
-        (0.0, "its ior is 0,"),
-        (0.9, "at least 1"),
-        (-1.0, "at least 1"),
-        (1e39, "finite"),
-    ] {
+    for (ior, says) in [(0.0, "its ior is 0,"), (0.9, "at least 1"), (-1.0, "at least 1"), (1e39, "finite")] {
         let message = message(|d| {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
             d["materials"][0]["extensions"] = json!({"KHR_materials_ior": {"ior": ior}});
         });
-        assert!(
-            message.starts_with("material 0 \"gem\": ") && message.contains(says),
-            "{message}"
-        );
+        assert!(message.starts_with("material 0 \"gem\": ") && message.contains(says), "{message}");
     }
     for part in [-0.1, 1.5, 1e39] {
         let message = message(|d| {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
             d["materials"][0]["pbrMetallicRoughness"] = json!({"baseColorFactor": [part, 0, 0, 1]});
         });
-        assert!(
-            message.contains("each part must lie from 0 to 1"),
-            "{message}"
-        );
+        assert!(message.contains("each part must lie from 0 to 1"), "{message}");
     }
-    for (fov, scale, says) in [
-        (0.0, 1, "yfov is 0"),
-        (4.0, 1, "yfov is 4"),
-        (0.5, 0, "no direction"),
-    ] {
+    for (fov, scale, says) in [(0.0, 1, "yfov is 0"), (4.0, 1, "yfov is 4"), (0.5, 0, "no direction")] {
         let message = message(|d| {
             d["scenes"][0]["nodes"] = json!([0, 1]);
             d["nodes"] = json!([{"mesh": 0}, {"camera": 0, "scale": [scale, scale, scale]}]);
-            d["cameras"] =
-                json!([{"type": "perspective", "perspective": {"yfov": fov, "znear": 1}}]);
+            d["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": fov, "znear": 1}}]);
         });
         assert!(message.contains(says), "{message}");
     }

@@ -10,80 +10,32 @@ fn ranges_past_the_end_and_absurd_counts() {
         refused("/accessors/0/count", count, "accessor 0: it has");
     }
     refused("/accessors/0/byteOffset", json!(1), "accessor 0: it has");
-    refused(
-        "/accessors/0/byteOffset",
-        huge.clone(),
-        "accessor 0: it has",
-    );
-    refused(
-        "/bufferViews/0/byteLength",
-        json!(45),
-        "bufferView 0: it takes 45 bytes",
-    );
-    refused(
-        "/bufferViews/0/byteLength",
-        huge.clone(),
-        "bufferView 0: it takes",
-    );
-    refused(
-        "/bufferViews/1/byteOffset",
-        huge.clone(),
-        "bufferView 1: it takes",
-    );
-    refused(
-        "/buffers/0/byteLength",
-        json!(48),
-        "buffer 0: it must have 48 bytes but has 44",
-    );
+    refused("/accessors/0/byteOffset", huge.clone(), "accessor 0: it has");
+    refused("/bufferViews/0/byteLength", json!(45), "bufferView 0: it takes 45 bytes");
+    refused("/bufferViews/0/byteLength", huge.clone(), "bufferView 0: it takes");
+    refused("/bufferViews/1/byteOffset", huge.clone(), "bufferView 1: it takes");
+    refused("/buffers/0/byteLength", json!(48), "buffer 0: it must have 48 bytes but has 44");
     refused("/buffers/0/byteLength", huge, "at most 1073741824 are read");
     for stride in [0, 4, 11, 253] {
-        refused(
-            "/bufferViews/0/byteStride",
-            json!(stride),
-            "must lie 12 to 252 apart",
-        );
+        refused("/bufferViews/0/byteStride", json!(stride), "must lie 12 to 252 apart");
     }
 }
 
 #[test]
 fn accessors_of_the_wrong_kind() {
-    refused(
-        "/accessors/0/componentType",
-        json!(5123),
-        "needs VEC3 of float",
-    );
-    refused(
-        "/accessors/0/componentType",
-        json!(1),
-        "componentType is not one of glTF's",
-    );
+    refused("/accessors/0/componentType", json!(5123), "needs VEC3 of float");
+    refused("/accessors/0/componentType", json!(1), "componentType is not one of glTF's");
     refused("/accessors/0/type", json!("VEC4"), "needs VEC3 of float");
     refused("/accessors/0/type", json!("VEC9"), "needs VEC3 of float");
-    refused(
-        "/accessors/1/componentType",
-        json!(5126),
-        "unsigned byte, short or int",
-    );
-    refused(
-        "/accessors/0/bufferView",
-        Value::Null,
-        "it has no bufferView",
-    );
+    refused("/accessors/1/componentType", json!(5126), "unsigned byte, short or int");
+    refused("/accessors/0/bufferView", Value::Null, "it has no bufferView");
     let sparse = json!({
         "count": 1,
         "indices": {"bufferView": 1, "componentType": 5123},
         "values": {"bufferView": 0},
     });
-    refused(
-        "/accessors/0/sparse",
-        sparse,
-        "sparse accessors are not read",
-    );
-    refused(
-        "/meshes/0/primitives/0/attributes",
-        json!({}),
-        "it has no POSITION",
-    );
+    refused("/accessors/0/sparse", sparse, "sparse accessors are not read");
+    refused("/meshes/0/primitives/0/attributes", json!({}), "it has no POSITION");
     refused("/accessors/1/count", json!(2), "shows no triangles");
 }
 
@@ -92,41 +44,20 @@ fn positions_that_are_nowhere() {
     for (vertex, value) in [(0, f32::NAN), (1, f32::INFINITY), (2, -2e9)] {
         let mut data = binary();
         data[12 * vertex..12 * vertex + 4].copy_from_slice(&value.to_le_bytes());
-        let message = parse(&file(&document(), &data), None)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            message.starts_with("mesh 0, primitive 0: vertex "),
-            "{message}"
-        );
-        assert!(
-            message.contains(&format!("vertex {vertex} lies at")),
-            "{message}"
-        );
+        let message = parse(&file(&document(), &data), None).unwrap_err().to_string();
+        assert!(message.starts_with("mesh 0, primitive 0: vertex "), "{message}");
+        assert!(message.contains(&format!("vertex {vertex} lies at")), "{message}");
     }
-    refused(
-        "/nodes/0/scale",
-        json!([1e30, 1.0, 1.0]),
-        "vertex 1 lies at",
-    );
-    refused(
-        "/nodes/0/translation",
-        json!([1e39, 0.0, 0.0]),
-        "vertex 0 lies at",
-    );
+    refused("/nodes/0/scale", json!([1e30, 1.0, 1.0]), "vertex 1 lies at");
+    refused("/nodes/0/translation", json!([1e39, 0.0, 0.0]), "vertex 0 lies at");
 }
 
 #[test]
 fn indices_past_the_last_vertex() {
     let mut data = binary();
     data[38] = 3;
-    let message = parse(&file(&document(), &data), None)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("primitive 0: index 1 is 3, but it has 3 vertices"),
-        "{message}"
-    );
+    let message = parse(&file(&document(), &data), None).unwrap_err().to_string();
+    assert!(message.contains("primitive 0: index 1 is 3, but it has 3 vertices"), "{message}");
 }
 
 #[test]
@@ -148,17 +79,10 @@ fn buffers_that_cannot_be_had() {
     document["buffers"][0]["uri"] = json!("none.bin");
     let folder = tempfile::tempdir().unwrap();
     let json = document.to_string();
-    let message = parse(json.as_bytes(), Some(folder.path()))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.starts_with("buffer 0's file") && message.contains("none.bin"),
-        "{message}"
-    );
+    let message = parse(json.as_bytes(), Some(folder.path())).unwrap_err().to_string();
+    assert!(message.starts_with("buffer 0's file") && message.contains("none.bin"), "{message}");
     document["buffers"][0] = json!({"byteLength": 44});
-    let message = parse(document.to_string().as_bytes(), None)
-        .unwrap_err()
-        .to_string();
+    let message = parse(document.to_string().as_bytes(), None).unwrap_err().to_string();
     assert!(message.contains("no uri and no binary chunk"), "{message}");
 }
 

@@ -1,0 +1,21 @@
+//! What commands say on stdout: an error where it cannot be written, but for a reader that has had enough.
+
+use super::Failure;
+use std::io::Write as _;
+
+/// Writes a line.
+pub(super) fn line(text: &str) -> Result<(), Failure> {
+    bytes(text.as_bytes())?;
+    bytes(b"\n")
+}
+
+/// Writes bytes as they are.
+pub(super) fn bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Ok(()) => Ok(()),
+        // `cook list | head` is no mistake.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(Failure(format!("stdout: cannot be written: {error}"))),
+    }
+}

@@ -1,0 +1,266 @@
+//! Bad usage and bad input: exit code 2, one clear line that names what is wrong, nothing on stdout, no file left behind.
+
+use crate::program::cook;
+use base64::Engine as _;
+use lapidary_harness::scene::{Scene, glb};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// What stderr must look like.
+#[derive(Clone, Copy, PartialEq)]
+enum Lines {
+    /// `cook: ` and one line.
+    One,
+    /// clap's own message, which ends with a hint at --help.
+    Usage,
+    /// `cook: ` and naga's excerpt of the source, several lines.
+    Excerpt,
+}
+use Lines::{Excerpt, One, Usage};
+
+/// Arguments, where `{}` stands for a folder of bad files; what stderr looks like; what it must say.
+type Row = (&'static str, Lines, &'static [&'static str]);
+
+const RENDER: &[Row] = &[
+    ("octahedron --size 0x0 --out {}/out.png", One, &["size 0x0", "1 to 8192"]),
+    ("octahedron --size 9000x512 --out {}/out.png", One, &["size 9000x512", "1 to 8192"]),
+    ("octahedron --size 512 --out {}/out.png", Usage, &["--size", "512x512"]),
+    ("octahedron --size axb --out {}/out.png", Usage, &["--size", "axb"]),
+    ("octahedron --size -1x5 --out {}/out.png", Usage, &["-1"]),
+    ("octahedron --size=-1x5 --out {}/out.png", Usage, &["--size", "-1x5"]),
+    ("octahedron --size 99999999999x5 --out {}/out.png", Usage, &["--size", "99999999999x5"]),
+    ("octahedron --exposure nan --out {}/out.png", Usage, &["--exposure", "above 0"]),
+    ("octahedron --exposure inf --out {}/out.png", Usage, &["--exposure", "above 0"]),
+    ("octahedron --exposure 0 --out {}/out.png", Usage, &["--exposure", "above 0"]),
+    ("octahedron --rung proxy1 --out {}/out.png", Usage, &["--rung", "did you mean `proxy-1`"]),
+    ("octahedron --centre wrong --out {}/out.png", Usage, &["--centre", "stable"]),
+];
+
+const SCENES: &[Row] = &[
+    ("{}/none.glb --out {}/out.png", One, &["none.glb: ", "cannot be read"]),
+    ("{}/truncated.glb --out {}/out.png", One, &["truncated.glb: ", "damaged"]),
+    ("{}/text.glb --out {}/out.png", One, &["text.glb: ", "not glTF"]),
+    ("{}/empty.glb --out {}/out.png", One, &["empty.glb: ", "no triangles"]),
+    ("{}/empty.gltf --out {}/out.png", One, &["empty.gltf: ", "no triangles"]),
+    ("{}/nan.gltf --out {}/out.png", One, &["nan.gltf: ", "vertex 1 lies at (NaN", "finite"]),
+    ("{}/index.gltf --out {}/out.png", One, &["index.gltf: ", "index 1 is 3", "3 vertices"]),
+    ("{}/json.gltf --out {}/out.png", One, &["json.gltf: ", "not valid glTF", "line 1"]),
+    ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "not a regular file"]),
+    ("briliant --out {}/out.png", One, &["\"briliant\"", "did you mean brilliant?"]),
+];
+
+const OUTPUTS: &[Row] = &[
+    ("octahedron --size 8x8 --out {}/out.jpg", One, &["out.jpg", ".png or .exr"]),
+    ("octahedron --size 8x8 --out {}/out", One, &["out", ".png or .exr"]),
+    ("octahedron --size 8x8 --out {}/none/out.png", One, &["none/out.png", "cannot be written"]),
+    ("octahedron --size 8x8 --out {}/folder.png", One, &["folder.png", "cannot be written"]),
+    // Below a file there is no folder, not even for root.
+    ("octahedron --size 8x8 --out {}/text.glb/out.png", One, &["text.glb/out.png", "cannot be written"]),
+    ("octahedron --size 8x8 --out {}/text.glb/out.exr", One, &["text.glb/out.exr", "cannot be written"]),
+];
+
+const ENVIRONMENTS: &[Row] = &[
+    ("octahedron --size 8x8 --environment {}/none.exr --out {}/out.png", One, &["none.exr: ", "cannot be read"]),
+    (
+        "octahedron --size 8x8 --environment {}/text.hdr --out {}/out.png",
+        One,
+        &["text.hdr: ", "not a Radiance .hdr or OpenEXR .exr"],
+    ),
+    (
+        "octahedron --size 8x8 --environment {}/folder.png --out {}/out.png",
+        One,
+        &["folder.png: ", "not a regular file"],
+    ),
+];
+
+const CHECK: &[Row] = &[
+    ("refracton", One, &["no module `refracton`", "did you mean `refraction`?"]),
+    ("zzz", One, &["no module `zzz`", "refraction", "srgb"]),
+    ("refraction::refrct", One, &["no function `refrct`", "did you mean `refraction_refract"]),
+    ("refraction --cases 0", Usage, &["--cases"]),
+    ("refraction --cases -5", Usage, &["-5"]),
+    ("refraction --seed x", Usage, &["--seed"]),
+    ("refraction --wgsl {}/none.wgsl", One, &["none.wgsl: ", "cannot be read"]),
+    ("refraction --wgsl {}/text.hdr", Excerpt, &["text.hdr:1:1"]),
+    ("refraction::reflect --wgsl {}/syntax.wgsl", Excerpt, &["syntax.wgsl:3:", "expected"]),
+    (
+        "refraction::reflect --wgsl {}/type.wgsl",
+        One,
+        &["type.wgsl: ", "`refraction_reflect`", "argument `incident`", "expected vec3f, found f32"],
+    ),
+    ("refraction::refract --wgsl {}/type.wgsl", One, &["type.wgsl: ", "`refraction_refract` is missing"]),
+    ("refraction --wgsl {}/type.wgsl", One, &["type.wgsl: ", "is missing"]),
+    ("--wgsl {}/other.wgsl", One, &["other.wgsl: ", "no function of the cookbook"]),
+];
+
+const OTHERS: &[Row] = &[
+    ("chek", Usage, &["chek", "check"]),
+    ("list --jsn", Usage, &["--jsn"]),
+    ("copy", Usage, &["MODULE"]),
+    ("copy refracton --out {}/out.wgsl", One, &["`refracton`", "did you mean `refraction`?"]),
+    ("copy refraction gem --out {}/out.wgsl", One, &["`gem` is a recipe"]),
+    ("copy refraction --effects absorption --out {}/out.wgsl", One, &["--effects"]),
+    ("copy refraction --to nonsense --out {}/out.wgsl", Usage, &["--to", "hlsl"]),
+    ("copy refraction --to glsl --out {}/out.glsl", One, &["refraction::"]),
+    ("copy gem --to glsl --out {}/out.glsl", One, &["gem::"]),
+    ("copy refraction --out {}/none/out.wgsl", One, &["none/out.wgsl", "cannot be written"]),
+    ("copy refraction --out {}/text.glb/out.wgsl", One, &["text.glb/out.wgsl", "cannot be written"]),
+    ("scene briliant --out {}/out.glb", One, &["did you mean brilliant?"]),
+    ("scene brilliant --out {}/text.glb/out.glb", One, &["text.glb/out.glb", "cannot be written"]),
+    ("scene brilliant", Usage, &["--out"]),
+];
+
+#[test]
+fn render_refuses_bad_settings() {
+    all_refused("render", RENDER);
+}
+
+#[test]
+fn render_refuses_bad_scenes() {
+    all_refused("render", SCENES);
+}
+
+#[test]
+fn render_refuses_places_where_nothing_can_be_written() {
+    all_refused("render", OUTPUTS);
+}
+
+#[test]
+fn render_refuses_bad_environments() {
+    all_refused("render", ENVIRONMENTS);
+}
+
+#[test]
+fn check_refuses_bad_names_and_sources() {
+    all_refused("check", CHECK);
+}
+
+#[test]
+fn the_other_commands_refuse_bad_input() {
+    all_refused("", OTHERS);
+}
+
+fn all_refused(command: &str, rows: &[Row]) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write_bad_files(folder.path());
+    let before = files(folder.path());
+    for (arguments, lines, says) in rows {
+        let place = folder.path().to_str().expect("a path in UTF-8");
+        let words: Vec<String> = command
+            .split_whitespace()
+            .chain(arguments.split_whitespace())
+            .map(|word| word.replace("{}", place))
+            .collect();
+        let answer = cook(folder.path(), &words);
+        let what = format!("{command} {arguments}: {answer:#?}");
+        assert_eq!(answer.code, Some(2), "{what}");
+        assert_eq!(answer.stdout, "", "{what}");
+        assert!(!answer.stderr.contains("panicked"), "{what}");
+        for part in *says {
+            assert!(answer.stderr.contains(part), "`{part}` is not said by {what}");
+        }
+        let count = answer.stderr.trim_end().lines().count();
+        match lines {
+            One => assert!(answer.stderr.starts_with("cook: ") && count == 1, "not one line: {what}"),
+            Usage => assert!(answer.stderr.starts_with("error: "), "{what}"),
+            Excerpt => assert!(answer.stderr.starts_with("cook: ") && count > 1, "{what}"),
+        }
+        // Neither the output nor a part of it under another name.
+        assert_eq!(files(folder.path()), before, "{what}");
+    }
+}
+
+/// Everything below a folder.
+fn files(folder: &Path) -> BTreeSet<PathBuf> {
+    let mut found = BTreeSet::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        }
+        found.insert(path);
+    }
+    found
+}
+
+fn write_bad_files(folder: &Path) {
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).expect("a file");
+    let stone = glb::write(&Scene::named("octahedron").expect("a built-in scene")).expect("a .glb");
+    write("truncated.glb", &stone[..stone.len() / 2]);
+    write("text.glb", b"solid stone");
+    write("text.hdr", b"solid stone");
+    write("json.gltf", b"{\"asset\": ");
+    let empty = json!({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}]}).to_string();
+    write("empty.gltf", empty.as_bytes());
+    write("empty.glb", &json_only_glb(&empty));
+    write("nan.gltf", triangle([0.0, 0.0, 0.0, f32::NAN, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 1, 2]).to_string().as_bytes());
+    write("index.gltf", triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 3, 2]).to_string().as_bytes());
+    write("syntax.wgsl", b"fn refraction_reflect(incident: vec3f, normal: vec3f) -> vec3f {\n    return incident\n}\n");
+    write(
+        "type.wgsl",
+        b"fn refraction_reflect(incident: f32, normal: vec3f) -> vec3f {\n    return incident * normal;\n}\n",
+    );
+    write("other.wgsl", b"fn mine(incident: vec3f) -> vec3f {\n    return incident;\n}\n");
+    std::fs::create_dir(folder.join("folder.png")).expect("a folder");
+    std::fs::create_dir(folder.join("folder.glb")).expect("a folder");
+}
+
+/// A binary glTF of a JSON chunk alone.
+fn json_only_glb(json: &str) -> Vec<u8> {
+    let mut text = json.as_bytes().to_vec();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let length = |bytes: usize| u32::try_from(bytes).expect("a small file").to_le_bytes();
+    [b"glTF".as_slice(), &length(2), &length(20 + text.len()), &length(text.len()), b"JSON", &text].concat()
+}
+
+/// A glTF file of one triangle, its data in the JSON.
+fn triangle(corners: [f32; 9], indices: [u16; 3]) -> Value {
+    let corners = corners.into_iter().flat_map(f32::to_le_bytes);
+    let binary: Vec<u8> = corners.chain(indices.into_iter().flat_map(u16::to_le_bytes)).collect();
+    let data = base64::engine::general_purpose::STANDARD.encode(&binary);
+    json!({
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+        "buffers": [{"byteLength": 42, "uri": format!("data:application/octet-stream;base64,{data}")}],
+    })
+}
+
+#[test]
+fn the_triangle_that_the_bad_files_vary_is_good() {
+    let good = triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 1, 2]).to_string();
+    let scene = lapidary_harness::scene::gltf::parse(good.as_bytes(), None).expect("a triangle");
+    assert_eq!(scene.triangle_count(), 1);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_stdout_that_takes_nothing_is_no_panic() {
+    for arguments in [
+        ["list", "--json"].as_slice(),
+        &["list"],
+        &["copy", "refraction"],
+        &["check", "refraction::reflect", "--cases", "1000"],
+    ] {
+        let runtime = tempfile::tempdir().expect("a temporary folder");
+        // Every write to it fails, as on a full disk.
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_cook"))
+            .args(arguments)
+            .env("XDG_RUNTIME_DIR", runtime.path())
+            .stdout(full)
+            .output()
+            .expect("the binary starts");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert_eq!(stderr.trim_end().lines().count(), 1, "{arguments:?}: {stderr}");
+    }
+}

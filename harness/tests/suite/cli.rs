@@ -1,0 +1,234 @@
+//! `cook` does what its help says.
+
+use crate::program::{Answer, cook};
+use lapidary_harness::cookbook;
+use lapidary_harness::dispatch;
+use lapidary_harness::scene::{Scene, gltf};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Runs `cook` in `folder` and asserts that it succeeds without a word on stderr.
+fn succeeds(folder: &Path, arguments: &[&str]) -> Answer {
+    let answer = cook(folder, arguments);
+    assert_eq!((answer.code, answer.stderr.as_str()), (Some(0), ""), "{arguments:?}: {}", answer.stdout);
+    answer
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn json(text: &str) -> Vec<Value> {
+    match serde_json::from_str(text) {
+        Ok(Value::Array(rows)) => rows,
+        other => panic!("no JSON array: {other:?}\n{text}"),
+    }
+}
+
+#[test]
+fn without_arguments_it_prints_help() {
+    let answer = cook(folder().path(), &[] as &[&str]);
+    assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
+    let help = answer.stdout + &answer.stderr;
+    for command in ["gallery", "test", "check", "list", "copy", "render", "scene", "snapshots", "--adapter"] {
+        assert!(help.contains(command), "{command}: {help}");
+    }
+    let asked = succeeds(folder().path(), &["--help"]);
+    assert!(asked.stdout.contains("gallery"));
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    for command in ["gallery", "test", "check", "list", "copy", "render", "scene", "snapshots"] {
+        let help = succeeds(folder().path(), &[command, "--help"]).stdout;
+        assert!(help.contains("Example") && help.contains(&format!("./cook {command}")), "{help}");
+    }
+}
+
+#[test]
+fn check_prints_one_json_document() {
+    let answer = succeeds(folder().path(), &["check", "refraction::reflect", "--cases", "1000", "--json"]);
+    let rows = json(&answer.stdout);
+    assert_eq!(rows.len(), 1);
+    let row = &rows[0];
+    for (field, value) in [("module", "refraction"), ("function", "refraction_reflect")] {
+        assert_eq!(row[field], value);
+    }
+    assert_eq!((row["failed"].as_u64(), row["nonfinite"].as_u64()), (Some(0), Some(0)));
+    // The hard cases come on top of the random ones.
+    assert!(row["cases"].as_u64().is_some_and(|cases| cases >= 1000), "{row}");
+    for field in ["max_ulp", "p99_ulp", "median_ulp", "seconds"] {
+        assert!(row[field].as_f64().is_some_and(|number| number >= 0.0), "{field}: {row}");
+    }
+    assert!(
+        row["max_ulp"].as_f64() >= row["p99_ulp"].as_f64() && row["p99_ulp"].as_f64() >= row["median_ulp"].as_f64(),
+        "{row}"
+    );
+    assert!(row["worst_input"].as_str().is_some_and(|input| input.contains('(')), "{row}");
+    assert!(
+        row.as_object().is_some_and(|row| row.contains_key("shrunk_input")) && row["shrunk_input"].is_null(),
+        "{row}"
+    );
+}
+
+/// The cookbook's refraction with a changed reflection.
+fn changed_copy() -> String {
+    let source = cookbook::module("refraction").expect("a module").source;
+    assert_eq!(source.matches("2.0f * dot").count(), 1);
+    source.replace("2.0f * dot", "1.9f * dot")
+}
+
+#[test]
+fn a_changed_copy_fails_and_names_an_input() {
+    let folder = folder();
+    std::fs::write(folder.path().join("mine.wgsl"), changed_copy()).expect("a file");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions/refraction_reflect.txt");
+    let before = std::fs::read(&kept).ok();
+    let arguments = ["check", "refraction::reflect", "--wgsl", "mine.wgsl", "--cases", "1000"];
+    let answer = cook(folder.path(), &arguments);
+    assert_eq!(answer.code, Some(1), "{answer:?}");
+    assert!(
+        answer.stdout.contains("FAILED refraction_reflect") && answer.stdout.contains("shrunk input: ("),
+        "{answer:?}"
+    );
+    // The user's failures are not the cookbook's.
+    assert_eq!(std::fs::read(&kept).ok(), before);
+    let rows = json(&cook(folder.path(), &[arguments.as_slice(), &["--json"]].concat()).stdout);
+    assert!(rows[0]["failed"].as_u64().is_some_and(|failed| failed > 100), "{rows:?}");
+    assert!(rows[0]["shrunk_input"].is_string() && rows[0]["reason"].is_string(), "{rows:?}");
+}
+
+#[test]
+fn an_unchanged_copy_passes() {
+    let folder = folder();
+    let source = cookbook::module("refraction").expect("a module").source;
+    std::fs::write(folder.path().join("mine.wgsl"), source).expect("a file");
+    succeeds(folder.path(), &["check", "refraction::reflect", "--wgsl", "mine.wgsl", "--cases", "1000"]);
+}
+
+#[test]
+fn the_seed_decides_the_inputs() {
+    let worst = |seed: &str| {
+        let answer =
+            succeeds(folder().path(), &["check", "refraction::reflect", "--cases", "1000", "--json", "--seed", seed]);
+        json(&answer.stdout)[0]["worst_input"].clone()
+    };
+    assert_eq!(worst("1"), worst("1"));
+    assert_ne!(worst("1"), worst("2"));
+}
+
+#[test]
+fn list_holds_every_function() {
+    let rows = json(&succeeds(folder().path(), &["list", "--json"]).stdout);
+    let text = |row: &Value, field: &str| row[field].as_str().unwrap_or_else(|| panic!("{field}: {row}")).to_owned();
+    let listed: BTreeSet<(String, String)> =
+        rows.iter().map(|row| (text(row, "module"), text(row, "function"))).collect();
+    let wanted: BTreeSet<(String, String)> = cookbook::modules()
+        .iter()
+        .flat_map(|module| module.functions.iter().map(|function| (module.name.to_owned(), function.name.clone())))
+        .collect();
+    assert_eq!(listed, wanted);
+    let refract = rows.iter().find(|row| row["function"] == "refraction_refract").expect("it is listed");
+    let signature = "fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit";
+    assert_eq!(text(refract, "signature"), signature);
+    assert!(text(refract, "accuracy").starts_with("lavapipe direction "), "{refract}");
+    let table = succeeds(folder().path(), &["list"]).stdout;
+    assert!(table.contains(signature));
+}
+
+#[test]
+fn copied_modules_compile_as_one_file() {
+    let folder = folder();
+    succeeds(folder.path(), &["copy", "refraction", "fresnel", "--out", "optics.wgsl"]);
+    let text = std::fs::read_to_string(folder.path().join("optics.wgsl")).expect("the output");
+    dispatch::parse(&text, "optics.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    assert!(text.contains("fn refraction_refract(") && text.contains("fn fresnel_dielectric("));
+    // Without --out the same goes to stdout.
+    assert_eq!(succeeds(folder.path(), &["copy", "refraction", "fresnel"]).stdout, text);
+}
+
+#[test]
+fn a_copied_recipe_holds_its_modules() {
+    for recipe in cookbook::recipes() {
+        let text = succeeds(folder().path(), &["copy", recipe.name]).stdout;
+        let (ir, _) = dispatch::parse(&text, recipe.name).unwrap_or_else(|error| panic!("{error}"));
+        assert!(!ir.entry_points.is_empty(), "{}", recipe.name);
+    }
+}
+
+#[test]
+fn copies_are_written_in_other_languages() {
+    let folder = folder();
+    for (name, language, holds) in [
+        ("refraction", "hlsl", "refraction_refract"),
+        ("refraction", "msl", "refraction_refract"),
+        ("refraction::refract", "glsl", "refraction_refract"),
+        ("refraction::refract", "wgsl", "refraction_refract"),
+        ("gem", "hlsl", "refraction_refract"),
+        ("gem", "msl", "refraction_refract"),
+    ] {
+        let text = succeeds(folder.path(), &["copy", name, "--to", language]).stdout;
+        assert!(text.contains(holds), "{name} in {language}");
+    }
+    for name in ["refraction::refract", "gem"] {
+        succeeds(folder.path(), &["copy", name, "--to", "spirv", "--out", "out.spv"]);
+        let bytes = std::fs::read(folder.path().join("out.spv")).expect("the output");
+        // SPIR-V's magic number, little endian.
+        assert_eq!(bytes[..4], [0x03, 0x02, 0x23, 0x07], "{name}");
+    }
+}
+
+#[test]
+fn a_picture_has_the_size_that_was_asked_for_and_is_the_same_again() {
+    let folder = folder();
+    for name in ["out.png", "out.exr"] {
+        let path = folder.path().join(name);
+        let render = || {
+            succeeds(folder.path(), &["render", "octahedron", "--size", "64x48", "--out", name]);
+            std::fs::read(&path).expect("the output")
+        };
+        let bytes = render();
+        assert_eq!(image::image_dimensions(&path).expect("a picture"), (64, 48), "{name}");
+        let picture = image::open(&path).expect("a picture").into_rgb32f();
+        let first = *picture.get_pixel(0, 0);
+        assert!(picture.pixels().any(|pixel| *pixel != first), "{name} is of one colour");
+        assert!(picture.pixels().all(|pixel| pixel.0.iter().all(|part| part.is_finite())), "{name}");
+        // Byte for byte.
+        assert!(render() == bytes, "{name} is not the same again");
+    }
+}
+
+#[test]
+fn a_picture_goes_where_no_name_is_given_to_the_scenes_own() {
+    let folder = folder();
+    let answer = succeeds(folder.path(), &["render", "octahedron", "--size", "16x16"]);
+    assert_eq!(answer.stdout.trim_end(), "octahedron.png");
+    assert!(folder.path().join("octahedron.png").is_file());
+    assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 1);
+}
+
+#[test]
+fn a_written_scene_is_the_built_in() {
+    let folder = folder();
+    succeeds(folder.path(), &["scene", "brilliant", "--out", "stone.glb"]);
+    let read = gltf::load(&folder.path().join("stone.glb")).unwrap_or_else(|error| panic!("{error}"));
+    let built_in = Scene::named("brilliant").expect("a built-in scene");
+    assert_eq!(read.objects[0].mesh, built_in.objects[0].mesh);
+    assert_eq!(read.objects[0].material, built_in.objects[0].material);
+    succeeds(folder.path(), &["render", "stone.glb", "--size", "16x16", "--out", "stone.png"]);
+}
+
+#[test]
+fn rungs_and_exposure_change_the_picture() {
+    let folder = folder();
+    let picture = |extra: &[&str]| {
+        let arguments = [["render", "octahedron", "--size", "32x32", "--out", "out.png"].as_slice(), extra].concat();
+        succeeds(folder.path(), &arguments);
+        std::fs::read(folder.path().join("out.png")).expect("the output")
+    };
+    let usual = picture(&[]);
+    assert!(usual == picture(&["--rung", "proxy-1", "--exposure", "1", "--centre", "stable"]));
+    assert!(usual != picture(&["--rung", "surface"]));
+    assert!(usual != picture(&["--exposure", "2"]));
+}
