@@ -205,7 +205,7 @@ pub struct DrawTree<T> {
 }
 
 /// What a draw is tried at, from the boldest to the smallest step.
-const STAGES: [fn(u32) -> u32; 8] = [
+const STAGES: [fn(u32) -> u32; 11] = [
     |_| 0,
     |draw| draw & 0xff00_0000,
     |draw| draw & 0xfff0_0000,
@@ -213,7 +213,10 @@ const STAGES: [fn(u32) -> u32; 8] = [
     |draw| draw & 0xffff_f000,
     |draw| draw & 0xffff_fe00,
     |draw| draw / 2,
+    |draw| draw - draw / 8,
     |draw| draw - draw / 16,
+    |draw| draw - draw / 32,
+    |draw| draw - draw / 128,
 ];
 
 impl<T: std::fmt::Debug> ValueTree for DrawTree<T> {

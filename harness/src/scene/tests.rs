@@ -46,10 +46,10 @@ fn built_in_cameras_frame_their_stones_tightly() {
 }
 
 #[test]
-fn the_brilliant_is_seen_from_35_degrees_off_its_table() {
+fn the_brilliant_is_seen_from_27_degrees_off_its_table() {
     let camera = Scene::named("brilliant").unwrap().camera;
     let back = (camera.eye - camera.target).normalize();
-    assert!((back.y.acos().to_degrees() - 35.0).abs() < 0.01);
+    assert!((back.y.acos().to_degrees() - 27.0).abs() < 0.01);
 }
 
 #[test]
