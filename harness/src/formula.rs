@@ -11,6 +11,8 @@ pub type Words = Vec<u32>;
 pub type MirrorFn = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
 /// The oracle on numbers: appends the result's.
 pub type OracleFn = Box<dyn Fn(&[f64], &mut Vec<f64>) + Send + Sync>;
+/// Appends the other input.
+type Transform = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
 type Predicate = Box<dyn Fn(&[u32]) -> bool + Send + Sync>;
 /// Says what is broken for these arguments and this result of the shader.
 type Invariance = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
@@ -38,7 +40,7 @@ pub struct Pair {
     /// What it says.
     pub name: &'static str,
     /// The other input, from the row's.
-    pub transform: Box<dyn Fn(&[u32], &mut Words) + Send + Sync>,
+    pub transform: Transform,
     /// Whether it holds between the row's result and the other's.
     pub holds: Relation,
 }

@@ -22,7 +22,7 @@ pub fn encode_gamma(light: f64) -> f64 {
     if light <= 0.0 { 0.0 } else { (light.min(1.0).ln() / 2.2).exp() }
 }
 
-/// Line and power: [`decode_power`] takes a fifth root instead of a power.
+/// Line and power: `decode_power` takes a fifth root instead of a power.
 pub fn decode(encoded: f64) -> f64 {
     let code = encoded.clamp(0.0, 1.0);
     if code <= f64::from(0.04045f32) { code * (1.0 / 12.92) } else { decode_power(code) }

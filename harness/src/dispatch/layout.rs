@@ -21,7 +21,7 @@ impl Layout {
         layouter.update(module.to_ctx()).expect("a validated module has layouts");
         let naga::TypeInner::Struct { .. } = ty.inner else { unreachable!("`{name}` is declared as a struct") };
         let mut offsets = Vec::new();
-        collect(module, &layouter, handle, 0, &mut offsets);
+        collect(module, handle, 0, &mut offsets);
         Layout { stride: layouter[handle].to_stride() as usize, offsets }
     }
 
@@ -48,13 +48,7 @@ impl Layout {
     }
 }
 
-fn collect(
-    module: &naga::Module,
-    layouter: &naga::proc::Layouter,
-    ty: naga::Handle<naga::Type>,
-    base: usize,
-    offsets: &mut Vec<usize>,
-) {
+fn collect(module: &naga::Module, ty: naga::Handle<naga::Type>, base: usize, offsets: &mut Vec<usize>) {
     match &module.types[ty].inner {
         naga::TypeInner::Scalar(_) => offsets.push(base),
         naga::TypeInner::Vector { size, .. } => {
@@ -69,12 +63,12 @@ fn collect(
         }
         naga::TypeInner::Array { base: element, size: naga::ArraySize::Constant(length), stride } => {
             for index in 0..length.get() as usize {
-                collect(module, layouter, *element, base + index * *stride as usize, offsets);
+                collect(module, *element, base + index * *stride as usize, offsets);
             }
         }
         naga::TypeInner::Struct { members, .. } => {
             for member in members {
-                collect(module, layouter, member.ty, base + member.offset as usize, offsets);
+                collect(module, member.ty, base + member.offset as usize, offsets);
             }
         }
         other => unreachable!("Shape::of_type refuses {other:?}"),

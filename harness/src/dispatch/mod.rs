@@ -42,9 +42,10 @@ pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::Mod
 /// Validates a module for what core WebGPU offers.
 pub fn validate(
     module: &naga::Module,
-) -> Result<naga::valid::ModuleInfo, naga::WithSpan<naga::valid::ValidationError>> {
+) -> Result<naga::valid::ModuleInfo, Box<naga::WithSpan<naga::valid::ValidationError>>> {
     naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
         .validate(module)
+        .map_err(Box::new)
 }
 
 /// A function's source with its entry point, as naga IR: what a kernel is compiled from, and what a mutant is made of.

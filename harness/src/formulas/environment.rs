@@ -64,8 +64,11 @@ fn aimed(draws: &mut Draws<'_>, axis: Vec3, up: Vec3, half_size: Vec2, softness:
     (axis + at.x * up.cross(axis) + at.y * up).normalize().as_vec3()
 }
 
-/// The studio's lights, to aim at: axis, up, half size, softness, as in the WGSL.
-const LIGHTS: [([f32; 3], [f32; 3], [f32; 2], f32); 9] = [
+/// Axis, up, half size, softness.
+type Light = ([f32; 3], [f32; 3], [f32; 2], f32);
+
+/// The studio's lights, to aim at, as in the WGSL.
+const LIGHTS: [Light; 9] = [
     ([-2.0, 6.0, 3.0], [6.0, 3.0, -2.0], [0.28, 0.28], 0.05),
     ([0.0, 24.0, -7.0], [0.0, 7.0, 24.0], [0.70, 0.06], 0.03),
     ([6.0, 3.0, 2.0], [-2.0, 6.0, -3.0], [0.08, 0.45], 0.04),

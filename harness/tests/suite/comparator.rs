@@ -379,7 +379,7 @@ fn kept_failures_are_replayed_before_all_others() {
     let kept: Words = [0.5, 0.25, 0.125, 0.0, 0.0, 1.0f32].map(f32::to_bits).to_vec();
     regressions.store(FUNCTION, &kept, "off by much").unwrap_or_else(|error| panic!("{error}"));
     let rows = regressions.load(FUNCTION, kept.len()).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(rows, [kept.clone()]);
+    assert_eq!(rows, std::slice::from_ref(&kept));
 
     let wrong = formula(MODULE, FUNCTION, wrong_mirror, right_oracle, inputs).build();
     let alone = run(&wrong, Settings { cases: 0, ..SETTINGS }, &rows);

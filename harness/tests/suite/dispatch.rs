@@ -241,7 +241,7 @@ mod sample {
     pub mod oracle {
         use glam::{BVec2, DMat2, DVec3};
 
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(dead_code, reason = "only its shape is used")]
         pub struct SampleParts {
             pub flags: BVec2,
             pub direction: DVec3,

@@ -10,6 +10,7 @@ mod formulas;
 mod hard_cases;
 mod program;
 mod snapshots;
+mod text;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
 
