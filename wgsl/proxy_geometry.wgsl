@@ -194,6 +194,18 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     return ProxyGeometryCell(vec2i(corner), turned);
 }
 
+// The tile by the sum of the fractions, as one writes it.
+// Returns: ProxyGeometryCell.
+// Units: lattice coordinates.
+// Domain: coordinates up to 2^22, away from the edges of tiles.
+// Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points beside a vertex get the wrong half.
+// Accuracy: naive
+fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
+    let corner = floor(coordinates);
+    let within = coordinates - corner;
+    return ProxyGeometryCell(vec2i(corner), within.x + within.y > 1.0f);
+}
+
 // The vertices of a tile, each from its own place on the lattice, so that tiles share theirs to the last bit.
 // Returns: ProxyGeometryFacet.
 // Units: lengths.

@@ -151,6 +151,13 @@ pub fn cell(coordinates: Vec2) -> ProxyGeometryCell {
     ProxyGeometryCell { steps: corner.as_ivec2(), turned }
 }
 
+/// The tile by the sum of the fractions, as one writes it.
+pub fn cell_naive(coordinates: Vec2) -> ProxyGeometryCell {
+    let corner = coordinates.floor();
+    let within = coordinates - corner;
+    ProxyGeometryCell { steps: corner.as_ivec2(), turned: within.x + within.y > 1.0 }
+}
+
 /// The vertices of a tile, each from its own place on the lattice.
 pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.

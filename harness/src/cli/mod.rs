@@ -40,7 +40,7 @@ impl<E: std::error::Error> From<E> for Failure {
 #[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
 struct Arguments {
     /// Which GPU: lavapipe, any, or part of an adapter's name.
-    #[arg(long, global = true, value_name = "NAME")]
+    #[arg(long, global = true, value_name = "NAME", env = "LAPIDARY_ADAPTER")]
     adapter: Option<AdapterChoice>,
     #[command(subcommand)]
     command: Command,

@@ -447,6 +447,21 @@ fn lattice_formulas() -> Vec<Formula> {
         .edge("just below 0", |(at,)| at.x < 0.0 && at.x > -1e-6)
         .edge("negative steps", |(at,)| at.x < -1.0 && at.y < -1.0)
         .edge("a million cells away", |(at,)| at.x.abs() > 1e6)
+        .hard_case(
+            "beside a vertex, where a fraction rounds to 1",
+            (Vec2::new(-7.450_581e-9, 1.490_116_1e-8),),
+            (&[-1.0, 0.0, 1.0], 0.0),
+            ("proxy_geometry_cell_naive", 1.0),
+        )
+        .build(),
+        formula(M, "proxy_geometry_cell_naive", mirror::cell_naive, oracle::cell, |draws| {
+            // Within a half of a cell, at a hundredth of the cell or more from its edges.
+            let whole = Vec2::new(draws.below(41) as f32 - 20.0, draws.below(41) as f32 - 20.0);
+            let (first, share) = (draws.between(0.02, 0.95), draws.between(0.05, 0.9));
+            let below = Vec2::new(first, share * (1.0 - first));
+            (whole + if draws.below(2) == 0 { below } else { Vec2::ONE - below },)
+        })
+        .benign(0.0)
         .build(),
         formula(M, "proxy_geometry_facet", mirror::facet, oracle::facet, |draws| {
             let (plane, _) = lattice_point(draws);

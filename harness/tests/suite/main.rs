@@ -7,6 +7,7 @@ mod comparator;
 mod contract;
 mod dispatch;
 mod formulas;
+mod furnace;
 mod hard_cases;
 mod program;
 mod snapshots;
