@@ -182,7 +182,7 @@ fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec
 // cell's diagonal belongs to the half that is not turned.
 // Returns: ProxyGeometryCell.
 // Units: lattice coordinates, as proxy_geometry_coordinates gives them.
-// Domain: coordinates up to 2^22, beyond which f32 has no halves.
+// Domain: coordinates up to 2^23, beyond which f32 has no halves.
 // Outside: as the formula gives; cells beyond 2^31 are clamped to it.
 // Accuracy: lavapipe steps 0 ulp, turned 1 backward; portable steps 0 ulp, turned 1 backward
 fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
@@ -197,7 +197,7 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
 // The tile by the sum of the fractions, as one writes it.
 // Returns: ProxyGeometryCell.
 // Units: lattice coordinates.
-// Domain: coordinates up to 2^22, away from the edges of tiles.
+// Domain: coordinates up to 2^23, away from the edges of tiles.
 // Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points beside a vertex get the wrong half.
 // Accuracy: naive
 fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {

@@ -16,7 +16,7 @@ fn main() {
 /// Property tests, generation, shader, mirror, oracle and comparison included; `item/s` are cases a second.
 #[divan::bench(args = ["refraction_refract", "fresnel_dielectric", "closest_point_centre"], sample_count = 5, sample_size = 1)]
 fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
-    let gpu = Gpu::shared(&AdapterChoice::platform_default()).expect("an adapter");
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("an adapter");
     let formula = formulas::of_function(function).expect("the function has a formula");
     let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
     let tolerance = check::tolerance(gpu, formula);

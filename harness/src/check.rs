@@ -2,7 +2,7 @@
 
 use crate::cookbook::{self, header::FunctionDoc};
 use crate::dispatch::shape::{Scalar, Shape};
-use crate::dispatch::{DispatchError, Kernel, KernelModule};
+use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
@@ -133,9 +133,9 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
         Source::Copy(path, text) => (path, text),
     };
     let in_path = |error| CheckError::Dispatch { path: path.to_owned(), error };
-    let module = KernelModule::reflect(text, path, formula.function).map_err(in_path)?;
-    module.signature.expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
-    Kernel::new(gpu, module).map_err(in_path)
+    let kernel = Kernel::of_function(gpu, text, path, formula.function).map_err(in_path)?;
+    kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
+    Ok(kernel)
 }
 
 /// Runs the property tests of one formula. Inputs that failed in earlier runs and those of the hard cases go first.

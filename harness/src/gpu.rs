@@ -13,7 +13,16 @@ pub enum AdapterChoice {
     Named(String),
 }
 
+/// The environment variable that stands for `--adapter`, for the tests too.
+pub const ADAPTER_VARIABLE: &str = "LAPIDARY_ADAPTER";
+
 impl AdapterChoice {
+    /// What the environment asks for, else the platform's default.
+    pub fn from_environment() -> Self {
+        let asked = std::env::var(ADAPTER_VARIABLE).ok().and_then(|text| text.parse().ok());
+        asked.unwrap_or_else(Self::platform_default)
+    }
+
     /// Lavapipe on Linux, where `./cook` installs it; elsewhere the first adapter.
     pub const fn platform_default() -> Self {
         if cfg!(target_os = "linux") { Self::Lavapipe } else { Self::Any }

@@ -13,8 +13,8 @@ const NUDGE: f32 = 1.0 + 1.0 / 64.0;
 #[derive(Clone, Debug, PartialEq)]
 enum Edit {
     Binary(BinaryOperator),
-    /// `-x` instead of `x * s` of a vector and a scalar, for which there is no quotient.
-    Negate,
+    /// `-x` instead of `x * s` or `s * x` of a vector `x` and a scalar, for which there is no quotient.
+    Negate(Handle<Expression>),
     /// `x` instead of `-x`.
     Keep,
     Literal(Literal),
@@ -58,9 +58,12 @@ pub fn compacted(mut kernel: KernelModule) -> KernelModule {
     kernel
 }
 
-/// Every mutant of the named function of `module`, and of the consts that it is the first to use.
+/// Every mutant of the named function of `module`, and of the consts that it uses.
 ///
 /// `kernel` is the function's own, compacted.
+///
+/// # Panics
+/// Where `kernel` is not valid, which [`KernelModule::reflect`] has made sure of.
 pub fn mutants(module: &cookbook::Module, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
     let mut mutants: Vec<Mutant> = Vec::new();
     let mut add = |owner: &str, span: naga::Span, site: Site, change: String, edit: Edit| {
@@ -72,17 +75,22 @@ pub fn mutants(module: &cookbook::Module, function: &str, kernel: &KernelModule)
         mutants.push(Mutant { owner: owner.to_owned(), line, occurrence, change, site, edit });
     };
     let ir = &kernel.module;
-    for (_, found) in ir.functions.iter().filter(|(_, found)| found.name.as_deref() == Some(function)) {
+    let info = dispatch::validate(ir).expect("a kernel is valid");
+    for (owner, found) in ir.functions.iter().filter(|(_, found)| found.name.as_deref() == Some(function)) {
+        let is_vector = |handle: Handle<Expression>| {
+            matches!(info[owner][handle].ty.inner_with(&ir.types), naga::TypeInner::Vector { .. })
+        };
         for (handle, expression) in found.expressions.iter() {
             let span = found.expressions.get_span(handle);
-            for (change, edit) in edits(&found.expressions, expression) {
+            for (change, edit) in edits(&is_vector, expression) {
                 add(function, span, Site::Expression(handle.index()), change, edit);
             }
         }
     }
     for (_, constant) in ir.constants.iter() {
         let Some(name) = constant.name.as_deref() else { continue };
-        for (change, edit) in edits(&ir.global_expressions, &ir.global_expressions[constant.init]) {
+        // A const holds a literal.
+        for (change, edit) in edits(&|_| false, &ir.global_expressions[constant.init]) {
             add(name, ir.global_expressions.get_span(constant.init), Site::Constant, change, edit);
         }
     }
@@ -115,7 +123,9 @@ fn edit(expression: &mut Expression, edit: &Edit) {
         (Expression::Binary { left, right, .. }, Edit::Binary(op)) => {
             Expression::Binary { op: *op, left: *left, right: *right }
         }
-        (Expression::Binary { left, .. }, Edit::Negate) => Expression::Unary { op: UnaryOperator::Negate, expr: *left },
+        (Expression::Binary { .. }, Edit::Negate(vector)) => {
+            Expression::Unary { op: UnaryOperator::Negate, expr: *vector }
+        }
         (Expression::Unary { expr, .. }, Edit::Keep) => {
             // A conversion of f32 to f32, since an expression cannot stand for another.
             Expression::As { expr: *expr, kind: ScalarKind::Float, convert: Some(4) }
@@ -126,18 +136,17 @@ fn edit(expression: &mut Expression, edit: &Edit) {
     *expression = replacement;
 }
 
-fn edits(arena: &naga::Arena<Expression>, expression: &Expression) -> Vec<(String, Edit)> {
+/// The changes to an expression; `is_vector` tells the type of its operands.
+fn edits(is_vector: &dyn Fn(Handle<Expression>) -> bool, expression: &Expression) -> Vec<(String, Edit)> {
     match expression {
         Expression::Binary { op, left, right } => {
             operators(*op)
                 .iter()
                 .map(|other| {
                     // Only a vector times a scalar mixes types.
-                    let mixed = *other == BinaryOperator::Divide && mixes(arena, *left, *right);
-                    if mixed {
-                        (format!("{op:?} -> negated vector"), Edit::Negate)
-                    } else {
-                        (format!("{op:?} -> {other:?}"), Edit::Binary(*other))
+                    match mixed_vector(is_vector, *left, *right).filter(|_| *other == BinaryOperator::Divide) {
+                        Some(vector) => (format!("{op:?} -> negated vector"), Edit::Negate(vector)),
+                        None => (format!("{op:?} -> {other:?}"), Edit::Binary(*other)),
                     }
                 })
                 .collect()
@@ -151,21 +160,17 @@ fn edits(arena: &naga::Arena<Expression>, expression: &Expression) -> Vec<(Strin
     }
 }
 
-/// Whether a product's quotient would be of a vector and a scalar, which naga's IR does not have. Told from the expressions alone: a
-/// side that is splatted, composed or a vector's is left to validation, which drops what is not valid.
-fn mixes(arena: &naga::Arena<Expression>, left: Handle<Expression>, right: Handle<Expression>) -> bool {
-    let scalar = |handle: Handle<Expression>| {
-        matches!(arena[handle], Expression::Literal(_) | Expression::AccessIndex { .. })
-            || matches!(&arena[handle], Expression::Math { fun, .. } if matches!(fun, naga::MathFunction::Dot | naga::MathFunction::Length))
-    };
-    let vector = |handle: Handle<Expression>| {
-        matches!(arena[handle], Expression::Compose { .. } | Expression::Splat { .. })
-            || matches!(
-                &arena[handle],
-                Expression::Math { fun: naga::MathFunction::Cross | naga::MathFunction::Normalize, .. }
-            )
-    };
-    (scalar(right) && vector(left)) || (scalar(left) && vector(right))
+/// The vector of a product of a vector and a scalar; none where both sides are of one type.
+fn mixed_vector(
+    is_vector: &dyn Fn(Handle<Expression>) -> bool,
+    left: Handle<Expression>,
+    right: Handle<Expression>,
+) -> Option<Handle<Expression>> {
+    match (is_vector(left), is_vector(right)) {
+        (true, false) => Some(left),
+        (false, true) => Some(right),
+        _ => None,
+    }
 }
 
 fn operators(op: BinaryOperator) -> &'static [BinaryOperator] {

@@ -15,7 +15,7 @@ use lapidary_harness::gpu::{AdapterChoice, Gpu};
 use lapidary_harness::mutation::{self, Mutant};
 use lapidary_harness::property::tolerance::{Tolerance, number};
 use lapidary_harness::property::{Check, Settings};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
 use std::sync::Mutex;
@@ -52,25 +52,31 @@ fn main() -> ExitCode {
     coordinate(if filter == "mutation" { "" } else { &filter })
 }
 
-/// A function's mutants in their order, the same in coordinator and workers.
-fn mutants_of(formula: &Formula) -> Vec<Mutant> {
+/// In place of a mutant's number: the unchanged function, which must survive.
+const UNCHANGED: usize = usize::MAX;
+/// What a worker says once it has its device.
+const READY: &str = "ready";
+
+/// A function's mutants in their order, the same in coordinator and workers, and how many more make no valid program.
+fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    let kernel =
-        KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
-    let kernel = mutation::compacted(kernel);
-    // A mutant that makes no valid program is none.
-    mutation::mutants(module, formula.function, &kernel)
-        .into_iter()
-        .filter(|mutant| mutation::apply(&kernel, mutant).is_some())
-        .collect()
+    let kernel = KernelModule::reflect(module.source, module.name, formula.function);
+    let kernel = mutation::compacted(kernel.expect("the cookbook's WGSL is valid"));
+    let all = mutation::mutants(module, formula.function, &kernel);
+    let (valid, invalid): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|mutant| mutation::apply(&kernel, mutant).is_some());
+    (valid, invalid.len())
 }
 
 fn coordinate(filter: &str) -> ExitCode {
     let start = Instant::now();
     let mut jobs: Vec<(usize, usize, String)> = Vec::new();
     let mut constants = Vec::new();
+    let mut invalid = 0;
     for (index, formula) in formulas::all().iter().enumerate() {
-        for (position, mutant) in mutants_of(formula).iter().enumerate() {
+        let (mutants, dropped) = mutants_of(formula);
+        invalid += dropped;
+        for (position, mutant) in mutants.iter().enumerate() {
             let name = mutant.to_string();
             // A const is met again with every function that uses it, and judged by all of them at the first.
             let constant = mutant.owner != formula.function;
@@ -83,11 +89,21 @@ fn coordinate(filter: &str) -> ExitCode {
             jobs.push((index, position, name));
         }
     }
-    jobs.reverse();
     let total = jobs.len();
+    if total == 0 {
+        // A filter for other tests.
+        println!("\ntest result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 1 filtered out\n");
+        return ExitCode::SUCCESS;
+    }
+    // The unchanged functions go first: where one is caught, the harness is at fault and no score means anything.
+    let concerned: BTreeSet<usize> = jobs.iter().map(|(formula, ..)| *formula).collect();
+    let controls = concerned.iter().map(|index| (*index, UNCHANGED, formulas::all()[*index].function.to_owned()));
+    let mut jobs: Vec<(usize, usize, String)> = controls.chain(jobs).collect();
+    jobs.reverse();
     let queue = Mutex::new(jobs);
     let survived = Mutex::new(Vec::new());
     let hung = Mutex::new(Vec::new());
+    let broken = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..WORKERS {
             scope.spawn(|| {
@@ -96,6 +112,8 @@ fn coordinate(filter: &str) -> ExitCode {
                     let job = queue.lock().expect("no thread panics").pop();
                     let Some((formula, position, name)) = job else { break };
                     match judge(&mut worker, formula, position) {
+                        Verdict::Survived if position == UNCHANGED => {}
+                        _ if position == UNCHANGED => broken.lock().expect("no thread panics").push(name),
                         Verdict::Caught => {}
                         Verdict::Survived => survived.lock().expect("no thread panics").push(name),
                         Verdict::Hung => hung.lock().expect("no thread panics").push(name),
@@ -106,10 +124,22 @@ fn coordinate(filter: &str) -> ExitCode {
     });
     let survived = survived.into_inner().expect("no thread panics");
     let hung = hung.into_inner().expect("no thread panics");
-    report(filter, total, &survived, &hung, start.elapsed())
+    let broken = broken.into_inner().expect("no thread panics");
+    for name in &broken {
+        println!("BROKEN: the unchanged `{name}` does not pass its own tests in a worker");
+    }
+    println!("{invalid} changes make no valid program and are no mutants");
+    let passed = report(filter, total, &survived, &hung, start.elapsed()) && broken.is_empty();
+    println!(
+        "\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n",
+        if passed { "ok" } else { "FAILED" },
+        u8::from(passed),
+        u8::from(!passed)
+    );
+    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took: Duration) -> ExitCode {
+fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took: Duration) -> bool {
     let listed = equivalent_mutants();
     let (equivalent, missed): (Vec<&String>, Vec<&String>) =
         survived.iter().partition(|name| listed.contains_key(*name));
@@ -134,14 +164,7 @@ fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took
         hung.len(),
         took.as_secs_f64()
     );
-    let passed = total > 0 && missed.is_empty() && stale.is_empty() && share <= MOST_EQUIVALENT;
-    println!(
-        "\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n",
-        if passed { "ok" } else { "FAILED" },
-        u8::from(passed),
-        u8::from(!passed)
-    );
-    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    missed.is_empty() && stale.is_empty() && share <= MOST_EQUIVALENT
 }
 
 /// Name and reason of each listed mutant.
@@ -173,7 +196,6 @@ struct Worker {
     child: Child,
     stdin: ChildStdin,
     answers: Receiver<String>,
-    started: bool,
 }
 
 impl Worker {
@@ -196,7 +218,10 @@ impl Worker {
                 }
             }
         });
-        Worker { child, stdin, answers, started: false }
+        // Without a device every mutant would seem caught.
+        let ready = answers.recv_timeout(START_LIMIT);
+        assert_eq!(ready.as_deref(), Ok(READY), "a worker does not start: no adapter?");
+        Worker { child, stdin, answers }
     }
 }
 
@@ -209,27 +234,25 @@ impl Drop for Worker {
 }
 
 fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdict {
-    let active = worker.get_or_insert_with(Worker::spawn);
-    let limit = if active.started { LIMIT } else { START_LIMIT };
-    let asked = writeln!(active.stdin, "{formula} {position}").and_then(|()| active.stdin.flush());
-    let answer = match asked {
-        Ok(()) => active.answers.recv_timeout(limit),
-        Err(_) => Err(RecvTimeoutError::Disconnected),
-    };
-    active.started = true;
-    match answer.as_deref() {
-        Ok("survived") => Verdict::Survived,
-        Ok(_) => Verdict::Caught,
-        Err(RecvTimeoutError::Timeout) => {
-            *worker = None;
-            Verdict::Hung
-        }
-        // The driver crashed on the mutant, which is noticed.
-        Err(RecvTimeoutError::Disconnected) => {
-            *worker = None;
-            Verdict::Caught
+    // A worker may die of what an earlier mutant did to the driver: only one that dies again, fresh, is noticed by dying.
+    for _ in 0..2 {
+        let active = worker.get_or_insert_with(Worker::spawn);
+        let asked = writeln!(active.stdin, "{formula} {position}").and_then(|()| active.stdin.flush());
+        let answer = match asked {
+            Ok(()) => active.answers.recv_timeout(LIMIT),
+            Err(_) => Err(RecvTimeoutError::Disconnected),
+        };
+        match answer.as_deref() {
+            Ok("survived") => return Verdict::Survived,
+            Ok(_) => return Verdict::Caught,
+            Err(RecvTimeoutError::Timeout) => {
+                *worker = None;
+                return Verdict::Hung;
+            }
+            Err(RecvTimeoutError::Disconnected) => *worker = None,
         }
     }
+    Verdict::Caught
 }
 
 /// Inputs of a formula with their right results, computed once for all of its mutants.
@@ -244,14 +267,20 @@ struct Kept<'gpu> {
 }
 
 fn worker() {
-    let gpu = Gpu::shared(&AdapterChoice::platform_default()).expect("an adapter");
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("an adapter");
+    println!("{READY}");
     let mut kept: BTreeMap<&'static str, Kept<'static>> = BTreeMap::new();
     let mut listed: BTreeMap<usize, Vec<Mutant>> = BTreeMap::new();
     for line in std::io::stdin().lines().map_while(Result::ok) {
         let mut numbers = line.split(' ').map(|number| number.parse::<usize>().expect("the coordinator's numbers"));
         let (index, position) = (numbers.next().expect("two numbers"), numbers.next().expect("two numbers"));
         let formula = &formulas::all()[index];
-        let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula))[position];
+        if position == UNCHANGED {
+            let kept = kept.entry(formula.function).or_insert_with(|| Kept::new(gpu, formula));
+            println!("{}", if kept.notices(kept.kernel.clone()) { "caught" } else { "survived" });
+            continue;
+        }
+        let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula).0)[position];
         // The function's own tests first, then those of the functions that call it.
         let mut judges: Vec<&'static Formula> =
             formulas::all().iter().filter(|other| other.module == formula.module).collect();
@@ -288,7 +317,11 @@ impl<'gpu> Kept<'gpu> {
     }
 
     fn catches(&self, mutant: &Mutant) -> bool {
-        let Some(mutated) = mutation::apply(&self.kernel, mutant) else { return false };
+        mutation::apply(&self.kernel, mutant).is_some_and(|mutated| self.notices(mutated))
+    }
+
+    /// Whether the property tests tell this kernel from the right one.
+    fn notices(&self, mutated: KernelModule) -> bool {
         let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
         let mut results = Words::new();
         if kernel.run(&self.arguments, &mut results).is_err() {

@@ -27,6 +27,11 @@ pub fn direction(vector: Vec3) -> Vec3 {
     scaled / scaled.length()
 }
 
+/// The direction by the built-in function.
+pub fn direction_naive(vector: Vec3) -> Vec3 {
+    vector.normalize()
+}
+
 /// Parameters (t_i, t_j) of the closest points of two lines, eq. (A.6); (0, 0) for parallel normals.
 pub fn parameters(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3) -> Vec2 {
     let across = (normal_i + normal_j).cross(normal_j - normal_i);

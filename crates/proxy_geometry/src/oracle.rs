@@ -1,6 +1,6 @@
-//! The truth in f64, by other geometry than the mirror's: the point reflection as a solved midpoint, normals by the
-//! angle that they make, the intersection by bisection of the signed height, lattice coordinates by Cramer's rule in
-//! an orthonormal frame of the plane, the tile by a search over the lattice.
+//! The truth in f64, by other geometry than the mirror's: the point reflection as a midpoint, normals by Gram and Schmidt,
+//! the intersection by bisection of the signed height, lattice coordinates by Cramer's rule in an orthonormal frame of the
+//! plane, the tile by a search over the lattice.
 
 use glam::{DMat2, DMat3, DVec2, DVec3, IVec2};
 
@@ -74,23 +74,26 @@ pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third
     if across.length() < 1e-13 { DVec3::ZERO } else { first.cross(across.normalize()).normalize_or_zero() }
 }
 
-/// The parameter at which the ray's height over the plane is 0, by similar triangles on the heights of two of its points.
+/// The parameter at which the ray's height over the plane changes its sign, by bisection.
 pub fn intersect(position: DVec3, direction: DVec3, plane_point: DVec3, normal: DVec3) -> ProxyGeometryHit {
     let miss = ProxyGeometryHit { point: position, distance: 0.0, hit: false };
-    let height = (position - plane_point).dot(normal);
-    let unit = height.abs();
-    let descent = (position + unit * direction - plane_point).dot(normal) - height;
-    // Descends by less than the sine allows, or away from the plane.
-    if unit == 0.0
-        || (direction.dot(normal)).abs() <= f64::from(crate::PROXY_GEOMETRY_PARALLEL)
-        || descent * height >= 0.0
-    {
+    let height = |distance: f64| (position - plane_point).dot(normal) + distance * direction.dot(normal);
+    // A ray that descends by 2^-20 of its length or less counts as parallel: it must come down within 2^20 heights.
+    let start = height(0.0);
+    let mut far = start.abs() * 2f64.powi(20);
+    if start == 0.0 || height(far) * start >= 0.0 {
         return miss;
     }
-    // The first estimate by the two heights, then one secant step, since they cancel for far points.
-    let mut distance = -height / (descent / unit);
-    distance -= (position + distance * direction - plane_point).dot(normal) / direction.dot(normal);
-    ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
+    let mut near = 0.0;
+    // Until the two are neighbours in f64.
+    loop {
+        let middle = 0.5 * (near + far);
+        if middle <= near || middle >= far {
+            break;
+        }
+        if height(middle) * start > 0.0 { near = middle } else { far = middle }
+    }
+    ProxyGeometryHit { point: position + far * direction, distance: far, hit: true }
 }
 
 /// Cramer's rule on two components, in an orthonormal frame of the plane.

@@ -13,7 +13,7 @@ mod snapshots;
 mod test;
 
 use clap::{Parser, Subcommand};
-use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use lapidary_harness::gpu::{ADAPTER_VARIABLE, AdapterChoice, Gpu};
 use std::process::ExitCode;
 
 /// Whether what was checked holds.
@@ -35,12 +35,12 @@ impl<E: std::error::Error> From<E> for Failure {
     }
 }
 
-/// A shader cookbook for gems and translucent materials: copy the WGSL, test its formulas, look at the pictures.
+/// A shader cookbook for gems: copy the WGSL, test its formulas, look at the pictures.
 #[derive(Parser)]
 #[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
 struct Arguments {
     /// Which GPU: lavapipe, any, or part of an adapter's name.
-    #[arg(long, global = true, value_name = "NAME", env = "LAPIDARY_ADAPTER")]
+    #[arg(long, global = true, value_name = "NAME", env = ADAPTER_VARIABLE)]
     adapter: Option<AdapterChoice>,
     #[command(subcommand)]
     command: Command,

@@ -1,6 +1,7 @@
 //! `cook test`.
 
 use super::{Context, Failure, Outcome};
+use lapidary_harness::gpu::ADAPTER_VARIABLE;
 use std::path::Path;
 use std::process::Command;
 
@@ -18,17 +19,27 @@ pub(super) struct Arguments {
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     // Says at once what is missing, before minutes of building.
     context.gpu()?;
+    // The mutation tests last and apart: cargo stops at the first target that fails.
+    let parts: [&[&str]; 2] = [
+        &["--workspace", "--lib", "--bins", "--test", "suite"],
+        &["--package", "lapidary-harness", "--test", "mutation"],
+    ];
+    let parts = if arguments.quick { &parts[..1] } else { &parts[..] };
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.arg("test").arg("--workspace").arg("--manifest-path");
-    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
-    if arguments.quick {
-        command.args(["--lib", "--bins", "--test", "suite"]);
+    let mut outcome = Outcome::Passed;
+    for part in parts {
+        let mut command = Command::new(&cargo);
+        command.arg("test").args(*part).arg("--manifest-path");
+        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
+        command.env(ADAPTER_VARIABLE, context.adapter.to_string());
+        if let Some(filter) = &arguments.filter {
+            command.arg("--").arg(filter);
+        }
+        let status = command.status();
+        let status = status.map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;
+        if !status.success() {
+            outcome = Outcome::Failed;
+        }
     }
-    if let Some(filter) = &arguments.filter {
-        command.arg("--").arg(filter);
-    }
-    let status =
-        command.status().map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;
-    Ok(if status.success() { Outcome::Passed } else { Outcome::Failed })
+    Ok(outcome)
 }

@@ -77,6 +77,13 @@ impl Accuracy {
                 };
                 return Err(format!("bounds are for {}, the result has {}", spell(&named), spell(&fields)));
             }
+            // One box of inputs serves all fields.
+            let mut backward = bounds.iter().map(|bound| bound.bound.backward).filter(|backward| *backward > 0.0);
+            if let Some(first) = backward.next()
+                && backward.any(|other| other != first)
+            {
+                return Err("fields that allow backward error must allow the same".to_owned());
+            }
         }
         Ok(())
     }

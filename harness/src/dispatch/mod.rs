@@ -11,6 +11,8 @@ use crate::gpu::{Gpu, GpuError};
 use layout::Layout;
 use shape::{Signature, SignatureError};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use value::{Arguments, Value};
 
 /// Rows in one dispatch: enough to fill the device, few enough that memory stays bounded (16 MiB at 64 words a row).
@@ -72,14 +74,23 @@ impl KernelModule {
     }
 }
 
-/// A compiled kernel: rows of argument words in, rows of result words out.
-#[derive(Debug)]
-pub struct Kernel<'gpu> {
-    gpu: &'gpu Gpu,
+/// What is compiled once for a source and a function.
+#[derive(Clone, Debug)]
+struct Compiled {
     signature: Signature,
     input: Layout,
     output: Layout,
     pipeline: wgpu::ComputePipeline,
+}
+
+/// The kernels of this process, by source and function: it has one device.
+static COMPILED: Mutex<BTreeMap<(String, String), Compiled>> = Mutex::new(BTreeMap::new());
+
+/// A compiled kernel: rows of argument words in, rows of result words out.
+#[derive(Debug)]
+pub struct Kernel<'gpu> {
+    gpu: &'gpu Gpu,
+    compiled: Compiled,
     buffers: Option<Buffers>,
 }
 
@@ -93,39 +104,44 @@ struct Buffers {
 }
 
 impl<'gpu> Kernel<'gpu> {
-    /// Compiles a kernel.
+    /// The kernel of `function` in `source` (`path` is for messages), compiled at the first call for both.
+    pub fn of_function(
+        gpu: &'gpu Gpu,
+        source: &str,
+        path: &str,
+        function: &str,
+    ) -> Result<Kernel<'gpu>, DispatchError> {
+        let key = (source.to_owned(), function.to_owned());
+        let mut known = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
+        let compiled = match known.get(&key) {
+            Some(compiled) => compiled.clone(),
+            None => {
+                let compiled = compile(gpu, KernelModule::reflect(source, path, function)?)?;
+                known.insert(key, compiled.clone());
+                compiled
+            }
+        };
+        Ok(Kernel { gpu, compiled, buffers: None })
+    }
+
+    /// Compiles a kernel that nobody asks for again, such as a mutant.
     pub fn new(gpu: &'gpu Gpu, kernel: KernelModule) -> Result<Kernel<'gpu>, DispatchError> {
-        let KernelModule { signature, module, input, output } = kernel;
-        let pipeline = gpu.guarded(&format!("compiling `{}`", signature.function), |device| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(&signature.function),
-                source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&signature.function),
-                layout: None,
-                module: &module,
-                entry_point: Some(ENTRY_POINT),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        })?;
-        Ok(Kernel { gpu, signature, input, output, pipeline, buffers: None })
+        Ok(Kernel { gpu, compiled: compile(gpu, kernel)?, buffers: None })
     }
 
     /// The function's signature.
     pub fn signature(&self) -> &Signature {
-        &self.signature
+        &self.compiled.signature
     }
 
     /// Words in a row of arguments.
     pub fn argument_words(&self) -> usize {
-        self.input.offsets.len()
+        self.compiled.input.offsets.len()
     }
 
     /// Words in a row of results.
     pub fn result_words(&self) -> usize {
-        self.output.offsets.len()
+        self.compiled.output.offsets.len()
     }
 
     /// Calls the function for each row of `arguments`; `results` then holds a row for each, in order.
@@ -149,15 +165,15 @@ impl<'gpu> Kernel<'gpu> {
             self.buffers = Some(self.allocate(rows)?);
         }
         let Some(buffers) = &mut self.buffers else { unreachable!("allocated above") };
-        let input_bytes = rows * self.input.stride;
-        let output_bytes = (rows * self.output.stride) as u64;
-        self.input.scatter(arguments, &mut buffers.staging[..input_bytes]);
+        let input_bytes = rows * self.compiled.input.stride;
+        let output_bytes = (rows * self.compiled.output.stride) as u64;
+        self.compiled.input.scatter(arguments, &mut buffers.staging[..input_bytes]);
         self.gpu.queue.write_buffer(&buffers.inputs, 0, &buffers.staging[..input_bytes]);
-        self.gpu.guarded(&format!("running `{}`", self.signature.function), |device| {
+        self.gpu.guarded(&format!("running `{}`", self.compiled.signature.function), |device| {
             // Bound to the rows in use, so that arrayLength is their number.
             let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: None,
-                layout: &self.pipeline.get_bind_group_layout(0),
+                layout: &self.compiled.pipeline.get_bind_group_layout(0),
                 entries: &[
                     wgpu::BindGroupEntry { binding: 0, resource: sized(&buffers.inputs, input_bytes as u64) },
                     wgpu::BindGroupEntry { binding: 1, resource: sized(&buffers.outputs, output_bytes) },
@@ -166,7 +182,7 @@ impl<'gpu> Kernel<'gpu> {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                pass.set_pipeline(&self.pipeline);
+                pass.set_pipeline(&self.compiled.pipeline);
                 pass.set_bind_group(0, &bind_group, &[]);
                 let workgroups = rows.div_ceil(kernel::WORKGROUP_SIZE as usize);
                 pass.dispatch_workgroups(u32::try_from(workgroups).expect("at most 1024 workgroups"), 1, 1);
@@ -174,7 +190,8 @@ impl<'gpu> Kernel<'gpu> {
             encoder.copy_buffer_to_buffer(&buffers.outputs, 0, &buffers.readback, 0, output_bytes);
             self.gpu.queue.submit([encoder.finish()]);
         })?;
-        self.gpu.read_back(&buffers.readback, output_bytes, |bytes| self.output.gather(bytes, rows, results))?;
+        self.gpu
+            .read_back(&buffers.readback, output_bytes, |bytes| self.compiled.output.gather(bytes, rows, results))?;
         Ok(())
     }
 
@@ -193,12 +210,31 @@ impl<'gpu> Kernel<'gpu> {
         use wgpu::BufferUsages as Usage;
         Ok(Buffers {
             capacity,
-            inputs: buffer("inputs", capacity * self.input.stride, Usage::STORAGE | Usage::COPY_DST)?,
-            outputs: buffer("outputs", capacity * self.output.stride, Usage::STORAGE | Usage::COPY_SRC)?,
-            readback: buffer("readback", capacity * self.output.stride, Usage::COPY_DST | Usage::MAP_READ)?,
-            staging: vec![0; capacity * self.input.stride],
+            inputs: buffer("inputs", capacity * self.compiled.input.stride, Usage::STORAGE | Usage::COPY_DST)?,
+            outputs: buffer("outputs", capacity * self.compiled.output.stride, Usage::STORAGE | Usage::COPY_SRC)?,
+            readback: buffer("readback", capacity * self.compiled.output.stride, Usage::COPY_DST | Usage::MAP_READ)?,
+            staging: vec![0; capacity * self.compiled.input.stride],
         })
     }
+}
+
+fn compile(gpu: &Gpu, kernel: KernelModule) -> Result<Compiled, DispatchError> {
+    let KernelModule { signature, module, input, output } = kernel;
+    let pipeline = gpu.guarded(&format!("compiling `{}`", signature.function), |device| {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(&signature.function),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+        });
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&signature.function),
+            layout: None,
+            module: &module,
+            entry_point: Some(ENTRY_POINT),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
+    })?;
+    Ok(Compiled { signature, input, output, pipeline })
 }
 
 fn sized(buffer: &wgpu::Buffer, size: u64) -> wgpu::BindingResource<'_> {
@@ -213,9 +249,8 @@ pub fn call<A: Arguments<u32>, R: Value>(
     function: &str,
     inputs: &[A],
 ) -> Result<Vec<R>, DispatchError> {
-    let kernel = KernelModule::reflect(source, function, function)?;
-    kernel.signature.expect(&A::shapes(), &R::shape())?;
-    let mut kernel = Kernel::new(gpu, kernel)?;
+    let mut kernel = Kernel::of_function(gpu, source, function, function)?;
+    kernel.signature().expect(&A::shapes(), &R::shape())?;
     let mut arguments = Vec::with_capacity(inputs.len() * kernel.argument_words());
     inputs.iter().for_each(|input| input.write(&mut arguments));
     let mut results = Vec::new();

@@ -133,6 +133,7 @@ pub(super) fn formulas() -> Vec<Formula> {
 }
 
 fn vector_formulas() -> Vec<Formula> {
+    const NAIVE: &str = "closest_point_direction_naive";
     let vector = |draws: &mut Draws<'_>| match draws.below(8) {
         0 => (Vec3::ZERO,),
         1 => (Vec3::new(draws.signed(-99, 120), 0.0, 0.0),),
@@ -156,7 +157,20 @@ fn vector_formulas() -> Vec<Formula> {
                 let wanted = if v == Vec3::ZERO { 0.0 } else { 1.0 };
                 near("length", direction.as_dvec3().length(), wanted, 1e-6)
             })
+            .hard_case(
+                "length 5e-24",
+                (Vec3::new(3e-24, 0.0, 4e-24),),
+                (&[0.6, 0.0, 0.8], 1e-6),
+                (NAIVE, f64::INFINITY),
+            )
+            .hard_case("length 5e19", (Vec3::new(3e19, 0.0, 4e19),), (&[0.6, 0.0, 0.8], 1e-6), (NAIVE, 0.5))
+            .hard_case("the zero vector", (Vec3::ZERO,), (&[0.0; 3], 0.0), (NAIVE, f64::INFINITY))
             .build(),
+        formula(M, NAIVE, mirror::direction_naive, oracle::direction, |draws| {
+            (draws.magnitude(-49, 49) * draws.unit_vector(),)
+        })
+        .benign(1e-6)
+        .build(),
     ]
 }
 
@@ -298,6 +312,15 @@ fn centre_formulas() -> Vec<Formula> {
     let (a, b, c) = (Vec3::new(0.5, 0.0, 0.0), Vec3::new(-0.25, 0.4375, 0.0), Vec3::new(-0.25, -0.4375, 0.0));
     let with = |n_a: Vec3, n_b: Vec3, n_c: Vec3| (a, n_a, b, n_b, c, n_c);
     let up = Vec3::Z;
+    // Three normals a third of a turn apart, `angle` radians off the vertical, and their centre by the oracle.
+    let inwards = |angle: f32| {
+        let lean = |turn: f32| Vec3::new(angle * turn.cos(), angle * turn.sin(), 1.0).normalize();
+        with(lean(0.0), lean(2.0), lean(4.0))
+    };
+    let truth = |(a, n_a, b, n_b, c, n_c): Corners| {
+        let [a, n_a, b, n_b, c, n_c] = [a, n_a, b, n_b, c, n_c].map(Vec3::as_dvec3);
+        oracle::centre(a, n_a, b, n_b, c, n_c).to_array()
+    };
     let leaning = Vec3::new(0.36, 0.48, 0.8);
     vec![
         formula(M, "closest_point_centre", mirror::centre, oracle::centre, corners)
@@ -338,6 +361,19 @@ fn centre_formulas() -> Vec<Formula> {
                     near("difference", (o - other).as_dvec3().length(), 0.0, 2e-5 * scale * amplified * 64.0)
                 }
             })
+            .pair(
+                "continuous: a normal moved by an ulp moves the centre by no more than the regularisation lets it",
+                |(a, n_a, b, n_b, c, n_c)| (a, Vec3::new(n_a.x.next_up(), n_a.y, n_a.z), b, n_b, c, n_c),
+                |(a, _, b, _, c, _), o: Vec3, moved: Vec3| {
+                    // The matrix's inverse is at most 1 / regularisation; matrix and right-hand side move by two ulp; the
+                    // centre reaches as far as 32 extents.
+                    let ulps = 4.0 * f64::from(f32::EPSILON) / f64::from(CLOSEST_POINT_REGULARISATION);
+                    let most = ulps * 33.0 * extent([a, b, c]);
+                    near("distance", o.as_dvec3().distance(moved.as_dvec3()), 0.0, most + 1e-5 * a.as_dvec3().length())
+                },
+            )
+            .hard_case("normals 1e-3 apart", inwards(1e-3), (&truth(inwards(1e-3)), 3e-6), (PAPER, 0.1))
+            .hard_case("normals 1e-5 apart", inwards(1e-5), (&truth(inwards(1e-5)), 3e-6), (PAPER, 100.0))
             .hard_case(
                 "three nearly equal normals",
                 with(Vec3::new(1e-7, 0.0, 1.0), Vec3::new(-5e-8, 8.66e-8, 1.0), Vec3::new(-5e-8, -8.66e-8, 1.0)),

@@ -347,6 +347,12 @@ fn intersection_formulas() -> Vec<Formula> {
                 ("proxy_geometry_intersect_naive", 1.0),
             )
             .hard_case(
+                "h = 0: the plane through the ray's start",
+                (Vec3::ZERO, Vec3::NEG_Z, Vec3::X, Vec3::Z),
+                (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0),
+                ("proxy_geometry_intersect_naive", 1.0),
+            )
+            .hard_case(
                 "h = 0, parallel: the ray in the plane",
                 (Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z),
                 (&[0.0, 0.0, 0.0, 0.0, 0.0], 0.0),
@@ -455,9 +461,13 @@ fn lattice_formulas() -> Vec<Formula> {
         )
         .build(),
         formula(M, "proxy_geometry_cell_naive", mirror::cell_naive, oracle::cell, |draws| {
-            // Within a half of a cell, at a hundredth of the cell or more from its edges.
+            // Within a half of a cell, at a hundredth of the cell or more from its edges, or on the diagonal where f32 holds it.
             let whole = Vec2::new(draws.below(41) as f32 - 20.0, draws.below(41) as f32 - 20.0);
             let (first, share) = (draws.between(0.02, 0.95), draws.between(0.05, 0.9));
+            if draws.below(8) == 0 {
+                let eighths = 1.0 + draws.below(7) as f32;
+                return (whole + Vec2::new(eighths, 8.0 - eighths) / 8.0,);
+            }
             let below = Vec2::new(first, share * (1.0 - first));
             (whole + if draws.below(2) == 0 { below } else { Vec2::ONE - below },)
         })

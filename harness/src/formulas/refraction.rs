@@ -202,6 +202,18 @@ pub(super) fn formulas() -> Vec<Formula> {
                 ("refraction_refract_naive", 1e-5),
             )
             .hard_case(
+                "1 ulp inside the critical angle of an index one ulp below 1",
+                (grazing(3.452_670_1e-4), Vec3::Z, barely_thinner),
+                (&refracted(3.452_670_1e-4, barely_thinner), 1e-5),
+                ("refraction_refract_naive", 0.9),
+            )
+            .hard_case(
+                "2 ulp outside the critical angle of an index two ulp below 1",
+                (grazing(4.882_811_6e-4), Vec3::Z, barely_thinner.next_down()),
+                (&[f64::from(grazing(4.882_811_6e-4).x), 0.0, f64::from(4.882_811_6e-4f32), 1.0], 1e-7),
+                ("refraction_refract_naive", 0.9),
+            )
+            .hard_case(
                 "total internal reflection at 60 degrees out of diamond",
                 (grazing(0.5), Vec3::Z, 1.0 / 2.41749),
                 (&[f64::from(grazing(0.5).x), 0.0, 0.5, 1.0], 1e-7),

@@ -95,7 +95,7 @@ impl Tolerance {
             return Verdict { ulp: f64::INFINITY, ratio: f64::INFINITY, nonfinite };
         }
         // Beyond a discrete difference the floats belong to another case, and their distance says nothing.
-        let ulp = if self.discrete_fields_agree(gpu, exact) {
+        let ulp = if self.discrete_fields_agree(gpu, exact, |_| true) {
             self.floats().map(|(leaf, _)| in_ulps(leaf, gpu, exact)).fold(0.0, f64::max)
         } else {
             0.0
@@ -121,8 +121,9 @@ impl Tolerance {
         self.results.iter().filter(|(leaf, _)| leaf.scalar == Scalar::F32)
     }
 
-    fn discrete_fields_agree(&self, words: &[u32], exact: &[f64]) -> bool {
-        self.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32).all(|(leaf, _)| {
+    /// Whether the discrete fields with a bound that `concerns` says are the oracle's.
+    fn discrete_fields_agree(&self, words: &[u32], exact: &[f64], concerns: impl Fn(&Bound) -> bool) -> bool {
+        self.results.iter().filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && concerns(bound)).all(|(leaf, _)| {
             (leaf.start..leaf.start + leaf.length).all(|index| number(leaf.scalar, words[index]) == exact[index])
         })
     }
@@ -134,15 +135,19 @@ impl Tolerance {
 
     /// The worst error over allowed error; discrete fields that differ count as infinite.
     fn ratio(&self, gpu: &[u32], mirror: &[u32], exact: &[f64], spread: Option<&Spread>) -> f64 {
-        // With a spread, the oracle has already been met at the inputs where it gives these very discrete values.
-        let agree = self.discrete_fields_agree(gpu, exact) && self.discrete_fields_agree(mirror, exact);
-        if spread.is_none() && !agree {
+        // With a spread, the oracle has already been met at the inputs where it gives these very discrete values, as far as
+        // their fields allow backward error.
+        let agree = |words: &[u32]| match spread {
+            None => self.discrete_fields_agree(words, exact, |_| true),
+            Some(_) => self.discrete_fields_agree(words, exact, |bound| bound.backward == 0.0),
+        };
+        if !agree(gpu) || !agree(mirror) {
             return f64::INFINITY;
         }
         let mut worst: f64 = 0.0;
         for (leaf, bound) in self.floats() {
             let range = leaf.start..leaf.start + leaf.length;
-            let (low, high) = match spread {
+            let (low, high) = match spread.filter(|_| bound.backward > 0.0) {
                 Some(spread) => (&spread.low[range.clone()], &spread.high[range.clone()]),
                 None => (&exact[range.clone()], &exact[range.clone()]),
             };
@@ -218,7 +223,7 @@ impl<'a> Search<'a> {
         let places: Vec<(usize, Scalar)> = tolerance
             .results
             .iter()
-            .filter(|(leaf, _)| leaf.scalar != Scalar::F32)
+            .filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && bound.backward > 0.0)
             .flat_map(|(leaf, _)| (leaf.start..leaf.start + leaf.length).map(|index| (index, leaf.scalar)))
             .collect();
         let discrete = |words: &[u32]| -> Vec<f64> {

@@ -17,5 +17,5 @@ use lapidary_harness::gpu::{AdapterChoice, Gpu};
 
 /// The process's one device. A missing adapter fails the test: a suite that skips itself checks nothing.
 fn gpu() -> &'static Gpu {
-    Gpu::shared(&AdapterChoice::platform_default()).unwrap_or_else(|error| panic!("{error}"))
+    Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"))
 }
