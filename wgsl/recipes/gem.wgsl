@@ -8,7 +8,7 @@
 
 // Light through the stone; off, only its surface reflects (the paper's Fig. 2). Called for by KHR_materials_transmission.
 override EFFECT_PROXY_GEOMETRY: bool = true;
-// An image as the environment instead of the procedural studio. Called for by a scene that has one.
+// An image as the environment instead of the procedural studio. Called for by the user, who has one.
 override EFFECT_ENVIRONMENT_MAP: bool = false;
 // The proxy's centre by the paper's eq. (4) instead of the stable form.
 override CENTRE_PAPER: bool = false;

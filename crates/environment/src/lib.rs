@@ -132,7 +132,7 @@ pub fn dome(direction: Vec3, ground: Vec3, zenith: Vec3) -> Vec3 {
     ground * (1.0 - weight) + zenith * weight
 }
 
-/// A jeweller's studio: black flags with few, small, bright lights between them.
+/// A jeweller's studio: a dim tent over dark paper, with few, small, bright lights.
 #[rustfmt::skip] // a light is two lines, as in the shader
 pub fn studio(direction: Vec3) -> Vec3 {
     // Surround: dark paper below, a dim and slightly blue tent above.

@@ -77,7 +77,6 @@ fn every_recipe_compiles_with_the_modules_that_it_requires() {
     for recipe in recipes() {
         assert!(!recipe.requires.is_empty(), "{}", recipe.name);
         for name in &recipe.requires {
-            // `compose` leaves an unknown name out without a word.
             assert!(modules().iter().any(|module| module.name == *name), "{} requires `{name}`", recipe.name);
         }
         let (ir, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
