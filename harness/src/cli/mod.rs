@@ -13,7 +13,7 @@ mod snapshots;
 mod test;
 
 use clap::{Parser, Subcommand};
-use lapidary_harness::gpu::{ADAPTER_VARIABLE, AdapterChoice, Gpu};
+use lapidary_harness::gpu::{AdapterChoice, Gpu};
 use std::process::ExitCode;
 
 /// Whether what was checked holds.
@@ -39,8 +39,8 @@ impl<E: std::error::Error> From<E> for Failure {
 #[derive(Parser)]
 #[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
 struct Arguments {
-    /// Which GPU: lavapipe, any, or part of an adapter's name.
-    #[arg(long, global = true, value_name = "NAME", env = ADAPTER_VARIABLE)]
+    /// Which GPU: lavapipe, any, or part of an adapter's name; LAPIDARY_ADAPTER where left out.
+    #[arg(long, global = true, value_name = "NAME")]
     adapter: Option<AdapterChoice>,
     #[command(subcommand)]
     command: Command,
@@ -80,7 +80,7 @@ pub(crate) fn run() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let context = Context { adapter: arguments.adapter.unwrap_or_else(AdapterChoice::platform_default) };
+    let context = Context { adapter: arguments.adapter.unwrap_or_else(AdapterChoice::from_environment) };
     let outcome = match arguments.command {
         Command::Gallery(arguments) => gallery::run(&context, &arguments),
         Command::Test(arguments) => test::run(&context, &arguments),

@@ -232,3 +232,11 @@ fn rungs_and_exposure_change_the_picture() {
     assert!(usual != picture(&["--rung", "surface"]));
     assert!(usual != picture(&["--exposure", "2"]));
 }
+
+#[test]
+fn the_committed_brilliant_is_what_the_command_writes() {
+    let scene = lapidary_harness::scene::Scene::named("brilliant").expect("built in");
+    let written = lapidary_harness::scene::glb::write(&scene).expect("glTF can hold it");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/brilliant.glb");
+    assert!(std::fs::read(path).expect("the asset") == written, "`./cook scene brilliant --out {path}` remakes it");
+}
