@@ -102,19 +102,21 @@ fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
     let names: Vec<&str> = modules.iter().map(|module| module.name).collect();
     if to.needs_entry_point() {
         let first = &modules[0].functions[0].name;
-        let message = format!("this language holds entry points; name one function, such as {}::{first}", names[0]);
+        let message = format!(
+            "SPIR-V and GLSL hold entry points, so that a function is wrapped in one; name a function, such as {}::{first}",
+            names[0]
+        );
         return Err(Failure(message));
     }
     of_source(&cookbook::compose(&names, ""), &names.join("+"), to, None)
 }
 
 fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
-    let kernel = KernelModule::reflect(module.source, module.name, function)?;
     if to == Target::Wgsl {
-        // The text itself, comments and all.
-        let text = format!("{}\n{}", module.source, dispatch::kernel_source(&kernel.signature));
-        return Ok(text.into_bytes());
+        // A function may call its module's others; WGSL needs no entry point, so the module is the copy.
+        return Ok(module.source.as_bytes().to_vec());
     }
+    let kernel = KernelModule::reflect(module.source, module.name, function)?;
     let mut ir = kernel.module;
     naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
     let info = dispatch::validate(&ir).map_err(|error| Failure(error.to_string()))?;
