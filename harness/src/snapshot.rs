@@ -35,11 +35,11 @@ pub struct Shot {
 
 /// Every committed picture.
 pub const SHOTS: [Shot; 7] = [
-    Shot { paragraph: "", ..shot("brilliant", "Round brilliant, diamond", "brilliant") },
-    Shot { ..shot("octahedron", "Octahedron, diamond", "octahedron") },
-    Shot { ..shot("step_cut", "Step cut, emerald", "step_cut") },
-    Shot { ..shot("prism", "Pentagonal prism, quartz", "prism") },
-    Shot { ..shot("bunny_stone", "Bunny, glass", "bunny_stone") },
+    shot("brilliant", "Round brilliant, diamond", "brilliant"),
+    shot("octahedron", "Octahedron, diamond", "octahedron"),
+    shot("step_cut", "Step cut, emerald", "step_cut"),
+    shot("prism", "Pentagonal prism, quartz", "prism"),
+    shot("bunny_stone", "Bunny, glass", "bunny_stone"),
     Shot {
         rung: Rung::Surface,
         paragraph: "The cheapest rung, and what many games ship: exact Fresnel reflection at the surface, and nothing of \

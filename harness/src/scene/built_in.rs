@@ -120,7 +120,5 @@ fn direction(polar: f32, azimuth: f32) -> Vec3 {
 
 /// The built-in name most like `name`.
 fn nearest(name: &str) -> &'static str {
-    let likeness = |scene: &BuiltIn| strsim::jaro_winkler(name, scene.name);
-    let best = BUILT_IN.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    best.map_or("", |scene| scene.name)
+    crate::nearest::nearest(name, BUILT_IN.iter().map(|scene| scene.name)).map_or("", |(_, name)| name)
 }
