@@ -2,7 +2,9 @@
 //! stated. Where nothing fails, it is no hard case.
 
 use lapidary_harness::check::{self, Source, distance_from_limit};
+use lapidary_harness::dispatch::shape::{Scalar, Shape};
 use lapidary_harness::formulas;
+use lapidary_harness::property::tolerance::number;
 
 #[test]
 fn each_stable_form_holds_and_each_naive_form_fails() {
@@ -46,4 +48,42 @@ fn each_module_has_hard_cases() {
         let count: usize = formulas::all().iter().filter(|f| f.module == module.name).map(|f| f.hard_cases.len()).sum();
         assert!(count > 0, "{} has none", module.name);
     }
+}
+
+/// Continuity: an input's last place moved, up or down, moves the result as it moves the mathematics.
+#[test]
+fn beside_each_hard_case_the_stable_form_follows_the_mathematics() {
+    let gpu = super::gpu();
+    let mut faults = Vec::new();
+    for formula in formulas::all() {
+        let tolerance = check::tolerance(gpu, formula);
+        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
+        let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+        for case in &formula.hard_cases {
+            for (index, scalar) in scalars.iter().enumerate() {
+                let value = f32::from_bits(case.arguments[index]);
+                // Zero is exact: it has no last place.
+                if *scalar != Scalar::F32 || !value.is_normal() {
+                    continue;
+                }
+                for moved in [value.next_up(), value.next_down()] {
+                    let mut arguments = case.arguments.clone();
+                    arguments[index] = moved.to_bits();
+                    let (mut result, mut mirrored, mut exact) = (Vec::new(), Vec::new(), Vec::new());
+                    kernel.run(&arguments, &mut result).expect("runs");
+                    (formula.mirror)(&arguments, &mut mirrored);
+                    let numbers: Vec<f64> = arguments.iter().zip(&scalars).map(|(w, s)| number(*s, *w)).collect();
+                    (formula.oracle)(&numbers, &mut exact);
+                    let verdict = tolerance.judge(&arguments, &result, &mirrored, &exact, &*formula.oracle);
+                    if !verdict.holds() {
+                        faults.push(format!(
+                            "{}: {}: word {index} at {moved:?}: {verdict:?}",
+                            formula.function, case.name
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
