@@ -96,7 +96,7 @@ fn stone_scene(name: &str, stone: &Polyhedron, material: Material, (polar, azimu
 
 /// A colourless material.
 fn clear(name: &str, ior: f32) -> Material {
-    Material { name: name.to_owned(), base_color: Vec3::ONE, ior }
+    Material { name: name.to_owned(), ior, ..Material::standard() }
 }
 
 fn bunny(name: &str) -> Result<Scene, SceneError> {

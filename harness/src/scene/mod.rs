@@ -16,6 +16,7 @@ mod error;
 pub mod fuzz;
 pub mod glb;
 pub mod gltf;
+pub mod material;
 pub mod mesh;
 pub mod normals;
 pub mod polyhedron;
@@ -23,27 +24,9 @@ pub mod polyhedron;
 pub use built_in::{BUILT_IN, BuiltIn};
 pub use camera::Camera;
 pub use error::SceneError;
+pub use material::{Dispersion, Material, Mineral};
 pub use mesh::Mesh;
 pub use normals::Averaging;
-
-/// What a body is made of, as far as glTF says it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Material {
-    /// The material's name, or `default`.
-    pub name: String,
-    /// Base colour factor, linear RGB, each 0 to 1.
-    pub base_color: Vec3,
-    /// Refractive index relative to air at the sodium D line, at least 1.
-    pub ior: f32,
-}
-
-impl Material {
-    /// glTF's default material: white, with refractive index 1.5.
-    #[must_use]
-    pub fn standard() -> Self {
-        Self { name: "default".to_owned(), base_color: Vec3::ONE, ior: 1.5 }
-    }
-}
 
 /// One body of a scene.
 #[derive(Debug, Clone, PartialEq)]

@@ -38,5 +38,6 @@ pub(super) fn read(root: &Root, index: Option<usize>, user: &str) -> Result<Mate
         name: material.name.as_deref().map_or_else(|| format!("material {index}"), excerpt),
         base_color: Vec3::from_array(color),
         ior,
+        ..Material::standard()
     })
 }

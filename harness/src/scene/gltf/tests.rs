@@ -164,7 +164,8 @@ fn materials_say_colour_and_index() {
             },
         });
     });
-    let expected = Material { name: "ruby".to_owned(), base_color: Vec3::new(0.9, 0.1, 0.2), ior: 1.768 };
+    let expected =
+        Material { name: "ruby".to_owned(), base_color: Vec3::new(0.9, 0.1, 0.2), ior: 1.768, ..Material::standard() };
     assert_eq!(scene.unwrap().objects[0].material, expected);
 }
 
