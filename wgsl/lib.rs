@@ -12,12 +12,22 @@ pub struct Module {
     pub page: &'static str,
 }
 
-/// A complete shader, to be pasted after the modules that its `// requires:` line names.
+/// A complete shader, to be pasted after the modules that its `// requires:` line names and the parts that its `// parts:`
+/// line names.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe {
     /// The recipe's name.
     pub name: &'static str,
     /// WGSL with entry points and bindings.
+    pub source: &'static str,
+}
+
+/// What several recipes share: bindings and functions that belong to none of the modules. Not valid by itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The part's name.
+    pub name: &'static str,
+    /// WGSL without entry points.
     pub source: &'static str,
 }
 
@@ -37,9 +47,18 @@ macro_rules! recipes {
     };
 }
 
+macro_rules! parts {
+    ($($name:literal),* $(,)?) => {
+        &[$(Part { name: $name, source: include_str!(concat!("recipes/parts/", $name, ".wgsl")) }),*]
+    };
+}
+
 /// Every module, in the order of their names.
 pub const MODULES: &[Module] =
     modules!["closest_point", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["display", "gem"];
+pub const RECIPES: &[Recipe] = recipes!["display", "gem", "gem_bvh", "gem_composite", "gem_convex"];
+
+/// Every part, in the order of their names.
+pub const PARTS: &[Part] = parts!["gem_shading"];

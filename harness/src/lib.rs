@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod cookbook;
+pub mod cost;
 pub mod dispatch;
 pub mod formula;
 pub mod formulas;
@@ -10,7 +11,11 @@ pub mod gallery;
 pub mod gpu;
 pub mod mutation;
 pub mod nearest;
+pub mod pixel;
 pub mod property;
+pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod snapshot;
+pub mod specialise;
+pub mod spirv_counts;

@@ -157,9 +157,7 @@ pub fn compare(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Res
     let exr = folder.join(format!("{}.exr", shot.name));
     let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
     let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
-    let new: Vec<u8> = seen.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
-    let flip = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
-    let map = nv_flip::flip(flip(reference.as_raw()), flip(&new), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    let map = flip_map(seen, reference.as_raw());
     let comparison = Comparison {
         flip: nv_flip::FlipPool::from_image(&map).mean(),
         rmse: relative_rmse(&linear.linear, reference_linear.as_raw()),
@@ -181,6 +179,21 @@ pub fn compare(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Res
     Ok(comparison)
 }
 
+/// FLIP of what is seen, against `reference`, RGB of the same size.
+fn flip_map(seen: &Picture, reference: &[u8]) -> nv_flip::FlipImageFloat {
+    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
+    nv_flip::flip(image(reference), image(&rgb(seen)), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
+}
+
+fn rgb(picture: &Picture) -> Vec<u8> {
+    picture.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+}
+
+/// FLIP of each pixel of two pictures of one size, row by row.
+pub(crate) fn flip(picture: &Picture, reference: &Picture) -> Vec<f32> {
+    flip_map(picture, &rgb(reference)).to_vec()
+}
+
 /// Makes new pictures the references.
 pub fn accept(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<(), SnapshotError> {
     std::fs::create_dir_all(folder).map_err(|error| file::FileError::Write { path: folder.to_owned(), error })?;
@@ -195,7 +208,7 @@ pub fn accept(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Resu
     Ok(())
 }
 
-fn read(path: &Path, expected: (u32, u32)) -> Result<image::DynamicImage, SnapshotError> {
+pub(crate) fn read(path: &Path, expected: (u32, u32)) -> Result<image::DynamicImage, SnapshotError> {
     if !path.exists() {
         return Err(SnapshotError::Missing(path.to_owned()));
     }

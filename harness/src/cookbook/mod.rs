@@ -37,16 +37,24 @@ impl Module {
 pub struct Recipe {
     /// Its name.
     pub name: &'static str,
-    /// Its WGSL, without the modules that it requires.
+    /// Its WGSL, without the modules that it requires and the parts that it shares.
     pub source: &'static str,
     /// The modules that its `// requires:` line names, in order.
     pub requires: Vec<&'static str>,
+    /// The parts that its `// parts:` line names, in order.
+    pub parts: Vec<&'static lapidary_wgsl::Part>,
 }
 
 impl Recipe {
-    /// The whole shader: the required modules in the order of the `// requires:` line, then the recipe.
+    /// The whole shader: the required modules in the order of the `// requires:` line, the parts, then the recipe.
     pub fn compose(&self) -> String {
-        compose(&self.requires, self.source)
+        let parts = self.parts.iter().map(|part| part.source);
+        compose(&self.requires, &parts.chain([self.source]).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// The recipe's own text: the parts, then the recipe, without the modules.
+    pub fn own_text(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.parts.iter().map(|part| part.source).chain([self.source])
     }
 }
 
@@ -85,7 +93,12 @@ pub fn recipes() -> &'static [Recipe] {
     RECIPES.get_or_init(|| {
         lapidary_wgsl::RECIPES
             .iter()
-            .map(|recipe| Recipe { name: recipe.name, source: recipe.source, requires: requires(recipe.source) })
+            .map(|recipe| Recipe {
+                name: recipe.name,
+                source: recipe.source,
+                requires: named(recipe.source, "// requires:").collect(),
+                parts: named(recipe.source, "// parts:").map(part).collect(),
+            })
             .collect()
     })
 }
@@ -95,12 +108,16 @@ pub fn recipe(name: &str) -> Option<&'static Recipe> {
     recipes().iter().find(|recipe| recipe.name == name)
 }
 
-fn requires(source: &'static str) -> Vec<&'static str> {
-    source
-        .lines()
-        .find_map(|line| line.strip_prefix("// requires:"))
-        .map(|names| names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect())
-        .unwrap_or_default()
+/// The names on the line that starts with `tag`.
+fn named(source: &'static str, tag: &'static str) -> impl Iterator<Item = &'static str> {
+    let line = source.lines().find_map(move |line| line.strip_prefix(tag)).unwrap_or_default();
+    line.split(',').map(str::trim).filter(|name| !name.is_empty())
+}
+
+/// The part of that name, which a recipe's `// parts:` line holds.
+fn part(name: &str) -> &'static lapidary_wgsl::Part {
+    let found = lapidary_wgsl::PARTS.iter().find(|part| part.name == name);
+    found.unwrap_or_else(|| panic!("no part `{name}` in wgsl/recipes/parts"))
 }
 
 /// The whole shader of a recipe that is known to exist.

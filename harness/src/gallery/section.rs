@@ -138,8 +138,9 @@ pub fn recipe(recipe: &Recipe) -> String {
     let requires: Vec<String> =
         recipe.requires.iter().map(|module| format!("<a href=\"#{module}\">{module}</a>")).collect();
     let requires = framed("<p>Requires ", &requires.join(", "), ".</p>\n");
-    let overrides: String = overrides(recipe.source)
-        .into_iter()
+    let overrides: String = recipe
+        .own_text()
+        .flat_map(overrides)
         .map(|(name, comment)| format!("<dt><code>{}</code></dt><dd>{}</dd>\n", escape(name), prose(&comment)))
         .collect();
     let overrides = framed("<dl class=\"overrides\">\n", &overrides, "</dl>\n");

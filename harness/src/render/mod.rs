@@ -1,33 +1,35 @@
-//! A scene to a picture: the gem recipe over tiles, supersampled, then the display recipe.
+//! A scene to a picture: the rung's gem recipe over tiles, supersampled, then the display recipe; or the reference.
 
 mod camera;
+mod deferred;
+mod device;
+mod display;
+mod environment;
 pub mod file;
-mod pipeline;
+mod frame;
+mod gem;
+mod rung;
+mod stone;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
+use crate::reference;
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
-use pipeline::Pipelines;
+use deferred::DeferredPass;
+use display::DisplayPass;
+pub use frame::{Frame, FrameTime};
+use gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
+pub(crate) use gem::constants;
+pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
+pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
 /// Side of a tile in pixels; with its samples it stays within every device's texture limit.
 const TILE: u32 = 512;
-/// Samples along each side of a pixel.
-const SAMPLES: u32 = 4;
-
-/// How much of the light's way is followed: a step of the ladder from cheap to exact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rung {
-    /// Reflection at the surface alone (the paper's Fig. 2).
-    Surface,
-    /// Proxy geometry with one internal hit (the paper's Fig. 1).
-    ProxyOne,
-}
-
-/// Every rung with its name on the command line, from cheap to exact.
-pub const RUNGS: [(&str, Rung); 2] = [("surface", Rung::Surface), ("proxy-1", Rung::ProxyOne)];
+/// Samples along each side of a pixel, where nothing else is asked for.
+pub const SAMPLES: u32 = 4;
 
 /// The light around the scene.
 #[derive(Clone, Debug)]
@@ -45,10 +47,22 @@ pub struct Settings {
     pub width: u32,
     /// In pixels, 1 to [`LARGEST_SIDE`].
     pub height: u32,
+    /// Samples along each side of a pixel, 1 to 4.
+    pub samples: u32,
     /// How much of the light's way is followed.
     pub rung: Rung,
     /// The proxy's centre by the paper's eq. (4) instead of the stable form.
     pub paper_centre: bool,
+    /// Factor of the paper's eq. (12); 1 as printed.
+    pub dispersion_strength: f32,
+    /// Light is absorbed inside where the material says so.
+    pub absorption: bool,
+    /// What a ray still carries at the last hit comes from the environment along it; dropped otherwise.
+    pub rest_from_environment: bool,
+    /// In units of length: a ray ends that has travelled farther inside.
+    pub distance_limit: Option<f32>,
+    /// By a geometry buffer and a lighting pass instead of in one.
+    pub deferred: bool,
     /// The light around the scene.
     pub environment: Environment,
     /// Radiance is multiplied by this before the tone curve.
@@ -61,8 +75,14 @@ impl Settings {
         Self {
             width,
             height,
-            rung: Rung::ProxyOne,
+            samples: SAMPLES,
+            rung: Rung::PAPER,
             paper_centre: false,
+            dispersion_strength: 1.0,
+            absorption: true,
+            rest_from_environment: true,
+            distance_limit: None,
+            deferred: false,
             environment: Environment::Studio,
             exposure: 1.0,
         }
@@ -105,6 +125,12 @@ pub enum RenderError {
         /// What is possible.
         limit: u64,
     },
+    /// An exact rung for convex stones, and a stone that is not.
+    #[error("object `{object}` is not convex, which the convex rungs need; use a bvh rung")]
+    NotConvex {
+        /// Its name.
+        object: String,
+    },
     /// The recipe is not valid WGSL.
     #[error("{0}")]
     Recipe(#[from] crate::dispatch::DispatchError),
@@ -115,42 +141,77 @@ pub enum RenderError {
 
 /// Renders `scene` with the cookbook's recipe.
 pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, RenderError> {
-    let source = cookbook::recipe_source("gem");
+    let source = cookbook::recipe_source(settings.rung.recipe());
     render_with(gpu, scene, settings, &source, &mut |_, _| {})
 }
 
-/// Renders `scene` with another text of the gem recipe, and says after each tile how many of how many are done.
+/// Renders `scene` with another text of the rung's recipe, and says how many of how many steps are done.
 pub fn render_with(
     gpu: &Gpu,
     scene: &Scene,
     settings: &Settings,
     source: &str,
-    progress: &mut dyn FnMut(u64, u64),
+    progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
     let (width, height) = (settings.width, settings.height);
     let largest = LARGEST_SIDE.min(gpu.device.limits().max_texture_dimension_2d);
     if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
         return Err(RenderError::Size { width, height, largest });
     }
-    let pipelines = Pipelines::new(gpu, source, settings)?;
-    let stones = pipelines.upload(scene)?;
     let pixels = width as usize * height as usize;
     let mut picture = Picture { width, height, linear: vec![[0.0; 4]; pixels], encoded: vec![[0; 4]; pixels] };
-    let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
-    let total = u64::from(columns) * u64::from(rows);
-    for row in 0..rows {
-        for column in 0..columns {
-            let tile = Tile {
-                left: column * TILE,
-                top: row * TILE,
-                width: TILE.min(width - column * TILE),
-                height: TILE.min(height - row * TILE),
-            };
-            pipelines.tile(&scene.camera, &scene.bounds(), &stones, settings, tile, &mut picture)?;
-            progress(u64::from(row) * u64::from(columns) + u64::from(column) + 1, total);
-        }
+    if settings.rung == Rung::Reference {
+        picture.linear = reference_radiance(scene, settings, progress)?;
+        encode(gpu, settings, &mut picture)?;
+        return Ok(picture);
+    }
+    let display = DisplayPass::new(gpu, settings.samples)?;
+    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, settings)).transpose()?;
+    let (fragment, formats): (&str, &[_]) = match deferred {
+        Some(_) => ("gem_deferred_fragment", &[deferred::GEOMETRY_FORMAT; 2]),
+        None => ("gem_fragment", &[SAMPLE_FORMAT]),
+    };
+    let gem = GemPass::new(gpu, scene, settings, source, fragment, formats)?;
+    let depth = gpu.guarded("allocating a tile", |device| {
+        let size = [TILE * settings.samples; 2];
+        device::view(&device::target(device, size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
+    })?;
+    let tiles: Vec<Tile> = Tile::all(width, height).collect();
+    for (done, tile) in (1..).zip(&tiles) {
+        let clip_from_world = camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, *tile);
+        let eye = scene.camera.eye;
+        let size = [tile.width * settings.samples, tile.height * settings.samples];
+        let encoder = gpu.guarded("rendering a tile", |device| {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            if let Some(deferred) = &deferred {
+                deferred.draw(&mut encoder, &gem, clip_from_world, eye, display.samples(), size);
+            } else {
+                let target =
+                    GemTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
+                gem.draw(&mut encoder, &gem.view(clip_from_world, eye), &target);
+            }
+            encoder
+        })?;
+        display.finish(encoder, *tile, settings, &mut picture)?;
+        progress(done, tiles.len() as u64);
     }
     Ok(picture)
+}
+
+/// Fills in `encoded` from `linear`, as the display recipe shows it.
+pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
+    let display = DisplayPass::new(gpu, 1)?;
+    for tile in Tile::all(picture.width, picture.height) {
+        display.write(tile, picture);
+        let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        display.finish(encoder, tile, settings, picture)?;
+    }
+    Ok(())
+}
+
+/// Clip space of a whole picture of `scene`. Depth runs from 0 near to 1 far.
+pub(crate) fn clip_from_world(scene: &Scene, width: u32, height: u32) -> glam::Mat4 {
+    camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, Tile::whole([width, height]))
 }
 
 /// A rectangle of the picture in pixels.
@@ -160,4 +221,19 @@ struct Tile {
     top: u32,
     width: u32,
     height: u32,
+}
+
+impl Tile {
+    /// A whole picture.
+    fn whole([width, height]: [u32; 2]) -> Self {
+        Self { left: 0, top: 0, width, height }
+    }
+
+    /// The tiles of a picture, row by row.
+    fn all(width: u32, height: u32) -> impl Iterator<Item = Self> {
+        let lefts = move || (0..width).step_by(TILE as usize);
+        (0..height).step_by(TILE as usize).flat_map(move |top| {
+            lefts().map(move |left| Self { left, top, width: TILE.min(width - left), height: TILE.min(height - top) })
+        })
+    }
 }

@@ -112,7 +112,7 @@ fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     Scene { name: name.to_owned(), objects, camera }
 }
 
-fn direction(polar: f32, azimuth: f32) -> Vec3 {
+pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {
     let (across, along) = polar.to_radians().sin_cos();
     let (x, z) = azimuth.to_radians().sin_cos();
     Vec3::new(across * x, along, across * z)

@@ -59,3 +59,23 @@ impl Material {
         }
     }
 }
+
+impl Material {
+    /// Whether light is absorbed on its way through the body.
+    #[must_use]
+    pub fn absorbs(&self) -> bool {
+        self.attenuation_color != Vec3::ONE && self.attenuation_distance.is_finite()
+    }
+
+    /// The refractive index at a wavelength in nanometres.
+    #[must_use]
+    pub fn index_at(&self, wavelength: f64) -> f64 {
+        match self.dispersion {
+            Dispersion::None => f64::from(self.ior),
+            Dispersion::Abbe(dispersion) => {
+                lapidary_dispersion::oracle::abbe(f64::from(self.ior), f64::from(dispersion), wavelength)
+            }
+            Dispersion::Sellmeier(mineral) => lapidary_dispersion::oracle::sellmeier(mineral.sellmeier(), wavelength),
+        }
+    }
+}

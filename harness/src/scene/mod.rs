@@ -111,6 +111,14 @@ impl Scene {
         Bounds::of(vertices(&self.objects))
     }
 
+    /// The same bodies seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x, framed anew.
+    #[must_use]
+    pub fn seen_from(&self, polar: f32, azimuth: f32) -> Self {
+        let camera =
+            Camera::framing(vertices(&self.objects), built_in::direction(polar, azimuth), self.camera.vertical_fov);
+        Self { camera, ..self.clone() }
+    }
+
     /// The number of triangles of all bodies.
     #[must_use]
     pub fn triangle_count(&self) -> usize {

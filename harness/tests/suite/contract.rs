@@ -36,6 +36,8 @@ fn every_file_is_registered_and_has_its_four_places() {
         |names: &mut dyn Iterator<Item = &'static str>| -> BTreeSet<String> { names.map(str::to_owned).collect() };
     assert_eq!(in_folder("wgsl"), names(&mut modules().iter().map(|module| module.name)));
     assert_eq!(in_folder("wgsl/recipes"), names(&mut recipes().iter().map(|recipe| recipe.name)));
+    let parts: BTreeSet<String> = lapidary_wgsl::PARTS.iter().map(|part| part.name.to_owned()).collect();
+    assert_eq!(in_folder("wgsl/recipes/parts"), parts);
     for module in modules() {
         assert!(root.join("crates").join(module.name).join("src/oracle.rs").is_file(), "{}", module.name);
         assert!(root.join("docs").join(format!("{}.md", module.name)).is_file(), "{}", module.name);
@@ -81,7 +83,8 @@ fn every_recipe_compiles_with_the_modules_that_it_requires() {
         }
         let (ir, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
         assert!(!ir.entry_points.is_empty(), "{}", recipe.name);
-        assert!(dispatch::parse(recipe.source, recipe.name).is_err(), "{} uses no module's function", recipe.name);
+        let own: String = recipe.own_text().collect();
+        assert!(dispatch::parse(&own, recipe.name).is_err(), "{} uses no module's function", recipe.name);
     }
 }
 

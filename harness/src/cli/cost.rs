@@ -1,0 +1,93 @@
+//! `cook cost`.
+
+use super::{Context, Failure, Outcome, output, progress};
+use lapidary_harness::cost::{self, CostError, Options, plot, views};
+use lapidary_harness::render::Rung;
+use lapidary_harness::render::file;
+use std::path::{Path, PathBuf};
+
+/// What accuracy costs: the error and the time of every rung of a ladder.
+///
+/// Takes minutes. Times are the least of interleaved rounds; leave the machine alone meanwhile.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost"
+)]
+pub(super) struct Arguments {
+    /// The ladder: gem.
+    #[arg(default_value = "gem")]
+    technique: String,
+    /// Rungs to measure, comma-separated; all where left out.
+    #[arg(long, value_delimiter = ',', value_parser = parse_rung)]
+    rungs: Vec<Rung>,
+    /// Views to compare in, comma-separated; all where left out.
+    #[arg(long, value_delimiter = ',', value_parser = parse_view)]
+    views: Vec<views::View>,
+    /// Rounds of timing; 0 leaves times out.
+    #[arg(long, default_value_t = Options::default().rounds)]
+    rounds: u32,
+    /// One JSON document on stdout, a row for each rung, measure and view, and nothing else.
+    #[arg(long)]
+    json: bool,
+    /// A folder for gem.txt, gem.json (everything), gem_flip.svg and gem_rmse.svg.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+fn parse_rung(text: &str) -> Result<Rung, String> {
+    match text.parse()? {
+        Rung::Reference => Err("the reference is what the others are compared with".to_owned()),
+        rung => Ok(rung),
+    }
+}
+
+fn parse_view(text: &str) -> Result<views::View, String> {
+    let names: Vec<&str> = views::VIEWS.iter().map(|view| view.name).collect();
+    let found = views::VIEWS.iter().find(|view| view.name == text).copied();
+    found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.technique != "gem" {
+        return Err(CostError::Technique(arguments.technique.clone()).into());
+    }
+    let mut options = Options { rounds: arguments.rounds, ..Options::default() };
+    if !arguments.rungs.is_empty() {
+        options.rungs.clone_from(&arguments.rungs);
+    }
+    if !arguments.views.is_empty() {
+        options.views.clone_from(&arguments.views);
+    }
+    if let Some(out) = &arguments.out {
+        let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
+        std::fs::create_dir_all(out).map_err(failed)?;
+        file::check_writable(&out.join("gem.txt"))?;
+    }
+    let bar = progress::bar(0, "measuring");
+    let report = cost::run(context.gpu()?, &options, &mut |what, done, total| {
+        bar.set_message(what);
+        bar.set_length(total);
+        bar.set_position(done);
+    })?;
+    bar.finish_and_clear();
+    let text = report.text();
+    if let Some(out) = &arguments.out {
+        let write = |name: &str, contents: &str| -> Result<(), Failure> {
+            let path: PathBuf = Path::new(out).join(name);
+            Ok(file::replace(&path, contents.as_bytes())?)
+        };
+        write("gem.txt", &text)?;
+        write("gem.json", &serde_json::to_string_pretty(&report)?)?;
+        if options.rounds > 0 {
+            for measure in ["flip", "rmse"] {
+                write(&format!("gem_{measure}.svg"), &plot::svg(&report, measure)?)?;
+            }
+        }
+    }
+    if arguments.json {
+        output::line(&serde_json::to_string_pretty(&report.rows())?)?;
+    } else {
+        output::line(text.trim_end())?;
+    }
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,56 @@
+//! What the end of a ray costs: what is done with its rest, and where it ends.
+
+use super::views::View;
+use super::{CostError, Errors};
+use crate::gpu::Gpu;
+use crate::render::{self, Picture, Rung, Settings};
+use crate::scene::Scene;
+use serde::Serialize;
+
+/// One way to end a ray, and its errors.
+#[derive(Clone, Debug, Serialize)]
+pub struct Choice {
+    /// The rung.
+    pub rung: String,
+    /// How a ray ends.
+    pub choice: String,
+    /// The view's name.
+    pub view: &'static str,
+    /// Against the reference.
+    pub errors: Errors,
+}
+
+/// Distance limits, in radii of the stone.
+const LIMITS: [f32; 4] = [2.0, 4.0, 8.0, 16.0];
+
+/// The ways on some rungs, in every view.
+pub(super) fn measure(
+    gpu: &Gpu,
+    views: &[View],
+    scenes: &[Scene],
+    references: &[Picture],
+) -> Result<Vec<Choice>, CostError> {
+    let mut found = Vec::new();
+    for name in ["proxy-1+tracker", "convex-8+tracker"] {
+        let Ok(rung) = name.parse::<Rung>() else { continue };
+        for ((view, scene), reference) in views.iter().zip(scenes).zip(references) {
+            let settings = Settings { rung, ..Settings::of_size(super::views::SIDE, super::views::SIDE) };
+            let mut ways = vec![
+                ("rest from the environment".to_owned(), settings.clone()),
+                ("rest dropped".to_owned(), Settings { rest_from_environment: false, ..settings.clone() }),
+            ];
+            if rung.hits() > 1 {
+                let radius = scene.bounds().radius();
+                ways.extend(LIMITS.map(|limit| {
+                    let settings = Settings { distance_limit: Some(limit * radius), ..settings.clone() };
+                    (format!("ended after {limit} radii"), settings)
+                }));
+            }
+            for (choice, settings) in ways {
+                let errors = Errors::between(&render::render(gpu, scene, &settings)?, reference);
+                found.push(Choice { rung: name.to_owned(), choice, view: view.name, errors });
+            }
+        }
+    }
+    Ok(found)
+}

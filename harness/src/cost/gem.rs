@@ -1,0 +1,183 @@
+//! The gem ladder.
+
+use super::timing::{self, Timed};
+use super::views::{self, View};
+use super::{CostError, Errors, Report, RungReport, choices, dispersion};
+use crate::cookbook;
+use crate::dispatch;
+use crate::gpu::Gpu;
+use crate::render::{self, Picture, Rung, Settings, Spectrum};
+use crate::scene::Scene;
+use crate::specialise::specialise;
+use crate::spirv_counts::spirv_counts;
+use serde::Serialize;
+
+/// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too.
+pub const RUNGS: [&str; 35] = [
+    "surface",
+    "proxy-0",
+    "proxy-1",
+    "proxy-1+paper",
+    "proxy-1+tracker",
+    "proxy-1+3",
+    "proxy-1+31",
+    "proxy-2",
+    "proxy-2+tracker",
+    "proxy-2+3",
+    "proxy-4",
+    "proxy-4+paper",
+    "proxy-4+tracker",
+    "proxy-4+3",
+    "proxy-8",
+    "proxy-8+tracker",
+    "proxy-8+31",
+    "convex-1",
+    "convex-2",
+    "convex-2+tracker",
+    "convex-4",
+    "convex-4+paper",
+    "convex-4+tracker",
+    "convex-4+3",
+    "convex-8",
+    "convex-8+paper",
+    "convex-8+tracker",
+    "convex-8+3",
+    "convex-8+31",
+    "bvh-1",
+    "bvh-4+tracker",
+    "bvh-8+tracker",
+    "bvh-8+31",
+    "triangles-1",
+    "triangles-8+tracker",
+];
+
+/// What is measured, and how carefully.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Rounds of timing; none leaves times out.
+    pub rounds: u32,
+    /// Width and height of the timed frame.
+    pub frame: [u32; 2],
+    /// The views to compare in.
+    pub views: Vec<View>,
+    /// Names of rungs.
+    pub rungs: Vec<Rung>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
+        Self { rounds: 7, frame: [1920, 1080], views: views::VIEWS.to_vec(), rungs }
+    }
+}
+
+/// The strength at which the paper's dispersion comes nearest to that of separate wavelengths.
+#[derive(Clone, Debug, Serialize)]
+pub struct Strength {
+    /// The rung.
+    pub rung: String,
+    /// Factor of eq. (12).
+    pub fitted: f32,
+    /// RMS of the difference in radiance from separate wavelengths, as printed.
+    pub literal_rms: f64,
+    /// The same at the fitted strength.
+    pub fitted_rms: f64,
+    /// The same without any dispersion.
+    pub none_rms: f64,
+}
+
+/// A rung with its name in the report and its settings.
+struct Entry {
+    name: String,
+    settings: Settings,
+}
+
+fn entries(options: &Options, strengths: &[Strength]) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for &rung in &options.rungs {
+        let settings = Settings { rung, ..Settings::of_size(views::SIDE, views::SIDE) };
+        entries.push(Entry { name: rung.to_string(), settings: settings.clone() });
+        if let Some(strength) = strengths.iter().find(|strength| strength.rung == rung.to_string()) {
+            let settings = Settings { dispersion_strength: strength.fitted, ..settings };
+            entries.push(Entry { name: format!("{rung}-fitted"), settings });
+        }
+    }
+    entries
+}
+
+/// Measures the ladder. `progress` is told what is done, and how much of it.
+pub fn run(
+    gpu: &Gpu,
+    options: &Options,
+    progress: &mut dyn FnMut(&'static str, u64, u64),
+) -> Result<Report, CostError> {
+    let scenes: Vec<Scene> = options.views.iter().map(View::open).collect::<Result<_, _>>()?;
+    let references: Vec<Picture> =
+        options.views.iter().map(|view| view.reference(gpu)).collect::<Result<_, _>>()?;
+    let papers: Vec<Rung> = options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper).collect();
+    let mut strengths = Vec::new();
+    for (done, &rung) in (1..).zip(&papers) {
+        strengths.push(dispersion::fit(gpu, rung, &scenes)?);
+        progress("fitting the paper's dispersion", done, papers.len() as u64);
+    }
+    let entries = entries(options, &strengths);
+    let total = (entries.len() * scenes.len()) as u64;
+    let mut rungs = Vec::new();
+    for entry in &entries {
+        let mut errors = Vec::new();
+        for (scene, reference) in scenes.iter().zip(&references) {
+            errors.push(Some(Errors::between(&render::render(gpu, scene, &entry.settings)?, reference)));
+            progress("comparing", (rungs.len() * scenes.len() + errors.len()) as u64, total);
+        }
+        rungs.push(count(entry, errors)?);
+    }
+    if options.rounds > 0 {
+        let filled = views::filled(&Scene::named("brilliant")?);
+        let [width, height] = options.frame;
+        let timed: Vec<Timed<'_>> = entries
+            .iter()
+            .map(|entry| Timed {
+                settings: Settings { width, height, samples: 1, ..entry.settings.clone() },
+                scene: &filled,
+            })
+            .collect();
+        let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
+        for (rung, timing) in rungs.iter_mut().zip(timings) {
+            rung.timing = Some(timing);
+        }
+    }
+    progress("comparing colours", 0, 1);
+    let colours = dispersion::colours(gpu, &options.views, &scenes, &strengths)?;
+    let choices = choices::measure(gpu, &options.views, &scenes, &references)?;
+    let mut report = Report {
+        adapter: gpu.describe(),
+        views: options.views.iter().map(|view| view.name).collect(),
+        frame: options.frame,
+        rungs,
+        strengths,
+        colours,
+        choices,
+    };
+    report.mark_dominated();
+    Ok(report)
+}
+
+/// The rung's shaders, specialised to what it uses, counted in SPIR-V.
+fn count(entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostError> {
+    let rung = entry.settings.rung;
+    let scene = Scene::named("brilliant")?;
+    let source = cookbook::recipe_source(rung.recipe());
+    let (ir, _) = dispatch::parse(&source, rung.recipe()).map_err(render::RenderError::from)?;
+    let constants = render::constants(&scene, &entry.settings);
+    let (ir, info) = specialise(ir, &constants, &["gem_vertex", "gem_fragment"])?;
+    let counts = spirv_counts(&ir, &info, "gem_vertex", "gem_fragment")?;
+    Ok(RungReport {
+        rung: entry.name.clone(),
+        errors,
+        timing: None,
+        fragment_instructions: counts.fragment_instructions,
+        vertex_instructions: counts.vertex_instructions,
+        geometry_bytes: render::geometry_bytes(&scene.objects[0], &entry.settings)?,
+        dominated: false,
+    })
+}

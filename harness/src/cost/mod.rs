@@ -1,0 +1,161 @@
+//! What accuracy costs in time: every rung of a technique's ladder against its reference, and timed in one run.
+
+mod choices;
+mod dispersion;
+mod error;
+mod gem;
+pub mod plot;
+mod table;
+mod timing;
+pub mod views;
+
+pub use choices::Choice;
+pub use dispersion::Colours;
+pub use error::{Errors, MEASURES};
+pub use gem::{Options, RUNGS, Strength, run};
+pub use timing::{Timed, Timing};
+
+use crate::specialise::SpecialiseError;
+use serde::Serialize;
+
+/// One rung, one view, one measure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The ladder's name.
+    pub technique: &'static str,
+    /// The rung's name.
+    pub rung: String,
+    /// What was looked at; see [`views::VIEWS`].
+    pub view: &'static str,
+    /// The error, in the unit of its measure.
+    pub error: f64,
+    /// `flip`, `rmse` or `energy`.
+    pub error_measure: &'static str,
+    /// Milliseconds for a frame that the stone fills; none where times were not asked for.
+    pub ms: Option<f64>,
+    /// Another rung is not slower and errs less, in this view and measure.
+    pub dominated: bool,
+    /// The device that was timed, and its driver.
+    pub adapter: String,
+}
+
+/// All of one rung.
+#[derive(Clone, Debug, Serialize)]
+pub struct RungReport {
+    /// The rung's name.
+    pub rung: String,
+    /// Errors by view, in the order of [`Report::views`]; none where the rung cannot draw the view's stone.
+    pub errors: Vec<Option<Errors>>,
+    /// The frame's time.
+    pub timing: Option<Timing>,
+    /// Instructions of the specialised fragment shader in SPIR-V.
+    pub fragment_instructions: usize,
+    /// Of the vertex shader.
+    pub vertex_instructions: usize,
+    /// Bytes of constants and storage that its geometry needs for the timed stone, beside the mesh.
+    pub geometry_bytes: u64,
+    /// Another rung is not slower and errs less by every measure in every view.
+    pub dominated: bool,
+}
+
+/// A ladder, measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The device and its driver.
+    pub adapter: String,
+    /// The views' names.
+    pub views: Vec<&'static str>,
+    /// The size of the timed frame.
+    pub frame: [u32; 2],
+    /// From cheap to exact.
+    pub rungs: Vec<RungReport>,
+    /// The paper's dispersion, literal and fitted.
+    pub strengths: Vec<Strength>,
+    /// How far tracked colours are from those of separate wavelengths.
+    pub colours: Vec<Colours>,
+    /// What is done with the rest of a ray, and where it ends.
+    pub choices: Vec<Choice>,
+}
+
+impl Report {
+    /// A row for each rung, measure and view.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (index, rung) in self.rungs.iter().enumerate() {
+            for (view, name) in self.views.iter().enumerate() {
+                let Some(errors) = rung.errors[view] else { continue };
+                for (measure, error_measure) in MEASURES.into_iter().enumerate() {
+                    let error = errors.of(measure);
+                    let beats = |other: &RungReport| {
+                        let Some(errors) = other.errors[view] else { return false };
+                        no_slower(other, rung) && errors.of(measure) < error
+                    };
+                    rows.push(Row {
+                        technique: "gem",
+                        rung: rung.rung.clone(),
+                        view: name,
+                        error,
+                        error_measure,
+                        ms: rung.timing.map(|timing| timing.ms),
+                        dominated: self.rungs.iter().enumerate().any(|(k, other)| k != index && beats(other)),
+                        adapter: self.adapter.clone(),
+                    });
+                }
+            }
+        }
+        rows
+    }
+
+    /// Marks the rungs that another one beats in time and, by every measure, in every view that both can draw.
+    fn mark_dominated(&mut self) {
+        let beats = |other: &RungReport, rung: &RungReport| {
+            no_slower(other, rung)
+                && rung.errors.iter().zip(&other.errors).all(|pair| match pair {
+                    (None, _) => true,
+                    (Some(_), None) => false,
+                    (Some(errors), Some(others)) => {
+                        (0..MEASURES.len()).all(|measure| others.of(measure) < errors.of(measure))
+                    }
+                })
+        };
+        let marks: Vec<bool> = (0..self.rungs.len())
+            .map(|k| self.rungs.iter().enumerate().any(|(j, other)| j != k && beats(other, &self.rungs[k])))
+            .collect();
+        for (rung, mark) in self.rungs.iter_mut().zip(marks) {
+            rung.dominated = mark;
+        }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        table::text(self)
+    }
+}
+
+/// Whether `other` is timed and takes no more time than `rung`.
+fn no_slower(other: &RungReport, rung: &RungReport) -> bool {
+    matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms <= rung.ms)
+}
+
+/// Why a ladder could not be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum CostError {
+    /// No such ladder.
+    #[error("no ladder `{0}`; there is gem")]
+    Technique(String),
+    /// A picture or a frame could not be rendered.
+    #[error(transparent)]
+    Render(#[from] crate::render::RenderError),
+    /// A view's scene could not be made.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::SceneError),
+    /// A committed reference is missing or damaged.
+    #[error(transparent)]
+    Reference(#[from] crate::snapshot::SnapshotError),
+    /// The recipe could not be specialised for the count of its instructions.
+    #[error("counting instructions: {0}")]
+    Specialise(#[from] SpecialiseError),
+    /// The plot could not be drawn.
+    #[error("drawing the plot: {0}")]
+    Plot(String),
+}

@@ -1,0 +1,172 @@
+//! The ladder as a picture: time against error, both logarithmic.
+
+use super::{CostError, MEASURES, Report, RungReport};
+use crate::render::{Geometry, Rung, Spectrum};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+const SIZE: (u32, u32) = (1200, 760);
+/// Of a series: colour-blind safe (Okabe and Ito 2008).
+const COLORS: [RGBColor; 5] = [
+    RGBColor(0x00, 0x00, 0x00),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+];
+
+struct Point<'a> {
+    name: &'a str,
+    rung: Option<Rung>,
+    ms: f64,
+    error: f64,
+    /// No other point is both faster and better.
+    front: bool,
+}
+
+fn points(report: &Report, measure: usize) -> Vec<Point<'_>> {
+    let mean = |rung: &RungReport| {
+        let errors: Vec<f64> = rung.errors.iter().flatten().map(|errors| errors.of(measure)).collect();
+        errors.iter().sum::<f64>() / errors.len() as f64
+    };
+    let all: Vec<(&RungReport, f64, f64)> =
+        report.rungs.iter().filter_map(|rung| Some((rung, rung.timing?.ms, mean(rung)))).collect();
+    all.iter()
+        .map(|&(rung, ms, error)| Point {
+            name: &rung.rung,
+            rung: rung.rung.trim_end_matches("-fitted").parse().ok(),
+            ms,
+            error,
+            front: !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= error),
+        })
+        .collect()
+}
+
+fn color(rung: Option<Rung>) -> RGBColor {
+    match rung {
+        Some(Rung::Inside { geometry, .. }) => match geometry {
+            Geometry::Proxy => COLORS[1],
+            Geometry::Convex => COLORS[2],
+            Geometry::Bvh => COLORS[3],
+            Geometry::Triangles => COLORS[4],
+        },
+        _ => COLORS[0],
+    }
+}
+
+/// Limits of a logarithmic axis about `values`, with a margin.
+fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(0.0, f64::max);
+    low / margin..high * margin
+}
+
+/// The ladder as SVG, by the measure of that name.
+pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
+    let number = MEASURES.iter().position(|name| *name == measure).unwrap_or(0);
+    let points = points(report, number);
+    if points.is_empty() {
+        return Err(CostError::Plot("no rung was timed".to_owned()));
+    }
+    let mut text = String::new();
+    draw(&mut text, report, MEASURES[number], &points).map_err(|error| CostError::Plot(error.to_string()))?;
+    Ok(text)
+}
+
+fn draw(
+    text: &mut String,
+    report: &Report,
+    measure: &str,
+    points: &[Point<'_>],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    let [width, height] = report.frame;
+    let caption = format!("Gem ladder: error ({measure}) against time, {width}x{height}, {}", report.adapter);
+    let mut chart = ChartBuilder::on(&root)
+        .caption(caption, ("sans-serif", 18))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(
+            span(points.iter().map(|point| point.ms), 1.5).log_scale(),
+            span(points.iter().map(|point| point.error), 1.3).log_scale(),
+        )?;
+    chart
+        .configure_mesh()
+        .x_desc("milliseconds a frame filled by the stone (least of interleaved rounds)")
+        .y_desc(format!("mean {measure} against the spectral reference"))
+        .x_label_formatter(&|ms| if *ms >= 1.0 { format!("{ms:.0}") } else { format!("{ms:.2}") })
+        .y_label_formatter(&|error| format!("{error:.3}"))
+        .light_line_style(RGBColor(0xee, 0xee, 0xee))
+        .label_style(("sans-serif", 13))
+        .draw()?;
+
+    // What to choose from: the rungs that nothing faster betters.
+    let mut front: Vec<&Point<'_>> = points.iter().filter(|point| point.front).collect();
+    front.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+    let mut stairs = Vec::new();
+    for pair in front.windows(2) {
+        stairs.extend([(pair[0].ms, pair[0].error), (pair[1].ms, pair[0].error)]);
+    }
+    stairs.extend(front.last().map(|last| (last.ms, last.error)));
+    chart
+        .draw_series(LineSeries::new(stairs, RGBColor(0x99, 0x99, 0x99).stroke_width(2)))?
+        .label("nothing faster is better")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], RGBColor(0x99, 0x99, 0x99).stroke_width(2)));
+
+    for (name, geometry) in [
+        ("surface alone", None),
+        ("proxy geometry", Some(Geometry::Proxy)),
+        ("convex planes", Some(Geometry::Convex)),
+        ("BVH", Some(Geometry::Bvh)),
+        ("all triangles", Some(Geometry::Triangles)),
+    ] {
+        let of_series = |point: &&Point<'_>| match (point.rung, geometry) {
+            (Some(Rung::Inside { geometry, .. }), Some(wanted)) => geometry == wanted,
+            (Some(Rung::Surface), None) => true,
+            _ => false,
+        };
+        let series: Vec<&Point<'_>> = points.iter().filter(of_series).collect();
+        let Some(first) = series.first() else { continue };
+        let color = color(first.rung);
+        chart
+            .draw_series(series.iter().map(|point| marker(point, color)))?
+            .label(name)
+            .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
+    }
+    // A label beside each point; those that are no choice stand back.
+    chart.draw_series(points.iter().map(|point| {
+        let (size, shade) = if point.front { (13, 0x11) } else { (10, 0x88) };
+        let style = ("sans-serif", size).into_font().color(&RGBColor(shade, shade, shade));
+        let style = style.pos(Pos::new(HPos::Left, VPos::Bottom));
+        EmptyElement::at((point.ms, point.error)) + Text::new(point.name.to_owned(), (7, -3), style)
+    }))?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerLeft)
+        .border_style(RGBColor(0xcc, 0xcc, 0xcc))
+        .background_style(WHITE.mix(0.9))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}
+
+/// A disc where colours are not followed, a ring for the paper's tracker, a triangle for the exact one, a cross for separate wavelengths.
+fn marker<DB: DrawingBackend>(
+    point: &Point<'_>,
+    color: RGBColor,
+) -> plotters::element::DynElement<'static, DB, (f64, f64)>
+where
+    DB: 'static,
+{
+    let at = (point.ms, point.error);
+    let size = if point.front { 7 } else { 4 };
+    match point.rung.map(Rung::spectrum) {
+        Some(Spectrum::Paper) => Circle::new(at, size, color.stroke_width(2)).into_dyn(),
+        Some(Spectrum::Tracker) => TriangleMarker::new(at, size + 1, color.filled()).into_dyn(),
+        Some(Spectrum::Separate(_)) => Cross::new(at, size, color.stroke_width(2)).into_dyn(),
+        _ => Circle::new(at, size, color.filled()).into_dyn(),
+    }
+}

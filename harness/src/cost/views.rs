@@ -1,0 +1,88 @@
+//! What the gem ladder is looked at with: several cuts, from several angles, each with its committed reference.
+
+use crate::render::{Picture, Rung, Settings};
+use crate::scene::{Camera, Scene, SceneError};
+use crate::snapshot::{self, SnapshotError};
+use std::path::PathBuf;
+
+/// Side of a reference picture.
+pub const SIDE: u32 = 256;
+
+/// A scene and where it is seen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Its name, and that of its reference's file.
+    pub name: &'static str,
+    /// The built-in scene.
+    pub scene: &'static str,
+    /// Degrees off the vertical, and from +z towards +x; the scene's own camera where there are none.
+    pub from: Option<(f32, f32)>,
+}
+
+const fn own(scene: &'static str) -> View {
+    View { name: scene, scene, from: None }
+}
+
+/// The views that every rung is compared in. Face-up and tilted bracket how a brilliant is worn; the step cut has long
+/// parallel facets, the octahedron few, quartz a low index, and the sapphire a colour of its own.
+pub const VIEWS: [View; 7] = [
+    View { name: "brilliant_face_up", scene: "brilliant", from: Some((0.0, 0.0)) },
+    own("brilliant"),
+    View { name: "brilliant_tilted", scene: "brilliant", from: Some((45.0, 11.0)) },
+    own("step_cut"),
+    own("octahedron"),
+    own("quartz"),
+    own("sapphire"),
+];
+
+/// Views with a reference that the ladder leaves out: their stones are concave or many, or show nothing that those above do not.
+pub const SHOWN: [View; 5] = [own("prism"), own("ruby"), own("bunny_stone"), own("prism_chain"), own("chandelier")];
+
+impl View {
+    /// The view of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        VIEWS.into_iter().chain(SHOWN).find(|view| view.name == name)
+    }
+
+    /// The scene with this view's camera.
+    pub fn open(&self) -> Result<Scene, SceneError> {
+        let scene = Scene::named(self.scene)?;
+        Ok(match self.from {
+            None => scene,
+            Some((polar, azimuth)) => scene.seen_from(polar, azimuth),
+        })
+    }
+
+    /// Where its reference is kept.
+    pub fn reference_file(&self) -> PathBuf {
+        snapshot::folder().join("reference").join(format!("{}.exr", self.name))
+    }
+
+    /// The command that remakes its reference.
+    pub fn command(&self) -> String {
+        let file = format!("snapshots/gem/reference/{}.exr", self.name);
+        let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
+        format!("./cook render {}{from} --rung reference --size {SIDE}x{SIDE} --out {file}", self.scene)
+    }
+
+    /// Its committed reference, linear and as it is seen.
+    pub fn reference(&self, gpu: &crate::gpu::Gpu) -> Result<Picture, SnapshotError> {
+        let image = snapshot::read(&self.reference_file(), (SIDE, SIDE))?.into_rgba32f();
+        let linear: Vec<[f32; 4]> = image.pixels().map(|pixel| pixel.0).collect();
+        let mut picture = Picture { width: SIDE, height: SIDE, encoded: vec![[0; 4]; linear.len()], linear };
+        let settings = Settings { rung: Rung::Reference, ..Settings::of_size(SIDE, SIDE) };
+        crate::render::encode(gpu, &settings, &mut picture)?;
+        Ok(picture)
+    }
+}
+
+/// How a frame is timed: so near that the stone fills it.
+pub fn filled(scene: &Scene) -> Scene {
+    // The largest 16:9 rectangle within the girdle, seen at a slant, with a margin: half its diagonal is 0.7 of the radius.
+    let bounds = scene.bounds();
+    let camera = scene.camera;
+    let distance = camera.eye.distance(bounds.centre());
+    let half_height = 0.7 * 0.5 * (bounds.max.x - bounds.min.x) * 9.0 / (16f32.hypot(9.0));
+    let camera = Camera { target: bounds.centre(), vertical_fov: 2.0 * (half_height / distance).atan(), ..camera };
+    Scene { camera, ..scene.clone() }
+}

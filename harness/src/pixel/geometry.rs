@@ -1,0 +1,195 @@
+//! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the mirrors.
+
+use super::SurfacePoint;
+use crate::render::{Geometry, RenderError, Settings};
+use crate::scene::bvh::Bvh;
+use crate::scene::convex::Convex;
+use crate::scene::{Mesh, Object};
+use glam::Vec3;
+use lapidary_bvh_trace as bvh_trace;
+use lapidary_closest_point as closest_point;
+use lapidary_convex_trace as convex_trace;
+use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
+
+/// An object with what its rung's geometry needs.
+pub struct Stone<'a> {
+    mesh: &'a Mesh,
+    paper_centre: bool,
+    data: Data,
+}
+
+enum Data {
+    Proxy,
+    Convex(Convex),
+    Triangles(Bvh),
+    Bvh(Bvh),
+}
+
+/// A triangle as the vertex shader hands it on, and where a ray enters it.
+pub(super) struct Entry<'a> {
+    pub(super) position: Vec3,
+    pub(super) face_normal: Vec3,
+    start: Place<'a>,
+}
+
+/// A ray inside: what decides its next facet.
+#[derive(Clone)]
+pub(super) enum Place<'a> {
+    Proxy { plane: ProxyGeometryPlane, centre: Vec3, normal: Vec3 },
+    Convex { convex: &'a Convex, face: u32 },
+    Triangles { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
+    Bvh { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
+}
+
+/// The next facet that a ray meets.
+pub(super) struct Hit {
+    pub(super) point: Vec3,
+    pub(super) normal: Vec3,
+    pub(super) distance: f32,
+    /// A number of it; `None` on a miss.
+    pub(super) facet: Option<u64>,
+}
+
+impl Hit {
+    fn none(position: Vec3, direction: Vec3) -> Self {
+        Self { point: position, normal: -direction, distance: 0.0, facet: None }
+    }
+}
+
+impl<'a> Stone<'a> {
+    /// `object` for the geometry of the settings' rung.
+    pub fn new(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
+        let mesh = &object.mesh;
+        let not_convex = || RenderError::NotConvex { object: object.name.clone() };
+        let data = match settings.rung.geometry() {
+            Geometry::Proxy => Data::Proxy,
+            Geometry::Convex => Data::Convex(Convex::of(mesh).ok_or_else(not_convex)?),
+            Geometry::Triangles => Data::Triangles(Bvh::build(mesh)),
+            Geometry::Bvh => Data::Bvh(Bvh::build(mesh)),
+        };
+        Ok(Self { mesh, paper_centre: settings.paper_centre, data })
+    }
+
+    pub(super) fn entry(&self, point: SurfacePoint) -> Entry<'_> {
+        let SurfacePoint { position, triangle } = point;
+        let mesh = self.mesh;
+        let corners = &mesh.indices[3 * triangle as usize..][..3];
+        let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[corners[k] as usize]);
+        let face_normal = proxy_geometry::face_normal(a, b, c);
+        match &self.data {
+            Data::Proxy => {
+                let [na, nb, nc] = [0, 1, 2].map(|k| mesh.normals[corners[k] as usize]);
+                let mut centre = if self.paper_centre {
+                    closest_point::centre_paper(a, na, b, nb, c, nc)
+                } else {
+                    closest_point::centre(a, na, b, nb, c, nc)
+                };
+                if face_normal.dot(a - centre) <= 0.0 {
+                    centre = closest_point::fallback(a, b, c);
+                }
+                let plane = proxy_geometry::plane(centre, a, b, c);
+                Entry { position, face_normal, start: Place::Proxy { plane, centre, normal: face_normal } }
+            }
+            Data::Convex(convex) => {
+                let face = convex.face_of_triangle[triangle as usize];
+                let face_normal = convex.planes[face as usize].truncate();
+                Entry { position, face_normal, start: Place::Convex { convex, face } }
+            }
+            Data::Triangles(bvh) => {
+                let triangle = bvh.leaf_of_triangle(triangle);
+                Entry { position, face_normal, start: Place::Triangles { mesh, bvh, triangle } }
+            }
+            Data::Bvh(bvh) => {
+                let triangle = bvh.leaf_of_triangle(triangle);
+                Entry { position, face_normal, start: Place::Bvh { mesh, bvh, triangle } }
+            }
+        }
+    }
+}
+
+impl<'a> Entry<'a> {
+    pub(super) fn enter(&self) -> Place<'a> {
+        self.start.clone()
+    }
+}
+
+impl Place<'_> {
+    /// `gem_hit` of the recipes.
+    pub(super) fn hit(&mut self, position: Vec3, direction: Vec3) -> Hit {
+        match self {
+            Self::Proxy { plane, centre, normal } => {
+                let hit = proxy_geometry::intersect(position, direction, plane.origin, *normal);
+                if !hit.hit {
+                    return Hit::none(position, direction);
+                }
+                let coordinates =
+                    proxy_geometry::coordinates(hit.point, plane.origin, plane.edge_first, plane.edge_second);
+                let cell = proxy_geometry::cell(coordinates);
+                let facet = proxy_geometry::facet(*plane, cell);
+                let normal = proxy_geometry::facet_normal(
+                    *centre,
+                    facet.vertex_first,
+                    facet.vertex_second,
+                    facet.vertex_third,
+                    direction,
+                );
+                *plane = proxy_geometry::next_plane(*centre, facet);
+                // Steps are far below 2^31 wherever a stone is sane; the sign is kept by the offset.
+                let [x, y] = cell.steps.to_array().map(|step| u64::from(step.cast_unsigned()));
+                let facet = x << 33 | (y & 0xffff_ffff) << 1 | u64::from(cell.turned);
+                Hit { point: hit.point, normal, distance: hit.distance, facet: Some(facet) }
+            }
+            Self::Convex { convex, face } => {
+                let nearest = convex_trace::trace(&convex.planes, position, direction, *face);
+                let Some(&plane) = convex.planes.get(nearest.face as usize) else {
+                    return Hit::none(position, direction);
+                };
+                *face = nearest.face;
+                let distance = convex_trace::distance(nearest);
+                Hit {
+                    point: convex_trace::point(position, direction, distance, plane),
+                    normal: -plane.truncate(),
+                    distance,
+                    facet: Some(u64::from(nearest.face)),
+                }
+            }
+            Self::Triangles { mesh, bvh, triangle } => {
+                let [lower, upper] = [bvh.nodes[0].lower, bvh.nodes[0].upper];
+                let ray = bvh_trace::ray(position, direction, lower, upper);
+                let mut nearest = bvh_trace::start(FAR);
+                for (number, corners) in (0..).zip(bvh.indices.chunks_exact(3)) {
+                    let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[corners[k] as usize]);
+                    nearest = bvh_trace::triangle(nearest, ray, a, b, c, number, *triangle);
+                }
+                triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
+            }
+            Self::Bvh { mesh, bvh, triangle } => {
+                let nearest =
+                    bvh_trace::trace(&bvh.nodes, &mesh.positions, &bvh.indices, position, direction, *triangle);
+                triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
+            }
+        }
+    }
+}
+
+/// The end of `gem_hit` of both recipes that meet triangles.
+fn triangle_hit(
+    mesh: &Mesh,
+    indices: &[u32],
+    nearest: bvh_trace::BvhTraceHit,
+    left: &mut u32,
+    position: Vec3,
+    direction: Vec3,
+) -> Hit {
+    let Some(corners) = indices.get(3 * nearest.triangle as usize..).and_then(|rest| rest.get(..3)) else {
+        return Hit::none(position, direction);
+    };
+    *left = nearest.triangle;
+    let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[corners[k] as usize]);
+    Hit {
+        point: position + nearest.distance * direction,
+        normal: -proxy_geometry::face_normal(a, b, c),
+        distance: nearest.distance,
+        facet: Some(u64::from(nearest.triangle)),
+    }
+}

@@ -1,0 +1,284 @@
+//! The gem recipes' whole path of one pixel in Rust, from the mirrors: `wgsl/recipes/parts/gem_shading.wgsl` line by line.
+//!
+//! A picture of the GPU is compared with it pixel by pixel ([`parity`]); which facets a ray met is returned besides, for a
+//! difference is allowed only where rays part at a facet's edge.
+
+mod geometry;
+pub mod parity;
+mod surface;
+
+pub use geometry::Stone;
+pub use surface::{SurfacePoint, Viewer};
+
+use crate::render::{Environment, Rung, Settings, Spectrum};
+use crate::scene::Material;
+use geometry::{Entry, Place};
+use glam::{Mat3, UVec2, Vec3};
+use lapidary_absorption as absorption;
+use lapidary_dispersion as dispersion;
+use lapidary_environment as environment;
+use lapidary_fresnel as fresnel;
+use lapidary_refraction as refraction;
+
+/// What happened to a ray at one facet, as far as it is discrete: which facet, and which channels left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// A number of the facet; `None` where the ray met none.
+    pub facet: Option<u64>,
+    /// A bit for each channel that is totally reflected.
+    pub total: u8,
+}
+
+/// A pixel's radiance and what its rays met, wavelength by wavelength.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pixel {
+    /// Linear radiance.
+    pub radiance: Vec3,
+    /// One list for each ray: one ray, or one for each separate wavelength.
+    pub rays: Vec<Vec<Event>>,
+}
+
+/// The recipe's uniforms and overrides.
+pub struct Shading<'a> {
+    material: GemMaterial,
+    wavelengths: Vec<(Mat3, f32)>,
+    settings: &'a Settings,
+    absorbs: bool,
+}
+
+/// `GemMaterial` of the recipe.
+struct GemMaterial {
+    base_color: Vec3,
+    index: f32,
+    absorption: Vec3,
+    distance_limit: f32,
+    channel_indices: Vec3,
+    dispersion_strength: f32,
+}
+
+/// A pixel in the making.
+struct Trace {
+    events: Vec<Event>,
+    travelled: f32,
+    throughput: Vec3,
+    radiance: Vec3,
+}
+
+impl Trace {
+    fn new() -> Self {
+        Self { events: Vec::new(), travelled: 0.0, throughput: Vec3::ONE, radiance: Vec3::ZERO }
+    }
+}
+
+/// Where a ray goes that leaves through a facet, and what share of it does.
+struct Exit {
+    direction: Vec3,
+    share: f32,
+}
+
+fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
+    let leaving = refraction::refract(inside, normal, 1.0 / index);
+    if leaving.total {
+        return Exit { direction: inside, share: 0.0 };
+    }
+    Exit { direction: leaving.direction, share: 1.0 - fresnel::dielectric(-normal.dot(inside), 1.0 / index) }
+}
+
+impl<'a> Shading<'a> {
+    /// The shading of `material` under `settings`.
+    pub fn new(material: &Material, settings: &'a Settings) -> Self {
+        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength] =
+            crate::render::material_uniform(material, settings);
+        let wavelengths = crate::render::wavelength_table(material, settings.rung.spectrum());
+        let matrix = |w: &[f32; 16]| {
+            let column = |k: usize| Vec3::new(w[k], w[k + 1], w[k + 2]);
+            (Mat3::from_cols(column(0), column(4), column(8)), w[12])
+        };
+        Self {
+            material: GemMaterial {
+                base_color: Vec3::new(r, g, b),
+                index,
+                absorption: Vec3::new(ar, ag, ab),
+                distance_limit,
+                channel_indices: Vec3::new(red, green, blue),
+                dispersion_strength,
+            },
+            wavelengths: wavelengths.iter().map(matrix).collect(),
+            settings,
+            absorbs: settings.absorption && material.absorbs(),
+        }
+    }
+
+    /// Radiance that arrives from a direction.
+    pub fn environment(&self, direction: Vec3) -> Vec3 {
+        let Environment::Map(map) = &self.settings.environment else {
+            return environment::studio(direction);
+        };
+        let texels =
+            environment::texels(environment::uv_from_direction(direction), UVec2::new(map.width, map.height));
+        let load = |x: u32, y: u32| {
+            let [r, g, b, _] = map.pixels[(y * map.width + x) as usize];
+            Vec3::new(r, g, b)
+        };
+        let mix = |a: Vec3, b: Vec3, t: f32| a * (1.0 - t) + b * t;
+        let lower = mix(load(texels.lower.x, texels.lower.y), load(texels.upper.x, texels.lower.y), texels.weight.x);
+        let upper = mix(load(texels.lower.x, texels.upper.y), load(texels.upper.x, texels.upper.y), texels.weight.x);
+        mix(lower, upper, texels.weight.y)
+    }
+
+    fn environment_channels(&self, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
+        Vec3::new(self.environment(red).x, self.environment(green).y, self.environment(blue).z)
+    }
+
+    fn transmittance(&self, distance: f32) -> Vec3 {
+        if self.absorbs { absorption::transmittance(self.material.absorption, distance) } else { Vec3::ONE }
+    }
+
+    fn ends(&self, travelled: f32) -> bool {
+        self.settings.distance_limit.is_some() && travelled > self.material.distance_limit
+    }
+
+    /// Follows a ray to its next facet and absorbs; `None` where its following ends.
+    fn next(&self, trace: &mut Trace, place: &mut Place<'_>, position: Vec3, inside: Vec3) -> Option<geometry::Hit> {
+        let hit = place.hit(position, inside);
+        trace.travelled += hit.distance;
+        if hit.facet.is_none() || self.ends(trace.travelled) {
+            trace.events.push(Event { facet: None, total: 0 });
+            return None;
+        }
+        trace.throughput *= self.transmittance(hit.distance);
+        Some(hit)
+    }
+
+    fn trace(&self, entry: &Entry<'_>, direction: Vec3, index: f32) -> Trace {
+        let mut trace = Trace::new();
+        let mut place = entry.enter();
+        let mut position = entry.position;
+        let mut inside = refraction::refract(direction, entry.face_normal, index).direction;
+        for _ in 0..self.settings.rung.hits() {
+            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
+            let exit = exit(inside, hit.normal, index);
+            trace.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            if exit.share > 0.0 {
+                trace.radiance += exit.share * trace.throughput * self.environment(exit.direction);
+                trace.throughput *= 1.0 - exit.share;
+            }
+            position = hit.point;
+            inside = refraction::reflect(inside, hit.normal);
+        }
+        if self.settings.rest_from_environment {
+            trace.radiance += trace.throughput * self.environment(inside);
+        }
+        trace
+    }
+
+    fn trace_tracked(&self, entry: &Entry<'_>, direction: Vec3) -> Trace {
+        let indices = self.material.channel_indices;
+        let offsets = indices - self.material.index;
+        let mut trace = Trace::new();
+        let mut place = entry.enter();
+        let mut position = entry.position;
+        let mut inside = refraction::refract(direction, entry.face_normal, self.material.index).direction;
+        let mut gradient = dispersion::enter(direction, entry.face_normal, self.material.index);
+        for _ in 0..self.settings.rung.hits() {
+            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
+            let red = exit(dispersion::direction(inside, gradient, offsets.x), hit.normal, indices.x);
+            let green = exit(dispersion::direction(inside, gradient, offsets.y), hit.normal, indices.y);
+            let blue = exit(dispersion::direction(inside, gradient, offsets.z), hit.normal, indices.z);
+            let share = Vec3::new(red.share, green.share, blue.share);
+            trace.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8 });
+            if share.cmpgt(Vec3::ZERO).any() {
+                let outside = self.environment_channels(red.direction, green.direction, blue.direction);
+                trace.radiance += share * trace.throughput * outside;
+                trace.throughput *= 1.0 - share;
+            }
+            position = hit.point;
+            inside = refraction::reflect(inside, hit.normal);
+            gradient = dispersion::reflect(gradient, hit.normal);
+        }
+        if self.settings.rest_from_environment {
+            let rest = self.environment_channels(
+                dispersion::direction(inside, gradient, offsets.x),
+                dispersion::direction(inside, gradient, offsets.y),
+                dispersion::direction(inside, gradient, offsets.z),
+            );
+            trace.radiance += trace.throughput * rest;
+        }
+        trace
+    }
+
+    fn environment_paper(&self, red: Vec3, spread: Vec3, travelled: f32) -> Vec3 {
+        let green_ratio = dispersion::DISPERSION_RED / dispersion::DISPERSION_GREEN;
+        let blue_ratio = dispersion::DISPERSION_RED / dispersion::DISPERSION_BLUE;
+        let strength = self.material.dispersion_strength;
+        self.environment_channels(
+            red,
+            dispersion::paper_direction(red, spread, travelled, green_ratio, strength),
+            dispersion::paper_direction(red, spread, travelled, blue_ratio, strength),
+        )
+    }
+
+    fn trace_paper(&self, entry: &Entry<'_>, direction: Vec3) -> Trace {
+        let index = self.material.channel_indices.x;
+        let epsilon = dispersion::DISPERSION_PAPER_EPSILON;
+        let mut trace = Trace::new();
+        let mut place = entry.enter();
+        let mut position = entry.position;
+        let mut inside = refraction::refract(direction, entry.face_normal, index).direction;
+        let mut spread = dispersion::paper_enter(direction, inside);
+        for _ in 0..self.settings.rung.hits() {
+            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
+            let exit = exit(inside, hit.normal, index);
+            trace.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            if exit.share > 0.0 {
+                let leaving_spread = dispersion::paper_refract(inside, spread, hit.normal, 1.0 / index, epsilon);
+                let outside = self.environment_paper(exit.direction, leaving_spread, trace.travelled);
+                trace.radiance += exit.share * trace.throughput * outside;
+                trace.throughput *= 1.0 - exit.share;
+            }
+            spread = dispersion::paper_reflect(inside, spread, hit.normal, epsilon);
+            position = hit.point;
+            inside = refraction::reflect(inside, hit.normal);
+        }
+        if self.settings.rest_from_environment {
+            trace.radiance += trace.throughput * self.environment_paper(inside, spread, trace.travelled);
+        }
+        trace
+    }
+
+    /// The radiance of a pixel whose middle shows `point` of `stone` to an eye at `eye`.
+    pub fn pixel(&self, stone: &Stone<'_>, point: SurfacePoint, eye: Vec3) -> Pixel {
+        let entry = stone.entry(point);
+        let transmits = self.settings.rung != Rung::Surface;
+        let direction = (entry.position - eye).normalize();
+        let cosine = (-entry.face_normal.dot(direction)).clamp(0.0, 1.0);
+        let reflected = self.environment(refraction::reflect(direction, entry.face_normal));
+        let mut rays = Vec::new();
+        if let Spectrum::Separate(_) = self.settings.rung.spectrum() {
+            let (mut surface, mut inside) = (Vec3::ZERO, Vec3::ZERO);
+            for &(weights, index) in &self.wavelengths {
+                let reflectance = fresnel::dielectric(cosine, index);
+                surface += weights * (reflectance * reflected);
+                if transmits {
+                    let trace = self.trace(&entry, direction, index);
+                    inside += weights * ((1.0 - reflectance) * trace.radiance);
+                    rays.push(trace.events);
+                }
+            }
+            return Pixel { radiance: surface + inside * self.material.base_color, rays };
+        }
+        let reflectance = fresnel::dielectric(cosine, self.material.index);
+        let mut inside = Vec3::ZERO;
+        if transmits {
+            let trace = match self.settings.rung.spectrum() {
+                Spectrum::Paper => self.trace_paper(&entry, direction),
+                Spectrum::Tracker => self.trace_tracked(&entry, direction),
+                Spectrum::One | Spectrum::Separate(_) => self.trace(&entry, direction, self.material.index),
+            };
+            inside = trace.radiance;
+            rays.push(trace.events);
+        }
+        let radiance = reflectance * reflected + (1.0 - reflectance) * self.material.base_color * inside;
+        Pixel { radiance, rays }
+    }
+}

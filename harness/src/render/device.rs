@@ -1,0 +1,140 @@
+//! Pipelines and buffers, made in one way for every pass.
+
+use super::RenderError;
+use crate::dispatch::{self, DispatchError};
+use crate::gpu::Gpu;
+use std::borrow::Cow;
+use wgpu::util::DeviceExt as _;
+
+/// What a pass is compiled from.
+pub(super) struct PipelineSource<'a> {
+    /// The recipe's name, for messages.
+    pub(super) recipe: &'a str,
+    /// Its composed text.
+    pub(super) source: &'a str,
+    /// Its vertex and fragment entry points.
+    pub(super) entries: [&'a str; 2],
+    /// Values of its overrides. One that the text does not declare is left out: a user's recipe need not have all.
+    pub(super) constants: &'a [(&'a str, f64)],
+    /// Formats of its colour targets.
+    pub(super) formats: &'a [wgpu::TextureFormat],
+    /// The depth buffer's format, for solids; their backs are culled.
+    pub(super) depth: Option<wgpu::TextureFormat>,
+}
+
+/// Compiles a pass.
+pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::RenderPipeline, RenderError> {
+    let name = from.recipe;
+    let (module, _) = dispatch::parse(from.source, &format!("recipe {name}"))?;
+    let declared = |key: &str| module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
+    let constants: Vec<(&str, f64)> = from.constants.iter().copied().filter(|(key, _)| declared(key)).collect();
+    for entry in from.entries {
+        if !module.entry_points.iter().any(|point| point.name == entry) {
+            return Err(DispatchError::Source(format!("recipe {name}: no entry point `{entry}`")).into());
+        }
+    }
+    let [vertex, fragment] = from.entries;
+    let pipeline = gpu.guarded(&format!("compiling recipe `{name}`"), |device| {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+        });
+        let targets: Vec<Option<wgpu::ColorTargetState>> =
+            from.formats.iter().map(|format| Some((*format).into())).collect();
+        let compilation_options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                compilation_options: compilation_options(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState {
+                // A closed stone shows its front; a full-screen triangle has no back to speak of.
+                cull_mode: from.depth.map(|_| wgpu::Face::Back),
+                ..wgpu::PrimitiveState::default()
+            },
+            depth_stencil: from.depth.map(|format| wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Less),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: compilation_options(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    })?;
+    Ok(pipeline)
+}
+
+/// A buffer with contents.
+pub(super) fn buffer(device: &wgpu::Device, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+}
+
+/// A uniform buffer; uniform structs are padded to 16 bytes.
+pub(super) fn uniform(device: &wgpu::Device, values: &[f32]) -> wgpu::Buffer {
+    let mut contents = values.to_vec();
+    contents.resize(values.len().next_multiple_of(4), 0.0);
+    buffer(device, bytemuck::cast_slice(&contents), wgpu::BufferUsages::UNIFORM)
+}
+
+/// A bind group of `pipeline` whose bindings are numbered from 0.
+pub(super) fn bind_group(
+    device: &wgpu::Device,
+    pipeline: &wgpu::RenderPipeline,
+    group: u32,
+    resources: Vec<wgpu::BindingResource<'_>>,
+) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry<'_>> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(group),
+        entries: &entries,
+    })
+}
+
+/// A texture that can be drawn to, `size` being width and height.
+pub(super) fn target(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+        view_formats: &[],
+    })
+}
+
+/// The whole of a texture.
+pub(super) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A colour attachment that starts empty.
+pub(super) fn cleared(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+    })
+}

@@ -1,0 +1,169 @@
+//! The display recipe's pass, and reading a tile back.
+
+use super::device::{self, PipelineSource};
+use super::gem::SAMPLE_FORMAT;
+use super::{Picture, RenderError, Settings, TILE, Tile};
+use crate::cookbook;
+use crate::gpu::Gpu;
+
+const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Averages samples, encodes them, and brings both pictures back.
+pub(super) struct DisplayPass<'gpu> {
+    gpu: &'gpu Gpu,
+    pipeline: wgpu::RenderPipeline,
+    /// Samples of one tile.
+    samples: wgpu::Texture,
+    samples_view: wgpu::TextureView,
+    linear: wgpu::Texture,
+    encoded: wgpu::Texture,
+}
+
+impl<'gpu> DisplayPass<'gpu> {
+    /// With `samples` samples along each side of a pixel.
+    pub(super) fn new(gpu: &'gpu Gpu, samples: u32) -> Result<Self, RenderError> {
+        let pipeline = device::pipeline(
+            gpu,
+            &PipelineSource {
+                recipe: "display",
+                source: &cookbook::recipe_source("display"),
+                entries: ["display_vertex", "display_fragment"],
+                constants: &[("SAMPLES", f64::from(samples))],
+                formats: &[SAMPLE_FORMAT, ENCODED_FORMAT],
+                depth: None,
+            },
+        )?;
+        use wgpu::TextureUsages as Usage;
+        let [samples, linear, encoded] = gpu.guarded("allocating a tile", |device| {
+            [
+                (TILE * samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
+                (TILE, SAMPLE_FORMAT, Usage::COPY_SRC),
+                (TILE, ENCODED_FORMAT, Usage::COPY_SRC),
+            ]
+            .map(|(side, format, usage)| device::target(device, [side; 2], format, usage))
+        })?;
+        let samples_view = device::view(&samples);
+        Ok(Self { gpu, pipeline, samples, samples_view, linear, encoded })
+    }
+
+    /// What the gem pass draws to.
+    pub(super) fn samples(&self) -> &wgpu::TextureView {
+        &self.samples_view
+    }
+
+    /// Fills the samples with a tile of a picture that was made elsewhere, one sample a pixel.
+    pub(super) fn write(&self, tile: Tile, picture: &Picture) {
+        for row in 0..tile.height {
+            let start = ((tile.top + row) * picture.width + tile.left) as usize;
+            self.gpu.queue.write_texture(
+                wgpu::TexelCopyTextureInfo {
+                    texture: &self.samples,
+                    mip_level: 0,
+                    origin: wgpu::Origin3d { x: 0, y: row, z: 0 },
+                    aspect: wgpu::TextureAspect::All,
+                },
+                bytemuck::cast_slice(&picture.linear[start..start + tile.width as usize]),
+                wgpu::TexelCopyBufferLayout::default(),
+                wgpu::Extent3d { width: tile.width, height: 1, depth_or_array_layers: 1 },
+            );
+        }
+    }
+
+    /// Ends a tile: from the samples to the picture.
+    pub(super) fn finish(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        tile: Tile,
+        settings: &Settings,
+        picture: &mut Picture,
+    ) -> Result<(), RenderError> {
+        let frame =
+            [tile.left as f32, tile.top as f32, settings.width as f32, settings.height as f32, settings.exposure];
+        let [linear, encoded] = self.gpu.guarded("displaying a tile", |device| {
+            let uniform = device::uniform(device, &frame);
+            let resources =
+                vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.samples_view)];
+            let group = device::bind_group(device, &self.pipeline, 0, resources);
+            self.draw(&mut encoder, tile, &group);
+            let linear = self.copy_out(&mut encoder, &self.linear, 16, tile);
+            let encoded = self.copy_out(&mut encoder, &self.encoded, 4, tile);
+            self.gpu.queue.submit([encoder.finish()]);
+            [linear, encoded]
+        })?;
+        let width = picture.width as usize;
+        linear.read(self.gpu, tile, |row, bytes| {
+            let start = (tile.top as usize + row) * width + tile.left as usize;
+            for (pixel, bytes) in picture.linear[start..].iter_mut().zip(bytes.chunks_exact(16)) {
+                *pixel = bytemuck::pod_read_unaligned(bytes);
+            }
+        })?;
+        encoded.read(self.gpu, tile, |row, bytes| {
+            let start = (tile.top as usize + row) * width + tile.left as usize;
+            for (pixel, bytes) in picture.encoded[start..].iter_mut().zip(bytes.chunks_exact(4)) {
+                *pixel = bytemuck::pod_read_unaligned(bytes);
+            }
+        })
+    }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tile: Tile, group: &wgpu::BindGroup) {
+        let (linear, encoded) = (device::view(&self.linear), device::view(&self.encoded));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("display"),
+            color_attachments: &[device::cleared(&linear), device::cleared(&encoded)],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_viewport(0.0, 0.0, tile.width as f32, tile.height as f32, 0.0, 1.0);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// Copies the tile's part of `texture` to a new buffer that can be mapped.
+    fn copy_out(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        texture: &wgpu::Texture,
+        pixel_bytes: u32,
+        tile: Tile,
+    ) -> Readback {
+        let row_bytes = (tile.width * pixel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("tile"),
+            size: u64::from(row_bytes) * u64::from(tile.height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row_bytes),
+                    rows_per_image: Some(tile.height),
+                },
+            },
+            wgpu::Extent3d { width: tile.width, height: tile.height, depth_or_array_layers: 1 },
+        );
+        Readback { buffer, row_bytes: row_bytes as usize, used_bytes: (tile.width * pixel_bytes) as usize }
+    }
+}
+
+/// A tile's rows on their way back.
+struct Readback {
+    buffer: wgpu::Buffer,
+    row_bytes: usize,
+    used_bytes: usize,
+}
+
+impl Readback {
+    fn read(&self, gpu: &Gpu, tile: Tile, mut row: impl FnMut(usize, &[u8])) -> Result<(), RenderError> {
+        let size = self.row_bytes as u64 * u64::from(tile.height);
+        gpu.read_back(&self.buffer, size, |bytes| {
+            for (index, bytes) in bytes.chunks_exact(self.row_bytes).enumerate() {
+                row(index, &bytes[..self.used_bytes]);
+            }
+        })?;
+        Ok(())
+    }
+}

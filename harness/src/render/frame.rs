@@ -1,0 +1,63 @@
+//! One frame of the gem recipe alone, to be timed: drawn again and again, nothing brought back.
+
+use super::gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
+use super::{RenderError, Settings, camera, device};
+use crate::cookbook;
+use crate::gpu::{Gpu, GpuError};
+use crate::scene::Scene;
+use std::time::{Duration, Instant};
+
+/// A scene on the device and what it is drawn to, one sample a pixel.
+pub struct Frame<'gpu> {
+    gpu: &'gpu Gpu,
+    gem: GemPass<'gpu>,
+    view: wgpu::BindGroup,
+    color: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    size: [u32; 2],
+}
+
+/// How long a frame took.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameTime {
+    /// From the first command to the device's last word.
+    pub total: Duration,
+    /// The host's part: recording and submitting.
+    pub encode: Duration,
+}
+
+impl<'gpu> Frame<'gpu> {
+    /// Compiles the rung and uploads the scene.
+    pub fn new(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        let source = cookbook::recipe_source(settings.rung.recipe());
+        let gem = GemPass::new(gpu, scene, settings, &source, "gem_fragment", &[SAMPLE_FORMAT])?;
+        let size = [settings.width, settings.height];
+        let [color, depth] = gpu.guarded("allocating a frame", |device| {
+            [SAMPLE_FORMAT, DEPTH_FORMAT].map(|format| {
+                device::view(&device::target(device, size, format, wgpu::TextureUsages::empty()))
+            })
+        })?;
+        let matrix = camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
+        let view = gem.view(matrix, scene.camera.eye);
+        Ok(Self { gpu, gem, view, color, depth, size })
+    }
+
+    /// Draws it once and waits.
+    pub fn run(&self) -> Result<FrameTime, RenderError> {
+        let start = Instant::now();
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let target =
+            GemTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
+        self.gem.draw(&mut encoder, &self.view, &target);
+        self.gpu.queue.submit([encoder.finish()]);
+        let encode = start.elapsed();
+        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.map_err(|error| GpuError::Device { what: "drawing a frame".to_owned(), reason: error.to_string() })?;
+        Ok(FrameTime { total: start.elapsed(), encode })
+    }
+
+    /// How many draw calls it takes.
+    pub fn draw_calls(&self) -> usize {
+        self.gem.draw_calls()
+    }
+}

@@ -1,0 +1,192 @@
+//! The ladder's rungs: how much of the light's way is followed.
+
+use crate::nearest;
+use std::fmt;
+use std::str::FromStr;
+
+/// A step of the ladder from cheap to exact: geometry, hits that are followed, and how colours are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rung {
+    /// Reflection at the surface alone (the paper's Fig. 2).
+    Surface,
+    /// Light through the stone, by one of the gem recipes.
+    Inside {
+        /// Where a ray inside meets the stone's surface.
+        geometry: Geometry,
+        /// Internal hits that are followed; 0 takes the environment along the refracted ray.
+        hits: u32,
+        /// How dispersion is followed.
+        spectrum: Spectrum,
+    },
+    /// The spectral reference, on the CPU in f64.
+    Reference,
+}
+
+/// How a ray finds the next facet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// A guess from the triangle that the ray entered by (the paper).
+    Proxy,
+    /// All facet planes of a convex stone, one after another (the paper's Fig. 7).
+    Convex,
+    /// All triangles, one after another (the paper's comparison).
+    Triangles,
+    /// A bounding volume hierarchy of the triangles.
+    Bvh,
+}
+
+/// How the refractive index's dependence on the wavelength is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spectrum {
+    /// Not at all: one index.
+    One,
+    /// The paper's tracker, eq. (10) to (12).
+    Paper,
+    /// The exact first-order tracker.
+    Tracker,
+    /// As many wavelengths, each by a ray of its own; 3 are the channels' own.
+    Separate(u32),
+}
+
+/// Most internal hits.
+pub const MOST_HITS: u32 = 64;
+/// Most wavelengths.
+pub const MOST_WAVELENGTHS: u32 = 61;
+/// The rungs that are offered when a name is not understood, from cheap to exact.
+pub const NAMES: [&str; 16] = [
+    "surface",
+    "proxy-0",
+    "proxy-1",
+    "proxy-1+paper",
+    "proxy-1+tracker",
+    "proxy-1+3",
+    "proxy-2",
+    "proxy-4",
+    "proxy-8",
+    "convex-1",
+    "convex-8",
+    "convex-8+tracker",
+    "convex-8+31",
+    "triangles-1",
+    "bvh-8",
+    "reference",
+];
+/// How a rung is written, for messages and help.
+pub const GRAMMAR: &str =
+    "surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as convex-8+31, or reference";
+
+const GEOMETRIES: [(&str, Geometry); 4] = [
+    ("proxy", Geometry::Proxy),
+    ("convex", Geometry::Convex),
+    ("triangles", Geometry::Triangles),
+    ("bvh", Geometry::Bvh),
+];
+
+impl Rung {
+    /// The paper's rung: the proxy, one internal hit, no dispersion.
+    pub const PAPER: Self = Self::Inside { geometry: Geometry::Proxy, hits: 1, spectrum: Spectrum::One };
+
+    /// The recipe that draws it.
+    pub fn recipe(self) -> &'static str {
+        match self {
+            Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
+            Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
+            Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => "gem",
+        }
+    }
+
+    /// How rays find facets; the proxy where none is looked for.
+    pub fn geometry(self) -> Geometry {
+        if let Self::Inside { geometry, .. } = self { geometry } else { Geometry::Proxy }
+    }
+
+    /// Internal hits that are followed.
+    pub fn hits(self) -> u32 {
+        if let Self::Inside { hits, .. } = self { hits } else { 0 }
+    }
+
+    /// How dispersion is followed.
+    pub fn spectrum(self) -> Spectrum {
+        if let Self::Inside { spectrum, .. } = self { spectrum } else { Spectrum::One }
+    }
+}
+
+impl fmt::Display for Rung {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Inside { geometry, hits, spectrum } = self else {
+            return f.write_str(if *self == Self::Surface { "surface" } else { "reference" });
+        };
+        let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);
+        write!(f, "{name}-{hits}")?;
+        match spectrum {
+            Spectrum::One => Ok(()),
+            Spectrum::Paper => f.write_str("+paper"),
+            Spectrum::Tracker => f.write_str("+tracker"),
+            Spectrum::Separate(count) => write!(f, "+{count}"),
+        }
+    }
+}
+
+impl FromStr for Rung {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "surface" => return Ok(Self::Surface),
+            "reference" => return Ok(Self::Reference),
+            _ => {}
+        }
+        let unknown = || format!("no such rung{}; a rung is {GRAMMAR}", nearest::suggest(text, &NAMES));
+        let (way, spectrum) = text.split_once('+').map_or((text, None), |(way, spectrum)| (way, Some(spectrum)));
+        let (name, hits) = way.split_once('-').ok_or_else(unknown)?;
+        let geometry = GEOMETRIES.iter().find(|(known, _)| *known == name).map(|(_, g)| *g).ok_or_else(unknown)?;
+        let hits = whole(hits).ok_or_else(unknown)?;
+        if hits > MOST_HITS {
+            return Err(format!("{hits} internal hits; at most {MOST_HITS} are followed"));
+        }
+        let spectrum = match spectrum {
+            None => Spectrum::One,
+            Some("paper") => Spectrum::Paper,
+            Some("tracker") => Spectrum::Tracker,
+            Some(count) => match whole(count).ok_or_else(unknown)? {
+                count if (3..=MOST_WAVELENGTHS).contains(&count) => Spectrum::Separate(count),
+                count => return Err(format!("{count} wavelengths; 3 to {MOST_WAVELENGTHS} are followed")),
+            },
+        };
+        Ok(Self::Inside { geometry, hits, spectrum })
+    }
+}
+
+/// A number written in digits alone.
+fn whole(text: &str) -> Option<u32> {
+    text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_offered_name_is_its_rungs_name() {
+        for name in NAMES {
+            assert_eq!(name.parse::<Rung>().expect(name).to_string(), name);
+        }
+    }
+
+    #[test]
+    fn wrong_names_say_what_a_rung_is() {
+        for (text, expected) in [
+            ("proxi-1", "did you mean `proxy-1`"),
+            ("proxy", "a rung is"),
+            ("proxy--1", "a rung is"),
+            ("proxy-+1", "a rung is"),
+            ("proxy-65", "at most 64"),
+            ("proxy-1+2", "3 to 61"),
+            ("proxy-1+", "a rung is"),
+            ("", "a rung is"),
+        ] {
+            let message = text.parse::<Rung>().expect_err(text);
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+}

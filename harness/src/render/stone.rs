@@ -1,0 +1,149 @@
+//! One object on the device: its material, its mesh, and what its rung's geometry needs besides.
+
+use super::device::{bind_group, buffer, uniform};
+use super::{Geometry, RenderError, Settings, Spectrum};
+use crate::gpu::Gpu;
+use crate::reference::spectrum;
+use crate::scene::bvh::Bvh;
+use crate::scene::convex::Convex;
+use crate::scene::{Material, Object};
+use glam::{DMat3, Vec3};
+use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
+use std::borrow::Cow;
+
+/// One object's bind groups and how many vertices to draw.
+pub(super) struct Stone {
+    /// Group 1, then group 2 where the recipe has one.
+    groups: Vec<wgpu::BindGroup>,
+    vertices: u32,
+}
+
+impl Stone {
+    /// Sends an object to the device.
+    pub(super) fn upload(
+        gpu: &Gpu,
+        pipeline: &wgpu::RenderPipeline,
+        object: &Object,
+        settings: &Settings,
+    ) -> Result<Self, RenderError> {
+        let mesh = &object.mesh;
+        let Geometries { indices, own } = Geometries::of(object, settings)?;
+        let shared = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices)];
+        let limits = gpu.device.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let too_large =
+            |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
+        let sizes = shared.iter().map(|part| part.len()).chain(own.iter().map(|part| part.len()));
+        if let Some(bytes) = sizes.map(|bytes| bytes as u64).find(|bytes| *bytes > limit) {
+            return Err(too_large(bytes));
+        }
+        let vertices = u32::try_from(indices.len()).map_err(|_| too_large(shared[1].len() as u64))?;
+        let material = material(&object.material, settings);
+        let wavelengths = wavelengths(&object.material, settings.rung.spectrum());
+        let groups = gpu.guarded("uploading a mesh", |device| {
+            let storage = |contents: &[u8]| buffer(device, contents, wgpu::BufferUsages::STORAGE);
+            let first = [
+                uniform(device, &material),
+                storage(shared[0]),
+                storage(shared[1]),
+                storage(bytemuck::cast_slice(&wavelengths)),
+            ];
+            let second: Vec<wgpu::Buffer> = own.iter().map(|part| storage(part)).collect();
+            let bind = |group: u32, buffers: &[wgpu::Buffer]| {
+                let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
+                bind_group(device, pipeline, group, resources)
+            };
+            let mut groups = vec![bind(1, &first)];
+            if !second.is_empty() {
+                groups.push(bind(2, &second));
+            }
+            groups
+        })?;
+        Ok(Self { groups, vertices })
+    }
+
+    /// Draws it, in one call.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        for (group, bind_group) in (1..).zip(&self.groups) {
+            pass.set_bind_group(group, bind_group, &[]);
+        }
+        pass.draw(0..self.vertices, 0..1);
+    }
+}
+
+/// What a rung's geometry needs of a mesh, beside its positions.
+struct Geometries<'a> {
+    indices: Cow<'a, [u32]>,
+    /// The buffers of group 2.
+    own: Vec<Cow<'a, [u8]>>,
+}
+
+impl<'a> Geometries<'a> {
+    fn of(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
+        let mesh = &object.mesh;
+        let bytes = |parts: &[&[u8]]| parts.iter().map(|part| Cow::Owned(part.to_vec())).collect();
+        let indices = Cow::Borrowed(&mesh.indices[..]);
+        Ok(match settings.rung.geometry() {
+            Geometry::Proxy => Self { indices, own: vec![bytemuck::cast_slice(&mesh.normals).into()] },
+            Geometry::Convex => {
+                let not_convex = || RenderError::NotConvex { object: object.name.clone() };
+                let convex = Convex::of(mesh).ok_or_else(not_convex)?;
+                let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
+                let own = bytes(&[bytemuck::cast_slice(&planes), bytemuck::cast_slice(&convex.face_of_triangle)]);
+                Self { indices, own }
+            }
+            Geometry::Bvh | Geometry::Triangles => {
+                let bvh = Bvh::build(mesh);
+                let own = bytes(&[bytemuck::cast_slice(&bvh.nodes)]);
+                // Triangles are numbered as the leaves hold them, by the recipe too.
+                Self { indices: Cow::Owned(bvh.indices), own }
+            }
+        })
+    }
+}
+
+/// The bytes that the geometry of the settings' rung needs on the device for `object`, beside positions and indices.
+pub(crate) fn geometry_bytes(object: &Object, settings: &Settings) -> Result<u64, RenderError> {
+    Ok(Geometries::of(object, settings)?.own.iter().map(|part| part.len() as u64).sum())
+}
+
+/// `GemMaterial` of the recipe.
+pub(crate) fn material(material: &Material, settings: &Settings) -> [f32; 12] {
+    let [r, g, b] = material.base_color.to_array();
+    let [ar, ag, ab] =
+        lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance).to_array();
+    let [red, green, blue] = channel_indices(material).to_array();
+    // Nothing travels as far as this.
+    let limit = settings.distance_limit.unwrap_or(f32::MAX);
+    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, settings.dispersion_strength]
+}
+
+/// The indices at the wavelengths that stand for the three channels.
+pub(crate) fn channel_indices(material: &Material) -> Vec3 {
+    Vec3::from([DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE].map(|wavelength| material.index_at(f64::from(wavelength)) as f32))
+}
+
+/// `GemWavelength` of the recipe, 16 floats each.
+pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<[f32; 16]> {
+    let entry = |weights: DMat3, index: f32| {
+        let columns = weights.as_mat3().to_cols_array_2d();
+        let mut values = [0f32; 16];
+        for (start, column) in (0..).step_by(4).zip(columns) {
+            values[start..start + 3].copy_from_slice(&column);
+        }
+        values[12] = index;
+        values
+    };
+    match spectrum {
+        // Without separate wavelengths one entry fills the binding.
+        Spectrum::One | Spectrum::Paper | Spectrum::Tracker => vec![entry(DMat3::IDENTITY, material.ior)],
+        Spectrum::Separate(3) => {
+            let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(DMat3::from_diagonal);
+            channels.into_iter().zip(channel_indices(material).to_array()).map(|(w, n)| entry(w, n)).collect()
+        }
+        Spectrum::Separate(count) => spectrum::weights(count as usize)
+            .iter()
+            .map(|wavelength| entry(wavelength.weights, material.index_at(wavelength.nanometres) as f32))
+            .collect(),
+    }
+}

@@ -1,0 +1,99 @@
+//! The whole path of a pixel on the GPU against the same path in Rust from the mirrors, at random pixels.
+
+use lapidary_harness::pixel::parity::{self, Parity};
+use lapidary_harness::render::{self, Environment, Settings};
+use lapidary_harness::scene::Scene;
+use lapidary_harness::scene::environment_map::EnvironmentMap;
+
+/// Pixels compared for each scene and rung.
+const PIXELS: usize = 2000;
+const SIDE: u32 = 192;
+
+fn compare(scene: &str, settings: Settings) -> Parity {
+    let scene = Scene::named(scene).expect("built in");
+    let settings = Settings { samples: 1, ..settings };
+    let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
+    parity::compare(&scene, &settings, &picture, PIXELS, 1).expect("compared")
+}
+
+fn of_rung(rung: &str) -> Settings {
+    Settings { rung: rung.parse().expect(rung), ..Settings::of_size(SIDE, SIDE) }
+}
+
+fn check(scene: &str, what: &str, parity: &Parity, most_at_an_edge: f64) {
+    let share = parity.at_an_edge as f64 / parity.compared as f64;
+    println!(
+        "{scene:12} {what:18} {:4} pixels, {:5.2} % at an edge ({} of them differ), {} at the silhouette, worst {:.3} tolerances",
+        parity.compared,
+        100.0 * share,
+        parity.differing_at_an_edge,
+        parity.silhouette,
+        parity.worst
+    );
+    assert!(parity.compared > 300, "{scene} {what}: {} pixels", parity.compared);
+    assert!(parity.failed.is_empty(), "{scene} {what}: {:?}", &parity.failed[..parity.failed.len().min(3)]);
+    assert!(share <= most_at_an_edge, "{scene} {what}: {share}");
+    assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
+}
+
+#[test]
+fn the_picture_is_the_mirrors() {
+    // A ray's edges grow with its hits, and with the number of facets that it may meet.
+    for (scene, rung, most_at_an_edge) in [
+        ("brilliant", "surface", 0.03),
+        ("brilliant", "proxy-0", 0.03),
+        ("brilliant", "proxy-1", 0.04),
+        ("brilliant", "proxy-1+paper", 0.04),
+        ("brilliant", "proxy-4+tracker", 0.08),
+        ("brilliant", "proxy-2+31", 0.15),
+        ("brilliant", "convex-1", 0.05),
+        ("brilliant", "convex-8+tracker", 0.20),
+        ("brilliant", "triangles-1+3", 0.06),
+        ("brilliant", "bvh-4+paper", 0.15),
+        ("sapphire", "proxy-8", 0.10),
+        ("sapphire", "convex-4+tracker", 0.15),
+        ("step_cut", "convex-8", 0.20),
+        ("octahedron", "bvh-8+tracker", 0.10),
+        ("bunny_stone", "proxy-1+tracker", 0.10),
+        ("bunny_stone", "bvh-2", 0.20),
+    ] {
+        check(scene, rung, &compare(scene, of_rung(rung)), most_at_an_edge);
+    }
+}
+
+#[test]
+fn so_it_is_with_every_choice() {
+    let limited = Settings { distance_limit: Some(2.5), ..of_rung("convex-8") };
+    check("brilliant", "limited", &compare("brilliant", limited), 0.15);
+    let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
+    check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.08);
+    let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
+    check("brilliant", "paper's centre", &compare("brilliant", paper), 0.04);
+    let clear = Settings { absorption: false, ..of_rung("convex-4") };
+    check("sapphire", "no absorption", &compare("sapphire", clear), 0.10);
+    let pixel = |k: usize| [(k % 7) as f32 / 3.0, (k % 5) as f32 / 2.0, (k % 3) as f32, 1.0];
+    let map = EnvironmentMap { width: 16, height: 8, pixels: (0..128).map(pixel).collect() };
+    let mapped = Settings { environment: Environment::Map(map), ..of_rung("convex-2+tracker") };
+    check("brilliant", "a map", &compare("brilliant", mapped), 0.10);
+}
+
+/// A comparison that a wrong shader passes checks nothing.
+#[test]
+fn a_wrong_picture_is_seen() {
+    let scene = Scene::named("brilliant").expect("built in");
+    let settings = Settings { samples: 1, ..of_rung("proxy-1") };
+    let wrong = [
+        ("another index", "refraction_refract(direction, input.face_normal, index)", "refraction_refract(direction, input.face_normal, 1.01f * index)"),
+        ("no Fresnel", "throughput *= 1.0f - exit.share;", "throughput *= 1.0f;"),
+        ("the tile of the other half", "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates))", "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates + 0.5f))"),
+    ];
+    let source = lapidary_harness::cookbook::recipe_source("gem");
+    for (what, old, new) in wrong {
+        assert!(source.contains(old), "{what}");
+        let planted = source.replace(old, new);
+        let picture =
+            render::render_with(super::gpu(), &scene, &settings, &planted, &mut |_, _| {}).expect("rendered");
+        let parity = parity::compare(&scene, &settings, &picture, PIXELS, 1).expect("compared");
+        assert!(parity.failed.len() > parity.compared / 20, "{what}: {} fail", parity.failed.len());
+    }
+}

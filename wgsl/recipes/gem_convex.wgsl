@@ -1,0 +1,65 @@
+// gem_convex: a convex stone by its exact facets: each ray inside is tested against every facet plane.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
+// requires: absorption, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction
+// parts: gem_shading
+//
+// Draw as the recipe `gem`, and bind the stone's facet planes besides. One stone a draw, and a convex one.
+
+// Light through the stone; off, only its surface reflects. Called for by KHR_materials_transmission.
+override EFFECT_CONVEX_TRACE: bool = true;
+
+// Outward unit normal and distance from the origin, in world space.
+@group(2) @binding(0) var<storage, read> planes: array<vec4f>;
+// The plane that each triangle lies in.
+@group(2) @binding(1) var<storage, read> face_of_triangle: array<u32>;
+
+struct GemVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) @interpolate(flat, either) face_normal: vec3f,
+    @location(2) @interpolate(flat, either) face: u32,
+}
+
+@vertex
+fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
+    let position = gem_position(indices[vertex]);
+    let face = face_of_triangle[vertex / 3u];
+    return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, planes[face].xyz, face);
+}
+
+// A ray inside: the facet that it left last, which it cannot meet again at once.
+struct GemPlace {
+    face: u32,
+}
+
+fn gem_enter(input: GemVertex) -> GemPlace {
+    return GemPlace(input.face);
+}
+
+fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
+    var nearest = convex_trace_start(CONVEX_TRACE_FAR);
+    let count = arrayLength(&planes);
+    for (var face = 0u; face < count; face++) {
+        nearest = convex_trace_step(nearest, position, direction, planes[face], face, (*place).face);
+    }
+    if (nearest.face >= count) {
+        return GemHit(position, -direction, 0.0f, false);
+    }
+    (*place).face = nearest.face;
+    let plane = planes[nearest.face];
+    let distance = convex_trace_distance(nearest);
+    return GemHit(convex_trace_point(position, direction, distance, plane), -plane.xyz, distance, true);
+}
+
+@fragment
+fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
+    let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);
+    return vec4f(radiance.surface + radiance.inside, 1.0f);
+}
+
+// For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
+@fragment
+fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
+    return gem_geometry_buffer(input, EFFECT_CONVEX_TRACE);
+}

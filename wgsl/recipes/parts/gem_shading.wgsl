@@ -1,0 +1,295 @@
+// gem_shading: the shading that every gem recipe shares, so that the recipes differ in geometry alone.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
+//
+// A geometry recipe adds: struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
+// struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).
+
+// An image as the environment instead of the procedural studio. Called for by the user, who has one.
+override EFFECT_ENVIRONMENT_MAP: bool = false;
+// Light inside is absorbed on its way. Called for by KHR_materials_volume: an attenuation colour below white.
+override EFFECT_ABSORPTION: bool = false;
+// The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
+override EFFECT_DISPERSION: bool = false;
+// How dispersion is followed: 0 the paper's tracker, 1 the exact first-order tracker, 2 each wavelength by a ray of its own.
+override DISPERSION_FORM: u32 = 1u;
+// Entries of `wavelengths` that form 2 follows.
+override WAVELENGTHS: u32 = 3u;
+// Internal hits that are followed.
+override BOUNCES: u32 = 1u;
+// What a ray still carries when its following ends (at the last bounce, at the distance limit, or where it met no facet): taken
+// from the environment along the ray, which keeps the energy and guesses the direction, or dropped, which darkens the stone.
+override REST_FROM_ENVIRONMENT: bool = true;
+// A ray also ends when it has travelled material.distance_limit inside.
+override LIMIT_DISTANCE: bool = false;
+
+const GEM_DISPERSION_PAPER: u32 = 0u;
+const GEM_DISPERSION_SEPARATE: u32 = 2u;
+
+struct GemView {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+}
+
+struct GemMaterial {
+    // Linear RGB that light through the surface is multiplied by.
+    base_color: vec3f,
+    // Index of refraction, relative to the medium outside, at the d line.
+    index: f32,
+    // Per unit of length: absorption_coefficient of the attenuation colour and distance.
+    absorption: vec3f,
+    // Where a ray ends, with LIMIT_DISTANCE; in units of length.
+    distance_limit: f32,
+    // Indices at DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE.
+    channel_indices: vec3f,
+    // The paper's tracker: factor of eq. (12); 1 as printed.
+    dispersion_strength: f32,
+}
+
+// One wavelength of form 2.
+struct GemWavelength {
+    // What its radiance, linear RGB, adds to the pixel's; all matrices together add up to the identity.
+    weights: mat3x3f,
+    // Index of refraction.
+    index: f32,
+}
+
+@group(0) @binding(0) var<uniform> view: GemView;
+@group(0) @binding(1) var environment_map: texture_2d<f32>;
+@group(1) @binding(0) var<uniform> material: GemMaterial;
+// Three floats a vertex, in world space.
+@group(1) @binding(1) var<storage, read> positions: array<f32>;
+@group(1) @binding(2) var<storage, read> indices: array<u32>;
+@group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
+
+// The next facet that a ray meets inside the stone.
+struct GemHit {
+    point: vec3f,
+    // Unit normal that faces the ray.
+    normal: vec3f,
+    // Along the ray.
+    distance: f32,
+    hit: bool,
+}
+
+fn gem_position(index: u32) -> vec3f {
+    return vec3f(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]);
+}
+
+// Radiance that arrives from a direction.
+fn gem_environment(direction: vec3f) -> vec3f {
+    if (EFFECT_ENVIRONMENT_MAP) {
+        // Filtered by hand: 32-bit float textures need not be filterable.
+        let texels = environment_texels(environment_uv_from_direction(direction), textureDimensions(environment_map));
+        let lower_left = textureLoad(environment_map, texels.lower, 0).rgb;
+        let lower_right = textureLoad(environment_map, vec2u(texels.upper.x, texels.lower.y), 0).rgb;
+        let upper_left = textureLoad(environment_map, vec2u(texels.lower.x, texels.upper.y), 0).rgb;
+        let upper_right = textureLoad(environment_map, texels.upper, 0).rgb;
+        let lower = mix(lower_left, lower_right, texels.weight.x);
+        let upper = mix(upper_left, upper_right, texels.weight.x);
+        return mix(lower, upper, texels.weight.y);
+    }
+    return environment_studio(direction);
+}
+
+// What absorption leaves of light over a distance inside.
+fn gem_transmittance(distance: f32) -> vec3f {
+    if (EFFECT_ABSORPTION) {
+        return absorption_transmittance(material.absorption, distance);
+    }
+    return vec3f(1.0f);
+}
+
+// Where a ray goes that leaves through a facet, and what share of it does.
+struct GemExit {
+    direction: vec3f,
+    // 0 under total internal reflection.
+    share: f32,
+}
+
+fn gem_exit(inside: vec3f, normal: vec3f, index: f32) -> GemExit {
+    let leaving = refraction_refract(inside, normal, 1.0f / index);
+    if (leaving.total) {
+        return GemExit(inside, 0.0f);
+    }
+    return GemExit(leaving.direction, 1.0f - fresnel_dielectric(-dot(normal, inside), 1.0f / index));
+}
+
+// Whether a ray's following ends after it has travelled so far.
+fn gem_ends(travelled: f32) -> bool {
+    return LIMIT_DISTANCE && travelled > material.distance_limit;
+}
+
+// Radiance that a ray of one refractive index finds inside the stone. At each facet a share leaves and meets the environment; the
+// rest is reflected and followed further.
+fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
+    var place = gem_enter(input);
+    var position = input.position;
+    var inside = refraction_refract(direction, input.face_normal, index).direction;
+    var throughput = vec3f(1.0f);
+    var radiance = vec3f(0.0f);
+    var travelled = 0.0f;
+    for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        let hit = gem_hit(&place, position, inside);
+        travelled += hit.distance;
+        if (!hit.hit || gem_ends(travelled)) {
+            break;
+        }
+        throughput *= gem_transmittance(hit.distance);
+        let exit = gem_exit(inside, hit.normal, index);
+        if (exit.share > 0.0f) {
+            radiance += exit.share * throughput * gem_environment(exit.direction);
+            throughput *= 1.0f - exit.share;
+        }
+        position = hit.point;
+        inside = refraction_reflect(inside, hit.normal);
+    }
+    if (REST_FROM_ENVIRONMENT) {
+        radiance += throughput * gem_environment(inside);
+    }
+    return radiance;
+}
+
+// Radiance from three directions, one a channel.
+fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
+    return vec3f(gem_environment(red).r, gem_environment(green).g, gem_environment(blue).b);
+}
+
+// The same for three channels by one ray at the d line and its derivative by the refractive index. The derivative gives each channel's
+// ray inside; at a facet that ray is refracted with the channel's own index, so total internal reflection and reflectance
+// are the channel's own, and the derivative's pole at the critical angle is never met.
+fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
+    let offsets = material.channel_indices - material.index;
+    var place = gem_enter(input);
+    var position = input.position;
+    var inside = refraction_refract(direction, input.face_normal, material.index).direction;
+    var gradient = dispersion_enter(direction, input.face_normal, material.index);
+    var throughput = vec3f(1.0f);
+    var radiance = vec3f(0.0f);
+    var travelled = 0.0f;
+    for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        let hit = gem_hit(&place, position, inside);
+        travelled += hit.distance;
+        if (!hit.hit || gem_ends(travelled)) {
+            break;
+        }
+        throughput *= gem_transmittance(hit.distance);
+        let red = gem_exit(dispersion_direction(inside, gradient, offsets.r), hit.normal, material.channel_indices.r);
+        let green = gem_exit(dispersion_direction(inside, gradient, offsets.g), hit.normal, material.channel_indices.g);
+        let blue = gem_exit(dispersion_direction(inside, gradient, offsets.b), hit.normal, material.channel_indices.b);
+        let share = vec3f(red.share, green.share, blue.share);
+        if (any(share > vec3f(0.0f))) {
+            radiance += share * throughput * gem_environment_channels(red.direction, green.direction, blue.direction);
+            throughput *= 1.0f - share;
+        }
+        position = hit.point;
+        inside = refraction_reflect(inside, hit.normal);
+        gradient = dispersion_reflect(gradient, hit.normal);
+    }
+    if (REST_FROM_ENVIRONMENT) {
+        radiance += throughput * gem_environment_channels(
+            dispersion_direction(inside, gradient, offsets.r),
+            dispersion_direction(inside, gradient, offsets.g),
+            dispersion_direction(inside, gradient, offsets.b),
+        );
+    }
+    return radiance;
+}
+
+// Radiance around a red ray, with green and blue moved along the paper's direction of dispersion, eq. (12).
+fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
+    let green_ratio = DISPERSION_RED / DISPERSION_GREEN;
+    let blue_ratio = DISPERSION_RED / DISPERSION_BLUE;
+    return gem_environment_channels(
+        red,
+        dispersion_paper_direction(red, spread, travelled, green_ratio, material.dispersion_strength),
+        dispersion_paper_direction(red, spread, travelled, blue_ratio, material.dispersion_strength),
+    );
+}
+
+// The same by the paper's tracker, eq. (10) to (12): a red ray and a direction of dispersion.
+fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
+    let index = material.channel_indices.r;
+    var place = gem_enter(input);
+    var position = input.position;
+    var inside = refraction_refract(direction, input.face_normal, index).direction;
+    var spread = dispersion_paper_enter(direction, inside);
+    var throughput = vec3f(1.0f);
+    var radiance = vec3f(0.0f);
+    var travelled = 0.0f;
+    for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        let hit = gem_hit(&place, position, inside);
+        travelled += hit.distance;
+        if (!hit.hit || gem_ends(travelled)) {
+            break;
+        }
+        throughput *= gem_transmittance(hit.distance);
+        let exit = gem_exit(inside, hit.normal, index);
+        if (exit.share > 0.0f) {
+            let leaving_spread = dispersion_paper_refract(inside, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
+            radiance += exit.share * throughput * gem_environment_paper(exit.direction, leaving_spread, travelled);
+            throughput *= 1.0f - exit.share;
+        }
+        spread = dispersion_paper_reflect(inside, spread, hit.normal, DISPERSION_PAPER_EPSILON);
+        position = hit.point;
+        inside = refraction_reflect(inside, hit.normal);
+    }
+    if (REST_FROM_ENVIRONMENT) {
+        radiance += throughput * gem_environment_paper(inside, spread, travelled);
+    }
+    return radiance;
+}
+
+// What a stone's surface and its inside send to the eye.
+struct GemRadiance {
+    surface: vec3f,
+    inside: vec3f,
+}
+
+// With `transmits` false the surface alone.
+fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
+    let direction = normalize(input.position - view.eye);
+    let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
+    let reflected = gem_environment(refraction_reflect(direction, input.face_normal));
+    if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
+        var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f));
+        for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
+            let index = wavelengths[wavelength].index;
+            let reflectance = fresnel_dielectric(cosine, index);
+            separate.surface += wavelengths[wavelength].weights * (reflectance * reflected);
+            if (transmits) {
+                separate.inside += wavelengths[wavelength].weights * ((1.0f - reflectance) * gem_trace(input, direction, index));
+            }
+        }
+        separate.inside *= material.base_color;
+        return separate;
+    }
+    let reflectance = fresnel_dielectric(cosine, material.index);
+    var inside = vec3f(0.0f);
+    if (transmits) {
+        if (!EFFECT_DISPERSION) {
+            inside = gem_trace(input, direction, material.index);
+        } else if (DISPERSION_FORM == GEM_DISPERSION_PAPER) {
+            inside = gem_trace_paper(input, direction);
+        } else {
+            inside = gem_trace_tracked(input, direction);
+        }
+    }
+    return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * inside);
+}
+
+// What a deferred renderer keeps of the stone (the paper's section 4.3.4); depth is the depth buffer's.
+struct GemGeometryBuffer {
+    // What comes from inside; the renderer adds it as it adds light that a surface emits.
+    @location(0) emission: vec4f,
+    // The facet's normal, and the reflectance of the surface for the eye.
+    @location(1) normal_reflectance: vec4f,
+}
+
+fn gem_geometry_buffer(input: GemVertex, transmits: bool) -> GemGeometryBuffer {
+    let direction = normalize(input.position - view.eye);
+    let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
+    let reflectance = fresnel_dielectric(cosine, material.index);
+    let radiance = gem_radiance(input, transmits);
+    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(input.face_normal, reflectance));
+}
