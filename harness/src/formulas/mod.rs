@@ -2,6 +2,7 @@
 //! its edges, invariants and hard cases.
 
 mod closest_point;
+mod dispersion;
 mod environment;
 mod fresnel;
 mod proxy_geometry;
@@ -17,6 +18,7 @@ pub fn all() -> &'static [Formula] {
     FORMULAS.get_or_init(|| {
         [
             closest_point::formulas(),
+            dispersion::formulas(),
             environment::formulas(),
             fresnel::formulas(),
             proxy_geometry::formulas(),

@@ -23,7 +23,7 @@ fn cosine(draws: &mut Draws<'_>) -> f32 {
 }
 
 /// Relative indices in [1/4, 4]: anywhere, and 1 ± every magnitude down to the last place.
-fn relative_index(draws: &mut Draws<'_>) -> f32 {
+pub(super) fn relative_index(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 4.0, 0.25, 1.0f32.next_up(), 1.0f32.next_down(), 2.41749, 1.0 / 2.41749]),
         1 | 2 => {
@@ -36,7 +36,7 @@ fn relative_index(draws: &mut Draws<'_>) -> f32 {
 }
 
 /// A cosine within a few ulp of the critical angle of `index` < 1, on both sides; any cosine for the others.
-fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
+pub(super) fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
     if index < 1.0 && draws.below(3) == 0 {
         let index = f64::from(index);
         let critical = ((1.0 - index) * (1.0 + index)).sqrt() as f32;
@@ -47,7 +47,7 @@ fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
 }
 
 /// An incident direction and a normal at the angle of incidence of `cosine`; exact where the normal lies along an axis.
-fn incidence(draws: &mut Draws<'_>, cosine: f32) -> (Vec3, Vec3) {
+pub(super) fn incidence(draws: &mut Draws<'_>, cosine: f32) -> (Vec3, Vec3) {
     let normal = draws.unit_vector();
     let axis = normal.as_dvec3().normalize();
     let tangent = draws.perpendicular(axis);

@@ -1,0 +1,224 @@
+//! Mirror of `wgsl/dispersion.wgsl`: refractive indices by wavelength, and one traced ray that carries the directions of all
+//! wavelengths. Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12), and the exact derivative of Snell's law.
+//!
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+
+pub mod oracle;
+
+use glam::{Vec3, vec3};
+
+/// A material's index of refraction: n² - 1 = constant + Σ strengths w² / (w² - resonances), w the wavelength in µm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DispersionSellmeier {
+    /// The constant term, 0 for most.
+    pub constant: f32,
+    /// The strengths of up to three resonances.
+    pub strengths: Vec3,
+    /// Squares of the resonances' wavelengths, in µm².
+    pub resonances: Vec3,
+}
+
+/// Diamond, Peter 1923.
+pub const DISPERSION_DIAMOND: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: vec3(0.3306, 4.3356, 0.0),
+    resonances: vec3(0.030625, 0.011236, 0.0),
+};
+/// Sapphire and ruby, the ordinary ray, Malitson 1962.
+pub const DISPERSION_CORUNDUM: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: vec3(1.4313493, 0.65054713, 5.3414021),
+    resonances: vec3(0.0052799261, 0.0142382647, 325.017834),
+};
+/// Quartz, the ordinary ray, Ghosh 1999.
+pub const DISPERSION_QUARTZ: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.28604141,
+    strengths: vec3(1.07044083, 1.10202242, 0.0),
+    resonances: vec3(0.0100585997, 100.0, 0.0),
+};
+/// N-BK7, the usual optical crown, Schott.
+pub const DISPERSION_CROWN_GLASS: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: vec3(1.03961212, 0.231792344, 1.01046945),
+    resonances: vec3(0.00600069867, 0.0200179144, 103.560653),
+};
+/// Cubic zirconia, Wood and Nassau 1982.
+pub const DISPERSION_CUBIC_ZIRCONIA: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: vec3(1.347091, 2.117788, 9.452943),
+    resonances: vec3(0.00391162685, 0.0278018941, 591.490125),
+};
+
+/// Fraunhofer's line B, in nm.
+pub const DISPERSION_LINE_B: f32 = 686.7;
+/// Fraunhofer's line C, in nm.
+pub const DISPERSION_LINE_C: f32 = 656.3;
+/// The line d of helium, in nm, at which an index without a wavelength is given.
+pub const DISPERSION_LINE_D: f32 = 587.6;
+/// Fraunhofer's line F, in nm.
+pub const DISPERSION_LINE_F: f32 = 486.1;
+/// Fraunhofer's line G, in nm.
+pub const DISPERSION_LINE_G: f32 = 430.8;
+
+/// The wavelength in nm that stands for the red channel.
+pub const DISPERSION_RED: f32 = 609.0;
+/// The wavelength in nm that stands for the green channel.
+pub const DISPERSION_GREEN: f32 = 539.0;
+/// The wavelength in nm that stands for the blue channel.
+pub const DISPERSION_BLUE: f32 = 453.0;
+
+/// The paper's green channel, as a frequency over red's.
+pub const DISPERSION_PAPER_GREEN: f32 = DISPERSION_RED / DISPERSION_GREEN;
+/// The paper's blue channel, as a frequency over red's.
+pub const DISPERSION_PAPER_BLUE: f32 = DISPERSION_RED / DISPERSION_BLUE;
+
+/// The paper's small number.
+pub const DISPERSION_PAPER_EPSILON: f32 = 2e-4;
+/// The square of the shortest chord that is more than noise, 2⁻²⁰.
+pub const DISPERSION_PAPER_CHORD: f32 = 9.094947017729282e-13;
+/// Least n cos(angle of refraction) by which a gradient is divided.
+pub const DISPERSION_CRITICAL: f32 = 0.0625;
+
+/// Index of refraction by Sellmeier's formula; wavelength in nm.
+pub fn sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
+    let micrometres = wavelength * 0.001;
+    let squared = micrometres * micrometres;
+    let terms = squared / (squared - material.resonances);
+    (1.0 + material.constant + material.strengths.dot(terms)).max(1.0).sqrt()
+}
+
+/// Index of refraction by Cauchy's formula; wavelength in nm, coefficients for µm.
+pub fn cauchy(coefficients: Vec3, wavelength: f32) -> f32 {
+    let micrometres = wavelength * 0.001;
+    let squared = micrometres * micrometres;
+    coefficients.x + (coefficients.y + coefficients.z / squared) / squared
+}
+
+/// Index of refraction as glTF has it (KHR_materials_dispersion), `dispersion` being 20 / V_d.
+pub fn abbe(index: f32, dispersion: f32, wavelength: f32) -> f32 {
+    let spread = (index - 1.0) * dispersion / 20.0;
+    (index + spread * (523655.0 / (wavelength * wavelength) - 1.5168)).max(1.0)
+}
+
+/// Abbe's number V_d from the indices at Fraunhofer's lines.
+pub fn abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
+    (index_d - 1.0) / (index_f - index_c).max(1e-12)
+}
+
+/// The gradient after a ray enters the gem.
+pub fn enter(direction: Vec3, normal: Vec3, relative_index: f32) -> Vec3 {
+    let cosine = (-normal.dot(direction)).max(0.0);
+    let radicand = (relative_index - 1.0) * (relative_index + 1.0) + cosine * cosine;
+    if radicand < 0.0 {
+        return Vec3::ZERO;
+    }
+    let root = radicand.sqrt();
+    let tangent = direction + cosine * normal;
+    let bent = root * tangent + tangent.dot(tangent) * normal;
+    bent / (-relative_index * relative_index * root.max(DISPERSION_CRITICAL))
+}
+
+/// The gradient after a refraction, or after the total internal reflection in its place.
+pub fn refract(direction: Vec3, gradient: Vec3, normal: Vec3, relative_index: f32, relative_index_slope: f32) -> Vec3 {
+    let cosine = (-normal.dot(direction)).max(0.0);
+    let cosine_slope = -normal.dot(gradient);
+    let radicand = (relative_index - 1.0) * (relative_index + 1.0) + cosine * cosine;
+    if radicand < 0.0 {
+        return gradient + 2.0 * cosine_slope * normal;
+    }
+    let root = radicand.sqrt();
+    let tangent = direction + cosine * normal;
+    let bending = relative_index_slope / relative_index;
+    let along = gradient + cosine_slope * normal - bending * tangent;
+    let across = bending * tangent.dot(tangent) + cosine * cosine_slope;
+    (root * along - across * normal) / (relative_index * root.max(DISPERSION_CRITICAL))
+}
+
+/// The derivative of refraction as one writes it from eq. (6), with eta = 1 / n.
+pub fn refract_naive(
+    direction: Vec3,
+    gradient: Vec3,
+    normal: Vec3,
+    relative_index: f32,
+    relative_index_slope: f32,
+) -> Vec3 {
+    let eta = 1.0 / relative_index;
+    let eta_slope = -relative_index_slope * eta * eta;
+    let cosine = -normal.dot(direction);
+    let cosine_slope = -normal.dot(gradient);
+    let squared_sine = 1.0 - cosine * cosine;
+    let root = (1.0 - eta * eta * squared_sine).sqrt();
+    let root_slope = (eta * eta * cosine * cosine_slope - eta * eta_slope * squared_sine) / root;
+    eta * gradient + eta_slope * direction + (eta_slope * cosine + eta * cosine_slope - root_slope) * normal
+}
+
+/// The gradient after a reflection, which is linear.
+pub fn reflect(gradient: Vec3, normal: Vec3) -> Vec3 {
+    gradient - 2.0 * normal.dot(gradient) * normal
+}
+
+/// The direction at a wavelength whose index is `index_offset` above that of `direction`.
+pub fn direction(direction: Vec3, gradient: Vec3, index_offset: f32) -> Vec3 {
+    (direction + index_offset * gradient).normalize()
+}
+
+/// Eq. (10): the direction in which a ray spreads as it enters; 0 where it is not bent.
+pub fn paper_enter(direction: Vec3, refracted: Vec3) -> Vec3 {
+    let chord = refracted - direction;
+    let squared = chord.dot(chord);
+    if squared < DISPERSION_PAPER_CHORD {
+        return Vec3::ZERO;
+    }
+    chord / squared.sqrt()
+}
+
+/// Eq. (10) as printed.
+pub fn paper_enter_naive(direction: Vec3, refracted: Vec3) -> Vec3 {
+    (refracted - direction).normalize()
+}
+
+/// Eq. (11) for a refraction, by the difference of two refracted rays.
+pub fn paper_refract(direction: Vec3, spread: Vec3, normal: Vec3, relative_index: f32, epsilon: f32) -> Vec3 {
+    let shifted = direction + epsilon * (spread - direction.dot(spread) * direction);
+    let cosine = -normal.dot(direction);
+    let cosine_shifted = -normal.dot(shifted);
+    let excess = (relative_index - 1.0) * (relative_index + 1.0);
+    let radicand = excess + cosine * cosine;
+    if radicand < 0.0 {
+        return paper_reflect(direction, spread, normal, epsilon);
+    }
+    let radicand_shifted = (excess + cosine_shifted * cosine_shifted).max(0.0);
+    let refracted = (direction + (cosine - radicand.sqrt()) * normal) / relative_index;
+    let refracted_shifted = (shifted + (cosine_shifted - radicand_shifted.sqrt()) * normal) / relative_index;
+    let difference = refracted_shifted - refracted;
+    let squared = difference.dot(difference);
+    if squared == 0.0 {
+        return Vec3::ZERO;
+    }
+    difference / squared.sqrt()
+}
+
+/// Eq. (11) for a refraction as printed, with the built-in `refract` for eq. (6).
+pub fn paper_refract_naive(direction: Vec3, spread: Vec3, normal: Vec3, relative_index: f32, epsilon: f32) -> Vec3 {
+    let eta = 1.0 / relative_index;
+    ((direction + epsilon * spread).refract(normal, eta) - direction.refract(normal, eta)).normalize()
+}
+
+/// Eq. (11) for a reflection, by the difference of two reflected rays.
+pub fn paper_reflect(direction: Vec3, spread: Vec3, normal: Vec3, epsilon: f32) -> Vec3 {
+    let shifted = direction + epsilon * (spread - direction.dot(spread) * direction);
+    let difference = shifted.reflect(normal) - direction.reflect(normal);
+    let squared = difference.dot(difference);
+    if squared == 0.0 {
+        return Vec3::ZERO;
+    }
+    difference / squared.sqrt()
+}
+
+/// Eq. (12): the direction at another frequency, with a strength of our own; 1 is the paper's.
+pub fn paper_direction(direction: Vec3, spread: Vec3, distance: f32, frequency_ratio: f32, strength: f32) -> Vec3 {
+    (direction + strength * distance * (frequency_ratio - 1.0) * spread).normalize()
+}
+
+#[cfg(test)]
+mod tests;

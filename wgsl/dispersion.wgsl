@@ -1,0 +1,328 @@
+// dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
+//   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
+//   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia).
+//   Khronos, glTF 2.0, KHR_materials_dispersion.
+//
+// The tracker follows one ray, at a reference wavelength, through the stone as refraction.wgsl does, and carries with it
+// g = d(direction) / d(index of the gem). At a wavelength of index n_0 + offset the direction then is r_0 + offset g.
+
+// A material's index of refraction: n^2 - 1 = constant + sum of strengths w^2 / (w^2 - resonances), w the wavelength in µm.
+struct DispersionSellmeier {
+    constant: f32,
+    strengths: vec3f,
+    // Squares of the resonances' wavelengths, in µm^2.
+    resonances: vec3f,
+}
+
+// Corundum and quartz are birefringent: these are their ordinary rays.
+const DISPERSION_DIAMOND = DispersionSellmeier(0.0f, vec3f(0.3306f, 4.3356f, 0.0f), vec3f(0.030625f, 0.011236f, 0.0f));
+const DISPERSION_CORUNDUM = DispersionSellmeier(
+    0.0f,
+    vec3f(1.4313493f, 0.65054713f, 5.3414021f),
+    vec3f(0.0052799261f, 0.0142382647f, 325.017834f),
+);
+const DISPERSION_QUARTZ = DispersionSellmeier(
+    0.28604141f,
+    vec3f(1.07044083f, 1.10202242f, 0.0f),
+    vec3f(0.0100585997f, 100.0f, 0.0f),
+);
+// N-BK7, the usual optical crown.
+const DISPERSION_CROWN_GLASS = DispersionSellmeier(
+    0.0f,
+    vec3f(1.03961212f, 0.231792344f, 1.01046945f),
+    vec3f(0.00600069867f, 0.0200179144f, 103.560653f),
+);
+const DISPERSION_CUBIC_ZIRCONIA = DispersionSellmeier(
+    0.0f,
+    vec3f(1.347091f, 2.117788f, 9.452943f),
+    vec3f(0.00391162685f, 0.0278018941f, 591.490125f),
+);
+
+// Fraunhofer's lines, in nm. Gemmologists measure dispersion as n_G - n_B, opticians as V_d = (n_d - 1) / (n_F - n_C).
+const DISPERSION_LINE_B: f32 = 686.7f;
+const DISPERSION_LINE_C: f32 = 656.3f;
+// d: helium, at which an index without a wavelength is given.
+const DISPERSION_LINE_D: f32 = 587.6f;
+const DISPERSION_LINE_F: f32 = 486.1f;
+const DISPERSION_LINE_G: f32 = 430.8f;
+
+// Wavelengths in nm that stand for the channels where three are traced: the centroids of linear sRGB's colour matching
+// functions (CIE 1931, 2 degrees) under D65, each over its main positive lobe, to 1 nm. A test computes them.
+const DISPERSION_RED: f32 = 609.0f;
+const DISPERSION_GREEN: f32 = 539.0f;
+const DISPERSION_BLUE: f32 = 453.0f;
+
+// The paper's two further channels as frequencies over its reference, red: eq. (12)'s lambda / lambda_0, above 1. A ratio of
+// wavelengths would turn the order of the colours round.
+const DISPERSION_PAPER_GREEN: f32 = DISPERSION_RED / DISPERSION_GREEN;
+const DISPERSION_PAPER_BLUE: f32 = DISPERSION_RED / DISPERSION_BLUE;
+
+// The paper's small number. Measured in f32 over refractions out of a stone, at n cos(angle of refraction) of 0.1 and more, the 99th
+// percentile of eq. (11)'s error is 2.3e-7 / epsilon of noise and 3.5 epsilon of truncation: 1.2e-3 where they meet, from 2e-4 to 3e-4.
+const DISPERSION_PAPER_EPSILON: f32 = 2e-4f;
+
+// Chords below 2^-20, here squared, are noise: each end is a unit vector that is off by about 2^-24.
+const DISPERSION_PAPER_CHORD: f32 = 9.094947017729282e-13f;
+
+// Least n cos(angle of refraction) by which a gradient is divided. Its square moves by about 2 |b| offset when the index does,
+// b = (slope / n) sin^2 - c dc (0.1 or so out of diamond). For diamond's blue, offset 0.02, that is (1/16)^2: nearer to the critical
+// angle such a wavelength may be totally reflected, and a first derivative, which runs to infinity, describes nothing.
+const DISPERSION_CRITICAL: f32 = 0.0625f;
+
+// Index of refraction by Sellmeier's formula.
+// Returns: the index, at least 1.
+// Units: wavelength in nm, in vacuum.
+// Domain: wavelength in [380, 780]; strengths in [0, 10], each resonance up to 0.05 or from 50 on (µm^2), constant in [0, 2].
+// Outside: the same formula while no resonance is met; infinite or not a number where wavelength^2 is a resonance.
+// Accuracy: lavapipe 6 ulp; portable 16 ulp
+fn dispersion_sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
+    let micrometres = wavelength * 0.001f;
+    let squared = micrometres * micrometres;
+    let terms = squared / (squared - material.resonances);
+    return sqrt(max(1.0f + material.constant + dot(material.strengths, terms), 1.0f));
+}
+
+// Index of refraction by Cauchy's formula, a + b / w^2 + c / w^4, enough for visible light far from any resonance.
+// Returns: the index.
+// Units: wavelength in nm; coefficients (a, b, c) in 1, µm^2, µm^4.
+// Domain: wavelength in [380, 780], a in [1, 4], b in [0, 0.1], c in [0, 0.01].
+// Outside: the same formula, while the wavelength is in [1e-3, 1e9].
+// Accuracy: lavapipe 6 ulp; portable 10 ulp
+fn dispersion_cauchy(coefficients: vec3f, wavelength: f32) -> f32 {
+    let micrometres = wavelength * 0.001f;
+    let squared = micrometres * micrometres;
+    return coefficients.x + (coefficients.y + coefficients.z / squared) / squared;
+}
+
+// Index of refraction as glTF has it (KHR_materials_dispersion): Cauchy's first two terms, from the index at the d line and
+// Abbe's number V_d = 20 / dispersion. At that
+// line's wavelength it gives the index but for 2e-4 (n_d - 1) / V_d.
+// Returns: the index, at least 1.
+// Units: wavelength in nm; `dispersion` is glTF's, 20 / V_d.
+// Domain: wavelength in [380, 780], index in [1, 4], dispersion in [0, 64]; 0 is none: the index at every wavelength.
+// Outside: the same formula, while the wavelength is in [1e-3, 1e9].
+// Accuracy: lavapipe 2 ulp + 4 backward; portable 4 ulp + 8 backward
+fn dispersion_abbe(index: f32, dispersion: f32, wavelength: f32) -> f32 {
+    let spread = (index - 1.0f) * dispersion / 20.0f;
+    return max(index + spread * (523655.0f / (wavelength * wavelength) - 1.5168f), 1.0f);
+}
+
+// Abbe's number V_d from the indices at Fraunhofer's lines; glTF's dispersion is 20 / V_d.
+// Returns: (n_d - 1) / (n_F - n_C).
+// Units: none.
+// Domain: indices in [1, 4]; where n_F - n_C < 1e-12, no dispersion, the quotient by 1e-12, in effect infinite.
+// Outside: the same quotient.
+// Accuracy: lavapipe 1.5 ulp; portable 4 ulp
+fn dispersion_abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
+    return (index_d - 1.0f) / max(index_f - index_c, 1e-12f);
+}
+
+// The gradient after a ray enters the gem: dispersion_refract with no gradient before and a slope of 1, for less work.
+// With t the tangential part of the ray, c = -n . r and root = sqrt(m + c^2) = n cos(angle of refraction), it is
+// -(root t + |t|^2 normal) / (n^2 root). Its length is tan(angle of refraction) / n.
+// Returns: d(refracted direction) / d(relative_index), perpendicular to the refracted ray; 0 under total internal reflection.
+// Units: none; unit vectors and a ratio, index_gem / index_outside.
+// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4].
+// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
+// Accuracy: lavapipe 8 ulp + 6 backward; portable 16 ulp + 12 backward
+fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec3f {
+    let cosine = max(-dot(normal, direction), 0.0f);
+    let radicand = (relative_index - 1.0f) * (relative_index + 1.0f) + cosine * cosine;
+    if (radicand < 0.0f) {
+        return vec3f(0.0f);
+    }
+    let root = sqrt(radicand);
+    let tangent = direction + cosine * normal;
+    let bent = root * tangent + dot(tangent, tangent) * normal;
+    return bent / (-relative_index * relative_index * max(root, DISPERSION_CRITICAL));
+}
+
+// The gradient after a refraction: the derivative of refraction.wgsl's direction, by either branch. With the symbols above,
+// dc = -normal . gradient and b = (slope / n) |t|^2 + c dc, it is (gradient + dc normal - (slope / n) t - b / root normal) / n. Near the
+// critical angle root -> 0; the whole is held at root / DISPERSION_CRITICAL of itself there, which keeps its direction and ends finite.
+// Returns: d(direction) / d(index of the gem), perpendicular to the new direction, at most 17 / n (|gradient| + |slope| / n) long;
+//   under total internal reflection the gradient reflected.
+// Units: none; unit vectors and ratios. `relative_index_slope` is d(relative_index) / d(index of the gem): 1 / index_outside on the way in,
+//   1 in air; -relative_index / index_gem on the way out, -1 / index_gem^2 into air.
+// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4], gradient . direction = 0,
+//   |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40, 1] or 0.
+// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
+// Accuracy: lavapipe 12 ulp + 8 backward; portable 24 ulp + 16 backward
+fn dispersion_refract(
+    direction: vec3f,
+    gradient: vec3f,
+    normal: vec3f,
+    relative_index: f32,
+    relative_index_slope: f32,
+) -> vec3f {
+    let cosine = max(-dot(normal, direction), 0.0f);
+    let cosine_slope = -dot(normal, gradient);
+    let radicand = (relative_index - 1.0f) * (relative_index + 1.0f) + cosine * cosine;
+    if (radicand < 0.0f) {
+        return gradient + 2.0f * cosine_slope * normal;
+    }
+    let root = sqrt(radicand);
+    let tangent = direction + cosine * normal;
+    let bending = relative_index_slope / relative_index;
+    let along = gradient + cosine_slope * normal - bending * tangent;
+    let across = bending * dot(tangent, tangent) + cosine * cosine_slope;
+    return (root * along - across * normal) / (relative_index * max(root, DISPERSION_CRITICAL));
+}
+
+// The derivative of refraction as one writes it from eq. (6), with eta = 1 / n. Kept to be compared with.
+// Returns: the gradient after refraction.
+// Units: as dispersion_refract.
+// Domain: as dispersion_refract, where a ray is refracted, away from the critical angle and from relative_index = 1 at grazing incidence.
+// Outside: infinite at the critical angle, not a number under total internal reflection.
+// Accuracy: naive
+fn dispersion_refract_naive(
+    direction: vec3f,
+    gradient: vec3f,
+    normal: vec3f,
+    relative_index: f32,
+    relative_index_slope: f32,
+) -> vec3f {
+    let eta = 1.0f / relative_index;
+    let eta_slope = -relative_index_slope * eta * eta;
+    let cosine = -dot(normal, direction);
+    let cosine_slope = -dot(normal, gradient);
+    let squared_sine = 1.0f - cosine * cosine;
+    let root = sqrt(1.0f - eta * eta * squared_sine);
+    let root_slope = (eta * eta * cosine * cosine_slope - eta * eta_slope * squared_sine) / root;
+    return eta * gradient + eta_slope * direction + (eta_slope * cosine + eta * cosine_slope - root_slope) * normal;
+}
+
+// The gradient after a reflection, which is linear: no wavelength is treated unlike another.
+// Returns: the gradient reflected, g - 2 (n . g) n; either side of the normal serves.
+// Units: any; `normal` is a unit vector.
+// Domain: |normal| = 1, |gradient| up to 1e37.
+// Outside: for other lengths of the normal the same linear map, which then is no reflection.
+// Accuracy: lavapipe 6 ulp; portable 6 ulp
+fn dispersion_reflect(gradient: vec3f, normal: vec3f) -> vec3f {
+    return gradient - 2.0f * dot(normal, gradient) * normal;
+}
+
+// The direction at another wavelength. Inside the stone it also serves to decide total internal reflection for each
+// wavelength: refract this direction exactly, at the wavelength's own index.
+// Returns: unit direction, normalize(direction + index_offset gradient).
+// Units: none; `index_offset` is the index at that wavelength less the index at which `direction` was traced.
+// Domain: |direction| = 1, gradient . direction = 0, |index_offset gradient| up to 1e18.
+// Outside: not a number where the sum is 0, which a perpendicular gradient cannot bring about.
+// Accuracy: lavapipe 3 ulp + 2 backward; portable 6 ulp + 3 backward
+fn dispersion_direction(direction: vec3f, gradient: vec3f, index_offset: f32) -> vec3f {
+    return normalize(direction + index_offset * gradient);
+}
+
+// Eq. (10): the direction in which a ray spreads as it enters, by the chord from the ray to the refracted ray. Where the two
+// coincide, at normal incidence or for equal indices, there is no dispersion, and the result is 0.
+// Returns: unit vector, off from the derivative's direction by half the angle of deviation; 0 for a chord below 2^-20.
+// Units: none; unit vectors.
+// Domain: |direction| = |refracted| = 1.
+// Outside: the same quotient.
+// Accuracy: lavapipe 3 ulp + 1 backward; portable 7 ulp + 2 backward
+fn dispersion_paper_enter(direction: vec3f, refracted: vec3f) -> vec3f {
+    let chord = refracted - direction;
+    let squared = dot(chord, chord);
+    if (squared < DISPERSION_PAPER_CHORD) {
+        return vec3f(0.0f);
+    }
+    return chord / sqrt(squared);
+}
+
+// Eq. (10) as printed.
+// Returns: unit vector.
+// Units: none; unit vectors.
+// Domain: |direction| = |refracted| = 1, apart by 1e-3 or more.
+// Outside: noise of unit length where they nearly coincide; not a number where they do.
+// Accuracy: naive
+fn dispersion_paper_enter_naive(direction: vec3f, refracted: vec3f) -> vec3f {
+    return normalize(refracted - direction);
+}
+
+// Eq. (11) for a refraction: the ray and one turned towards the spread are both refracted, and their difference is
+// normalized. The second ray's length is restored to first order, which is all of it in f32 for epsilon up to 2^-12. The first ray chooses
+// between refraction and reflection; where the second would be totally reflected, it is taken along the surface.
+// Returns: unit vector; 0 where the difference is 0, as for a spread of 0.
+// Units: none; unit vectors and a ratio.
+// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in [1/4, 4], epsilon in [1e-4, 1e-3].
+// Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence and near relative_index = 1.
+// Accuracy: naive
+fn dispersion_paper_refract(
+    direction: vec3f,
+    spread: vec3f,
+    normal: vec3f,
+    relative_index: f32,
+    epsilon: f32,
+) -> vec3f {
+    let shifted = direction + epsilon * (spread - dot(direction, spread) * direction);
+    let cosine = -dot(normal, direction);
+    let cosine_shifted = -dot(normal, shifted);
+    let excess = (relative_index - 1.0f) * (relative_index + 1.0f);
+    let radicand = excess + cosine * cosine;
+    if (radicand < 0.0f) {
+        return dispersion_paper_reflect(direction, spread, normal, epsilon);
+    }
+    let radicand_shifted = max(excess + cosine_shifted * cosine_shifted, 0.0f);
+    let refracted = (direction + (cosine - sqrt(radicand)) * normal) / relative_index;
+    let refracted_shifted = (shifted + (cosine_shifted - sqrt(radicand_shifted)) * normal) / relative_index;
+    let difference = refracted_shifted - refracted;
+    let squared = dot(difference, difference);
+    if (squared == 0.0f) {
+        return vec3f(0.0f);
+    }
+    return difference / sqrt(squared);
+}
+
+// Eq. (11) for a refraction as printed, with the built-in `refract` for eq. (6).
+// Returns: unit vector.
+// Units: as dispersion_paper_refract.
+// Domain: as dispersion_paper_refract, with spread . direction = 0 and both rays refracted.
+// Outside: not a number for a spread of 0; where one ray is totally reflected, the other's direction; where both are, not a number.
+// Accuracy: naive
+fn dispersion_paper_refract_naive(
+    direction: vec3f,
+    spread: vec3f,
+    normal: vec3f,
+    relative_index: f32,
+    epsilon: f32,
+) -> vec3f {
+    let eta = 1.0f / relative_index;
+    return normalize(refract(direction + epsilon * spread, normal, eta) - refract(direction, normal, eta));
+}
+
+// Eq. (11) for a reflection. Reflection is linear: but for noise and for the spread's part along the ray this is
+// dispersion_reflect of the spread.
+// Returns: unit vector; 0 where the difference is 0, as for a spread of 0.
+// Units: none; unit vectors.
+// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, epsilon in [1e-4, 1e-3].
+// Outside: finite.
+// Accuracy: naive
+fn dispersion_paper_reflect(direction: vec3f, spread: vec3f, normal: vec3f, epsilon: f32) -> vec3f {
+    let shifted = direction + epsilon * (spread - dot(direction, spread) * direction);
+    let difference = reflect(shifted, normal) - reflect(direction, normal);
+    let squared = dot(difference, difference);
+    if (squared == 0.0f) {
+        return vec3f(0.0f);
+    }
+    return difference / sqrt(squared);
+}
+
+// Eq. (12): the direction at another frequency. It holds no index of refraction, and a length, the path through the stone: the
+// same stone modelled in other units disperses otherwise.
+// Returns: unit direction. `strength` is ours: 1 is the paper's, other values are fitted to a material and to the size of a model.
+// Units: `distance` in the model's units, from where the ray entered to where it leaves; `frequency_ratio` is lambda / lambda_0 in the paper, which are
+//   frequencies: wavelength_0 / wavelength.
+// Domain: |direction| = 1, |spread| = 1 or 0, |spread . direction| <= 3/4, |strength distance (frequency_ratio - 1)| up to 1e18.
+// Outside: not a number where the sum is 0.
+// Accuracy: naive
+fn dispersion_paper_direction(
+    direction: vec3f,
+    spread: vec3f,
+    distance: f32,
+    frequency_ratio: f32,
+    strength: f32,
+) -> vec3f {
+    return normalize(direction + strength * distance * (frequency_ratio - 1.0f) * spread);
+}
