@@ -1,7 +1,9 @@
 //! Every formula of the cookbook, one file a module: WGSL function, mirror and oracle bound by name, with the domain,
 //! its edges, invariants and hard cases.
 
+mod absorption;
 mod closest_point;
+mod convex_trace;
 mod environment;
 mod fresnel;
 mod proxy_geometry;
@@ -16,7 +18,9 @@ pub fn all() -> &'static [Formula] {
     static FORMULAS: OnceLock<Vec<Formula>> = OnceLock::new();
     FORMULAS.get_or_init(|| {
         [
+            absorption::formulas(),
             closest_point::formulas(),
+            convex_trace::formulas(),
             environment::formulas(),
             fresnel::formulas(),
             proxy_geometry::formulas(),
