@@ -38,8 +38,16 @@ macro_rules! recipes {
 }
 
 /// Every module, in the order of their names.
-pub const MODULES: &[Module] =
-    modules!["absorption", "closest_point", "convex_trace", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
+pub const MODULES: &[Module] = modules![
+    "absorption",
+    "closest_point",
+    "convex_trace",
+    "environment",
+    "fresnel",
+    "proxy_geometry",
+    "refraction",
+    "srgb"
+];
 
 /// Every recipe, in the order of their names.
 pub const RECIPES: &[Recipe] = recipes!["display", "gem"];

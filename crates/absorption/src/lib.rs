@@ -6,6 +6,7 @@
 pub mod oracle;
 
 use glam::Vec3;
+use std::f32::consts::LN_2;
 
 /// Colours below this count as this: 2^-126.
 pub const ABSORPTION_DARKEST: f32 = 1.175_494_350_822_287_5e-38;
@@ -23,7 +24,7 @@ pub fn optical_depth(transmittance: f32) -> f32 {
     let s = (mantissa - 1.0) / (mantissa + 1.0);
     let square = s * s;
     let series = 1.0 + square * (0.333_333_34 + square * (0.2 + square * 0.145_95));
-    -exponent as f32 * 0.693_147_2 - 2.0 * s * series
+    -exponent as f32 * LN_2 - 2.0 * s * series
 }
 
 /// Absorption coefficient of a medium in which white light has become `attenuation_color` after `attenuation_distance`.

@@ -29,14 +29,7 @@ pub fn start(limit: f32) -> ConvexTraceHit {
 }
 
 /// Takes one plane into account.
-pub fn step(
-    hit: ConvexTraceHit,
-    position: Vec3,
-    direction: Vec3,
-    plane: Vec4,
-    face: u32,
-    left: u32,
-) -> ConvexTraceHit {
+pub fn step(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, face: u32, left: u32) -> ConvexTraceHit {
     let height = plane.w - plane.xyz().dot(position);
     let slope = plane.xyz().dot(direction);
     if slope > 0.0 && height * hit.denominator < hit.numerator * slope && face != left {

@@ -44,10 +44,10 @@ pub fn step(
     }
 }
 
-/// Keeps the smaller of two distances, of those above a ten-thousandth.
+/// Keeps the smaller of two distances, of those above a ten-thousandth as f32 rounds it.
 pub fn step_naive(hit: ConvexTraceHit, position: DVec3, direction: DVec3, plane: DVec4, face: u32) -> ConvexTraceHit {
     let distance = height(plane, position) / slope(plane, direction);
-    if distance > 1e-4 && distance < hit.numerator / hit.denominator {
+    if distance > f64::from(1e-4f32) && distance < hit.numerator / hit.denominator {
         ConvexTraceHit { numerator: distance, denominator: 1.0, face }
     } else {
         hit
