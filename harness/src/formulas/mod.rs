@@ -1,8 +1,10 @@
 //! Every formula of the cookbook, one file a module: WGSL function, mirror and oracle bound by name, with the domain,
 //! its edges, invariants and hard cases.
 
+mod absorption;
 mod closest_point;
 mod dispersion;
+mod convex_trace;
 mod environment;
 mod fresnel;
 mod proxy_geometry;
@@ -17,8 +19,10 @@ pub fn all() -> &'static [Formula] {
     static FORMULAS: OnceLock<Vec<Formula>> = OnceLock::new();
     FORMULAS.get_or_init(|| {
         [
+            absorption::formulas(),
             closest_point::formulas(),
             dispersion::formulas(),
+            convex_trace::formulas(),
             environment::formulas(),
             fresnel::formulas(),
             proxy_geometry::formulas(),

@@ -1,0 +1,292 @@
+//! `wgsl/convex_trace.wgsl`.
+
+use super::near;
+use crate::formula::{Formula, formula};
+use crate::mirror_struct;
+use crate::property::draws::Draws;
+use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
+use lapidary_convex_trace::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
+
+mirror_struct!(lapidary_convex_trace, ConvexTraceHit { numerator, denominator, face });
+
+const M: &str = "convex_trace";
+
+/// The rounding unit of f32.
+const ULP: f64 = 1.0 / (1 << 23) as f64;
+
+type Step = (ConvexTraceHit, Vec3, Vec3, Vec4, u32, u32);
+
+/// Sizes of stones: 1 in half of the cases, else from 1e-4 to 1e4.
+fn size(draws: &mut Draws<'_>) -> f32 {
+    if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-13, 13) }
+}
+
+/// A plane, a start on its inner side, on it or a few ulp outside, and a direction: towards it, away, parallel to the last ulp.
+fn start_and_plane(draws: &mut Draws<'_>, size: f32) -> (Vec3, Vec3, Vec4) {
+    let normal = draws.unit_vector();
+    let axis = normal.as_dvec3().normalize();
+    let tangent = draws.perpendicular(axis);
+    let slope = match draws.below(6) {
+        0 => f64::from(draws.magnitude(-30, -1)),
+        1 => 0.0,
+        2 => 1.0,
+        _ => f64::from(draws.between(0.0, 1.0)),
+    };
+    let slope = if draws.below(4) == 0 { -slope } else { slope };
+    let direction = (((1.0 - slope) * (1.0 + slope)).max(0.0).sqrt() * tangent + slope * axis).as_vec3();
+    let position = if draws.below(4) == 0 { Vec3::ZERO } else { size * draws.in_cube() };
+    let through = axis.dot(position.as_dvec3()) as f32;
+    let offset = match draws.below(6) {
+        0 => draws.nudged(through, 4),
+        1 => through + size * draws.magnitude(-22, -1),
+        _ => through + size * draws.between(0.0, 2.0),
+    };
+    (position, direction, normal.extend(offset))
+}
+
+/// A step: no hit so far, one that is far nearer or farther, one at nearly the same distance, one at the very same.
+fn step(draws: &mut Draws<'_>) -> Step {
+    let size = size(draws);
+    let (position, direction, plane) = start_and_plane(draws, size);
+    let face = draws.below(73);
+    let left = if draws.below(4) == 0 { face } else { draws.pick(&[CONVEX_TRACE_NONE, 73, 74]) };
+    let height = plane.w - plane.xyz().dot(position);
+    let slope = plane.xyz().dot(direction);
+    let before = 100 + draws.below(8);
+    let hit = match draws.below(6) {
+        0 => mirror::start(CONVEX_TRACE_FAR),
+        1 => mirror::start(size * draws.magnitude(-2, 2)),
+        // The same distance, as another fraction.
+        2 if slope > 1e-6 => {
+            let factor = draws.pick(&[1.0, 0.5, 0.25]);
+            ConvexTraceHit { numerator: height * factor, denominator: slope * factor, face: before }
+        }
+        3 if slope > 1e-6 => {
+            let factor = draws.between(0.5, 1.0);
+            let denominator = slope * factor;
+            ConvexTraceHit { numerator: draws.nudged(height * factor, 8), denominator, face: before }
+        }
+        4 => ConvexTraceHit { numerator: -size * draws.magnitude(-24, -20), denominator: 0.5, face: before },
+        _ => ConvexTraceHit {
+            numerator: size * draws.between(0.0, 2.0),
+            denominator: draws.between(0.01, 1.0),
+            face: before,
+        },
+    };
+    (hit, position, direction, plane, face, left)
+}
+
+/// Height and slope of the plane in f64, and whether f32 has them without rounding, whatever the order: one component of the normal
+/// counts.
+fn height_and_slope((_, position, direction, plane, ..): Step) -> (f64, f64, bool) {
+    let (normal, position, direction) = (plane.xyz().as_dvec3(), position.as_dvec3(), direction.as_dvec3());
+    let height = f64::from(plane.w) - normal.dot(position);
+    let along_an_axis = plane.xyz().abs().max_element() == 1.0;
+    (height, normal.dot(direction), along_an_axis && f64::from(height as f32) == height)
+}
+
+/// Whether a product is exact in f32.
+fn product(a: f64, b: f64) -> Option<f64> {
+    Some(a * b).filter(|product| f64::from(*product as f32) == *product)
+}
+
+/// The nearer hit of a plane in f32 arithmetic is this plane's or the one so far; told where f32 does not round.
+fn exact_choice(arguments: Step, result: ConvexTraceHit) -> Result<(), String> {
+    let (hit, _, _, _, face, left) = arguments;
+    let (height, slope, exact) = height_and_slope(arguments);
+    let products = (product(height, f64::from(hit.denominator)), product(f64::from(hit.numerator), slope));
+    let (true, (Some(this), Some(other))) = (exact, products) else { return Ok(()) };
+    let wanted = if slope > 0.0 && this < other && face != left { face } else { hit.face };
+    if result.face == wanted { Ok(()) } else { Err(format!("face {} is met, not {wanted}", result.face)) }
+}
+
+fn step_formula() -> Formula {
+    let far = mirror::start(CONVEX_TRACE_FAR);
+    let none = CONVEX_TRACE_NONE;
+    let right = |normal: Vec3, offset: f32| normal.extend(offset);
+    let oblique = Vec3::new(0.6, 0.8, 0.0);
+    // A point 0.25 under the plane x = 1 of a stone of size 1, once in its own coordinates and once 1e4 units away.
+    let (here, there) = (Vec3::new(0.75, 0.1, -0.2), Vec3::new(1e4, 1e4, 1e4));
+    formula(M, "convex_trace_step", mirror::step, oracle::step, step)
+        .edge("nothing hit so far", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.numerator == CONVEX_TRACE_FAR)
+        .edge("a limit", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.numerator < 100.0)
+        .edge("exactly parallel", |a: Step| height_and_slope(a).1 == 0.0 && a.0.face == CONVEX_TRACE_NONE)
+        .edge("exactly parallel, outside by rounding", |a: Step| {
+            let (height, slope, exact) = height_and_slope(a);
+            exact && slope == 0.0 && height < 0.0
+        })
+        .edge("parallel to the last ulp", |a: Step| (1e-12..1e-7).contains(&height_and_slope(a).1))
+        .edge("away from the plane", |a: Step| height_and_slope(a).1 < -0.1)
+        .edge("outside by rounding, going out", |a: Step| {
+            let (height, slope, _) = height_and_slope(a);
+            height < 0.0 && slope > 0.1
+        })
+        .edge("on the plane, going out", |a: Step| {
+            let (height, slope, exact) = height_and_slope(a);
+            exact && height == 0.0 && slope > 0.1
+        })
+        .edge("the face that was left, at grazing incidence", |a: Step| {
+            a.4 == a.5 && (1e-12..1e-7).contains(&height_and_slope(a).1)
+        })
+        .edge("a tie", |a: Step| {
+            let (height, slope, exact) = height_and_slope(a);
+            let distance = height / slope;
+            exact && slope > 0.0 && distance == f64::from(a.0.numerator) / f64::from(a.0.denominator) && a.4 != a.5
+        })
+        .edge("a stone of size 1e-4", |(_, position, ..)| (1e-5..2e-4).contains(&position.length()))
+        .edge("a stone of size 1e4", |(_, position, ..)| (5e3..5e4).contains(&position.length()))
+        .invariant("it is this plane's hit or the one so far", |arguments: Step, result: ConvexTraceHit| {
+            let (hit, position, _, plane, face, left) = arguments;
+            if result.face != face || face == left {
+                return if result == hit { Ok(()) } else { Err(format!("it is {result:?}")) };
+            }
+            let (height, slope, _) = height_and_slope(arguments);
+            if result.denominator <= 0.0 {
+                return Err(format!("the denominator is {:e}", result.denominator));
+            }
+            // Three products and three sums, each off by up to a whole last place.
+            let magnitude = plane.xyz().abs().dot(position.abs()) + plane.w.abs();
+            near("denominator", f64::from(result.denominator), slope, 4.0 * ULP)?;
+            near("numerator", f64::from(result.numerator), height, 4.0 * ULP * f64::from(magnitude))
+        })
+        .invariant("the nearer plane, at a tie the one so far, parallel planes never", exact_choice)
+        .hard_case_with(
+            "a stone of size 1e-4",
+            (far, Vec3::ZERO, Vec3::X, right(Vec3::X, 5e-5), 7, none),
+            (&[f64::from(5e-5f32), 1.0, 7.0], 1e-11),
+            ("convex_trace_step_naive", (far, Vec3::ZERO, Vec3::X, right(Vec3::X, 5e-5), 7), 1e30),
+        )
+        .hard_case_with(
+            "a facet 1e-5 away, beside an edge",
+            (far, Vec3::new(1.0 - 1e-5, 0.0, 0.0), Vec3::X, right(Vec3::X, 1.0), 7, none),
+            (&[1.0 - f64::from(1.0f32 - 1e-5), 1.0, 7.0], 1e-12),
+            ("convex_trace_step_naive", (far, Vec3::new(1.0 - 1e-5, 0.0, 0.0), Vec3::X, right(Vec3::X, 1.0), 7), 1e30),
+        )
+        .hard_case_with(
+            "one ulp outside of a facet, going out",
+            (far, Vec3::X * 1.0f32.next_up(), oblique, right(Vec3::X, 1.0), 7, none),
+            (&[1.0 - f64::from(1.0f32.next_up()), f64::from(0.6f32), 7.0], 1e-12),
+            ("convex_trace_step_naive", (far, Vec3::X * 1.0f32.next_up(), oblique, right(Vec3::X, 1.0), 7), 1e30),
+        )
+        .hard_case_with(
+            "grazing incidence: one ulp inside of the face that was left, turned back to it by rounding",
+            (far, Vec3::X * 1.0f32.next_down(), Vec3::new(1e-6, 1.0, 0.0), right(Vec3::X, 1.0), 7, 7),
+            (&[f64::from(far.numerator), 1.0, f64::from(none)], 0.0),
+            (
+                "convex_trace_step_naive",
+                (far, Vec3::X * 1.0f32.next_down(), Vec3::new(1e-6, 1.0, 0.0), right(Vec3::X, 1.0), 7),
+                1e9,
+            ),
+        )
+        .hard_case_with(
+            "1e4 units from the origin, where the stone's own coordinates keep their digits",
+            (far, here, Vec3::X, right(Vec3::X, 1.0), 7, none),
+            (&[0.25, 1.0, 7.0], 1e-7),
+            ("convex_trace_step_naive", (far, here + there, Vec3::X, right(Vec3::X, 10_001.000_3), 7), 2e-4),
+        )
+        .build()
+}
+
+/// A plane well ahead or behind, or about the epsilon from the origin, where its distance is exact to a thousandth; a hit so far that is
+/// nearer, farther, or the same.
+fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32) {
+    let face = draws.below(73);
+    if draws.below(4) == 0 {
+        // Along the normal, which is an axis: no rounding.
+        let distance = draws.pick(&[1e-4, 0.99e-4, 0.995e-4, 1.005e-4, 1.01e-4, 0.5]);
+        let numerator = distance * draws.pick(&[1.0, 2.0, 4.0]);
+        let denominator = draws.pick(&[1.0, 2.0]);
+        let hit = ConvexTraceHit { numerator, denominator, face: 100 };
+        return (hit, Vec3::ZERO, Vec3::Z, Vec3::Z.extend(distance), face);
+    }
+    let (normal, position) = (draws.unit_vector(), 0.5 * draws.in_cube());
+    let axis = normal.as_dvec3().normalize();
+    let slope = f64::from(draws.between(0.1, 1.0)) * if draws.below(4) == 0 { -1.0 } else { 1.0 };
+    let direction = ((1.0 - slope * slope).sqrt() * draws.perpendicular(axis) + slope * axis).as_vec3();
+    let distance = draws.between(0.02, 2.0);
+    let through: DVec3 = position.as_dvec3() + f64::from(distance) * direction.as_dvec3();
+    let plane = normal.extend(axis.dot(through) as f32);
+    let denominator = draws.between(0.1, 1.0);
+    let hit = match draws.below(4) {
+        0 => mirror::start(CONVEX_TRACE_FAR),
+        _ => {
+            let factor = draws.pick(&[0.5, 0.99, 1.01, 2.0]);
+            ConvexTraceHit { numerator: distance * factor * denominator, denominator, face: 100 }
+        }
+    };
+    (hit, position, direction, plane, face)
+}
+
+/// A ray to a plane and the distance there, of every slope from 1e-6 on; or a start on a plane as interpolation leaves it, and no way to go.
+fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
+    let size = size(draws);
+    let (position, direction, plane) = start_and_plane(draws, size);
+    let (height, slope) = (plane.w - plane.xyz().dot(position), plane.xyz().dot(direction));
+    let reached = slope > 1e-6 && height / slope < 4.0 * size;
+    let distance = if reached { (height / slope).max(0.0) } else { 0.0 };
+    (position, direction, distance, plane)
+}
+
+pub(super) fn formulas() -> Vec<Formula> {
+    let hit = |draws: &mut Draws<'_>| {
+        let numerator = match draws.below(6) {
+            0 => draws.pick(&[0.0, CONVEX_TRACE_FAR, 1.0]),
+            1 => -draws.magnitude(-40, -10),
+            2 => draws.magnitude(-60, 20),
+            _ => draws.between(0.0, 2.0),
+        };
+        let denominator = match draws.below(3) {
+            0 if numerator < CONVEX_TRACE_FAR => draws.magnitude(-60, -1),
+            1 => 1.0,
+            _ => draws.between(0.01, 1.0),
+        };
+        (ConvexTraceHit { numerator, denominator, face: draws.below(73) },)
+    };
+    // From the far side, at 30 degrees to the plane's normal.
+    let (across, direction, way) = (Vec3::Z * -1e4, Vec3::new(0.5, 0.0, 0.866_025_4), 11_547.813f32);
+    vec![
+        formula(M, "convex_trace_start", mirror::start, oracle::start, |draws| {
+            (match draws.below(4) {
+                0 => draws.pick(&[CONVEX_TRACE_FAR, 0.0, CONVEX_TRACE_FAR.next_up(), 3e38]),
+                1 => CONVEX_TRACE_FAR * draws.between(0.9, 1.1),
+                _ => draws.magnitude(-40, 40),
+            },)
+        })
+        .edge("no limit", |(limit,)| limit == CONVEX_TRACE_FAR)
+        .edge("beyond the farthest", |(limit,)| limit > CONVEX_TRACE_FAR)
+        .edge("no way to go", |(limit,)| limit == 0.0)
+        .build(),
+        step_formula(),
+        formula(M, "convex_trace_step_naive", mirror::step_naive, oracle::step_naive, benign_step).benign(1e-3).build(),
+        formula(M, "convex_trace_distance", mirror::distance, oracle::distance, hit)
+            .edge("nothing hit", |(hit,)| hit.numerator == CONVEX_TRACE_FAR && hit.denominator == 1.0)
+            .edge("outside by rounding", |(hit,)| hit.numerator < 0.0)
+            .edge("nearly parallel", |(hit,)| hit.denominator < 1e-15)
+            .build(),
+        formula(M, "convex_trace_point", mirror::point, oracle::point, way_to_plane)
+            .edge("no way to go", |(_, _, distance, _)| distance == 0.0)
+            .edge("nearly parallel", |(_, direction, distance, plane)| {
+                distance > 0.0 && plane.xyz().dot(direction) < 1e-4
+            })
+            .edge("a stone of size 1e-4", |(position, ..)| (1e-5..2e-4).contains(&position.length()))
+            .edge("a stone of size 1e4", |(position, ..)| (5e3..5e4).contains(&position.length()))
+            .invariant("it lies on the plane", |(_, _, _, plane), point: Vec3| {
+                let height = plane.xyz().as_dvec3().dot(point.as_dvec3()) - f64::from(plane.w);
+                // The height's own rounding: three products and three sums of the point's size.
+                let magnitude = f64::from(plane.xyz().abs().dot(point.abs()) + plane.w.abs());
+                near("height", height, 0.0, 4.0 * ULP * magnitude)
+            })
+            .hard_case_with(
+                "through a stone of size 1e4 to a plane near its centre",
+                (across, direction, way, Vec3::Z.extend(0.7)),
+                (&[0.5 * f64::from(way), 0.0, f64::from(0.7f32)], 1e-9),
+                ("convex_trace_point_naive", (across, direction, way), 5e-4),
+            )
+            .build(),
+        formula(M, "convex_trace_point_naive", mirror::point_naive, oracle::point_naive, |draws| {
+            (draws.in_cube(), draws.unit_vector(), draws.between(0.5, 2.0))
+        })
+        .benign(1e-6)
+        .build(),
+    ]
+}
