@@ -39,7 +39,7 @@ macro_rules! recipes {
 
 /// Every module, in the order of their names.
 pub const MODULES: &[Module] =
-    modules!["closest_point", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
+    modules!["bvh_trace", "closest_point", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["display", "gem"];
+pub const RECIPES: &[Recipe] = recipes!["bvh_trace", "display", "gem"];

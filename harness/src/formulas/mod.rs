@@ -1,6 +1,7 @@
 //! Every formula of the cookbook, one file a module: WGSL function, mirror and oracle bound by name, with the domain,
 //! its edges, invariants and hard cases.
 
+mod bvh_trace;
 mod closest_point;
 mod environment;
 mod fresnel;
@@ -16,6 +17,7 @@ pub fn all() -> &'static [Formula] {
     static FORMULAS: OnceLock<Vec<Formula>> = OnceLock::new();
     FORMULAS.get_or_init(|| {
         [
+            bvh_trace::formulas(),
             closest_point::formulas(),
             environment::formulas(),
             fresnel::formulas(),
