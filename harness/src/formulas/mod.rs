@@ -2,6 +2,7 @@
 //! its edges, invariants and hard cases.
 
 mod absorption;
+mod bvh_trace;
 mod closest_point;
 mod dispersion;
 mod convex_trace;
@@ -20,6 +21,7 @@ pub fn all() -> &'static [Formula] {
     FORMULAS.get_or_init(|| {
         [
             absorption::formulas(),
+            bvh_trace::formulas(),
             closest_point::formulas(),
             dispersion::formulas(),
             convex_trace::formulas(),

@@ -1,0 +1,193 @@
+//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding
+//! volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
+//!
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. [`traversal`]
+//! mirrors the kernel of `wgsl/recipes/bvh_trace.wgsl`.
+
+pub mod oracle;
+pub mod traversal;
+
+#[cfg(test)]
+mod tests;
+
+use glam::{Vec2, Vec3};
+
+/// What a component of the direction is replaced by if it is smaller, 2⁻²⁴.
+pub const BVH_TRACE_SMALLEST: f32 = 5.9604644775390625e-8;
+
+/// The margin relative to the largest distance of the mesh along an axis, 2⁻¹⁸.
+pub const BVH_TRACE_MARGIN_REACH: f32 = 3.814697265625e-6;
+/// The margin relative to the largest coordinate of the origin, 2⁻²¹.
+pub const BVH_TRACE_MARGIN_ORIGIN: f32 = 4.76837158203125e-7;
+
+/// The epsilon of `triangle_naive`, as one finds it.
+pub const BVH_TRACE_NAIVE_EPSILON: f32 = 1e-6;
+
+/// The triangle of a ray that has met none.
+pub const BVH_TRACE_NONE: u32 = 0xffffffff;
+
+/// What the tests of all boxes and triangles need of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceRay {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub direction: Vec3,
+    /// 1 / direction, finite.
+    pub reciprocal: Vec3,
+    /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
+    pub shear: Vec3,
+    /// Which component that is.
+    pub axis: u32,
+    /// By how far along an axis the ray may be off, the origin's own rounding included.
+    pub margin: f32,
+}
+
+/// A ray against a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceBox {
+    /// Distance at which the ray enters the box; 0 from inside.
+    pub entry: f32,
+    /// Whether it meets the box before the nearest hit.
+    pub hit: bool,
+}
+
+/// What a ray has met so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceHit {
+    /// Along the ray.
+    pub distance: f32,
+    /// Weights of the second and the third corner.
+    pub barycentrics: Vec2,
+    /// [`BVH_TRACE_NONE`] if there is none.
+    pub triangle: u32,
+}
+
+/// A vector's components in a cyclic order that brings the one numbered `axis` to z.
+pub fn turn(vector: Vec3, axis: u32) -> Vec3 {
+    let x_or_y =
+        if axis == 0 { Vec3::new(vector.y, vector.z, vector.x) } else { Vec3::new(vector.z, vector.x, vector.y) };
+    if axis < 2 { x_or_y } else { vector }
+}
+
+/// What the tests of all boxes and triangles need of a ray, computed once.
+pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceRay {
+    let toward = Vec3::select(direction.cmpge(Vec3::ZERO), Vec3::ONE, Vec3::NEG_ONE);
+    let reciprocal = toward / direction.abs().max(Vec3::splat(BVH_TRACE_SMALLEST));
+    let size = direction.abs();
+    let largest = size.x.max(size.y.max(size.z));
+    let y_or_x = if size.y == largest { 1 } else { 0 };
+    let axis = if size.z == largest { 2 } else { y_or_x };
+    let turned = turn(direction, axis);
+    let shear = Vec3::new(turned.x, turned.y, 1.0) / turned.z;
+    let reach = (lower - origin).abs().max((upper - origin).abs());
+    let place = origin.abs();
+    let margin = BVH_TRACE_MARGIN_REACH * reach.x.max(reach.y.max(reach.z))
+        + BVH_TRACE_MARGIN_ORIGIN * place.x.max(place.y.max(place.z));
+    BvhTraceRay { origin, direction, reciprocal, shear, axis, margin }
+}
+
+/// Whether a ray meets a box, made larger by the ray's margin on all sides, at a distance in [0, nearest].
+pub fn r#box(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> BvhTraceBox {
+    let first = (lower - ray.origin - ray.margin) * ray.reciprocal;
+    let second = (upper - ray.origin + ray.margin) * ray.reciprocal;
+    let enter = first.min(second);
+    let leave = first.max(second);
+    let entry = enter.x.max(enter.y).max(enter.z.max(0.0));
+    let exit = leave.x.min(leave.y).min(leave.z.min(nearest));
+    BvhTraceBox { entry, hit: entry <= exit }
+}
+
+/// The slab test as one finds it.
+pub fn box_naive(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> BvhTraceBox {
+    let inverse = 1.0 / ray.direction;
+    let first = (lower - ray.origin) * inverse;
+    let second = (upper - ray.origin) * inverse;
+    let enter = first.min(second);
+    let leave = first.max(second);
+    let entry = enter.x.max(enter.y).max(enter.z.max(0.0));
+    let exit = leave.x.min(leave.y).min(leave.z.min(nearest));
+    BvhTraceBox { entry, hit: entry <= exit }
+}
+
+/// What a ray has met before its first triangle: nothing up to a distance.
+pub fn start(limit: f32) -> BvhTraceHit {
+    BvhTraceHit { distance: limit, barycentrics: Vec2::ZERO, triangle: BVH_TRACE_NONE }
+}
+
+/// A position in the frame of a ray: the ray is its z axis, x and y are two of the coordinate axes.
+pub fn shear(ray: BvhTraceRay, position: Vec3) -> Vec3 {
+    let turned = turn(position - ray.origin, ray.axis);
+    (turned.truncate() - ray.shear.truncate() * turned.z).extend(turned.z * ray.shear.z)
+}
+
+/// The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that.
+pub fn triangle(
+    hit: BvhTraceHit,
+    ray: BvhTraceRay,
+    a: Vec3,
+    b: Vec3,
+    c: Vec3,
+    triangle: u32,
+    left: u32,
+) -> BvhTraceHit {
+    let p = shear(ray, a);
+    let q = shear(ray, b);
+    let r = shear(ray, c);
+    let qr = r.truncate() - q.truncate();
+    let rp = p.truncate() - r.truncate();
+    let pq = q.truncate() - p.truncate();
+    // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest
+    // component is negative.
+    let spanned = Vec3::new(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
+    let area = ray.shear.z.signum() * spanned;
+    if triangle == left || area.x + area.y + area.z <= 0.0 {
+        return hit;
+    }
+    // Distance from an edge times the edge, both measured along the axes: the largest and the sum of the components.
+    let give = ray.margin * Vec3::new(qr.x.abs() + qr.y.abs(), rp.x.abs() + rp.y.abs(), pq.x.abs() + pq.y.abs());
+    let lower = p.truncate().min(q.truncate()).min(r.truncate());
+    let upper = p.truncate().max(q.truncate()).max(r.truncate());
+    if area.cmplt(-give).any()
+        || lower.cmpgt(Vec2::splat(ray.margin)).any()
+        || upper.cmplt(Vec2::splat(-ray.margin)).any()
+    {
+        return hit;
+    }
+    let weight = area.max(Vec3::ZERO);
+    let total = weight.x + weight.y + weight.z;
+    let along = (weight.x * p.z + weight.y * q.z + weight.z * r.z) / total;
+    let distance = along.max(0.0);
+    if along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle) {
+        return hit;
+    }
+    BvhTraceHit { distance, barycentrics: Vec2::new(weight.y, weight.z) / total, triangle }
+}
+
+/// The triangle test that one finds: Möller and Trumbore's, with an epsilon.
+pub fn triangle_naive(
+    hit: BvhTraceHit,
+    ray: BvhTraceRay,
+    a: Vec3,
+    b: Vec3,
+    c: Vec3,
+    triangle: u32,
+    left: u32,
+) -> BvhTraceHit {
+    let edge_b = b - a;
+    let edge_c = c - a;
+    let across = ray.direction.cross(edge_c);
+    let determinant = -edge_b.dot(across);
+    if triangle == left || determinant < BVH_TRACE_NAIVE_EPSILON {
+        return hit;
+    }
+    let offset = a - ray.origin;
+    let around = offset.cross(edge_b);
+    let u = offset.dot(across) / determinant;
+    let v = ray.direction.dot(around) / determinant;
+    let distance = edge_c.dot(around) / determinant;
+    if u < 0.0 || v < 0.0 || u + v > 1.0 || distance < BVH_TRACE_NAIVE_EPSILON || distance > hit.distance {
+        return hit;
+    }
+    BvhTraceHit { distance, barycentrics: Vec2::new(u, v), triangle }
+}

@@ -1,0 +1,245 @@
+//! Whole meshes: no ray gets out between triangles, the hierarchy finds what the loop over all finds, and both find what f64
+//! finds.
+
+use super::*;
+use crate::traversal::{BVH_TRACE_DEPTH, TriangleFn, met, trace, trace_all, trace_with};
+use glam::{DVec3, Vec4};
+use std::collections::BTreeMap;
+
+/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+    fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let vector = DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0;
+            if (1e-2..1.0).contains(&vector.length()) {
+                return vector.normalize();
+            }
+        }
+    }
+}
+
+struct Body {
+    nodes: Vec<[Vec4; 2]>,
+    positions: Vec<Vec3>,
+    indices: Vec<u32>,
+}
+
+/// Halves the triangles along the longest side of their box, down to two in a leaf.
+fn body(positions: Vec<Vec3>, indices: &[u32]) -> Body {
+    let mut triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+    let mut nodes = vec![[Vec4::ZERO; 2]];
+    let mut open = vec![(0, 0, triangles.len())];
+    while let Some((node, start, end)) = open.pop() {
+        let part = &mut triangles[start..end];
+        let corners = part.iter().flatten().map(|index| positions[*index as usize]);
+        let (lower, upper) = corners
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lower, upper), corner| (lower.min(corner), upper.max(corner)));
+        let (count, first) = if part.len() <= 2 {
+            (part.len() as u32, start as u32)
+        } else {
+            let size = upper - lower;
+            let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+            let key = |t: &[u32; 3]| t.iter().map(|index| positions[*index as usize][axis]).sum::<f32>();
+            part.sort_by(|a, b| key(a).total_cmp(&key(b)));
+            let middle = (start + end) / 2;
+            open.push((nodes.len(), start, middle));
+            open.push((nodes.len() + 1, middle, end));
+            nodes.extend([[Vec4::ZERO; 2]; 2]);
+            (0, (nodes.len() - 2) as u32)
+        };
+        nodes[node] = [lower.extend(f32::from_bits(count)), upper.extend(f32::from_bits(first))];
+    }
+    Body { nodes, positions, indices: triangles.concat() }
+}
+
+/// An icosahedron with every triangle cut into four, `times` over, on a sphere; `radius` moves its vertices in and out.
+fn icosphere(times: u32, radius: impl Fn(DVec3) -> f64) -> Body {
+    let golden = 0.5 * (1.0 + 5f64.sqrt());
+    let mut positions = Vec::new();
+    for (a, b) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
+        positions.extend([DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)]);
+    }
+    let mut positions: Vec<DVec3> = positions.into_iter().map(DVec3::normalize).collect();
+    // The faces are the triples of vertices at the least distance from one another.
+    let near = |a: usize, b: usize| positions[a].distance(positions[b]) < 1.1;
+    let mut faces = Vec::new();
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                if near(a, b) && near(b, c) && near(c, a) {
+                    let outside = (positions[b] - positions[a]).cross(positions[c] - positions[a]).dot(positions[a]);
+                    faces.push(if outside > 0.0 { [a, b, c] } else { [a, c, b] });
+                }
+            }
+        }
+    }
+    assert_eq!(faces.len(), 20);
+    for _ in 0..times {
+        let mut middles = BTreeMap::new();
+        let mut finer = Vec::new();
+        for [a, b, c] in faces {
+            let mut middle = |a: usize, b: usize| {
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    positions.push((positions[a] + positions[b]).normalize());
+                    positions.len() - 1
+                })
+            };
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        faces = finer;
+    }
+    let indices: Vec<u32> = faces.iter().flatten().map(|index| *index as u32).collect();
+    body(positions.iter().map(|p| (radius(*p) * *p).as_vec3()).collect(), &indices)
+}
+
+fn sphere() -> Body {
+    icosphere(3, |_| 1.0)
+}
+
+/// Concave: dents and bumps, but every point of it is seen from the middle.
+fn bumpy() -> Body {
+    icosphere(4, |p| 1.0 + 0.3 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).cos() * (6.0 * p.z).sin())
+}
+
+/// Rays from about the middle, aimed exactly at a vertex, at a point of an edge, or along an edge's plane.
+fn aimed_ray(random: &mut Random, body: &Body) -> (Vec3, Vec3) {
+    let origin = (0.3 * random.unit() * random.direction()).as_vec3();
+    let origin = if random.below(4) == 0 { Vec3::ZERO } else { origin };
+    let corner = 3 * random.below(body.indices.len() / 3);
+    let [a, b] = [0, 1].map(|k| body.positions[body.indices[corner + k] as usize].as_dvec3());
+    let target = if random.below(2) == 0 { a } else { a.lerp(b, random.unit()) };
+    (origin, (target - origin.as_dvec3()).normalize().as_vec3())
+}
+
+fn leaks(body: &Body, rays: usize, with: TriangleFn) -> usize {
+    let mut random = Random(1);
+    (0..rays)
+        .filter(|_| {
+            let (origin, direction) = aimed_ray(&mut random, body);
+            !met(&trace_with(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE, with))
+        })
+        .count()
+}
+
+#[test]
+fn no_ray_leaks_at_a_vertex_or_an_edge() {
+    for body in [sphere(), bumpy()] {
+        assert_eq!(leaks(&body, 200_000, triangle), 0);
+    }
+}
+
+#[test]
+fn the_naive_test_leaks_there() {
+    for body in [sphere(), bumpy()] {
+        let leaks = leaks(&body, 200_000, triangle_naive);
+        println!("naive: {leaks} of 200000 rays leak");
+        assert!(leaks > 100, "{leaks}");
+    }
+}
+
+/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up.
+fn faults(body: &Body, origin: Vec3, direction: Vec3, left: u32, hit: &BvhTraceHit) -> Option<String> {
+    let ray = ray(origin, direction, body.nodes[0][0].truncate(), body.nodes[0][1].truncate());
+    // The margin is measured along two axes of the ray's frame, and the frame is aslant: at most √3 each way.
+    let bound = 3.0 * f64::from(ray.margin);
+    let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3()).collect();
+    let all = oracle::crossings(&positions, &body.indices, origin.as_dvec3(), direction.as_dvec3(), left, bound);
+    let distance = f64::from(hit.distance);
+    if met(hit) && !all.iter().any(|crossing| crossing.triangle == hit.triangle) {
+        return Some(format!("{hit:?} is passed by more than {bound:e}"));
+    }
+    all.iter()
+        .find(|crossing| {
+            crossing.clearance > bound && crossing.distance > bound && crossing.distance < distance - 1e-4
+        })
+        .map(|crossing| format!("{hit:?} although {crossing:?}"))
+}
+
+#[test]
+fn the_nearest_triangle_is_that_of_f64() {
+    let mut random = Random(2);
+    let body = bumpy();
+    for count in 0..4000 {
+        let (mut origin, mut direction) = aimed_ray(&mut random, &body);
+        if count % 2 == 0 {
+            direction = random.direction().as_vec3();
+        }
+        let mut left = BVH_TRACE_NONE;
+        if count % 4 == 0 {
+            // From the surface, back inside.
+            let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE);
+            origin += hit.distance * direction;
+            direction = -direction;
+            left = hit.triangle;
+        }
+        let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, left);
+        assert!(met(&hit));
+        let fault = faults(&body, origin, direction, left, &hit);
+        assert_eq!(fault, None, "from {origin} to {direction}");
+    }
+}
+
+#[test]
+fn the_hierarchy_finds_what_the_loop_finds() {
+    let mut random = Random(3);
+    let body = bumpy();
+    for _ in 0..3000 {
+        let (origin, direction) = aimed_ray(&mut random, &body);
+        let found = trace(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE);
+        let all = trace_all(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE, triangle);
+        assert_eq!(found, all);
+    }
+}
+
+/// Follows mirror reflections inside, and counts the rays that get out.
+fn lost(body: &Body, rays: usize, bounces: usize, scale: f32) -> usize {
+    let mut random = Random(4);
+    (0..rays)
+        .filter(|_| {
+            let mut origin = scale * (0.3 * random.unit() * random.direction()).as_vec3();
+            let mut direction = random.direction().as_vec3();
+            let mut left = BVH_TRACE_NONE;
+            (0..bounces).any(|_| {
+                let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, left);
+                if !met(&hit) {
+                    return true;
+                }
+                let corner =
+                    |k: usize| body.positions[body.indices[3 * hit.triangle as usize + k] as usize].as_dvec3();
+                let normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalize();
+                let slope = direction.as_dvec3().dot(normal);
+                origin += hit.distance * direction;
+                direction = (direction.as_dvec3() - 2.0 * slope * normal).normalize().as_vec3();
+                left = hit.triangle;
+                false
+            })
+        })
+        .count()
+}
+
+#[test]
+fn sixty_four_reflections_stay_inside_at_every_size() {
+    for scale in [1.0, 1e-4, 1e4] {
+        let mut body = bumpy();
+        body.positions.iter_mut().for_each(|position| *position *= scale);
+        let body = self::body(body.positions, &body.indices);
+        let lost = lost(&body, 5_000, 64, scale);
+        println!("scale {scale}: {lost} of 5000 lost within 64 reflections");
+        assert_eq!(lost, 0, "at scale {scale}");
+    }
+}
+
+#[test]
+fn the_tests_own_hierarchy_is_shallow() {
+    assert!(bumpy().nodes.len().ilog2() as usize + 1 <= BVH_TRACE_DEPTH);
+}
