@@ -5,8 +5,8 @@ use lapidary_harness::cookbook;
 use lapidary_harness::nearest;
 use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{self, Environment, RUNGS, Rung, Settings};
-use lapidary_harness::scene::Scene;
 use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_harness::scene::{self, Scene};
 use std::path::PathBuf;
 
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
@@ -15,7 +15,7 @@ use std::path::PathBuf;
     after_help = "Examples:\n  ./cook render brilliant\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
 )]
 pub(super) struct Arguments {
-    /// brilliant, octahedron, step_cut, prism, bunny_stone, or a glTF 2.0 file.
+    #[arg(help = format!("{}, or a glTF 2.0 file", scene::names()))]
     scene: String,
     /// In pixels.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]

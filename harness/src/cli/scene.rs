@@ -2,14 +2,14 @@
 
 use super::{Failure, Outcome, output};
 use lapidary_harness::render::file;
-use lapidary_harness::scene::{Scene, glb};
+use lapidary_harness::scene::{self, Scene, glb};
 use std::path::PathBuf;
 
 /// Writes a built-in scene as a glTF 2.0 binary, mesh, material and camera, to be opened elsewhere.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook scene brilliant --out harness/assets/brilliant.glb")]
 pub(super) struct Arguments {
-    /// brilliant, octahedron, step_cut, prism or bunny_stone.
+    #[arg(help = format!("one of {}", scene::names()))]
     name: String,
     /// Where to write it.
     #[arg(long, value_name = "F.glb")]

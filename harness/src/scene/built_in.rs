@@ -5,8 +5,11 @@ use glam::Vec3;
 use super::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
-use super::polyhedron::Polyhedron;
-use super::{Averaging, Camera, Material, Object, Scene, SceneError, gltf, vertices};
+use super::polyhedron::{Polyhedron, Triangulation};
+use super::{Averaging, Camera, Material, Mesh, Object, Scene, SceneError, gltf, vertices};
+
+mod materials;
+mod prisms;
 
 /// A scene that needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,12 +21,29 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 5] = [
+pub const BUILT_IN: [BuiltIn; 13] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
             the girdle's 16. Seen from 27° off the table's axis, so that pavilion facets show through \
             the table. The stone to judge internal reflection and fire by.",
+    },
+    BuiltIn {
+        name: "sapphire",
+        description: "A sapphire in the diamond's cut: corundum, royal blue by absorption along the way inside, \
+            so that long ways are darker than short ones. The critical angle is 34.4° against diamond's 24.4°: \
+            less light is kept in, and the dispersion is less than half.",
+    },
+    BuiltIn {
+        name: "ruby",
+        description: "A ruby in the diamond's cut, with the red of pigeon's blood. It is the sapphire's mineral, \
+            with the same index and dispersion; the attenuation alone differs.",
+    },
+    BuiltIn {
+        name: "quartz",
+        description: "Rock crystal in the diamond's cut. The pavilion's 40.75° hardly pass this mineral's critical \
+            angle of 40.4°, so that much light leaves through the back at the first hit: why quartz is cut steeper, \
+            and the stone in which a missed total reflection costs least.",
     },
     BuiltIn {
         name: "octahedron",
@@ -34,7 +54,7 @@ pub const BUILT_IN: [BuiltIn; 5] = [
         name: "step_cut",
         description: "An emerald (beryl) in the step cut with cut corners: length to width 1.4, three \
             crown steps, three pavilion steps to a keel, 57 facets. Long parallel facets show the \
-            straight flashes that a brilliant breaks up.",
+            straight flashes that a brilliant breaks up. Its bluish green comes by absorption along the way inside.",
     },
     BuiltIn {
         name: "prism",
@@ -42,23 +62,46 @@ pub const BUILT_IN: [BuiltIn; 5] = [
             parallel opposite one, and at this low index much light leaves at the first hit.",
     },
     BuiltIn {
+        name: "prism_chain",
+        description: "The scene of the paper's Fig. 6: closed pentagonal prisms, here seven of quartz, hang from one \
+            another by their tips, each turned and tilted by another angle. They are one mesh and one draw call: \
+            each prism's inside is made up from its own triangles, so that no data is bound for each.",
+    },
+    BuiltIn {
+        name: "chandelier",
+        description: "A chandelier of 384 pentagonal prisms of flint glass: six rings of pendants, wide and high to \
+            narrow and low, and one in the middle, each a bead with a long drop below it. One mesh, one draw call, \
+            7680 triangles: what games show as opaque mirrors, with its inside.",
+    },
+    BuiltIn {
         name: "bunny_stone",
-        description: "The Stanford bunny as a solid of glass with refractive index 1.5, 3674 triangles. \
+        description: "The Stanford bunny as a solid of crown glass (Schott's N-BK7), 3674 triangles. \
             Concave: light leaves and enters again, which no convex method can follow.",
+    },
+    BuiltIn {
+        name: "brilliant_fan",
+        description: "The diamond with its table cut into six triangles that fan out from one corner, instead of \
+            eight about its middle. The surface and the shared normals are the same: all that changes in the picture \
+            is what the proxy geometry takes from the triangulation.",
+    },
+    BuiltIn {
+        name: "brilliant_strip",
+        description: "The diamond with its table cut into a zigzag of six triangles, as a triangle strip would run. \
+            The surface and the shared normals are the same as with the table's fan.",
+    },
+    BuiltIn {
+        name: "brilliant_sliver",
+        description: "The diamond with its table cut into 150 needles, most with an angle of a few degrees, on the \
+            same surface with the same shared normals. The paper names the defect: an acute triangle makes the inside \
+            acute too.",
     },
 ];
 
-/// Refractive index of diamond at the sodium D line, 589.3 nm (Peter 1923).
-const DIAMOND: f32 = 2.41749;
-/// Refractive index of beryl's ordinary ray, in the middle of what emeralds have.
-const BERYL: f32 = 1.577;
-/// Refractive index of quartz's ordinary ray at the sodium D line.
-const QUARTZ: f32 = 1.54428;
-/// Refractive index of crown glass, and glTF's default.
-const GLASS: f32 = 1.5;
-
-/// What light through an emerald is multiplied by, linear RGB: a vivid bluish green, by eye.
-const EMERALD_GREEN: Vec3 = Vec3::new(0.16, 0.72, 0.42);
+/// The names of all built-in scenes, as a list for a message.
+#[must_use]
+pub fn names() -> String {
+    BUILT_IN.map(|scene| scene.name).join(", ")
+}
 
 /// A short portrait lens: about 27° from edge to edge.
 const VERTICAL_FOV: f32 = 0.47;
@@ -69,40 +112,50 @@ const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 /// The scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     match name {
-        "brilliant" => {
-            let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
-            Ok(stone_scene(name, &stone, clear("diamond", DIAMOND), (27.0, 11.0)))
-        }
-        "octahedron" => Ok(stone_scene(name, &octahedron()?, clear("diamond", DIAMOND), (65.0, 25.0))),
+        "brilliant" => brilliant(name, materials::diamond(), Triangulation::Centroid),
+        "sapphire" => brilliant(name, materials::sapphire(), Triangulation::Centroid),
+        "ruby" => brilliant(name, materials::ruby(), Triangulation::Centroid),
+        "quartz" => brilliant(name, materials::quartz(), Triangulation::Centroid),
+        "octahedron" => Ok(stone_scene(name, &octahedron()?, materials::diamond(), (65.0, 25.0))),
         "step_cut" => {
             let stone = step_cut(&StepCutParameters::EMERALD)?;
-            let emerald = Material { base_color: EMERALD_GREEN, ..clear("beryl", BERYL) };
-            Ok(stone_scene(name, &stone, emerald, (35.0, 20.0)))
+            Ok(stone_scene(name, &stone, materials::emerald(), (35.0, 20.0)))
         }
         "prism" => {
             let stone = prism(&PrismParameters::PENTAGONAL)?;
-            Ok(stone_scene(name, &stone, clear("quartz", QUARTZ), (70.0, 10.0)))
+            Ok(stone_scene(name, &stone, materials::quartz(), (70.0, 10.0)))
         }
+        "prism_chain" => Ok(scene(name, prisms::chain()?, materials::quartz(), (78.0, 12.0))),
+        // From a little below, as one looks up at it, so that the inner rings show below the outer.
+        "chandelier" => Ok(scene(name, prisms::chandelier()?, materials::flint_glass(), (105.0, 9.0))),
         "bunny_stone" => bunny(name),
+        "brilliant_fan" => brilliant(name, materials::diamond(), Triangulation::Fan),
+        "brilliant_strip" => brilliant(name, materials::diamond(), Triangulation::Strip),
+        "brilliant_sliver" => brilliant(name, materials::diamond(), Triangulation::Sliver),
         _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }
 }
 
-/// One cut stone, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
-fn stone_scene(name: &str, stone: &Polyhedron, material: Material, (polar, azimuth): (f32, f32)) -> Scene {
-    let object = Object { name: name.to_owned(), mesh: stone.to_mesh(Averaging::default()), material };
-    framed(name, vec![object], direction(polar, azimuth))
+fn brilliant(name: &str, material: Material, triangulation: Triangulation) -> Result<Scene, SceneError> {
+    let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
+    let mesh = stone.to_mesh_with(Averaging::default(), triangulation);
+    Ok(scene(name, mesh, material, (27.0, 11.0)))
 }
 
-/// A colourless material.
-fn clear(name: &str, ior: f32) -> Material {
-    Material { name: name.to_owned(), ior, ..Material::standard() }
+fn stone_scene(name: &str, stone: &Polyhedron, material: Material, angles: (f32, f32)) -> Scene {
+    scene(name, stone.to_mesh(Averaging::default()), material, angles)
+}
+
+/// One body, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
+fn scene(name: &str, mesh: Mesh, material: Material, (polar, azimuth): (f32, f32)) -> Scene {
+    let object = Object { name: name.to_owned(), mesh, material };
+    framed(name, vec![object], direction(polar, azimuth))
 }
 
 fn bunny(name: &str) -> Result<Scene, SceneError> {
     let mut scene = gltf::parse(BUNNY, None)?;
     for object in &mut scene.objects {
-        object.material = clear("glass", GLASS);
+        object.material = materials::crown_glass();
     }
     Ok(framed(name, scene.objects, direction(75.0, 15.0)))
 }

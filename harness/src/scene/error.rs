@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::BUILT_IN;
+use super::built_in::names;
 use super::cuts::CutError;
 use super::gltf::GltfError;
 
@@ -33,8 +33,4 @@ pub enum SceneError {
     /// A cut's parameters do not make a stone.
     #[error(transparent)]
     Cut(#[from] CutError),
-}
-
-fn names() -> String {
-    BUILT_IN.map(|scene| scene.name).join(", ")
 }

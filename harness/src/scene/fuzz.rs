@@ -2,7 +2,8 @@
 //!
 //! The test suite runs [`SUITE_CASES`], a benchmark [`BENCHMARK_CASES`]; both call [`run`]. A case is a
 //! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
-//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`] promises.
+//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`] or [`Material`](super::Material)
+//! promises.
 
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, any, prop_oneof};
@@ -41,7 +42,7 @@ pub enum Edit {
 }
 
 /// Numbers that overflow, wrap, are not whole, or just pass an end.
-pub const HOSTILE_NUMBERS: [&str; 16] = [
+pub const HOSTILE_NUMBERS: [&str; 18] = [
     "0",
     "1",
     "2",
@@ -57,21 +58,27 @@ pub const HOSTILE_NUMBERS: [&str; 16] = [
     "18446744073709551615",
     "-1",
     "0.5",
+    "-0.0",
+    "1e-50",
     "1e39",
 ];
 
 /// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
-/// indices, no normals, a hierarchy with a matrix and with translation, rotation and scale.
-const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior"],
+/// indices, no normals, a hierarchy with a matrix and with translation, rotation and scale, a material with
+/// attenuation and an Abbe number, and one whose Sellmeier equation is named.
+const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior",
+"KHR_materials_volume","KHR_materials_dispersion"],
 "scene":0,"scenes":[{"nodes":[0,3]}],
 "nodes":[{"children":[1,2],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
 {"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},{"mesh":0},
 {"camera":0,"translation":[0,0,9]}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0},
-{"attributes":{"POSITION":0},"mode":6},{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":4}]}],
+{"attributes":{"POSITION":0},"mode":6,"material":1},{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":4}]}],
 "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},
-"extensions":{"KHR_materials_ior":{"ior":1.75}}}],
+"extensions":{"KHR_materials_ior":{"ior":1.75},"KHR_materials_dispersion":{"dispersion":0.35},
+"KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,1,0],"attenuationDistance":2.5}}},
+{"extensions":{"KHR_materials_ior":{"ior":1.768}},"extras":{"lapidary":{"sellmeier":"corundum"}}}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
 {"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48,"byteStride":12},
@@ -223,7 +230,11 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
         return Err(format!("the camera sees nothing: {camera:?}"));
     }
     let wrong = scene.objects.iter().find(|object| !is_sound(&object.mesh));
-    wrong.map_or(Ok(()), |object| Err(format!("a broken mesh: {object:?}")))
+    if let Some(object) = wrong {
+        return Err(format!("a broken mesh: {object:?}"));
+    }
+    let problem = scene.objects.iter().find_map(|object| object.material.problem());
+    problem.map_or(Ok(()), |problem| Err(format!("a broken material: {problem}")))
 }
 
 fn is_sound(mesh: &Mesh) -> bool {

@@ -1,10 +1,12 @@
 //! Writes a scene as binary glTF 2.0.
 
+use std::collections::BTreeSet;
+
 use glam::{Mat3, Quat, Vec3};
 use serde_json::{Value, json};
 use thiserror::Error;
 
-use super::{Bounds, Camera, Material, Mesh, Object, Scene};
+use super::{Bounds, Camera, Dispersion, Material, Mesh, Object, Scene};
 
 /// Why a scene cannot be written. Nothing is written then.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -40,8 +42,12 @@ const ARRAY_BUFFER: u32 = 34_962;
 /// Buffer view target of indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// The bytes of a .glb with the scene's objects, their materials (refractive index by
-/// `KHR_materials_ior`, fully transmissive by `KHR_materials_transmission`) and its camera.
+/// The bytes of a .glb with the scene's objects, their materials (see below) and its camera.
+///
+/// A material is fully transmissive by `KHR_materials_transmission`, has its refractive index by
+/// `KHR_materials_ior`, its attenuation by `KHR_materials_volume`, whose thickness also says that the body
+/// is solid, and its dispersion by `KHR_materials_dispersion`. A Sellmeier equation, which glTF cannot
+/// say, is named in `extras.lapidary.sellmeier`; the dispersion beside it is what others make of it.
 ///
 /// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes and
 /// materials back; of the camera it gives the same view, to rounding.
@@ -122,7 +128,7 @@ impl Document {
                 "mode": 4,
             }],
         }));
-        self.materials.push(material(&object.material));
+        self.materials.push(material(&object.material, thickness(mesh)));
         Ok(())
     }
 
@@ -151,13 +157,19 @@ impl Document {
         self.accessors.len() - 1
     }
 
+    /// The names of the materials' extensions, each once and sorted.
+    fn extensions_used(&self) -> BTreeSet<&str> {
+        let extensions = self.materials.iter().filter_map(|material| material["extensions"].as_object());
+        extensions.flat_map(|extensions| extensions.keys().map(String::as_str)).collect()
+    }
+
     fn json(&self, scene: &Scene) -> Value {
         let camera_node = self.nodes.len();
         let mut nodes = self.nodes.clone();
         nodes.push(camera_pose(&scene.camera));
         json!({
             "asset": {"version": "2.0", "generator": "Lapidary"},
-            "extensionsUsed": ["KHR_materials_ior", "KHR_materials_transmission"],
+            "extensionsUsed": self.extensions_used(),
             "scene": 0,
             "scenes": [{"name": scene.name, "nodes": (0..=camera_node).collect::<Vec<_>>()}],
             "nodes": nodes,
@@ -188,15 +200,23 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
         Some("an index is past its last vertex; mend the triangles")
     } else if !mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()) {
         Some("a position or normal is not finite; mend or remove the vertex")
-    } else if !material.base_color.is_finite() || !material.ior.is_finite() {
-        Some("its material's colour or refractive index is not finite; mend it")
     } else {
-        None
+        material.problem()
     }
 }
 
-fn material(material: &Material) -> Value {
-    json!({
+/// The mean length of a straight way through a body, which renderers that do not trace it take as its
+/// thickness: 4 V/S for a convex body (Cauchy), and for several alike that of one. A body that encloses
+/// nothing gets the diagonal of its box; a 0 would call it thin-walled.
+fn thickness(mesh: &Mesh) -> f32 {
+    let (volume, area) = mesh.volume_and_area();
+    let mean = (4.0 * volume / area) as f32;
+    let across = 2.0 * Bounds::of(mesh.positions.iter().copied()).radius();
+    if mean > 0.0 && mean <= across { mean } else { across }
+}
+
+fn material(material: &Material, thickness: f32) -> Value {
+    let mut written = json!({
         "name": material.name,
         "pbrMetallicRoughness": {
             "baseColorFactor": material.base_color.extend(1.0).to_array(),
@@ -206,8 +226,28 @@ fn material(material: &Material) -> Value {
         "extensions": {
             "KHR_materials_ior": {"ior": material.ior},
             "KHR_materials_transmission": {"transmissionFactor": 1.0},
+            "KHR_materials_volume": {
+                "thicknessFactor": thickness,
+                "attenuationColor": material.attenuation_color.to_array(),
+            },
         },
-    })
+    });
+    // JSON has no infinity: what is left out is glTF's default, which is that.
+    if material.attenuation_distance.is_finite() {
+        written["extensions"]["KHR_materials_volume"]["attenuationDistance"] = json!(material.attenuation_distance);
+    }
+    let dispersion = match material.dispersion {
+        Dispersion::None => None,
+        Dispersion::Abbe(dispersion) => Some(dispersion),
+        Dispersion::Sellmeier(mineral) => {
+            written["extras"] = json!({"lapidary": {"sellmeier": mineral.name()}});
+            Some(20.0 / mineral.abbe_number())
+        }
+    };
+    if let Some(dispersion) = dispersion {
+        written["extensions"]["KHR_materials_dispersion"] = json!({"dispersion": dispersion});
+    }
+    written
 }
 
 /// A glTF camera looks along its node's -z with +y up.

@@ -5,9 +5,10 @@
 //! instead. What a file can make the loader allocate is bounded by [`MAX_TRIANGLES`],
 //! [`MAX_FILE_BYTES`] and [`MAX_EXPANSION`].
 //!
-//! Loaded are triangles (also strips and fans), node transforms, base colour factors, refractive
-//! indices and the first perspective camera. Points and lines have no surface and are passed over.
-//! Skins, morph targets and animations are not applied, textures not read: a body shows at rest.
+//! Loaded are triangles (also strips and fans), node transforms, the first perspective camera, and of
+//! materials the base colour factor, refractive index, dispersion and attenuation (`gltf/material.rs`).
+//! Points and lines have no surface and are passed over. Skins, morph targets and animations are not
+//! applied, textures not read: a body shows at rest.
 
 use std::path::Path;
 
@@ -95,9 +96,10 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
     let shown = nodes::Shown::of(&root)?;
 
     let mut budget = budget::Budget::new(file_bytes);
+    let mut materials = material::Materials::new(&root);
     let mut objects: Vec<Object> = Vec::new();
     for node in &shown.nodes {
-        primitive::add_objects(&root, &buffers, node, &mut budget, &mut objects)?;
+        primitive::add_objects(&root, &buffers, node, &mut materials, &mut budget, &mut objects)?;
     }
     if objects.iter().all(|object| object.mesh.indices.is_empty()) {
         return Err(GltfError::NoTriangles);

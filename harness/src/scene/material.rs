@@ -1,6 +1,7 @@
 //! What a body is made of, as far as glTF says it, and a little further.
 
 use glam::Vec3;
+use lapidary_dispersion::oracle as dispersion;
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,9 +14,10 @@ pub struct Material {
     pub ior: f32,
     /// How the refractive index depends on the wavelength.
     pub dispersion: Dispersion,
-    /// What is left of white light after `attenuation_distance` inside, linear RGB, each above 0 and at most 1.
+    /// What is left of white light after `attenuation_distance` inside, linear RGB, each 0 to 1. A 0, which
+    /// glTF allows, has no finite extinction: whoever takes its logarithm clamps it first.
     pub attenuation_color: Vec3,
-    /// In world units, above 0; infinite where the body absorbs nothing.
+    /// In world units, above 0 and no subnormal number; infinite where the body absorbs nothing.
     pub attenuation_distance: f32,
 }
 
@@ -26,7 +28,8 @@ pub enum Dispersion {
     None,
     /// By glTF's `KHR_materials_dispersion`: 20 / V_d, above 0, with the index at the d line beside it.
     Abbe(f32),
-    /// By a measured Sellmeier equation, which gives the index at the d line too.
+    /// By a measured Sellmeier equation, which gives the index at the d line too: the material's `ior` is then
+    /// [`Mineral::index`].
     Sellmeier(Mineral),
 }
 
@@ -45,6 +48,66 @@ pub enum Mineral {
     CubicZirconia,
 }
 
+impl Mineral {
+    /// Every mineral, each once.
+    pub const ALL: [Self; 5] = [Self::Diamond, Self::Corundum, Self::Quartz, Self::CrownGlass, Self::CubicZirconia];
+
+    /// What `extras.lapidary.sellmeier` calls it in a glTF file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Diamond => "diamond",
+            Self::Corundum => "corundum",
+            Self::Quartz => "quartz",
+            Self::CrownGlass => "crown_glass",
+            Self::CubicZirconia => "cubic_zirconia",
+        }
+    }
+
+    /// The mineral with this [`Mineral::name`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mineral| mineral.name() == name)
+    }
+
+    /// The refractive index that its Sellmeier equation gives at the helium d line, 587.5618 nm, to five
+    /// decimals.
+    #[must_use]
+    pub const fn index(self) -> f32 {
+        match self {
+            Self::Diamond => 2.41749,
+            Self::Corundum => 1.76817,
+            Self::Quartz => 1.54428,
+            Self::CrownGlass => 1.51680,
+            Self::CubicZirconia => 2.15877,
+        }
+    }
+
+    /// Its Sellmeier equation.
+    const fn sellmeier(self) -> dispersion::DispersionSellmeier {
+        match self {
+            Self::Diamond => dispersion::DISPERSION_DIAMOND,
+            Self::Corundum => dispersion::DISPERSION_CORUNDUM,
+            Self::Quartz => dispersion::DISPERSION_QUARTZ,
+            Self::CrownGlass => dispersion::DISPERSION_CROWN_GLASS,
+            Self::CubicZirconia => dispersion::DISPERSION_CUBIC_ZIRCONIA,
+        }
+    }
+
+    /// Its Abbe number V_d = (n_d - 1)/(n_F - n_C) by the same equation: what is left of the equation where a
+    /// reader knows `KHR_materials_dispersion` alone.
+    #[must_use]
+    pub const fn abbe_number(self) -> f32 {
+        match self {
+            Self::Diamond => 55.3,
+            Self::Corundum => 72.3,
+            Self::Quartz => 69.7,
+            Self::CrownGlass => 64.2,
+            Self::CubicZirconia => 33.5,
+        }
+    }
+}
+
 impl Material {
     /// glTF's default material: white, with refractive index 1.5, without dispersion or absorption.
     #[must_use]
@@ -56,6 +119,34 @@ impl Material {
             dispersion: Dispersion::None,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
+        }
+    }
+
+    /// Which of its fields' promises is broken, and what to do; nothing for a sound material.
+    #[must_use]
+    pub fn problem(&self) -> Option<&'static str> {
+        // Written so that NaN breaks every promise.
+        let is_color = |color: Vec3| color.to_array().iter().all(|part| (0.0..=1.0).contains(part));
+        let disperses = match self.dispersion {
+            Dispersion::None => true,
+            Dispersion::Abbe(dispersion) => dispersion > 0.0 && dispersion.is_finite(),
+            Dispersion::Sellmeier(mineral) => self.ior == mineral.index(),
+        };
+        if !is_color(self.base_color) {
+            Some("its material's base colour has a part outside 0 to 1; mend it")
+        } else if !(self.ior >= 1.0 && self.ior.is_finite()) {
+            Some("its material's refractive index is not finite and at least 1; mend it")
+        } else if !disperses {
+            Some(
+                "its material's dispersion is not finite and above 0, or its refractive index is not the one of \
+                 its Sellmeier equation; mend it",
+            )
+        } else if !is_color(self.attenuation_color) {
+            Some("its material's attenuation colour has a part outside 0 to 1; mend it")
+        } else if !(f32::MIN_POSITIVE..).contains(&self.attenuation_distance) {
+            Some("its material's attenuation distance is not above 0; mend it")
+        } else {
+            None
         }
     }
 }
@@ -72,10 +163,11 @@ impl Material {
     pub fn index_at(&self, wavelength: f64) -> f64 {
         match self.dispersion {
             Dispersion::None => f64::from(self.ior),
-            Dispersion::Abbe(dispersion) => {
-                lapidary_dispersion::oracle::abbe(f64::from(self.ior), f64::from(dispersion), wavelength)
-            }
-            Dispersion::Sellmeier(mineral) => lapidary_dispersion::oracle::sellmeier(mineral.sellmeier(), wavelength),
+            Dispersion::Abbe(abbe) => dispersion::abbe(f64::from(self.ior), f64::from(abbe), wavelength),
+            Dispersion::Sellmeier(mineral) => dispersion::sellmeier(mineral.sellmeier(), wavelength),
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! A triangle mesh in world space.
 
-use glam::Vec3;
+use glam::{DQuat, DVec3, Vec3};
 
 use super::normals::{Averaging, shared_normals};
 
@@ -29,6 +29,27 @@ impl Mesh {
         Self { positions, normals, indices }
     }
 
+    /// The mesh turned by `rotation`, of unit length, and then moved by `translation`.
+    #[must_use]
+    pub fn placed(&self, rotation: DQuat, translation: DVec3) -> Self {
+        let position = |p: &Vec3| (rotation * p.as_dvec3() + translation).as_vec3();
+        let normal = |n: &Vec3| (rotation * n.as_dvec3()).normalize().as_vec3();
+        Self {
+            positions: self.positions.iter().map(position).collect(),
+            normals: self.normals.iter().map(normal).collect(),
+            indices: self.indices.clone(),
+        }
+    }
+
+    /// Adds the triangles of `other`, so that one draw call shows both. No vertex becomes shared: each body
+    /// keeps the normals that it had alone. Together they may have 2³² vertices.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(&other.positions);
+        self.normals.extend(&other.normals);
+        self.indices.extend(other.indices.iter().map(|index| first + index));
+    }
+
     /// The number of whole triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
@@ -42,6 +63,18 @@ impl Mesh {
             let corner = |k: usize| self.positions.get(triangle[k] as usize).copied();
             Some([corner(0)?, corner(1)?, corner(2)?])
         })
+    }
+
+    /// The enclosed volume, positive where the triangles wind counter-clockwise seen from outside, and the
+    /// area. The volume of an open mesh says nothing.
+    #[must_use]
+    pub fn volume_and_area(&self) -> (f64, f64) {
+        let parts = self.triangles().map(|corners| {
+            let [a, b, c] = corners.map(Vec3::as_dvec3);
+            let across = (b - a).cross(c - a);
+            (across.dot(a) / 6.0, 0.5 * across.length())
+        });
+        parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     }
 
     /// The memory that the three lists hold, in bytes.

@@ -21,7 +21,7 @@ pub mod mesh;
 pub mod normals;
 pub mod polyhedron;
 
-pub use built_in::{BUILT_IN, BuiltIn};
+pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use camera::Camera;
 pub use error::SceneError;
 pub use material::{Dispersion, Material, Mineral};

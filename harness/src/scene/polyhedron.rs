@@ -8,6 +8,9 @@ use super::normals::{Averaging, NormalSum, interior_angle};
 use assembly::{corners, ordered_loop, tolerance, unit_planes, without_repeats};
 
 mod assembly;
+mod triangulation;
+
+pub use triangulation::Triangulation;
 
 /// The half-space `normal · x <= distance`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,29 +167,31 @@ impl Polyhedron {
     ///
     /// Shared normals are averaged over *faces*, so the triangulation does not change them: by a
     /// face's interior angle, plainly, or by a face's whole area. A face of three or four corners is
-    /// a fan from its first corner. A larger one is a fan from its centroid, which keeps its
-    /// symmetry; this inner vertex carries the face's own plane normal.
+    /// a fan from its first corner, a larger one a fan from its centroid ([`Triangulation::Centroid`]).
     #[must_use]
     pub fn to_mesh(&self, averaging: Averaging) -> Mesh {
+        self.to_mesh_with(averaging, Triangulation::Centroid)
+    }
+
+    /// [`Polyhedron::to_mesh`] with another way to cut faces of five and more corners into triangles.
+    ///
+    /// The surface is the same, and so are the shared normals; vertices inside a face carry its plane
+    /// normal. No way puts a vertex onto an edge, so that all of them give closed meshes.
+    #[must_use]
+    pub fn to_mesh_with(&self, averaging: Averaging, triangulation: Triangulation) -> Mesh {
         let mut mesh = Mesh {
             positions: self.vertices.iter().copied().map(y_up).collect(),
             normals: self.vertex_normals(averaging),
             indices: Vec::new(),
         };
         for (face, plane) in self.faces.iter().zip(&self.planes) {
-            let ring: Vec<u32> = face.iter().map(|&k| k as u32).collect();
-            if let [a, b, c] = ring[..] {
-                mesh.indices.extend([a, b, c]);
-            } else if let [a, b, c, d] = ring[..] {
-                mesh.indices.extend([a, b, c, a, c, d]);
-            } else {
-                let inner = mesh.positions.len() as u32;
-                mesh.positions.push(y_up(self.centroid(face)));
-                mesh.normals.push(y_up(plane.normal));
-                for (&from, &to) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                    mesh.indices.extend([inner, from, to]);
-                }
-            }
+            let ring: Vec<DVec3> = face.iter().map(|&k| self.vertices[k]).collect();
+            let cut = triangulation.cut(&ring, || self.centroid(face));
+            let first_inner = mesh.positions.len();
+            mesh.positions.extend(cut.inner.iter().copied().map(y_up));
+            mesh.normals.resize(mesh.positions.len(), y_up(plane.normal));
+            let vertex = |&k: &usize| face.get(k).copied().unwrap_or_else(|| first_inner + k - face.len()) as u32;
+            mesh.indices.extend(cut.triangles.iter().flatten().map(vertex));
         }
         mesh
     }

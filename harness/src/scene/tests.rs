@@ -1,3 +1,7 @@
+use std::collections::{HashMap, HashSet};
+
+use glam::Quat;
+
 use super::*;
 
 #[test]
@@ -12,16 +16,223 @@ fn every_built_in_opens_by_its_name_and_only_those() {
             assert_eq!(mesh.normals.len(), mesh.positions.len());
             assert!(mesh.normals.iter().all(|normal| normal.is_normalized()));
             assert_eq!(mesh.triangles().count(), mesh.triangle_count());
+            assert_eq!(object.material.problem(), None);
         }
     }
 }
 
 #[test]
+fn built_ins_are_these() {
+    let names = BUILT_IN.map(|built_in| built_in.name);
+    assert_eq!(names.iter().collect::<HashSet<_>>().len(), names.len());
+    for name in ["brilliant", "sapphire", "ruby", "quartz", "octahedron", "step_cut", "prism", "prism_chain"] {
+        assert!(names.contains(&name));
+    }
+    for name in ["chandelier", "bunny_stone", "brilliant_fan", "brilliant_strip", "brilliant_sliver"] {
+        assert!(names.contains(&name));
+    }
+}
+
+#[test]
 fn built_in_materials_have_their_minerals_indices() {
-    for (name, ior) in
-        [("brilliant", 2.41749), ("octahedron", 2.41749), ("step_cut", 1.577), ("prism", 1.54428), ("bunny_stone", 1.5)]
-    {
-        assert_eq!(Scene::named(name).unwrap().objects[0].material.ior, ior);
+    use Dispersion::{Abbe, Sellmeier};
+    for (name, material, ior, dispersion) in [
+        ("brilliant", "diamond", 2.41749, Sellmeier(Mineral::Diamond)),
+        ("brilliant_sliver", "diamond", 2.41749, Sellmeier(Mineral::Diamond)),
+        ("octahedron", "diamond", 2.41749, Sellmeier(Mineral::Diamond)),
+        ("sapphire", "sapphire", 1.76817, Sellmeier(Mineral::Corundum)),
+        ("ruby", "ruby", 1.76817, Sellmeier(Mineral::Corundum)),
+        ("quartz", "quartz", 1.54428, Sellmeier(Mineral::Quartz)),
+        ("prism", "quartz", 1.54428, Sellmeier(Mineral::Quartz)),
+        ("prism_chain", "quartz", 1.54428, Sellmeier(Mineral::Quartz)),
+        ("bunny_stone", "glass", 1.5168, Sellmeier(Mineral::CrownGlass)),
+        ("step_cut", "beryl", 1.577, Abbe(20.0 / 57.0)),
+        ("chandelier", "flint glass", 1.62004, Abbe(20.0 / 36.37)),
+    ] {
+        let found = Scene::named(name).unwrap().objects[0].material.clone();
+        assert_eq!((found.name.as_str(), found.ior, found.dispersion), (material, ior, dispersion), "{name}");
+        assert_eq!(found.base_color, Vec3::ONE, "{name}");
+    }
+}
+
+#[test]
+fn coloured_stones_take_their_colour_on_the_way() {
+    // Which channel passes most, and which least.
+    for (name, strongest, weakest) in [("sapphire", 2, 0), ("ruby", 0, 1), ("step_cut", 1, 0)] {
+        let material = Scene::named(name).unwrap().objects[0].material.clone();
+        assert_eq!(material.attenuation_distance, 2.0);
+        let color = material.attenuation_color;
+        assert_eq!((color.max_position(), color.min_position()), (strongest, weakest), "{name}");
+        assert!(color.max_element() > 4.0 * color.min_element() && color.min_element() > 0.0);
+    }
+    for name in ["brilliant", "quartz", "prism", "prism_chain", "chandelier", "bunny_stone"] {
+        let material = Scene::named(name).unwrap().objects[0].material.clone();
+        assert_eq!((material.attenuation_color, material.attenuation_distance), (Vec3::ONE, f32::INFINITY));
+    }
+}
+
+/// The meshes of a scene's only object that no triangle connects.
+fn bodies(scene: &Scene) -> Vec<Mesh> {
+    assert_eq!(scene.objects.len(), 1, "one object is one draw call");
+    let mesh = &scene.objects[0].mesh;
+    let mut parent: Vec<usize> = (0..mesh.positions.len()).collect();
+    fn root(parent: &[usize], mut vertex: usize) -> usize {
+        while parent[vertex] != vertex {
+            vertex = parent[vertex];
+        }
+        vertex
+    }
+    for triangle in mesh.indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|k| root(&parent, triangle[k] as usize));
+        let least = a.min(b).min(c);
+        parent[a] = least;
+        parent[b] = least;
+        parent[c] = least;
+    }
+    let mut places: HashMap<usize, usize> = HashMap::new();
+    let mut bodies: Vec<Mesh> = Vec::new();
+    let mut renumbered = Vec::new();
+    for (vertex, (position, normal)) in mesh.positions.iter().zip(&mesh.normals).enumerate() {
+        let place = *places.entry(root(&parent, vertex)).or_insert_with(|| {
+            bodies.push(Mesh::default());
+            bodies.len() - 1
+        });
+        renumbered.push((place, bodies[place].positions.len() as u32));
+        bodies[place].positions.push(*position);
+        bodies[place].normals.push(*normal);
+    }
+    for triangle in mesh.indices.chunks_exact(3) {
+        for &vertex in triangle {
+            let (place, index) = renumbered[vertex as usize];
+            bodies[place].indices.push(index);
+        }
+    }
+    bodies
+}
+
+#[test]
+fn chain_and_chandelier_are_one_mesh_of_many_prisms() {
+    for (name, prisms) in [("prism_chain", 7), ("chandelier", 384)] {
+        let scene = Scene::named(name).unwrap();
+        let bodies = bodies(&scene);
+        assert_eq!(bodies.len(), prisms, "{name}");
+        // Five sides of two triangles, and two pyramids of five.
+        assert!(bodies.iter().all(|body| (body.positions.len(), body.triangle_count()) == (12, 20)));
+        assert_eq!(scene.triangle_count(), 20 * prisms);
+        let description = BUILT_IN.iter().find(|built_in| built_in.name == name).unwrap().description;
+        assert!(description.contains(if prisms == 7 { "seven" } else { "384" }), "{description}");
+    }
+    assert!(BUILT_IN.iter().any(|b| b.name == "chandelier" && b.description.contains("7680 triangles")));
+}
+
+#[test]
+fn prisms_share_normals_within_themselves_alone() {
+    for name in ["prism_chain", "chandelier"] {
+        let scene = Scene::named(name).unwrap();
+        let positions: HashSet<_> = vertices(&scene.objects).map(|p| p.to_array().map(f32::to_bits)).collect();
+        assert_eq!(positions.len(), scene.objects[0].mesh.positions.len(), "{name}: two prisms touch");
+        for body in bodies(&scene) {
+            // Averaged over its own faces. By angle, so that the diagonals of its sides do not count; from
+            // positions rounded some units from the origin, hence not to the last bit.
+            let alone = Mesh::with_shared_normals(body.positions.clone(), body.indices.clone(), Averaging::Angle);
+            for (shared, alone) in body.normals.iter().zip(&alone.normals) {
+                assert!(shared.distance(*alone) < 2e-5, "{name}: {shared} and {alone}");
+            }
+        }
+    }
+}
+
+#[test]
+fn prisms_do_not_reach_into_one_another() {
+    for name in ["prism_chain", "chandelier"] {
+        let bodies = bodies(&Scene::named(name).unwrap());
+        let bounds: Vec<Bounds> = bodies.iter().map(|body| Bounds::of(body.positions.iter().copied())).collect();
+        let mut near = 0;
+        for (k, a) in bodies.iter().enumerate() {
+            for l in k + 1..bodies.len() {
+                let (b, between) = (&bodies[l], bounds[l].centre() - bounds[k].centre());
+                if between.length() > bounds[k].radius() + bounds[l].radius() {
+                    continue;
+                }
+                near += 1;
+                let furthest = a.positions.iter().map(|p| p.dot(between)).fold(f32::MIN, f32::max);
+                let nearest = b.positions.iter().map(|p| p.dot(between)).fold(f32::MAX, f32::min);
+                assert!(furthest < nearest, "{name}: {k} and {l}");
+            }
+        }
+        assert!(near >= bodies.len() - 1, "{name}: {near} pairs near enough to look at");
+    }
+}
+
+#[test]
+fn every_prism_of_the_chain_hangs_at_an_angle_of_its_own() {
+    let links = bodies(&Scene::named("prism_chain").unwrap());
+    let tips = |link: &Mesh| {
+        let higher = |a: Vec3, b: Vec3| if a.y > b.y { a } else { b };
+        let lower = |a: Vec3, b: Vec3| if a.y < b.y { a } else { b };
+        let positions = link.positions.iter().copied();
+        (positions.clone().fold(Vec3::MIN, higher), positions.fold(Vec3::MAX, lower))
+    };
+    let axes: Vec<Vec3> = links.iter().map(tips).map(|(top, bottom)| (top - bottom).normalize()).collect();
+    for (k, axis) in axes.iter().enumerate() {
+        assert!((axis.y.acos().to_degrees() - 10.0).abs() < 0.01);
+        assert!(axes[k + 1..].iter().all(|other| axis.distance(*other) > 0.05));
+    }
+    // Side edges, seen along the link's own axis, as turns within the pentagon's 72°.
+    let turn = |(link, axis): (&Mesh, &Vec3)| {
+        let upright = Quat::from_rotation_arc(*axis, Vec3::Y);
+        let (top, bottom) = tips(link);
+        let offsets = link.positions.iter().map(|p| upright * (p - 0.5 * (top + bottom)));
+        // Any but the tips, which lie on the axis.
+        let edge = offsets.max_by(|p, q| p.with_y(0.0).length().total_cmp(&q.with_y(0.0).length())).unwrap();
+        edge.x.atan2(edge.z).to_degrees().rem_euclid(72.0)
+    };
+    let turns: Vec<f32> = links.iter().zip(&axes).map(turn).collect();
+    for (k, turn) in turns.iter().enumerate() {
+        // 31° again and again, less whole pentagons, comes within 10° of an earlier turn, and no nearer.
+        let apart = |other: &f32| (turn - other).abs().min(72.0 - (turn - other).abs());
+        assert!(turns[k + 1..].iter().all(|other| apart(other) > 9.9), "{turns:?}");
+    }
+    let spread = Bounds::of(links.iter().map(|link| Bounds::of(link.positions.iter().copied()).centre()));
+    let across = (spread.max - spread.min).with_y(0.0).length();
+    assert!(across < 0.5 && spread.max.y - spread.min.y > 5.0, "{spread:?}");
+}
+
+#[test]
+fn every_built_in_is_closed() {
+    for built_in in BUILT_IN {
+        for object in &Scene::named(built_in.name).unwrap().objects {
+            assert!(is_closed(&object.mesh), "{}", built_in.name);
+            assert!(object.mesh.volume_and_area().0 > 0.0, "{} is inside out", built_in.name);
+        }
+    }
+}
+
+/// Whether every edge has exactly two triangles, which run along it in opposite directions.
+fn is_closed(mesh: &Mesh) -> bool {
+    let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
+    for triangle in mesh.indices.chunks_exact(3) {
+        for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(k, l)| (triangle[k], triangle[l])) {
+            *edges.entry((from, to)).or_default() += 1;
+        }
+    }
+    edges.iter().all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
+}
+
+#[test]
+fn triangulations_change_the_table_alone() {
+    let mesh = |name: &str| Scene::named(name).unwrap().objects.remove(0).mesh;
+    let usual = mesh("brilliant");
+    let corners = 57;
+    // Eight triangles about the middle; six from a corner; six in a zigzag; six of 25 needles.
+    for (name, triangles) in [("brilliant_fan", 6), ("brilliant_strip", 6), ("brilliant_sliver", 150)] {
+        let other = mesh(name);
+        assert_eq!(other.triangle_count(), usual.triangle_count() - 8 + triangles, "{name}");
+        assert_eq!(other.positions[..corners], usual.positions[..corners]);
+        assert_eq!(other.normals[..corners], usual.normals[..corners]);
+        assert!(other.normals[corners..].iter().all(|normal| *normal == Vec3::Y));
+        assert!(other.indices.ends_with(&usual.indices[24..]), "{name}: the table is the first facet");
+        assert_eq!(Scene::named(name).unwrap().camera, Scene::named("brilliant").unwrap().camera);
     }
 }
 

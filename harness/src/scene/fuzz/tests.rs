@@ -45,4 +45,5 @@ fn a_scene_that_breaks_a_promise_is_noticed() {
     assert!(broken(|scene| scene.objects[0].mesh.indices[0] = 6));
     assert!(broken(|scene| scene.objects[0].mesh.positions[0].x = f32::NAN));
     assert!(broken(|scene| scene.camera.target = scene.camera.eye));
+    assert!(broken(|scene| scene.objects[0].material.attenuation_distance = 0.0));
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{BUILT_IN, gltf};
+use crate::scene::{BUILT_IN, Mineral, gltf};
 
 fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {
     let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -44,6 +44,77 @@ fn the_container_is_aligned_and_complete() {
     assert!(binary.len() - length < 4);
 }
 
+/// The JSON of a scene as it is written.
+fn json_of(scene: &Scene) -> Value {
+    serde_json::from_slice(chunk(&write(scene).unwrap(), 12).1).unwrap()
+}
+
+#[test]
+fn every_kind_of_material_survives_writing_and_loading() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let standard = Material::standard();
+    let measured = Mineral::ALL.map(|mineral| Material {
+        ior: mineral.index(),
+        dispersion: Dispersion::Sellmeier(mineral),
+        ..Material::standard()
+    });
+    let others = [
+        Material { ior: 1.0, base_color: Vec3::ZERO, ..standard.clone() },
+        Material { dispersion: Dispersion::Abbe(20.0 / 57.0), ..standard.clone() },
+        Material { dispersion: Dispersion::Abbe(f32::MAX), ..standard.clone() },
+        Material { attenuation_color: Vec3::new(0.0, 0.1, 1.0), ..standard.clone() },
+        Material { attenuation_distance: 1.0 / 3.0, ..standard.clone() },
+        Material { attenuation_distance: f32::MIN_POSITIVE, ..standard.clone() },
+        Material { attenuation_distance: f32::MAX, attenuation_color: Vec3::splat(0.7), ..standard },
+    ];
+    for material in measured.into_iter().chain(others) {
+        scene.objects[0].material = material;
+        let again = gltf::parse(&write(&scene).unwrap(), None).unwrap();
+        assert_eq!(again.objects, scene.objects);
+    }
+}
+
+#[test]
+fn materials_are_written_for_other_readers_too() {
+    let mut scene = Scene::named("ruby").unwrap();
+    let json = json_of(&scene);
+    let used =
+        json!(["KHR_materials_dispersion", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume",]);
+    assert_eq!(json["extensionsUsed"], used);
+    let material = &json["materials"][0];
+    assert_eq!(material["extras"], json!({"lapidary": {"sellmeier": "corundum"}}));
+    let extensions = &material["extensions"];
+    let dispersion = extensions["KHR_materials_dispersion"]["dispersion"].as_f64().unwrap();
+    assert!((20.0 / dispersion - 72.3).abs() < 1e-4);
+    let volume = &extensions["KHR_materials_volume"];
+    assert_eq!(volume["attenuationDistance"], 2.0);
+    // Shorter than the stone is wide, longer than half its depth; a 0 would mean a thin wall.
+    let thickness = volume["thicknessFactor"].as_f64().unwrap();
+    assert!((0.5..1.5).contains(&thickness), "{thickness}");
+
+    scene.objects[0].material = Material::standard();
+    let json = json_of(&scene);
+    let used = json!(["KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume"]);
+    assert_eq!(json["extensionsUsed"], used);
+    assert_eq!(json["materials"][0]["extras"], Value::Null);
+    let volume = &json["materials"][0]["extensions"]["KHR_materials_volume"];
+    assert_eq!(volume["attenuationDistance"], Value::Null, "JSON has no infinity");
+}
+
+#[test]
+fn thickness_is_the_mean_way_through_and_never_nothing() {
+    // The regular octahedron with its corners at distance 1: V = 4/3, S = 4√3.
+    let octahedron = Scene::named("octahedron").unwrap().objects.remove(0).mesh;
+    assert!((thickness(&octahedron) - 4.0 / 27f32.sqrt()).abs() < 1e-6);
+    let mut inside_out = octahedron.clone();
+    inside_out.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(0, 1));
+    let mut open = octahedron.clone();
+    open.indices.truncate(3);
+    for mesh in [inside_out, open] {
+        assert!((0.1..=2.0 * 3f32.sqrt() + 1e-6).contains(&thickness(&mesh)));
+    }
+}
+
 #[test]
 fn what_gltf_forbids_is_refused() {
     let good = Scene::named("octahedron").unwrap();
@@ -59,6 +130,8 @@ fn what_gltf_forbids_is_refused() {
     assert!(refused(|s| s.objects[0].mesh.indices.truncate(4)).contains("multiple of three"));
     assert!(refused(|s| s.objects[0].mesh.indices[0] = 99).contains("past its last"));
     assert!(refused(|s| s.objects[0].mesh.normals.truncate(1)).contains("one normal"));
+    assert!(refused(|s| s.objects[0].material.attenuation_distance = 0.0).contains("attenuation distance"));
+    assert!(refused(|s| s.objects[0].material.ior = 2.4).contains("Sellmeier"));
     assert!(refused(|s| s.objects[0].mesh.positions[0].x = f32::NAN).contains("not finite"));
     assert!(refused(|s| s.objects[0].material.ior = f32::NAN).contains("refractive index"));
 }

@@ -1,43 +1,224 @@
-//! Materials of a file.
+//! Materials of a file: `baseColorFactor`, `KHR_materials_ior`, `KHR_materials_volume` (attenuation alone),
+//! `KHR_materials_dispersion`, and `extras.lapidary.sellmeier`.
+//!
+//! The last names a measured Sellmeier equation, one of [`Mineral::ALL`], which glTF cannot say. It takes the
+//! place of `KHR_materials_dispersion`, and gives the refractive index too, with which the file's own, if it has
+//! one, must agree. Every body is taken as solid and traced, so `thicknessFactor`, a stand-in for tracing,
+//! is not read.
+
+use std::collections::HashMap;
 
 use ::gltf::json::Root;
+use ::gltf::json::material::Material as JsonMaterial;
 use glam::Vec3;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use serde_json::{Map, Value};
 
 use super::error::{GltfError, designation, excerpt, item};
-use crate::scene::Material;
+use crate::scene::{Dispersion, Material, Mineral};
 
-/// Material `index` of the file, which `user` refers to; glTF's default material without a number.
-pub(super) fn read(root: &Root, index: Option<usize>, user: &str) -> Result<Material, GltfError> {
-    let Some(index) = index else {
-        return Ok(Material::standard());
-    };
-    let material = item(&root.materials, "material", index, || user.to_owned())?;
-    let wrong = |problem: String| {
-        let part = designation("material", index, material.name.as_deref());
-        GltfError::part(part, problem)
-    };
+/// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
+const INDEX_AGREES: f32 = 0.005;
 
-    let [red, green, blue, _] = material.pbr_metallic_roughness.base_color_factor.0;
+/// The materials of a file. Each is read once, when a primitive first asks for it: a small file may ask very
+/// often for one with large extras.
+#[derive(Debug)]
+pub(super) struct Materials<'a> {
+    root: &'a Root,
+    known: HashMap<usize, Material>,
+}
+
+impl<'a> Materials<'a> {
+    pub(super) fn new(root: &'a Root) -> Self {
+        Self { root, known: HashMap::new() }
+    }
+
+    /// Material `index` of the file, which `user` refers to; glTF's default material without a number.
+    pub(super) fn get(&mut self, index: Option<usize>, user: &str) -> Result<Material, GltfError> {
+        let Some(index) = index else {
+            return Ok(Material::standard());
+        };
+        if let Some(material) = self.known.get(&index) {
+            return Ok(material.clone());
+        }
+        let json = item(&self.root.materials, "material", index, || user.to_owned())?;
+        let part = || designation("material", index, json.name.as_deref());
+        let mut material = read(json).map_err(|problem| GltfError::part(part(), problem))?;
+        material.name = json.name.as_deref().map_or_else(|| format!("material {index}"), excerpt);
+        self.known.insert(index, material.clone());
+        Ok(material)
+    }
+}
+
+/// A material of the file, still without its name; or what is wrong with it.
+fn read(json: &JsonMaterial) -> Result<Material, String> {
+    let mut material = Material::standard();
+    let [red, green, blue, _] = json.pbr_metallic_roughness.base_color_factor.0;
     let color = [red, green, blue];
     if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
-        return Err(wrong(format!("its baseColorFactor is {color:?}, but each part must lie from 0 to 1")));
+        return Err(format!("its baseColorFactor is {color:?}, but each part must lie from 0 to 1"));
     }
-    let extension = material.extensions.as_ref().and_then(|all| all.ior.as_ref());
-    let ior = extension.map_or(Material::standard().ior, |ior| ior.ior.0);
+    material.base_color = Vec3::from_array(color);
+
+    let extension = json.extensions.as_ref().and_then(|all| all.ior.as_ref());
+    let ior = extension.map(|ior| ior.ior.0);
+    if let Some(ior) = ior {
+        check_index(ior)?;
+        material.ior = ior;
+    }
+
+    let volume = Extension::of(json, "KHR_materials_volume")?;
+    if let Some(color) = volume.color("attenuationColor")? {
+        material.attenuation_color = color;
+    }
+    if let Some(distance) = volume.number("attenuationDistance")? {
+        // A subnormal distance may count as 0 on a GPU.
+        let single = distance as f32;
+        if !(single.is_finite() && single >= f32::MIN_POSITIVE) {
+            return Err(format!(
+                "its attenuationDistance is {distance:?}, but must be above 0 and finite in single precision; \
+                 leave it out if the body absorbs nothing"
+            ));
+        }
+        material.attenuation_distance = single;
+    }
+
+    if let Some(dispersion) = Extension::of(json, "KHR_materials_dispersion")?.number("dispersion")? {
+        let single = dispersion as f32;
+        if !(dispersion >= 0.0 && single.is_finite()) {
+            return Err(format!("its dispersion is {dispersion:?}, but must be at least 0 and finite: 20/V_d"));
+        }
+        if single > 0.0 {
+            material.dispersion = Dispersion::Abbe(single);
+        }
+    }
+    if let Some(mineral) = sellmeier(json)? {
+        let index = mineral.index();
+        if let Some(ior) = ior.filter(|ior| (ior - index).abs() > INDEX_AGREES) {
+            return Err(format!(
+                "its ior is {ior}, but the Sellmeier equation of {} in its extras gives {index}; \
+                 leave one of them out",
+                mineral.name()
+            ));
+        }
+        material.ior = index;
+        material.dispersion = Dispersion::Sellmeier(mineral);
+    }
+    Ok(material)
+}
+
+fn check_index(ior: f32) -> Result<(), String> {
     if ior == 0.0 {
-        return Err(wrong(
-            "its ior is 0, glTF's sign for a surface that reflects like a metal; a stone needs a \
-             real refractive index, at least 1"
-                .to_owned(),
-        ));
+        return Err("its ior is 0, glTF's sign for a surface that reflects like a metal; a stone needs a real \
+                    refractive index, at least 1"
+            .to_owned());
     }
     if !(ior.is_finite() && ior >= 1.0) {
-        return Err(wrong(format!("its ior is {ior}, but a refractive index must be finite and at least 1")));
+        return Err(format!("its ior is {ior}, but a refractive index must be finite and at least 1"));
     }
-    Ok(Material {
-        name: material.name.as_deref().map_or_else(|| format!("material {index}"), excerpt),
-        base_color: Vec3::from_array(color),
-        ior,
-        ..Material::standard()
+    Ok(())
+}
+
+/// An extension that the gltf crate leaves as JSON.
+#[derive(Debug)]
+struct Extension<'a> {
+    /// Nothing where the material does not have it.
+    members: Option<&'a Map<String, Value>>,
+}
+
+impl<'a> Extension<'a> {
+    fn of(json: &'a JsonMaterial, name: &str) -> Result<Self, String> {
+        let value = json.extensions.as_ref().and_then(|all| all.others.get(name));
+        let members = value.map(|value| value.as_object().ok_or_else(|| wrong_kind(name, value, "an object")));
+        Ok(Self { members: members.transpose()? })
+    }
+
+    fn member(&self, key: &str) -> Option<&'a Value> {
+        self.members.and_then(|members| members.get(key))
+    }
+
+    fn number(&self, key: &str) -> Result<Option<f64>, String> {
+        let number = self.member(key).map(|value| value.as_f64().ok_or_else(|| wrong_kind(key, value, "a number")));
+        number.transpose()
+    }
+
+    /// Linear RGB, each 0 to 1.
+    fn color(&self, key: &str) -> Result<Option<Vec3>, String> {
+        let Some(value) = self.member(key) else {
+            return Ok(None);
+        };
+        let wrong = || wrong_kind(key, value, "three numbers");
+        let [red, green, blue] = value.as_array().map(Vec::as_slice).ok_or_else(wrong)? else {
+            return Err(wrong());
+        };
+        let mut color = [0.0; 3];
+        for (part, value) in color.iter_mut().zip([red, green, blue]) {
+            *part = value.as_f64().ok_or_else(wrong)?;
+        }
+        if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
+            return Err(format!("its {key} is {color:?}, but each part must lie from 0 to 1"));
+        }
+        Ok(Some(Vec3::from_array(color.map(|part| part as f32))))
+    }
+}
+
+fn wrong_kind(name: &str, value: &Value, expected: &str) -> String {
+    let found = match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "an array of something else",
+        Value::Object(_) => "an object",
+    };
+    format!("its {name} is {found}, but must be {expected}")
+}
+
+/// What `extras` hold for this program. Kept as text, so that the extras of others cost nothing.
+#[derive(Deserialize)]
+struct Extras<'a> {
+    #[serde(borrow)]
+    lapidary: Option<&'a RawValue>,
+}
+
+/// `extras.lapidary`, of which a newer program may know more.
+#[derive(Deserialize)]
+struct Lapidary<'a> {
+    #[serde(borrow)]
+    sellmeier: Option<&'a RawValue>,
+}
+
+/// The mineral that `extras.lapidary.sellmeier` names, if the material has it.
+fn sellmeier(json: &JsonMaterial) -> Result<Option<Mineral>, String> {
+    // glTF lets extras be anything; what is not an object is someone else's.
+    let Some(extras) = json.extras.as_deref().filter(|extras| is_object(extras)) else {
+        return Ok(None);
+    };
+    let unreadable =
+        |what: &str, error: serde_json::Error| format!("its {what} cannot be read: {}", excerpt(&error.to_string()));
+    let extras: Extras<'_> = serde_json::from_str(extras.get()).map_err(|error| unreadable("extras", error))?;
+    let Some(lapidary) = extras.lapidary else {
+        return Ok(None);
+    };
+    if !is_object(lapidary) {
+        return Err(format!("its extras.lapidary is {}, but must be an object", excerpt(lapidary.get())));
+    }
+    let lapidary: Lapidary<'_> =
+        serde_json::from_str(lapidary.get()).map_err(|error| unreadable("extras.lapidary", error))?;
+    let Some(name) = lapidary.sellmeier else {
+        return Ok(None);
+    };
+    let mineral = serde_json::from_str::<String>(name.get()).ok().and_then(|name| Mineral::named(&name));
+    mineral.map(Some).ok_or_else(|| {
+        format!(
+            "its extras.lapidary.sellmeier is {}, but must be one of {}",
+            excerpt(name.get()),
+            Mineral::ALL.map(|mineral| format!("{:?}", mineral.name())).join(", ")
+        )
     })
+}
+
+fn is_object(json: &RawValue) -> bool {
+    json.get().starts_with('{')
 }

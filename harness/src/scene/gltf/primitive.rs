@@ -6,12 +6,13 @@ use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
+use super::MAX_COORDINATE;
 use super::accessor::{Elements, INDICES, VECTORS};
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, excerpt, item};
+use super::material::Materials;
 use super::nodes::ShownNode;
-use super::{MAX_COORDINATE, material};
 use crate::scene::normals::{Averaging, shared_normals};
 use crate::scene::{Mesh, Object};
 
@@ -20,6 +21,7 @@ pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
     node: &ShownNode<'_>,
+    materials: &mut Materials<'_>,
     budget: &mut Budget,
     objects: &mut Vec<Object>,
 ) -> Result<(), GltfError> {
@@ -43,7 +45,7 @@ pub(super) fn add_objects(
                 _ => format!("{name} / {index}"),
             },
             mesh: mesh_in_world,
-            material: material::read(root, material_index, &user)?,
+            material: materials.get(material_index, &user)?,
         });
     }
     Ok(())

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::scene::normals::FALLBACK_NORMAL;
-use crate::scene::{Material, glb};
+use crate::scene::{Dispersion, Material, Mineral, glb};
 
 mod refusals;
 mod refused_data;
@@ -150,23 +150,92 @@ fn flattened_bodies_load() {
     assert_ne!(scene.camera.eye, scene.camera.target);
 }
 
-#[test]
-fn materials_say_colour_and_index() {
+/// The material of a file whose only primitive has `material`.
+fn material_of(material: Value) -> Result<Material, SceneError> {
     let scene = load_changed(|d| {
         d["extensionsRequired"] = json!(KNOWN_EXTENSIONS);
         d["meshes"][0]["primitives"][0]["material"] = json!(0);
-        d["materials"][0] = json!({
-            "name": "ruby",
-            "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.1, 0.2, 1.0]},
-            "extensions": {
-                "KHR_materials_ior": {"ior": 1.768},
-                "KHR_materials_dispersion": {"dispersion": 0.1},
-            },
-        });
+        d["materials"][0] = material;
     });
-    let expected =
-        Material { name: "ruby".to_owned(), base_color: Vec3::new(0.9, 0.1, 0.2), ior: 1.768, ..Material::standard() };
-    assert_eq!(scene.unwrap().objects[0].material, expected);
+    Ok(scene?.objects.remove(0).material)
+}
+
+#[test]
+fn materials_say_colour_index_dispersion_and_attenuation() {
+    let material = material_of(json!({
+        "name": "ruby",
+        "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.1, 0.2, 1.0]},
+        "extensions": {
+            "KHR_materials_ior": {"ior": 1.768},
+            "KHR_materials_dispersion": {"dispersion": 0.1},
+            "KHR_materials_transmission": {"transmissionFactor": 1.0},
+            "KHR_materials_volume": {
+                "thicknessFactor": 1.0,
+                "attenuationColor": [1, 0.25, 0],
+                "attenuationDistance": 0.5,
+            },
+        },
+        "extras": {"someone": "else's", "lapidary": {"later": [1, 2]}},
+    }));
+    let expected = Material {
+        name: "ruby".to_owned(),
+        base_color: Vec3::new(0.9, 0.1, 0.2),
+        ior: 1.768,
+        dispersion: Dispersion::Abbe(0.1),
+        attenuation_color: Vec3::new(1.0, 0.25, 0.0),
+        attenuation_distance: 0.5,
+    };
+    assert_eq!(material.unwrap(), expected);
+}
+
+#[test]
+fn what_a_material_leaves_out_has_gltfs_default() {
+    let extensions = json!({"KHR_materials_volume": {}, "KHR_materials_dispersion": {}, "KHR_materials_ior": {}});
+    let none = json!({"KHR_materials_dispersion": {"dispersion": 0}});
+    // Too small for f32 is no dispersion either.
+    let tiny = json!({"KHR_materials_dispersion": {"dispersion": 1e-60}});
+    for extensions in [extensions, none, tiny, json!({})] {
+        for extras in [json!({}), json!([1, {"lapidary": 2}]), json!("text"), json!({"lapidary": {}}), Value::Null] {
+            let material = material_of(json!({"name": "default", "extensions": extensions, "extras": extras}));
+            assert_eq!(material.unwrap(), Material::standard(), "{extensions} {extras}");
+        }
+    }
+}
+
+#[test]
+fn a_measured_equation_is_named_in_the_extras() {
+    for mineral in Mineral::ALL {
+        let name = mineral.name();
+        let index = (mineral.index() * 100.0).round() / 100.0;
+        for extensions in [
+            json!({}),
+            json!({"KHR_materials_ior": {"ior": mineral.index()}}),
+            // As tables round it; and what renderers without the equation need beside it.
+            json!({"KHR_materials_ior": {"ior": index}, "KHR_materials_dispersion": {"dispersion": 0.3}}),
+        ] {
+            let material = material_of(json!({
+                "extensions": extensions,
+                "extras": {"before": {"lapidary": 1}, "lapidary": {"sellmeier": name}},
+            }));
+            let material = material.unwrap();
+            assert_eq!((material.ior, material.dispersion), (mineral.index(), Dispersion::Sellmeier(mineral)));
+        }
+    }
+}
+
+#[test]
+fn a_material_with_large_extras_is_read_once() {
+    // A megabyte of extras under a thousand primitives: a gigabyte, if each read them anew.
+    let extras: Vec<u32> = (0..150_000).collect();
+    let scene = load_changed(|d| {
+        let primitive = json!({"attributes": {"POSITION": 0}, "indices": 1, "material": 0});
+        d["meshes"][0]["primitives"] = vec![primitive; 1_000].into();
+        d["materials"][0]["extras"] = json!({"numbers": extras, "lapidary": {"sellmeier": "quartz"}});
+    });
+    let scene = scene.unwrap();
+    assert_eq!(scene.objects.len(), 1_000);
+    assert!(scene.objects.iter().all(|object| object.material == scene.objects[0].material));
+    assert_eq!(scene.objects[0].material.ior, Mineral::Quartz.index());
 }
 
 #[test]

@@ -1,3 +1,6 @@
+use std::collections::HashMap;
+
+use super::triangulation::SLIVERS;
 use super::*;
 use crate::scene::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
@@ -102,6 +105,69 @@ fn a_face_has_its_centroid_as_inner_vertex() {
     assert_eq!(inner.len(), 1, "only the table has more than four corners");
     assert!(inner[0].distance(Vec3::Y * 0.343) < 1e-3);
     assert!(mesh.normals.last().unwrap().distance(Vec3::Y) < 1e-6);
+}
+
+/// All triangulations of all cuts, and of a flat-ended prism with 64 corners to each end.
+fn triangulated() -> Vec<(Mesh, [Mesh; 3])> {
+    let flat = prism(&PrismParameters { sides: 64, cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
+    let five = prism(&PrismParameters { cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
+    let solids = all_cuts().into_iter().chain([flat, five]);
+    let others = [Triangulation::Fan, Triangulation::Strip, Triangulation::Sliver];
+    solids
+        .map(|solid| {
+            let with = |triangulation| solid.to_mesh_with(Averaging::Angle, triangulation);
+            assert_eq!(with(Triangulation::Centroid), solid.to_mesh(Averaging::Angle));
+            (solid.to_mesh(Averaging::Angle), others.map(with))
+        })
+        .collect()
+}
+
+#[test]
+fn every_triangulation_is_closed_and_encloses_the_same() {
+    for (usual, others) in triangulated() {
+        let (volume, area) = usual.volume_and_area();
+        for other in others {
+            assert_eq!(other.positions.len(), other.normals.len());
+            let mut edges = HashMap::new();
+            for triangle in other.indices.chunks_exact(3) {
+                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(k, l)| (triangle[k], triangle[l])) {
+                    *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { 1_000 };
+                }
+            }
+            assert!(edges.values().all(|&count| count == 1_001), "each edge runs once each way");
+            // Positions are rounded to f32; the inner ones are where the surface differs at all.
+            let (other_volume, other_area) = other.volume_and_area();
+            assert!((other_volume - volume).abs() < 1e-6 * volume, "{other_volume} is not {volume}");
+            assert!((other_area - area).abs() < 1e-6 * area, "{other_area} is not {area}");
+            for [a, b, c] in other.triangles() {
+                assert!((b - a).cross(c - a).dot(a + b + c) > 0.0, "a triangle without area, or inside out");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_triangulation_has_its_own_shape() {
+    let least_angle = |mesh: &Mesh, triangle: usize| {
+        let [a, b, c] = mesh.triangles().nth(triangle).unwrap().map(Vec3::as_dvec3);
+        let angles = [interior_angle(a, b, c), interior_angle(b, c, a), interior_angle(c, a, b)];
+        angles.into_iter().fold(f64::MAX, f64::min).to_degrees()
+    };
+    let solid = round_brilliant(&BrilliantParameters::TOLKOWSKY).unwrap();
+    let [fan, strip, sliver] = [Triangulation::Fan, Triangulation::Strip, Triangulation::Sliver]
+        .map(|triangulation| solid.to_mesh_with(Averaging::Angle, triangulation));
+    let corners_used = |mesh: &Mesh| {
+        let mut uses = HashMap::new();
+        mesh.indices[..18].iter().for_each(|&vertex| *uses.entry(vertex).or_insert(0) += 1);
+        uses.into_values().max().unwrap()
+    };
+    assert_eq!((corners_used(&fan), corners_used(&strip)), (6, 3));
+    assert_eq!(sliver.positions.len(), solid.vertices().len() + 6 * SLIVERS);
+    // The octagon's fan: every angle is an inscribed one, of 22.5° at least.
+    assert!((0..6).all(|k| (least_angle(&fan, k) - 22.5).abs() < 1e-3));
+    let mut needles: Vec<f64> = (0..150).map(|k| least_angle(&sliver, k)).collect();
+    needles.sort_by(f64::total_cmp);
+    assert!(needles[0] > 0.1 && needles[75] < 5.0 && needles[119] < 10.0, "{needles:?}");
 }
 
 #[test]

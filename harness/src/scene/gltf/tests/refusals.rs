@@ -128,6 +128,78 @@ fn materials_and_cameras_out_of_range() {
     }
 }
 
+/// Asserts that a material with this `extensions` or `extras` is refused with `says`.
+fn material_refused(key: &str, value: Value, says: &str) {
+    let message = message(|d| {
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        d["materials"][0][key] = value.clone();
+    });
+    assert!(message.starts_with("material 0 \"gem\": its "), "{value}: {message}");
+    assert!(message.contains(says) && message.len() < 300, "{value}: {message}");
+}
+
+#[test]
+fn volumes_and_dispersions_out_of_range() {
+    let volume = |key: &str, value: Value, says: &str| {
+        material_refused("extensions", json!({"KHR_materials_volume": {key: value}}), says);
+    };
+    for (distance, says) in [
+        (json!(0), "its attenuationDistance is 0.0, but must be above 0"),
+        (json!(-1.5), "is -1.5, but must be above 0"),
+        (json!(1e39), "finite in single precision"),
+        (json!(1e-40), "is 1e-40, but must be above 0"),
+        (json!("2"), "its attenuationDistance is a string, but must be a number"),
+        (json!(null), "its attenuationDistance is null, but must be a number"),
+    ] {
+        volume("attenuationDistance", distance, says);
+    }
+    for (color, says) in [
+        (json!([0.5, 0.5, 1.5]), "its attenuationColor is [0.5, 0.5, 1.5], but each part must lie from 0 to 1"),
+        (json!([0.5, -1e-9, 0.5]), "each part must lie from 0 to 1"),
+        (json!([0.5, 0.5]), "its attenuationColor is an array of something else, but must be three numbers"),
+        (json!([0.5, 0.5, 0.5, 1.0]), "but must be three numbers"),
+        (json!([0.5, "0.5", 0.5]), "but must be three numbers"),
+        (json!(1), "its attenuationColor is a number, but must be three numbers"),
+    ] {
+        volume("attenuationColor", color, says);
+    }
+    let dispersion = |value: Value, says: &str| {
+        material_refused("extensions", json!({"KHR_materials_dispersion": {"dispersion": value}}), says);
+    };
+    dispersion(json!(-0.1), "its dispersion is -0.1, but must be at least 0 and finite: 20/V_d");
+    dispersion(json!(1e39), "at least 0 and finite");
+    dispersion(json!([0.1]), "its dispersion is an array of something else, but must be a number");
+    for name in ["KHR_materials_volume", "KHR_materials_dispersion"] {
+        material_refused("extensions", json!({name: [1]}), &format!("its {name} is an array of something else"));
+        material_refused("extensions", json!({name: true}), "is true or false, but must be an object");
+    }
+}
+
+#[test]
+fn measured_equations_that_are_not_known_or_do_not_agree() {
+    let sellmeier = |value: Value, says: &str| {
+        material_refused("extras", json!({"lapidary": {"sellmeier": value}}), says);
+    };
+    sellmeier(json!("diamant"), "its extras.lapidary.sellmeier is \"diamant\", but must be one of \"diamond\", ");
+    sellmeier(json!("x\n".repeat(100_000)), "but must be one of");
+    sellmeier(json!(2.4), "sellmeier is 2.4, but must be one of");
+    sellmeier(json!(["diamond"]), "but must be one of");
+    material_refused(
+        "extras",
+        json!({"lapidary": "diamond"}),
+        "its extras.lapidary is \"diamond\", but must be an object",
+    );
+    let message = message(|d| {
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        d["materials"][0] = json!({
+            "extensions": {"KHR_materials_ior": {"ior": 1.77}},
+            "extras": {"lapidary": {"sellmeier": "diamond"}},
+        });
+    });
+    let says = "material 0: its ior is 1.77, but the Sellmeier equation of diamond in its extras gives 2.41749; ";
+    assert!(message.starts_with(says), "{message}");
+}
+
 #[test]
 fn long_names_are_not_copied_whole() {
     let name = "x\n".repeat(100_000);

@@ -1,0 +1,72 @@
+//! The materials of the built-in scenes.
+//!
+//! Where a crystal is uniaxial (corundum, quartz, beryl) its ordinary ray stands for both. Colours are chosen
+//! by eye, as what is left of white light after two girdle radii of stone: about one way down to the pavilion
+//! and up again.
+
+use glam::Vec3;
+
+use crate::scene::{Dispersion, Material, Mineral};
+
+/// The way inside after which a coloured stone shows its colour, in girdle radii (half lengths of the step cut).
+const COLOR_DEPTH: f32 = 2.0;
+
+/// A vivid royal blue, linear RGB.
+const ROYAL_BLUE: Vec3 = Vec3::new(0.03, 0.10, 0.60);
+/// The red of pigeon's blood: vivid, with a trace of blue.
+const PIGEON_BLOOD: Vec3 = Vec3::new(0.72, 0.018, 0.06);
+/// A vivid bluish green.
+const EMERALD_GREEN: Vec3 = Vec3::new(0.16, 0.72, 0.42);
+
+/// Refractive index of beryl's ordinary ray, in the middle of what emeralds have.
+const BERYL: f32 = 1.577;
+/// Abbe number of beryl. Schumann (Gemstones of the World, 2009) gives a dispersion of 0.009 to 0.013 between
+/// the C and F lines, and so 44 to 64 with the index above; this stands for 0.0101.
+const BERYL_ABBE: f32 = 57.0;
+
+/// Refractive index of Schott's flint glass F2, the lead glass of chandeliers and of prisms for spectra.
+const FLINT_GLASS: f32 = 1.62004;
+/// Abbe number of F2.
+const FLINT_GLASS_ABBE: f32 = 36.37;
+
+pub(super) fn diamond() -> Material {
+    measured("diamond", Mineral::Diamond)
+}
+
+pub(super) fn sapphire() -> Material {
+    tinted(measured("sapphire", Mineral::Corundum), ROYAL_BLUE)
+}
+
+pub(super) fn ruby() -> Material {
+    tinted(measured("ruby", Mineral::Corundum), PIGEON_BLOOD)
+}
+
+pub(super) fn quartz() -> Material {
+    measured("quartz", Mineral::Quartz)
+}
+
+pub(super) fn emerald() -> Material {
+    tinted(by_abbe("beryl", BERYL, BERYL_ABBE), EMERALD_GREEN)
+}
+
+pub(super) fn crown_glass() -> Material {
+    measured("glass", Mineral::CrownGlass)
+}
+
+pub(super) fn flint_glass() -> Material {
+    by_abbe("flint glass", FLINT_GLASS, FLINT_GLASS_ABBE)
+}
+
+fn measured(name: &str, mineral: Mineral) -> Material {
+    let dispersion = Dispersion::Sellmeier(mineral);
+    Material { name: name.to_owned(), ior: mineral.index(), dispersion, ..Material::standard() }
+}
+
+fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
+    let dispersion = Dispersion::Abbe(20.0 / abbe_number);
+    Material { name: name.to_owned(), ior, dispersion, ..Material::standard() }
+}
+
+fn tinted(material: Material, color: Vec3) -> Material {
+    Material { attenuation_color: color, attenuation_distance: COLOR_DEPTH, ..material }
+}
