@@ -1,7 +1,7 @@
 //! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
 
 use crate::gpu::Gpu;
-use crate::render::{self, Picture, RenderError, Rung, Settings, file};
+use crate::render::{self, Picture, RenderError, Settings, file};
 use crate::scene::{Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub const MOST_FLIP: f32 = 0.005;
 /// Largest RMSE in linear radiance, relative to the reference's root mean square.
 pub const MOST_RMSE: f32 = 0.05;
 
-/// A picture of the gem recipe.
+/// A picture of a gem recipe.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     /// Its file's name.
@@ -25,8 +25,8 @@ pub struct Shot {
     pub title: &'static str,
     /// The built-in scene.
     pub scene: &'static str,
-    /// How much of the light's way is followed.
-    pub rung: Rung,
+    /// The rung, by its name.
+    pub rung: &'static str,
     /// The proxy's centre by the paper's eq. (4).
     pub paper_centre: bool,
     /// What it shows; where empty, the scene's own description.
@@ -34,42 +34,72 @@ pub struct Shot {
 }
 
 /// Every committed picture.
-pub const SHOTS: [Shot; 7] = [
-    shot("brilliant", "Round brilliant, diamond", "brilliant"),
-    shot("octahedron", "Octahedron, diamond", "octahedron"),
-    shot("step_cut", "Step cut, emerald", "step_cut"),
-    shot("prism", "Pentagonal prism, quartz", "prism"),
-    shot("bunny_stone", "Bunny, glass", "bunny_stone"),
+pub const SHOTS: [Shot; 18] = [
+    shot("brilliant", "Round brilliant, diamond", "brilliant", "proxy-4+tracker"),
+    shot("sapphire", "Round brilliant, sapphire", "sapphire", "proxy-4+tracker"),
+    shot("ruby", "Round brilliant, ruby", "ruby", "proxy-4+tracker"),
+    shot("quartz", "Round brilliant, quartz", "quartz", "proxy-4+tracker"),
+    shot("step_cut", "Step cut, emerald", "step_cut", "proxy-4+tracker"),
+    shot("octahedron", "Octahedron, diamond", "octahedron", "proxy-4+tracker"),
+    shot("prism", "Pentagonal prism, quartz", "prism", "proxy-2+tracker"),
+    shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker"),
+    shot("chandelier", "A chandelier, one draw call", "chandelier", "proxy-2+tracker"),
+    shot("bunny_stone", "Bunny, glass", "bunny_stone", "bvh-8+tracker"),
     Shot {
-        rung: Rung::Surface,
+        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
+            picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
+        ..shot("brilliant_exact", "Round brilliant, exact", "brilliant", "convex-8+tracker")
+    },
+    Shot {
+        paragraph: "As the paper has it: one internal hit, no dispersion. What is reflected inside comes from the environment along \
+            the reflected ray.",
+        ..shot("brilliant_paper", "Round brilliant, one internal hit", "brilliant", "proxy-1")
+    },
+    Shot {
+        paragraph: "The paper's dispersion as printed, eq. (10) to (12): direction and sign are right, but its size is the length of the \
+            path in whatever unit the model has, and knows nothing of the material.",
+        ..shot("brilliant_paper_dispersion", "Round brilliant, the paper's dispersion", "brilliant", "proxy-1+paper")
+    },
+    Shot {
         paragraph: "The cheapest rung, and what many games ship: exact Fresnel reflection at the surface, and nothing of \
             what goes on inside. Compare it with the full stone to see what one internal hit buys.",
-        ..shot("brilliant_surface", "Round brilliant, surface reflection alone", "brilliant")
+        ..shot("brilliant_surface", "Round brilliant, surface reflection alone", "brilliant", "surface")
     },
     Shot {
         paper_centre: true,
-        paragraph: "The same stone with the proxy's centre by the paper's eq. (4) instead of the regularised least squares. \
+        paragraph: "One internal hit, with the proxy's centre by the paper's eq. (4) instead of the regularised least squares. \
             The facets seen inside differ where the normals of a triangle lie close together: the paper's centre runs off \
             there, and depends on the order of the vertices.",
-        ..shot("brilliant_paper_centre", "Round brilliant, the paper's centre", "brilliant")
+        ..shot("brilliant_paper_centre", "Round brilliant, the paper's centre", "brilliant", "proxy-1")
     },
+    shot("brilliant_fan", "The table as a fan from one corner", "brilliant_fan", "proxy-1"),
+    shot("brilliant_strip", "The table as a strip", "brilliant_strip", "proxy-1"),
+    shot("brilliant_sliver", "The table in slivers", "brilliant_sliver", "proxy-1"),
 ];
 
-const fn shot(name: &'static str, title: &'static str, scene: &'static str) -> Shot {
-    Shot { name, title, scene, rung: Rung::ProxyOne, paper_centre: false, paragraph: "" }
+const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
+    Shot { name, title, scene, rung, paper_centre: false, paragraph: "" }
 }
 
 impl Shot {
     /// How to render it at `side` pixels.
+    ///
+    /// # Panics
+    /// Where its rung's name is none: the names are compiled in.
     pub fn settings(&self, side: u32) -> Settings {
-        Settings { rung: self.rung, paper_centre: self.paper_centre, ..Settings::of_size(side, side) }
+        let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        Settings { rung, paper_centre: self.paper_centre, ..Settings::of_size(side, side) }
+    }
+
+    /// The composed recipe that draws it.
+    pub fn source(&self) -> String {
+        crate::cookbook::recipe_source(self.settings(1).rung.recipe())
     }
 
     /// The command that renders it.
     pub fn command(&self) -> String {
-        let rung = if self.rung == Rung::Surface { " --rung surface" } else { "" };
         let centre = if self.paper_centre { " --centre paper" } else { "" };
-        format!("./cook render {}{rung}{centre} --out {}.png", self.scene, self.name)
+        format!("./cook render {} --rung {}{centre} --out {}.png", self.scene, self.rung, self.name)
     }
 }
 

@@ -1,7 +1,6 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cookbook;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;
@@ -23,13 +22,12 @@ pub(super) struct Arguments {
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/gallery"));
     let gpu = context.gpu()?;
-    let source = cookbook::recipe_source("gem");
     let rendered = tempfile::tempdir()?;
     let bar = progress::bar(SHOTS.len() as u64, "rendering");
     let mut pictures = Vec::new();
     for shot in &SHOTS {
         bar.set_message(shot.name);
-        let [seen, _] = snapshot::render_shot(gpu, shot, &source)?;
+        let [seen, _] = snapshot::render_shot(gpu, shot, &shot.source())?;
         let path = rendered.path().join(format!("{}.png", shot.name));
         file::write(&seen, &path)?;
         let of_scene =

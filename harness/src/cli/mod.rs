@@ -3,6 +3,7 @@
 
 mod check;
 mod copy;
+mod cost;
 mod gallery;
 mod list;
 mod output;
@@ -53,6 +54,7 @@ enum Command {
     Check(check::Arguments),
     List(list::Arguments),
     Copy(copy::Arguments),
+    Cost(cost::Arguments),
     Render(render::Arguments),
     Scene(scene::Arguments),
     Snapshots(snapshots::Arguments),
@@ -87,6 +89,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Check(arguments) => check::run(&context, &arguments),
         Command::List(arguments) => list::run(&arguments),
         Command::Copy(arguments) => copy::run(&arguments),
+        Command::Cost(arguments) => cost::run(&context, &arguments),
         Command::Render(arguments) => render::run(&context, &arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),

@@ -2,9 +2,8 @@
 
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
-use lapidary_harness::nearest;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Environment, RUNGS, Rung, Settings};
+use lapidary_harness::render::{self, Environment, GRAMMAR, Rung, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::{self, Scene};
 use std::path::PathBuf;
@@ -12,7 +11,7 @@ use std::path::PathBuf;
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook render brilliant\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
+    after_help = "Examples:\n  ./cook render brilliant\n  ./cook render ruby --rung convex-8+tracker --from 0,0\n  ./cook render quartz --rung reference --size 256x256 --out quartz.exr\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
 )]
 pub(super) struct Arguments {
     #[arg(help = format!("{}, or a glTF 2.0 file", scene::names()))]
@@ -23,9 +22,31 @@ pub(super) struct Arguments {
     /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png where left out.
     #[arg(long, value_name = "F.png|F.exr")]
     out: Option<PathBuf>,
-    /// How much of the light's way is followed: surface, proxy-1.
-    #[arg(long, default_value = "proxy-1", value_parser = parse_rung)]
+    #[arg(
+        long,
+        default_value = "proxy-4+tracker",
+        value_parser = |text: &str| text.parse::<Rung>(),
+        help = format!("How much of the light's way is followed: {GRAMMAR}")
+    )]
     rung: Rung,
+    /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
+    #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
+    from: Option<(f32, f32)>,
+    /// An effect that is left out though the material calls for it: absorption.
+    #[arg(long, value_name = "EFFECT", value_parser = ["absorption"])]
+    without: Vec<String>,
+    /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_exposure)]
+    strength: f32,
+    /// What a ray still carries at its last hit: taken from the environment along it, or dropped.
+    #[arg(long, value_name = "WAY", default_value = "environment", value_parser = ["environment", "dropped"])]
+    rest: String,
+    /// In units of length: a ray ends that has travelled farther inside.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_exposure)]
+    distance_limit: Option<f32>,
+    /// By a geometry buffer and a lighting pass, as a deferred renderer does.
+    #[arg(long)]
+    deferred: bool,
     /// The proxy's centre: stable, or the paper's eq. (4).
     #[arg(long, value_name = "FORM", default_value = "stable", value_parser = ["stable", "paper"])]
     centre: String,
@@ -43,10 +64,10 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
 }
 
-fn parse_rung(text: &str) -> Result<Rung, String> {
-    let names: Vec<&str> = RUNGS.iter().map(|(name, _)| *name).collect();
-    let found = RUNGS.iter().find(|(name, _)| *name == text).map(|(_, rung)| *rung);
-    found.ok_or_else(|| format!("no such rung{}", nearest::suggest(text, &names)))
+fn parse_from(text: &str) -> Result<(f32, f32), String> {
+    let number = |text: &str| text.trim().parse::<f32>().ok().filter(|angle| angle.is_finite());
+    let parsed = text.split_once(',').and_then(|(polar, azimuth)| Some((number(polar)?, number(azimuth)?)));
+    parsed.ok_or_else(|| "expected two angles in degrees, such as 20,11".to_owned())
 }
 
 fn parse_exposure(text: &str) -> Result<f32, String> {
@@ -57,7 +78,10 @@ fn parse_exposure(text: &str) -> Result<f32, String> {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let scene = Scene::open(&arguments.scene)?;
+    let mut scene = Scene::open(&arguments.scene)?;
+    if let Some((polar, azimuth)) = arguments.from {
+        scene = scene.seen_from(polar, azimuth);
+    }
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
     file::check_writable(&out)?;
@@ -69,11 +93,16 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let settings = Settings {
         rung: arguments.rung,
         paper_centre: arguments.centre == "paper",
+        absorption: !arguments.without.iter().any(|effect| effect == "absorption"),
+        dispersion_strength: arguments.strength,
+        rest_from_environment: arguments.rest == "environment",
+        distance_limit: arguments.distance_limit,
+        deferred: arguments.deferred,
         environment,
         exposure: arguments.exposure,
         ..Settings::of_size(width, height)
     };
-    let source = cookbook::recipe_source("gem");
+    let source = cookbook::recipe_source(arguments.rung.recipe());
     let bar = progress::bar(0, "rendering");
     let picture = render::render_with(context.gpu()?, &scene, &settings, &source, &mut |done, total| {
         bar.set_length(total);

@@ -1,7 +1,6 @@
 //! `cook snapshots`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cookbook;
 use lapidary_harness::snapshot::{self, SHOTS};
 
 /// Renders the committed pictures again and compares them, or accepts the new ones.
@@ -15,14 +14,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let gpu = context.gpu()?;
-    let source = cookbook::recipe_source("gem");
     let folder = snapshot::folder();
     let bar = progress::bar(SHOTS.len() as u64, "rendering");
     let mut outcome = Outcome::Passed;
     let mut lines = Vec::new();
     for shot in &SHOTS {
         bar.set_message(shot.name);
-        let pictures = snapshot::render_shot(gpu, shot, &source)?;
+        let pictures = snapshot::render_shot(gpu, shot, &shot.source())?;
         if arguments.accept {
             snapshot::accept(shot, &pictures, &folder)?;
             lines.push(format!("{:<24} accepted", shot.name));

@@ -16,6 +16,7 @@ pub use gem::{Options, RUNGS, Strength, run};
 pub use timing::{Timed, Timing};
 
 use crate::specialise::SpecialiseError;
+use crate::spirv_counts::SpirvCountsError;
 use serde::Serialize;
 
 /// One rung, one view, one measure.
@@ -49,9 +50,9 @@ pub struct RungReport {
     /// The frame's time.
     pub timing: Option<Timing>,
     /// Instructions of the specialised fragment shader in SPIR-V.
-    pub fragment_instructions: usize,
+    pub fragment_instructions: u32,
     /// Of the vertex shader.
-    pub vertex_instructions: usize,
+    pub vertex_instructions: u32,
     /// Bytes of constants and storage that its geometry needs for the timed stone, beside the mesh.
     pub geometry_bytes: u64,
     /// Another rung is not slower and errs less by every measure in every view.
@@ -155,6 +156,9 @@ pub enum CostError {
     /// The recipe could not be specialised for the count of its instructions.
     #[error("counting instructions: {0}")]
     Specialise(#[from] SpecialiseError),
+    /// The specialised recipe could not be counted.
+    #[error("counting instructions: {0}")]
+    Counts(#[from] SpirvCountsError),
     /// The plot could not be drawn.
     #[error("drawing the plot: {0}")]
     Plot(String),

@@ -130,8 +130,20 @@ fn draw(
         let series: Vec<&Point<'_>> = points.iter().filter(of_series).collect();
         let Some(first) = series.first() else { continue };
         let color = color(first.rung);
+        // A disc where colours are not followed, a ring for the paper's tracker, a triangle for the exact one, a cross for separate
+        // wavelengths.
+        for point in &series {
+            let at = (point.ms, point.error);
+            let size = if point.front { 7 } else { 4 };
+            match point.rung.map(Rung::spectrum) {
+                Some(Spectrum::Paper) => chart.draw_series([Circle::new(at, size, color.stroke_width(2))])?,
+                Some(Spectrum::Tracker) => chart.draw_series([TriangleMarker::new(at, size + 1, color.filled())])?,
+                Some(Spectrum::Separate(_)) => chart.draw_series([Cross::new(at, size, color.stroke_width(2))])?,
+                _ => chart.draw_series([Circle::new(at, size, color.filled())])?,
+            };
+        }
         chart
-            .draw_series(series.iter().map(|point| marker(point, color)))?
+            .draw_series([Circle::new((first.ms, first.error), 1, color.filled())])?
             .label(name)
             .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
     }
@@ -151,22 +163,4 @@ fn draw(
         .draw()?;
     root.present()?;
     Ok(())
-}
-
-/// A disc where colours are not followed, a ring for the paper's tracker, a triangle for the exact one, a cross for separate wavelengths.
-fn marker<DB: DrawingBackend>(
-    point: &Point<'_>,
-    color: RGBColor,
-) -> plotters::element::DynElement<'static, DB, (f64, f64)>
-where
-    DB: 'static,
-{
-    let at = (point.ms, point.error);
-    let size = if point.front { 7 } else { 4 };
-    match point.rung.map(Rung::spectrum) {
-        Some(Spectrum::Paper) => Circle::new(at, size, color.stroke_width(2)).into_dyn(),
-        Some(Spectrum::Tracker) => TriangleMarker::new(at, size + 1, color.filled()).into_dyn(),
-        Some(Spectrum::Separate(_)) => Cross::new(at, size, color.stroke_width(2)).into_dyn(),
-        _ => Circle::new(at, size, color.filled()).into_dyn(),
-    }
 }

@@ -2,11 +2,9 @@
 
 use super::SurfacePoint;
 use crate::render::{Geometry, RenderError, Settings};
-use crate::scene::bvh::Bvh;
-use crate::scene::convex::Convex;
-use crate::scene::{Mesh, Object};
+use crate::scene::{Bvh, Convex, Mesh, Object};
 use glam::Vec3;
-use lapidary_bvh_trace as bvh_trace;
+use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
 use lapidary_convex_trace as convex_trace;
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
@@ -21,8 +19,25 @@ pub struct Stone<'a> {
 enum Data {
     Proxy,
     Convex(Convex),
-    Triangles(Bvh),
-    Bvh(Bvh),
+    Triangles(Leaves),
+    Bvh(Leaves),
+}
+
+/// A hierarchy, and where it holds each of the mesh's triangles.
+struct Leaves {
+    bvh: Bvh,
+    place: Vec<u32>,
+}
+
+impl Leaves {
+    fn of(mesh: &Mesh) -> Self {
+        let bvh = Bvh::build(mesh);
+        let mut place = vec![u32::MAX; mesh.triangle_count()];
+        for (leaf, &triangle) in (0..).zip(&bvh.order) {
+            place[triangle as usize] = leaf;
+        }
+        Self { bvh, place }
+    }
 }
 
 /// A triangle as the vertex shader hands it on, and where a ray enters it.
@@ -63,9 +78,9 @@ impl<'a> Stone<'a> {
         let not_convex = || RenderError::NotConvex { object: object.name.clone() };
         let data = match settings.rung.geometry() {
             Geometry::Proxy => Data::Proxy,
-            Geometry::Convex => Data::Convex(Convex::of(mesh).ok_or_else(not_convex)?),
-            Geometry::Triangles => Data::Triangles(Bvh::build(mesh)),
-            Geometry::Bvh => Data::Bvh(Bvh::build(mesh)),
+            Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(not_convex)?),
+            Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
+            Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
         };
         Ok(Self { mesh, paper_centre: settings.paper_centre, data })
     }
@@ -95,12 +110,12 @@ impl<'a> Stone<'a> {
                 let face_normal = convex.planes[face as usize].truncate();
                 Entry { position, face_normal, start: Place::Convex { convex, face } }
             }
-            Data::Triangles(bvh) => {
-                let triangle = bvh.leaf_of_triangle(triangle);
+            Data::Triangles(Leaves { bvh, place }) => {
+                let triangle = place[triangle as usize];
                 Entry { position, face_normal, start: Place::Triangles { mesh, bvh, triangle } }
             }
-            Data::Bvh(bvh) => {
-                let triangle = bvh.leaf_of_triangle(triangle);
+            Data::Bvh(Leaves { bvh, place }) => {
+                let triangle = place[triangle as usize];
                 Entry { position, face_normal, start: Place::Bvh { mesh, bvh, triangle } }
             }
         }
@@ -154,18 +169,20 @@ impl Place<'_> {
                 }
             }
             Self::Triangles { mesh, bvh, triangle } => {
-                let [lower, upper] = [bvh.nodes[0].lower, bvh.nodes[0].upper];
-                let ray = bvh_trace::ray(position, direction, lower, upper);
-                let mut nearest = bvh_trace::start(FAR);
-                for (number, corners) in (0..).zip(bvh.indices.chunks_exact(3)) {
-                    let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[corners[k] as usize]);
-                    nearest = bvh_trace::triangle(nearest, ray, a, b, c, number, *triangle);
-                }
+                let nearest = traversal::trace_all(
+                    &bvh.nodes,
+                    &mesh.positions,
+                    &bvh.indices,
+                    position,
+                    direction,
+                    *triangle,
+                    lapidary_bvh_trace::triangle,
+                );
                 triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
             }
             Self::Bvh { mesh, bvh, triangle } => {
                 let nearest =
-                    bvh_trace::trace(&bvh.nodes, &mesh.positions, &bvh.indices, position, direction, *triangle);
+                    traversal::trace(&bvh.nodes, &mesh.positions, &bvh.indices, position, direction, *triangle);
                 triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
             }
         }
@@ -176,7 +193,7 @@ impl Place<'_> {
 fn triangle_hit(
     mesh: &Mesh,
     indices: &[u32],
-    nearest: bvh_trace::BvhTraceHit,
+    nearest: BvhTraceHit,
     left: &mut u32,
     position: Vec3,
     direction: Vec3,

@@ -208,13 +208,11 @@ impl<'a> Shading<'a> {
     }
 
     fn environment_paper(&self, red: Vec3, spread: Vec3, travelled: f32) -> Vec3 {
-        let green_ratio = dispersion::DISPERSION_RED / dispersion::DISPERSION_GREEN;
-        let blue_ratio = dispersion::DISPERSION_RED / dispersion::DISPERSION_BLUE;
         let strength = self.material.dispersion_strength;
         self.environment_channels(
             red,
-            dispersion::paper_direction(red, spread, travelled, green_ratio, strength),
-            dispersion::paper_direction(red, spread, travelled, blue_ratio, strength),
+            dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_GREEN, strength),
+            dispersion::paper_direction(red, spread, travelled, dispersion::DISPERSION_PAPER_BLUE, strength),
         )
     }
 

@@ -16,6 +16,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::reference;
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
+use std::sync::Mutex;
 use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
@@ -131,6 +132,9 @@ pub enum RenderError {
         /// Its name.
         object: String,
     },
+    /// The reference refuses.
+    #[error(transparent)]
+    Reference(#[from] reference::ReferenceError),
     /// The recipe is not valid WGSL.
     #[error("{0}")]
     Recipe(#[from] crate::dispatch::DispatchError),
@@ -196,6 +200,26 @@ pub fn render_with(
         progress(done, tiles.len() as u64);
     }
     Ok(picture)
+}
+
+/// What the reference sees of `scene`, by the settings' size, samples and environment.
+fn reference_radiance(
+    scene: &Scene,
+    settings: &Settings,
+    progress: &mut (dyn FnMut(u64, u64) + Send),
+) -> Result<Vec<[f32; 4]>, RenderError> {
+    let of_reference = reference::Settings {
+        samples: settings.samples,
+        environment: &settings.environment,
+        ..reference::Settings::of_size(settings.width, settings.height)
+    };
+    let progress = Mutex::new(progress);
+    let tell = |done, total| {
+        if let Ok(mut progress) = progress.lock() {
+            progress(done, total);
+        }
+    };
+    Ok(reference::render(scene, &of_reference, &tell)?.linear)
 }
 
 /// Fills in `encoded` from `linear`, as the display recipe shows it.

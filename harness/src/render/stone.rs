@@ -4,9 +4,7 @@ use super::device::{bind_group, buffer, uniform};
 use super::{Geometry, RenderError, Settings, Spectrum};
 use crate::gpu::Gpu;
 use crate::reference::spectrum;
-use crate::scene::bvh::Bvh;
-use crate::scene::convex::Convex;
-use crate::scene::{Material, Object};
+use crate::scene::{Bvh, Convex, Material, Object};
 use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use std::borrow::Cow;
@@ -87,7 +85,7 @@ impl<'a> Geometries<'a> {
             Geometry::Proxy => Self { indices, own: vec![bytemuck::cast_slice(&mesh.normals).into()] },
             Geometry::Convex => {
                 let not_convex = || RenderError::NotConvex { object: object.name.clone() };
-                let convex = Convex::of(mesh).ok_or_else(not_convex)?;
+                let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
                 let own = bytes(&[bytemuck::cast_slice(&planes), bytemuck::cast_slice(&convex.face_of_triangle)]);
                 Self { indices, own }

@@ -8,8 +8,10 @@ use std::path::Path;
 
 use glam::Vec3;
 
+pub mod bvh;
 mod built_in;
 mod camera;
+pub mod convex;
 pub mod cuts;
 pub mod environment_map;
 mod error;
@@ -22,7 +24,9 @@ pub mod normals;
 pub mod polyhedron;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
+pub use bvh::Bvh;
 pub use camera::Camera;
+pub use convex::Convex;
 pub use error::SceneError;
 pub use material::{Dispersion, Material, Mineral};
 pub use mesh::Mesh;

@@ -198,12 +198,10 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
 
 // Radiance around a red ray, with green and blue moved along the paper's direction of dispersion, eq. (12).
 fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
-    let green_ratio = DISPERSION_RED / DISPERSION_GREEN;
-    let blue_ratio = DISPERSION_RED / DISPERSION_BLUE;
     return gem_environment_channels(
         red,
-        dispersion_paper_direction(red, spread, travelled, green_ratio, material.dispersion_strength),
-        dispersion_paper_direction(red, spread, travelled, blue_ratio, material.dispersion_strength),
+        dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_GREEN, material.dispersion_strength),
+        dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_BLUE, material.dispersion_strength),
     );
 }
 
