@@ -163,8 +163,8 @@ pub fn triangle(
     let along = if volumes.iter().all(|volume| *volume >= 0.0) {
         normal.dot(corners[0]) / normal.dot(direction)
     } else {
-        let point: DVec3 = (0..3).map(|k| weights[k] / total * corners[k]).sum();
-        point[axis] / direction[axis]
+        let point: DVec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        point[axis] / total / direction[axis]
     };
     let distance = along.max(0.0);
     if along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle) {
@@ -184,16 +184,17 @@ pub fn triangle_naive(
     triangle: u32,
     left: u32,
 ) -> BvhTraceHit {
+    let epsilon = f64::from(crate::BVH_TRACE_NAIVE_EPSILON);
     let normal = (b - a).cross(c - a);
     let slope = normal.dot(ray.direction);
-    if triangle == left || slope < 1e-6 {
+    if triangle == left || slope < epsilon {
         return hit;
     }
     let distance = normal.dot(a - ray.origin) / slope;
     let point = ray.origin + distance * ray.direction;
     let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal) / normal.length_squared();
     let (v, w, u) = (weight(c, a), weight(a, b), weight(b, c));
-    if u < 0.0 || v < 0.0 || w < 0.0 || distance < 1e-6 || distance > hit.distance {
+    if u < 0.0 || v < 0.0 || w < 0.0 || distance < epsilon || distance > hit.distance {
         return hit;
     }
     BvhTraceHit { distance, barycentrics: DVec2::new(v, w), triangle }
@@ -225,7 +226,7 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     for k in 0..3 {
         let (from, to) = (across[k], across[(k + 1) % 3]);
         let edge = to - from;
-        // Seen along the ray, a triangle that it leaves through winds clockwise about it: left of each edge is inside.
+        // A triangle that the ray leaves through winds counter-clockwise about its direction: left of each edge is inside.
         let height = direction.dot(from.cross(to)) / edge.length().max(f64::MIN_POSITIVE);
         inside = inside.min(height);
         let share = (-from.dot(edge) / edge.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

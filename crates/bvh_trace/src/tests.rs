@@ -139,6 +139,15 @@ fn no_ray_leaks_at_a_vertex_or_an_edge() {
 }
 
 #[test]
+#[ignore = "a minute"]
+fn no_ray_of_a_million_leaks() {
+    for body in [sphere(), bumpy()] {
+        assert_eq!(leaks(&body, 1_000_000, triangle), 0);
+        assert_eq!(lost(&body, 200_000, 64, 1.0), 0);
+    }
+}
+
+#[test]
 fn the_naive_test_leaks_there() {
     for body in [sphere(), bumpy()] {
         let leaks = leaks(&body, 200_000, triangle_naive);

@@ -9,6 +9,7 @@ use std::path::Path;
 use glam::Vec3;
 
 mod built_in;
+pub mod bvh;
 mod camera;
 pub mod cuts;
 pub mod environment_map;
@@ -22,6 +23,7 @@ pub mod normals;
 pub mod polyhedron;
 
 pub use built_in::{BUILT_IN, BuiltIn};
+pub use bvh::Bvh;
 pub use camera::Camera;
 pub use error::SceneError;
 pub use material::{Dispersion, Material, Mineral};
