@@ -160,7 +160,7 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 
 // The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that. In the frame of the ray the triangle is flat,
 // and counts if the origin lies inside it: if no edge passes it on the wrong side by more than the margin. Sharp corners end at the margin as well.
-// A triangle may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
+// Its plane may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
 // Edges are taken as differences, so that the error of an edge function is relative to its edge, as the margin is.
 // Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes beside it. At equal distances
 //   the lower number wins, so that the order of the triangles does not matter.
@@ -181,9 +181,9 @@ fn bvh_trace_triangle(
     let p = bvh_trace_shear(ray, a);
     let q = bvh_trace_shear(ray, b);
     let r = bvh_trace_shear(ray, c);
-    let qr = r.xy - q.xy;
-    let rp = p.xy - r.xy;
-    let pq = q.xy - p.xy;
+    let qr = r - q;
+    let rp = p - r;
+    let pq = q - p;
     // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest component is negative.
     let spanned = vec3f(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
     let area = sign(ray.shear.z) * spanned;
@@ -199,9 +199,13 @@ fn bvh_trace_triangle(
     }
     let weight = max(area, vec3f(0.0f));
     let total = weight.x + weight.y + weight.z;
-    let along = (weight.x * p.z + weight.y * q.z + weight.z * r.z) / total;
-    let distance = max(along, 0.0f);
-    if (along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle)) {
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along the ray, by which
+    // a plane close to the origin, met at a shallow angle, may lie far behind.
+    let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
+    let normal = abs(cross(qr, rp));
+    let distance = max(height / total, 0.0f);
+    if (height < -ray.margin * (normal.x + normal.y + normal.z) || distance > hit.distance
+        || (distance == hit.distance && triangle > hit.triangle)) {
         return hit;
     }
     return BvhTraceHit(distance, weight.yz / total, triangle);

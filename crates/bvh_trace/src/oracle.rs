@@ -87,14 +87,11 @@ pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhT
     let direction = 1.0 / ray.reciprocal;
     let middle = 0.5 * (lower + upper) - ray.origin;
     let half = 0.5 * (upper - lower) + DVec3::splat(ray.margin);
-    let entry = (0..3)
-        .map(|axis| middle[axis] / direction[axis] - half[axis] / direction[axis].abs())
-        .fold(0.0, f64::max);
+    let entry =
+        (0..3).map(|axis| middle[axis] / direction[axis] - half[axis] / direction[axis].abs()).fold(0.0, f64::max);
     let inside = |distance: f64, but: Option<usize>| {
         (0.0..=nearest).contains(&distance)
-            && (0..3).all(|axis| {
-                but == Some(axis) || (distance * direction[axis] - middle[axis]).abs() <= half[axis]
-            })
+            && (0..3).all(|axis| but == Some(axis) || (distance * direction[axis] - middle[axis]).abs() <= half[axis])
     };
     let crosses = (0..3).any(|axis| {
         [-1.0, 1.0].iter().any(|side| inside((middle[axis] + side * half[axis]) / direction[axis], Some(axis)))
@@ -141,8 +138,9 @@ pub fn triangle(
         return hit;
     }
     let feet = corners.map(|corner| corner - corner[axis] / direction[axis] * direction);
-    let volumes: [f64; 3] =
-        std::array::from_fn(|k| direction.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3])) / direction[axis].abs());
+    let volumes: [f64; 3] = std::array::from_fn(|k| {
+        direction.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3])) / direction[axis].abs()
+    });
     // A foot's component along the axis is 0, so sums and maxima of components are those of the plane.
     for k in 0..3 {
         let mut edge = feet[(k + 2) % 3] - feet[(k + 1) % 3];
@@ -167,7 +165,13 @@ pub fn triangle(
         point[axis] / total / direction[axis]
     };
     let distance = along.max(0.0);
-    if along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle) {
+    // Along the frame's axes, which are two coordinate axes and the direction, the plane is met at height / slope.
+    let slopes: f64 = (0..3).filter(|other| *other != axis).map(|other| normal[other].abs()).sum();
+    let height = along * total * direction[axis].abs();
+    if height < -ray.margin * (slopes + normal.dot(direction))
+        || distance > hit.distance
+        || (distance == hit.distance && triangle > hit.triangle)
+    {
         return hit;
     }
     BvhTraceHit { distance, barycentrics: DVec2::new(weights[1], weights[2]) / total, triangle }

@@ -352,9 +352,7 @@ fn box_formulas() -> Vec<Formula> {
         })
         .edge("hit", |case| mirror::r#box(case.0, case.1, case.2, case.3).hit)
         .edge("missed", |case| !mirror::r#box(case.0, case.1, case.2, case.3).hit)
-        .edge("from inside", |(ray, lower, upper, _)| {
-            ray.origin.cmpgt(lower).all() && ray.origin.cmplt(upper).all()
-        })
+        .edge("from inside", |(ray, lower, upper, _)| ray.origin.cmpgt(lower).all() && ray.origin.cmplt(upper).all())
         .edge("flat", |(_, lower, upper, _)| lower.z == upper.z)
         .edge("in the plane of a flat box", |(ray, lower, upper, _)| {
             lower.z == upper.z && ray.origin.z == lower.z && ray.direction.z == 0.0
@@ -379,12 +377,16 @@ fn box_formulas() -> Vec<Formula> {
                 Err(format!("{found:?}, not {wanted:?}"))
             }
         })
-        .invariant("a box that the ray itself meets is never missed", |(ray, lower, upper, nearest), found: BvhTraceBox| {
-            let ray = oracle::BvhTraceRay { margin: 0.0, reciprocal: 1.0 / ray.direction.as_dvec3(), ..exact(&ray) };
-            let slanted = ray.direction.abs().min_element() > 1e-12;
-            let meets = slanted && oracle::r#box(ray, lower.as_dvec3(), upper.as_dvec3(), nearest.into()).hit;
-            if found.hit || !meets { Ok(()) } else { Err("missed".to_owned()) }
-        })
+        .invariant(
+            "a box that the ray itself meets is never missed",
+            |(ray, lower, upper, nearest), found: BvhTraceBox| {
+                let ray =
+                    oracle::BvhTraceRay { margin: 0.0, reciprocal: 1.0 / ray.direction.as_dvec3(), ..exact(&ray) };
+                let slanted = ray.direction.abs().min_element() > 1e-12;
+                let meets = slanted && oracle::r#box(ray, lower.as_dvec3(), upper.as_dvec3(), nearest.into()).hit;
+                if found.hit || !meets { Ok(()) } else { Err("missed".to_owned()) }
+            },
+        )
         .hard_case("a flat box, hit at its corner", flat, (&[1.004_987_5, 1.0], 1e-5), ("bvh_trace_box_naive", 1.0))
         .hard_case("a box, hit at its edge", thick, (&[1.360_147, 1.0], 1e-5), ("bvh_trace_box_naive", 1.0))
         .build(),
@@ -415,21 +417,21 @@ fn triangle_formulas() -> Vec<Formula> {
     let edge = whole(Vec3::ZERO, toward, [one, b, c]);
     let across = whole(Vec3::ZERO, toward, [other, c, b]);
     let tiny = 1e-4f32;
-    let small = whole(Vec3::ZERO, Vec3::Z, [
-        Vec3::new(-tiny, -tiny, tiny),
-        Vec3::new(3.0 * tiny, -tiny, tiny),
-        Vec3::new(-tiny, 3.0 * tiny, tiny),
-    ]);
-    let close = whole(Vec3::new(0.0, 0.0, 1.0 - 2f32.powi(-21)), Vec3::Z, [
-        Vec3::new(-1.0, -1.0, 1.0),
-        Vec3::new(3.0, -1.0, 1.0),
-        Vec3::new(-1.0, 3.0, 1.0),
-    ]);
-    let beyond = whole(Vec3::new(0.0, 0.0, 1.0 + 2f32.powi(-20)), Vec3::Z, [
-        Vec3::new(-1.0, -1.0, 1.0),
-        Vec3::new(3.0, -1.0, 1.0),
-        Vec3::new(-1.0, 3.0, 1.0),
-    ]);
+    let small = whole(
+        Vec3::ZERO,
+        Vec3::Z,
+        [Vec3::new(-tiny, -tiny, tiny), Vec3::new(3.0 * tiny, -tiny, tiny), Vec3::new(-tiny, 3.0 * tiny, tiny)],
+    );
+    let close = whole(
+        Vec3::new(0.0, 0.0, 1.0 - 2f32.powi(-21)),
+        Vec3::Z,
+        [Vec3::new(-1.0, -1.0, 1.0), Vec3::new(3.0, -1.0, 1.0), Vec3::new(-1.0, 3.0, 1.0)],
+    );
+    let beyond = whole(
+        Vec3::new(0.0, 0.0, 1.0 + 2f32.powi(-20)),
+        Vec3::Z,
+        [Vec3::new(-1.0, -1.0, 1.0), Vec3::new(3.0, -1.0, 1.0), Vec3::new(-1.0, 3.0, 1.0)],
+    );
     vec![
         formula(M, "bvh_trace_triangle", mirror::triangle, oracle::triangle, triangle_case)
             .edge("hit", |case| mirror_of(&case).triangle == case.5 && case.0.triangle != case.5)
@@ -443,7 +445,9 @@ fn triangle_formulas() -> Vec<Formula> {
                 alone.triangle == case.5 && alone.distance == case.0.distance && case.0.triangle != case.5
             })
             .edge("just left", |case| case.5 == case.6)
-            .edge("entered instead of left", |case| (case.3 - case.2).cross(case.4 - case.2).dot(case.1.direction) < 0.0)
+            .edge("entered instead of left", |case| {
+                (case.3 - case.2).cross(case.4 - case.2).dot(case.1.direction) < 0.0
+            })
             .edge("edge-on, almost", |case| {
                 let normal = (case.3 - case.2).as_dvec3().cross((case.4 - case.2).as_dvec3()).normalize_or_zero();
                 (1e-5..1e-3).contains(&normal.dot(case.1.direction.as_dvec3()))

@@ -1,29 +1,23 @@
 //! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/bvh_trace.wgsl`.
 //!
-//! Built by obvhs: PLOC (parallel locally-ordered clustering) with reinsertion, whose nodes in its small layout are already
-//! what a GPU reads, 32 bytes with adjacent children. (The crate bvh keeps an enum of nodes with parents, or a list of
-//! 36-byte nodes to skip through, which has no order from near to far, and it brings nalgebra.) Two things are added here.
-//! Its clustering does not bound the depth, and a shader's stack must: where a mesh, such as a thousand copies of one triangle, makes
-//! it deeper than [`BVH_TRACE_DEPTH`], the triangles are halved instead. And boxes are taken anew from the positions, since obvhs is given
-//! them scaled to a unit cube, which neither over- nor underflows in its areas.
+//! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few dependencies; but
+//! its clustering does not bound the depth, which a shader's stack must, and with debug assertions, as the tests are built, it
+//! panics over some degenerate meshes and overflows the stack over 20,000 equal triangles. bvh 0.13 keeps an enum of nodes with
+//! parents, or a list of 36-byte nodes to skip through, which has no order from near to far, and it brings nalgebra. What is
+//! left to do is short: splits by the surface area heuristic in bins (Wald, "On fast Construction of SAH-based Bounding Volume
+//! Hierarchies", 2007), and halves wherever those would make the hierarchy too deep.
 
-use glam::{Vec3, Vec3A, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 use lapidary_bvh_trace::traversal::BVH_TRACE_DEPTH;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::builder::build_bvh2;
-use obvhs::{Boundable, BvhBuildParams};
 
 use super::Mesh;
 
 /// Most triangles in a leaf.
 const MOST_IN_A_LEAF: usize = 4;
-
-/// How obvhs builds. A step down costs two boxes and their way from memory, about as much as a triangle.
-const PARAMETERS: BvhBuildParams = BvhBuildParams {
-    max_prims_per_leaf: MOST_IN_A_LEAF as u32,
-    collapse_traversal_cost: 1.0,
-    ..BvhBuildParams::medium_build()
-};
+/// Places along each axis where a split is tried.
+const BINS: usize = 16;
+/// What a step down costs, relative to a triangle: two boxes and their way from memory.
+const STEP: f64 = 1.0;
 
 /// A hierarchy of boxes over the triangles of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,13 +32,57 @@ pub struct Bvh {
     pub order: Vec<u32>,
 }
 
+/// A triangle and its box.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    number: u32,
+    lower: Vec3,
+    upper: Vec3,
+}
+
+impl Triangle {
+    /// The middle of the box; in f64, where the sum of two huge corners does not overflow.
+    fn middle(&self) -> DVec3 {
+        0.5 * (self.lower.as_dvec3() + self.upper.as_dvec3())
+    }
+}
+
+/// A box that grows.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    lower: Vec3,
+    upper: Vec3,
+}
+
+impl Extent {
+    const EMPTY: Self = Self { lower: Vec3::INFINITY, upper: Vec3::NEG_INFINITY };
+
+    fn of(triangles: &[Triangle]) -> Self {
+        triangles.iter().fold(Self::EMPTY, |extent, triangle| extent.with(triangle.lower, triangle.upper))
+    }
+
+    fn with(self, lower: Vec3, upper: Vec3) -> Self {
+        Self { lower: self.lower.min(lower), upper: self.upper.max(upper) }
+    }
+
+    fn join(self, other: Self) -> Self {
+        self.with(other.lower, other.upper)
+    }
+
+    /// Half the surface; 0 if nothing is in it. In f64, which holds the square of every f32.
+    fn area(self) -> f64 {
+        let size = (self.upper.as_dvec3() - self.lower.as_dvec3()).max(DVec3::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+}
+
 impl Bvh {
     /// The hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root. Triangles with a corner that is not finite,
     /// or that does not exist, cannot be met and are left out.
     #[must_use]
     pub fn build(mesh: &Mesh) -> Self {
         let corner = |index: u32| mesh.positions.get(index as usize).copied().filter(|position| position.is_finite());
-        let triangles: Vec<Triangle> = mesh
+        let mut triangles: Vec<Triangle> = mesh
             .indices
             .chunks_exact(3)
             .zip(0..)
@@ -56,11 +94,10 @@ impl Bvh {
         if triangles.is_empty() {
             return Self::default();
         }
-        let links = clustered(&triangles);
-        let laid_out = links.laid_out().unwrap_or_else(|| {
-            halved(&triangles).laid_out().expect("2³² triangles, halved, lie 32 deep")
-        });
-        laid_out.into_bvh(&triangles, mesh)
+        let nodes = nodes(&mut triangles);
+        let order: Vec<u32> = triangles.iter().map(|triangle| triangle.number).collect();
+        let corners = |number: &u32| mesh.indices[3 * *number as usize..][..3].iter().copied();
+        Self { nodes, indices: order.iter().flat_map(corners).collect(), order }
     }
 
     /// The largest number of nodes below the root on the way to a leaf; 0 without nodes.
@@ -78,132 +115,86 @@ impl Bvh {
     }
 }
 
-/// A triangle's box.
-#[derive(Clone, Copy, Debug)]
-struct Triangle {
-    number: u32,
-    lower: Vec3,
-    upper: Vec3,
-}
-
-/// A tree without boxes: nodes in any order, children side by side.
-struct Links {
-    nodes: Vec<Link>,
-    /// Places in the list of triangles; leaves are ranges of it.
-    order: Vec<u32>,
-}
-
-#[derive(Clone, Copy)]
-struct Link {
-    count: u32,
-    first: u32,
-}
-
-/// A triangle's box, scaled for obvhs.
-struct Scaled(Aabb);
-
-impl Boundable for Scaled {
-    fn aabb(&self) -> Aabb {
-        self.0
+/// The nodes, and the triangles put into the order of the leaves.
+fn nodes(triangles: &mut [Triangle]) -> Vec<[Vec4; 2]> {
+    let mut nodes = vec![[Vec4::ZERO; 2]];
+    let mut open = vec![(0, 0..triangles.len(), 0)];
+    while let Some((node, range, depth)) = open.pop() {
+        let part = &mut triangles[range.clone()];
+        let extent = Extent::of(part);
+        let (count, first) = match split(part, extent, depth) {
+            None => (part.len(), range.start),
+            Some(middle) => {
+                let first = nodes.len();
+                nodes.extend([[Vec4::ZERO; 2]; 2]);
+                // The first child is built next, so that it and what it holds lie close by.
+                open.push((first + 1, range.start + middle..range.end, depth + 1));
+                open.push((first, range.start..range.start + middle, depth + 1));
+                (0, first)
+            }
+        };
+        // A mesh has fewer than 2³² / 3 triangles and not twice as many nodes: its indices are counted by u32.
+        let bits = |number: usize| f32::from_bits(number as u32);
+        nodes[node] = [extent.lower.extend(bits(count)), extent.upper.extend(bits(first))];
     }
+    nodes
 }
 
-/// The tree by obvhs.
-fn clustered(triangles: &[Triangle]) -> Links {
-    let all = |corner: fn(&Triangle) -> Vec3, join: fn(Vec3, Vec3) -> Vec3| {
-        triangles.iter().map(corner).reduce(join).unwrap_or_default().as_dvec3()
+/// Levels that halving needs for so many triangles.
+fn levels(count: usize) -> usize {
+    count.div_ceil(MOST_IN_A_LEAF).next_power_of_two().ilog2() as usize
+}
+
+/// Puts those of the first child first, and returns how many they are; none for a leaf.
+fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
+    if part.len() <= 1 {
+        return None;
+    }
+    let (low, high) = part.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), triangle| {
+        (low.min(triangle.middle()), high.max(triangle.middle()))
+    });
+    let size = high - low;
+    let bin = |triangle: &Triangle, axis: usize| {
+        let share = (triangle.middle()[axis] - low[axis]) / size[axis];
+        ((share * BINS as f64) as usize).min(BINS - 1)
     };
-    let (lower, upper) = (all(|t| t.lower, Vec3::min), all(|t| t.upper, Vec3::max));
-    // A mesh without any extent stays the point that it is.
-    let scale = 1.0 / (upper - lower).max_element().max(f64::MIN_POSITIVE);
-    let scaled = |corner: Vec3| Vec3A::from(((corner.as_dvec3() - lower) * scale).as_vec3());
-    let boxes: Vec<Scaled> =
-        triangles.iter().map(|triangle| Scaled(Aabb::new(scaled(triangle.lower), scaled(triangle.upper)))).collect();
-    let built = build_bvh2(&boxes, PARAMETERS, &mut std::time::Duration::default());
-    let nodes = built.nodes.iter().map(|node| Link { count: node.prim_count, first: node.first_index }).collect();
-    Links { nodes, order: built.primitive_indices }
-}
-
-/// The tree by halves: as shallow as can be.
-fn halved(triangles: &[Triangle]) -> Links {
-    let mut order: Vec<u32> = (0..).take(triangles.len()).collect();
-    let mut nodes = vec![Link { count: 0, first: 0 }];
-    let mut open = vec![(0, 0, order.len())];
-    while let Some((node, start, end)) = open.pop() {
-        if end - start <= MOST_IN_A_LEAF {
-            nodes[node] = Link { count: (end - start) as u32, first: start as u32 };
-            continue;
+    // The least (cost, axis, bin that the second child starts at), costs as areas times triangles.
+    let mut best: Option<(f64, usize, usize)> = None;
+    for axis in (0..3).filter(|axis| size[*axis] > 0.0) {
+        let mut bins = [(0usize, Extent::EMPTY); BINS];
+        for triangle in part.iter() {
+            let (count, extent) = &mut bins[bin(triangle, axis)];
+            *count += 1;
+            *extent = extent.with(triangle.lower, triangle.upper);
         }
-        let part = &mut order[start..end];
-        // Twice the middles; half of each first, since the sum of two huge corners overflows.
-        let middle = |index: &u32| {
-            let triangle = &triangles[*index as usize];
-            0.5 * triangle.lower + 0.5 * triangle.upper
-        };
-        let join = |join: fn(Vec3, Vec3) -> Vec3| part.iter().map(middle).reduce(join).unwrap_or_default().as_dvec3();
-        let size = join(Vec3::max) - join(Vec3::min);
-        let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
-        let half = part.len() / 2;
-        part.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
-        let first = nodes.len();
-        nodes[node] = Link { count: 0, first: first as u32 };
-        nodes.extend([Link { count: 0, first: 0 }; 2]);
-        open.push((first, start, start + half));
-        open.push((first + 1, start + half, end));
-    }
-    Links { nodes, order }
-}
-
-impl Links {
-    /// The same tree with each node before its children and the leaves' triangles in the order of the nodes; none if it is too
-    /// deep for the shader's stack.
-    fn laid_out(&self) -> Option<Links> {
-        let mut nodes = vec![Link { count: 0, first: 0 }];
-        let mut order = Vec::with_capacity(self.order.len());
-        let mut open = vec![(0usize, 0usize, 0usize)];
-        while let Some((from, to, depth)) = open.pop() {
-            if depth > BVH_TRACE_DEPTH {
-                return None;
+        let join = |a: (usize, Extent), b: (usize, Extent)| (a.0 + b.0, a.1.join(b.1));
+        for start in 1..BINS {
+            let [first, second] =
+                [&bins[..start], &bins[start..]].map(|bins| bins.iter().copied().fold((0, Extent::EMPTY), join));
+            // As many levels as are left must do for halving either.
+            if first.0.min(second.0) == 0 || depth + 1 + levels(first.0.max(second.0)) > BVH_TRACE_DEPTH {
+                continue;
             }
-            let Link { count, first } = self.nodes[from];
-            let first = first as usize;
-            if count > 0 {
-                nodes[to] = Link { count, first: order.len() as u32 };
-                order.extend_from_slice(&self.order[first..first + count as usize]);
-            } else {
-                let children = nodes.len();
-                nodes[to] = Link { count: 0, first: children as u32 };
-                nodes.extend([Link { count: 0, first: 0 }; 2]);
-                open.push((first + 1, children + 1, depth + 1));
-                open.push((first, children, depth + 1));
+            let cost = first.1.area() * first.0 as f64 + second.1.area() * second.0 as f64;
+            if best.is_none_or(|best| cost < best.0) {
+                best = Some((cost, axis, start));
             }
         }
-        Some(Links { nodes, order })
     }
-
-    /// With boxes and vertices.
-    fn into_bvh(self, triangles: &[Triangle], mesh: &Mesh) -> Bvh {
-        let mut boxes = vec![(Vec3::ZERO, Vec3::ZERO); self.nodes.len()];
-        let join = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        // Children stand after their parents.
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            let first = node.first as usize;
-            boxes[index] = if node.count == 0 {
-                join(boxes[first], boxes[first + 1])
-            } else {
-                let held = &self.order[first..first + node.count as usize];
-                let held = held.iter().map(|index| &triangles[*index as usize]);
-                held.map(|triangle| (triangle.lower, triangle.upper)).reduce(join).unwrap_or_default()
-            };
+    let as_leaf = extent.area() * (part.len() as f64 - STEP);
+    match best {
+        Some((cost, ..)) if part.len() <= MOST_IN_A_LEAF && cost >= as_leaf => None,
+        Some((_, axis, start)) => {
+            part.sort_by_key(|triangle| bin(triangle, axis) >= start);
+            Some(part.partition_point(|triangle| bin(triangle, axis) < start))
         }
-        let nodes = self.nodes.iter().zip(boxes).map(|(node, (lower, upper))| {
-            [lower.extend(f32::from_bits(node.count)), upper.extend(f32::from_bits(node.first))]
-        });
-        let order: Vec<u32> = self.order.iter().map(|index| triangles[*index as usize].number).collect();
-        let corners = |number: &u32| {
-            let start = 3 * *number as usize;
-            mesh.indices[start..start + 3].iter().copied()
-        };
-        Bvh { nodes: nodes.collect(), indices: order.iter().flat_map(corners).collect(), order }
+        // All in one place, or too deep already.
+        None if part.len() <= MOST_IN_A_LEAF => None,
+        None => {
+            let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+            let half = part.len() / 2;
+            part.select_nth_unstable_by(half, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
+            Some(half)
+        }
     }
 }

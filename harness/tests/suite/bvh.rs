@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
-use lapidary_bvh_trace::{self as mirror, BVH_TRACE_NONE, BvhTraceHit, oracle};
+use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
 use lapidary_harness::cookbook;
 use lapidary_harness::dispatch;
 use lapidary_harness::gpu::Gpu;
@@ -265,7 +265,8 @@ fn rays_to_vertices_and_edges_leak_with_the_naive_test_only() {
     let gpu = super::gpu();
     for body in bodies() {
         let queries = body.queries(13, RAYS);
-        let leaks = |constants: &[(&str, f64)]| traced(gpu, &body, &queries, constants).iter().filter(|hit| !met(hit)).count();
+        let leaks =
+            |constants: &[(&str, f64)]| traced(gpu, &body, &queries, constants).iter().filter(|hit| !met(hit)).count();
         assert_eq!(leaks(&[]), 0, "{}", body.name);
         let naive = leaks(&[("TRIANGLE_NAIVE", 1.0)]);
         println!("{}: {naive} of {RAYS} leak with the naive test", body.name);
