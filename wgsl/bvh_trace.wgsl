@@ -84,7 +84,7 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // What the tests of all boxes and triangles need of a ray, computed once.
 // Returns: BvhTraceRay.
 // Units: those of the positions; `margin` is a length.
-// Domain: |direction| = 1; lower <= upper, the box of the whole mesh; coordinates up to 1e15, the box at least 1e-15 large.
+// Domain: |direction| = 1; lower <= upper, the box of the whole mesh; coordinates up to 1e12, the box at least 1e-10 large.
 // Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction divides by 0.
 // Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
@@ -150,7 +150,7 @@ fn bvh_trace_start(limit: f32) -> BvhTraceHit {
 // A position in the frame of a ray: the ray is its z axis, x and y are two of the coordinate axes, and all three may be aslant.
 // Returns: (x, y, distance along the ray); position = origin + x e(axis + 1) + y e(axis + 2) + distance direction.
 // Units: those of the positions.
-// Domain: rays of bvh_trace_ray; coordinates up to 1e15.
+// Domain: rays of bvh_trace_ray; coordinates up to 1e12.
 // Outside: finite for coordinates up to 1e30.
 // Accuracy: lavapipe 2 ulp + 1.5 backward; portable 4 ulp + 3 backward
 fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
@@ -160,12 +160,12 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 
 // The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that. In the frame of the ray the triangle is flat,
 // and counts if the origin lies inside it: if no edge passes it on the wrong side by more than the margin. Sharp corners end at the margin as well.
-// A triangle may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
+// Its plane may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
 // Edges are taken as differences, so that the error of an edge function is relative to its edge, as the margin is.
 // Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes beside it. At equal distances
 //   the lower number wins, so that the order of the triangles does not matter.
 // Units: those of the positions.
-// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e15, edges 0 or at least 1e-15.
+// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e12, edges 0 or at least 1e-10.
 // Outside: `triangle` equal to `left`, the one just left, never counts. Nor does a triangle without area in the frame of the ray:
 //   its neighbours, of which it is an edge there, do. Smaller triangles count as such, larger ones overflow.
 // Accuracy: lavapipe distance 4 ulp + 4 backward, barycentrics 4 ulp + 4 backward, triangle 4 backward; portable distance 8 ulp + 8 backward, barycentrics 8 ulp + 8 backward, triangle 8 backward
@@ -181,9 +181,9 @@ fn bvh_trace_triangle(
     let p = bvh_trace_shear(ray, a);
     let q = bvh_trace_shear(ray, b);
     let r = bvh_trace_shear(ray, c);
-    let qr = r.xy - q.xy;
-    let rp = p.xy - r.xy;
-    let pq = q.xy - p.xy;
+    let qr = r - q;
+    let rp = p - r;
+    let pq = q - p;
     // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest component is negative.
     let spanned = vec3f(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
     let area = sign(ray.shear.z) * spanned;
@@ -199,9 +199,13 @@ fn bvh_trace_triangle(
     }
     let weight = max(area, vec3f(0.0f));
     let total = weight.x + weight.y + weight.z;
-    let along = (weight.x * p.z + weight.y * q.z + weight.z * r.z) / total;
-    let distance = max(along, 0.0f);
-    if (along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle)) {
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along the ray, by which
+    // a plane close to the origin, met at a shallow angle, may lie far behind.
+    let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
+    let normal = abs(cross(qr, rp));
+    let distance = max(height / total, 0.0f);
+    if (height < -ray.margin * (normal.x + normal.y + normal.z) || distance > hit.distance
+        || (distance == hit.distance && triangle > hit.triangle)) {
         return hit;
     }
     return BvhTraceHit(distance, weight.yz / total, triangle);

@@ -134,9 +134,9 @@ pub fn triangle(
     let p = shear(ray, a);
     let q = shear(ray, b);
     let r = shear(ray, c);
-    let qr = r.truncate() - q.truncate();
-    let rp = p.truncate() - r.truncate();
-    let pq = q.truncate() - p.truncate();
+    let qr = r - q;
+    let rp = p - r;
+    let pq = q - p;
     // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest
     // component is negative.
     let spanned = Vec3::new(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
@@ -156,9 +156,15 @@ pub fn triangle(
     }
     let weight = area.max(Vec3::ZERO);
     let total = weight.x + weight.y + weight.z;
-    let along = (weight.x * p.z + weight.y * q.z + weight.z * r.z) / total;
-    let distance = along.max(0.0);
-    if along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle) {
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along
+    // the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
+    let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
+    let normal = qr.cross(rp).abs();
+    let distance = (height / total).max(0.0);
+    if height < -ray.margin * (normal.x + normal.y + normal.z)
+        || distance > hit.distance
+        || (distance == hit.distance && triangle > hit.triangle)
+    {
         return hit;
     }
     BvhTraceHit { distance, barycentrics: Vec2::new(weight.y, weight.z) / total, triangle }

@@ -87,14 +87,11 @@ pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhT
     let direction = 1.0 / ray.reciprocal;
     let middle = 0.5 * (lower + upper) - ray.origin;
     let half = 0.5 * (upper - lower) + DVec3::splat(ray.margin);
-    let entry = (0..3)
-        .map(|axis| middle[axis] / direction[axis] - half[axis] / direction[axis].abs())
-        .fold(0.0, f64::max);
+    let entry =
+        (0..3).map(|axis| middle[axis] / direction[axis] - half[axis] / direction[axis].abs()).fold(0.0, f64::max);
     let inside = |distance: f64, but: Option<usize>| {
         (0.0..=nearest).contains(&distance)
-            && (0..3).all(|axis| {
-                but == Some(axis) || (distance * direction[axis] - middle[axis]).abs() <= half[axis]
-            })
+            && (0..3).all(|axis| but == Some(axis) || (distance * direction[axis] - middle[axis]).abs() <= half[axis])
     };
     let crosses = (0..3).any(|axis| {
         [-1.0, 1.0].iter().any(|side| inside((middle[axis] + side * half[axis]) / direction[axis], Some(axis)))
@@ -141,8 +138,9 @@ pub fn triangle(
         return hit;
     }
     let feet = corners.map(|corner| corner - corner[axis] / direction[axis] * direction);
-    let volumes: [f64; 3] =
-        std::array::from_fn(|k| direction.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3])) / direction[axis].abs());
+    let volumes: [f64; 3] = std::array::from_fn(|k| {
+        direction.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3])) / direction[axis].abs()
+    });
     // A foot's component along the axis is 0, so sums and maxima of components are those of the plane.
     for k in 0..3 {
         let mut edge = feet[(k + 2) % 3] - feet[(k + 1) % 3];
@@ -163,11 +161,17 @@ pub fn triangle(
     let along = if volumes.iter().all(|volume| *volume >= 0.0) {
         normal.dot(corners[0]) / normal.dot(direction)
     } else {
-        let point: DVec3 = (0..3).map(|k| weights[k] / total * corners[k]).sum();
-        point[axis] / direction[axis]
+        let point: DVec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        point[axis] / total / direction[axis]
     };
     let distance = along.max(0.0);
-    if along < -ray.margin || distance > hit.distance || (distance == hit.distance && triangle > hit.triangle) {
+    // Along the frame's axes, which are two coordinate axes and the direction, the plane is met at height / slope.
+    let slopes: f64 = (0..3).filter(|other| *other != axis).map(|other| normal[other].abs()).sum();
+    let height = along * total * direction[axis].abs();
+    if height < -ray.margin * (slopes + normal.dot(direction))
+        || distance > hit.distance
+        || (distance == hit.distance && triangle > hit.triangle)
+    {
         return hit;
     }
     BvhTraceHit { distance, barycentrics: DVec2::new(weights[1], weights[2]) / total, triangle }
@@ -184,16 +188,17 @@ pub fn triangle_naive(
     triangle: u32,
     left: u32,
 ) -> BvhTraceHit {
+    let epsilon = f64::from(crate::BVH_TRACE_NAIVE_EPSILON);
     let normal = (b - a).cross(c - a);
     let slope = normal.dot(ray.direction);
-    if triangle == left || slope < 1e-6 {
+    if triangle == left || slope < epsilon {
         return hit;
     }
     let distance = normal.dot(a - ray.origin) / slope;
     let point = ray.origin + distance * ray.direction;
     let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal) / normal.length_squared();
     let (v, w, u) = (weight(c, a), weight(a, b), weight(b, c));
-    if u < 0.0 || v < 0.0 || w < 0.0 || distance < 1e-6 || distance > hit.distance {
+    if u < 0.0 || v < 0.0 || w < 0.0 || distance < epsilon || distance > hit.distance {
         return hit;
     }
     BvhTraceHit { distance, barycentrics: DVec2::new(v, w), triangle }
@@ -225,7 +230,7 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     for k in 0..3 {
         let (from, to) = (across[k], across[(k + 1) % 3]);
         let edge = to - from;
-        // Seen along the ray, a triangle that it leaves through winds clockwise about it: left of each edge is inside.
+        // A triangle that the ray leaves through winds counter-clockwise about its direction: left of each edge is inside.
         let height = direction.dot(from.cross(to)) / edge.length().max(f64::MIN_POSITIVE);
         inside = inside.min(height);
         let share = (-from.dot(edge) / edge.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 pub mod bvh;
 mod built_in;
+pub mod bvh;
 mod camera;
 pub mod convex;
 pub mod cuts;
@@ -24,6 +25,7 @@ pub mod normals;
 pub mod polyhedron;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
+pub use built_in::{BUILT_IN, BuiltIn};
 pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::Convex;

@@ -2,6 +2,7 @@
 
 mod adapter;
 mod bad_input;
+mod bvh;
 mod cli;
 mod comparator;
 mod contract;

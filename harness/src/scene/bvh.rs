@@ -1,0 +1,200 @@
+//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/bvh_trace.wgsl`.
+//!
+//! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few dependencies; but
+//! its clustering does not bound the depth, which a shader's stack must, and with debug assertions, as the tests are built, it
+//! panics over some degenerate meshes and overflows the stack over 20,000 equal triangles. bvh 0.13 keeps an enum of nodes with
+//! parents, or a list of 36-byte nodes to skip through, which has no order from near to far, and it brings nalgebra. What is
+//! left to do is short: splits by the surface area heuristic in bins (Wald, "On fast Construction of SAH-based Bounding Volume
+//! Hierarchies", 2007), and halves wherever those would make the hierarchy too deep.
+
+use glam::{DVec3, Vec3, Vec4};
+use lapidary_bvh_trace::traversal::BVH_TRACE_DEPTH;
+
+use super::Mesh;
+
+/// Most triangles in a leaf.
+const MOST_IN_A_LEAF: usize = 4;
+/// Places along each axis where a split is tried.
+const BINS: usize = 16;
+/// What a step down costs, relative to a triangle: two boxes and their way from memory.
+const STEP: f64 = 1.0;
+
+/// A hierarchy of boxes over the triangles of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bvh {
+    /// 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner, first), the last of each a `u32` as bits. With
+    /// count above 0 a leaf of the triangles first, …, first + count - 1; with 0 an inner node whose children are the nodes first
+    /// and first + 1. The root is the first node, and a node stands before its children. None if the mesh has no triangle.
+    pub nodes: Vec<[Vec4; 2]>,
+    /// Three vertex indices a triangle, in the order of the leaves.
+    pub indices: Vec<u32>,
+    /// For each of these triangles its number in the mesh.
+    pub order: Vec<u32>,
+}
+
+/// A triangle and its box.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    number: u32,
+    lower: Vec3,
+    upper: Vec3,
+}
+
+impl Triangle {
+    /// The middle of the box; in f64, where the sum of two huge corners does not overflow.
+    fn middle(&self) -> DVec3 {
+        0.5 * (self.lower.as_dvec3() + self.upper.as_dvec3())
+    }
+}
+
+/// A box that grows.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    lower: Vec3,
+    upper: Vec3,
+}
+
+impl Extent {
+    const EMPTY: Self = Self { lower: Vec3::INFINITY, upper: Vec3::NEG_INFINITY };
+
+    fn of(triangles: &[Triangle]) -> Self {
+        triangles.iter().fold(Self::EMPTY, |extent, triangle| extent.with(triangle.lower, triangle.upper))
+    }
+
+    fn with(self, lower: Vec3, upper: Vec3) -> Self {
+        Self { lower: self.lower.min(lower), upper: self.upper.max(upper) }
+    }
+
+    fn join(self, other: Self) -> Self {
+        self.with(other.lower, other.upper)
+    }
+
+    /// Half the surface; 0 if nothing is in it. In f64, which holds the square of every f32.
+    fn area(self) -> f64 {
+        let size = (self.upper.as_dvec3() - self.lower.as_dvec3()).max(DVec3::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+}
+
+impl Bvh {
+    /// The hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root. Triangles with a corner that is not finite,
+    /// or that does not exist, cannot be met and are left out.
+    #[must_use]
+    pub fn build(mesh: &Mesh) -> Self {
+        let corner = |index: u32| mesh.positions.get(index as usize).copied().filter(|position| position.is_finite());
+        let mut triangles: Vec<Triangle> = mesh
+            .indices
+            .chunks_exact(3)
+            .zip(0..)
+            .filter_map(|(corners, number)| {
+                let [a, b, c] = [corner(corners[0])?, corner(corners[1])?, corner(corners[2])?];
+                Some(Triangle { number, lower: a.min(b).min(c), upper: a.max(b).max(c) })
+            })
+            .collect();
+        if triangles.is_empty() {
+            return Self::default();
+        }
+        let nodes = nodes(&mut triangles);
+        let order: Vec<u32> = triangles.iter().map(|triangle| triangle.number).collect();
+        let corners = |number: &u32| mesh.indices[3 * *number as usize..][..3].iter().copied();
+        Self { nodes, indices: order.iter().flat_map(corners).collect(), order }
+    }
+
+    /// The largest number of nodes below the root on the way to a leaf; 0 without nodes.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        let mut depths = vec![0; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate() {
+            if node[0].w.to_bits() == 0 {
+                let first = node[1].w.to_bits() as usize;
+                depths[first] = depths[index] + 1;
+                depths[first + 1] = depths[index] + 1;
+            }
+        }
+        depths.into_iter().max().unwrap_or(0)
+    }
+}
+
+/// The nodes, and the triangles put into the order of the leaves.
+fn nodes(triangles: &mut [Triangle]) -> Vec<[Vec4; 2]> {
+    let mut nodes = vec![[Vec4::ZERO; 2]];
+    let mut open = vec![(0, 0..triangles.len(), 0)];
+    while let Some((node, range, depth)) = open.pop() {
+        let part = &mut triangles[range.clone()];
+        let extent = Extent::of(part);
+        let (count, first) = match split(part, extent, depth) {
+            None => (part.len(), range.start),
+            Some(middle) => {
+                let first = nodes.len();
+                nodes.extend([[Vec4::ZERO; 2]; 2]);
+                // The first child is built next, so that it and what it holds lie close by.
+                open.push((first + 1, range.start + middle..range.end, depth + 1));
+                open.push((first, range.start..range.start + middle, depth + 1));
+                (0, first)
+            }
+        };
+        // A mesh has fewer than 2³² / 3 triangles and not twice as many nodes: its indices are counted by u32.
+        let bits = |number: usize| f32::from_bits(number as u32);
+        nodes[node] = [extent.lower.extend(bits(count)), extent.upper.extend(bits(first))];
+    }
+    nodes
+}
+
+/// Levels that halving needs for so many triangles.
+fn levels(count: usize) -> usize {
+    count.div_ceil(MOST_IN_A_LEAF).next_power_of_two().ilog2() as usize
+}
+
+/// Puts those of the first child first, and returns how many they are; none for a leaf.
+fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
+    if part.len() <= 1 {
+        return None;
+    }
+    let (low, high) = part.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), triangle| {
+        (low.min(triangle.middle()), high.max(triangle.middle()))
+    });
+    let size = high - low;
+    let bin = |triangle: &Triangle, axis: usize| {
+        let share = (triangle.middle()[axis] - low[axis]) / size[axis];
+        ((share * BINS as f64) as usize).min(BINS - 1)
+    };
+    // The least (cost, axis, bin that the second child starts at), costs as areas times triangles.
+    let mut best: Option<(f64, usize, usize)> = None;
+    for axis in (0..3).filter(|axis| size[*axis] > 0.0) {
+        let mut bins = [(0usize, Extent::EMPTY); BINS];
+        for triangle in part.iter() {
+            let (count, extent) = &mut bins[bin(triangle, axis)];
+            *count += 1;
+            *extent = extent.with(triangle.lower, triangle.upper);
+        }
+        let join = |a: (usize, Extent), b: (usize, Extent)| (a.0 + b.0, a.1.join(b.1));
+        for start in 1..BINS {
+            let [first, second] =
+                [&bins[..start], &bins[start..]].map(|bins| bins.iter().copied().fold((0, Extent::EMPTY), join));
+            // As many levels as are left must do for halving either.
+            if first.0.min(second.0) == 0 || depth + 1 + levels(first.0.max(second.0)) > BVH_TRACE_DEPTH {
+                continue;
+            }
+            let cost = first.1.area() * first.0 as f64 + second.1.area() * second.0 as f64;
+            if best.is_none_or(|best| cost < best.0) {
+                best = Some((cost, axis, start));
+            }
+        }
+    }
+    let as_leaf = extent.area() * (part.len() as f64 - STEP);
+    match best {
+        Some((cost, ..)) if part.len() <= MOST_IN_A_LEAF && cost >= as_leaf => None,
+        Some((_, axis, start)) => {
+            part.sort_by_key(|triangle| bin(triangle, axis) >= start);
+            Some(part.partition_point(|triangle| bin(triangle, axis) < start))
+        }
+        // All in one place, or too deep already.
+        None if part.len() <= MOST_IN_A_LEAF => None,
+        None => {
+            let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+            let half = part.len() / 2;
+            part.select_nth_unstable_by(half, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
+            Some(half)
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! The hierarchy over a mesh, and the recipe that traces rays with it: whole buffers against the mirror's, and against f64 by
+//! brute force.
+
+use glam::{DVec3, Vec2, Vec3};
+use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
+use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
+use lapidary_harness::cookbook;
+use lapidary_harness::dispatch;
+use lapidary_harness::gpu::Gpu;
+use lapidary_harness::property::draws::{Domain, Draws};
+use lapidary_harness::scene::{Bvh, Mesh, Scene};
+use std::borrow::Cow;
+use wgpu::util::DeviceExt as _;
+
+/// Rays a body.
+const RAYS: usize = 16_384;
+
+struct Query {
+    origin: Vec3,
+    direction: Vec3,
+    left: u32,
+}
+
+struct Body {
+    name: &'static str,
+    mesh: Mesh,
+    bvh: Bvh,
+}
+
+fn body(name: &'static str) -> Body {
+    let scene = Scene::named(name).expect("a built-in scene");
+    let mesh = scene.objects[0].mesh.clone();
+    let bvh = Bvh::build(&mesh);
+    Body { name, mesh, bvh }
+}
+
+fn bodies() -> [Body; 3] {
+    ["brilliant", "bunny_stone", "prism"].map(body)
+}
+
+impl Body {
+    fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        [0, 1, 2].map(|k| self.mesh.positions[self.bvh.indices[3 * triangle + k] as usize])
+    }
+
+    fn trace(&self, query: &Query) -> BvhTraceHit {
+        traversal::trace(
+            &self.bvh.nodes,
+            &self.mesh.positions,
+            &self.bvh.indices,
+            query.origin,
+            query.direction,
+            query.left,
+        )
+    }
+
+    /// Reflects a ray at what it met.
+    fn reflected(&self, query: &Query, hit: &BvhTraceHit) -> Query {
+        let [a, b, c] = self.corners(hit.triangle as usize).map(|p| p.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize();
+        let direction = query.direction.as_dvec3();
+        Query {
+            origin: query.origin + hit.distance * query.direction,
+            direction: (direction - 2.0 * direction.dot(normal) * normal).normalize().as_vec3(),
+            left: hit.triangle,
+        }
+    }
+
+    /// Rays that start on the surface and go inwards: to a vertex or to a point of an edge that is not behind it, or anywhere; and after
+    /// some reflections.
+    fn queries(&self, seed: u64, count: usize) -> Vec<Query> {
+        (0..count as u64)
+            .map(|row| {
+                let draws = &mut Draws::of_row(seed, row);
+                let mut query = self.start(draws);
+                for _ in 0..draws.below(3) {
+                    let hit = self.trace(&query);
+                    if met(&hit) {
+                        query = self.reflected(&query, &hit);
+                    }
+                }
+                query
+            })
+            .collect()
+    }
+
+    fn start(&self, draws: &mut Draws<'_>) -> Query {
+        let count = self.bvh.order.len() as u32;
+        loop {
+            let left = draws.below(count);
+            let [a, b, c] = self.corners(left as usize).map(|p| p.as_dvec3());
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let (mut v, mut w) = (draws.unit(), draws.unit());
+            if v + w > 1.0 {
+                (v, w) = (1.0 - v, 1.0 - w);
+            }
+            let origin = (a + v * (b - a) + w * (c - a)).as_vec3();
+            let [from, to, _] = self.corners(draws.below(count) as usize).map(|p| p.as_dvec3());
+            let direction = match draws.below(3) {
+                0 => (from - origin.as_dvec3()).normalize(),
+                1 => (from.lerp(to, draws.unit()) - origin.as_dvec3()).normalize(),
+                _ => draws.direction(),
+            };
+            // Grazing rays too, but none that starts outwards.
+            if normal.dot(direction) < -1e-4 {
+                return Query { origin, direction: direction.as_vec3(), left };
+            }
+        }
+    }
+}
+
+/// Runs the recipe over `queries`.
+fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) -> Vec<BvhTraceHit> {
+    let source = cookbook::recipe_source("bvh_trace");
+    let (module, _) = dispatch::parse(&source, "recipe bvh_trace").unwrap_or_else(|error| panic!("{error}"));
+    let words: Vec<[u32; 8]> = queries
+        .iter()
+        .map(|query| {
+            let [x, y, z] = query.origin.to_array().map(f32::to_bits);
+            let [u, v, w] = query.direction.to_array().map(f32::to_bits);
+            [x, y, z, query.left, u, v, w, 0]
+        })
+        .collect();
+    // Distance, padding, weights, triangle, padding.
+    let bytes = (queries.len() * 24) as u64;
+    let readback = gpu.guarded("tracing rays", |device| {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("bvh_trace"),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("bvh_trace"),
+            layout: None,
+            module: &module,
+            entry_point: Some("trace_rays"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+            cache: None,
+        });
+        let storage = |contents: &[u8]| {
+            let usage = wgpu::BufferUsages::STORAGE;
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        };
+        let empty = |usage| {
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size: bytes, usage, mapped_at_creation: false })
+        };
+        let hits = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let readback = empty(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+        let mesh = [
+            storage(bytemuck::cast_slice(&body.bvh.nodes)),
+            storage(bytemuck::cast_slice(&body.mesh.positions)),
+            storage(bytemuck::cast_slice(&body.bvh.indices)),
+        ];
+        let rays = [storage(bytemuck::cast_slice(&words)), hits.clone()];
+        let group = |index: u32, buffers: &[wgpu::Buffer]| {
+            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+                .zip(buffers)
+                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                .collect();
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout: &pipeline.get_bind_group_layout(index),
+                entries: &entries,
+            })
+        };
+        let groups = [group(0, &mesh), group(1, &rays)];
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &groups[0], &[]);
+            pass.set_bind_group(1, &groups[1], &[]);
+            pass.dispatch_workgroups(queries.len().div_ceil(64) as u32, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&hits, 0, &readback, 0, bytes);
+        gpu.queue.submit([encoder.finish()]);
+        readback
+    });
+    let readback = readback.unwrap_or_else(|error| panic!("{error}"));
+    let hits = gpu.read_back(&readback, bytes, |bytes| {
+        let words: &[[u32; 6]] = bytemuck::cast_slice(bytes);
+        words
+            .iter()
+            .map(|words| BvhTraceHit {
+                distance: f32::from_bits(words[0]),
+                barycentrics: Vec2::new(f32::from_bits(words[2]), f32::from_bits(words[3])),
+                triangle: words[4],
+            })
+            .collect()
+    });
+    hits.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up. By how much a ray
+/// may pass a triangle and still meet it is the margin in the ray's own, slanted frame: √3 of it across and √3 for the slant.
+fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> Option<String> {
+    let root = body.bvh.nodes[0];
+    let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
+    let bound = 3.0 * f64::from(ray.margin);
+    let (origin, direction) = (query.origin.as_dvec3(), query.direction.as_dvec3());
+    let crossings = oracle::crossings(positions, &body.bvh.indices, origin, direction, query.left, bound);
+    let distance = f64::from(hit.distance);
+    let own = crossings.iter().find(|crossing| crossing.triangle == hit.triangle);
+    if own.is_none() {
+        return Some(format!("{hit:?} is passed by more than {bound:e}"));
+    }
+    let nearer = |crossing: &&oracle::Crossing| {
+        // Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the cosine.
+        let normal = {
+            let [a, b, c] = body.corners(crossing.triangle as usize).map(|p| p.as_dvec3());
+            (b - a).cross(c - a).normalize()
+        };
+        let slack = bound / normal.dot(direction);
+        crossing.clearance > bound && crossing.distance > slack && crossing.distance + slack < distance
+    };
+    crossings.iter().find(nearer).map(|crossing| format!("{hit:?} although {crossing:?}"))
+}
+
+#[test]
+fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
+    let gpu = super::gpu();
+    for body in bodies() {
+        let queries = body.queries(11, RAYS);
+        let found = traced(gpu, &body, &queries, &[]);
+        let mirrored: Vec<BvhTraceHit> = queries.iter().map(|query| body.trace(query)).collect();
+        let positions: Vec<DVec3> = body.mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+        let (mut others, mut largest) = (0, 0f32);
+        for ((query, found), mirrored) in queries.iter().zip(&found).zip(&mirrored) {
+            assert!(met(found), "{}: a leak from {} to {}", body.name, query.origin, query.direction);
+            if found.triangle == mirrored.triangle {
+                largest = largest.max((found.distance - mirrored.distance).abs());
+            } else {
+                others += 1;
+            }
+            for hit in [found, mirrored] {
+                let fault = fault(&body, &positions, query, hit);
+                assert_eq!(fault, None, "{}: from {} to {}", body.name, query.origin, query.direction);
+            }
+        }
+        println!(
+            "{}: {} nodes, {} deep; {RAYS} rays, {others} meet another triangle than the mirror's, distance off by {largest:e}",
+            body.name,
+            body.bvh.nodes.len(),
+            body.bvh.depth()
+        );
+        // On lavapipe every operation rounds as the mirror's does, but for the order of a product of matrices, which is not here.
+        if gpu.is_lavapipe() {
+            assert_eq!(found, mirrored, "{}", body.name);
+        }
+    }
+}
+
+#[test]
+fn a_loop_over_all_triangles_meets_the_same() {
+    let gpu = super::gpu();
+    for body in bodies() {
+        let queries = body.queries(12, if body.name == "bunny_stone" { 2_048 } else { RAYS });
+        let by_tree = traced(gpu, &body, &queries, &[]);
+        let by_loop = traced(gpu, &body, &queries, &[("TRAVERSAL_LOOP", 1.0)]);
+        assert_eq!(by_tree, by_loop, "{}", body.name);
+    }
+}
+
+#[test]
+fn rays_to_vertices_and_edges_leak_with_the_naive_test_only() {
+    let gpu = super::gpu();
+    for body in bodies() {
+        let queries = body.queries(13, RAYS);
+        let leaks =
+            |constants: &[(&str, f64)]| traced(gpu, &body, &queries, constants).iter().filter(|hit| !met(hit)).count();
+        assert_eq!(leaks(&[]), 0, "{}", body.name);
+        let naive = leaks(&[("TRIANGLE_NAIVE", 1.0)]);
+        println!("{}: {naive} of {RAYS} leak with the naive test", body.name);
+        assert!(naive > 50, "{}: {naive}", body.name);
+    }
+}
+
+#[test]
+fn sixty_four_reflections_inside_the_bunny_lose_no_ray() {
+    let body = body("bunny_stone");
+    for mut query in body.queries(14, 2_000) {
+        for bounce in 0..64 {
+            let hit = body.trace(&query);
+            assert!(met(&hit), "bounce {bounce}: a leak from {} to {}", query.origin, query.direction);
+            query = body.reflected(&query, &hit);
+        }
+    }
+}
+
+/// A mesh of any kind: random, of equal triangles, without area, huge, tiny, flat, with corners that are not finite or do not exist.
+fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
+    let count = 1 + draws.below(300);
+    let size = draws.pick(&[1.0, 1e-30, 1e37, 1.0, 3e38]);
+    let kind = draws.below(7);
+    let mut positions = Vec::new();
+    for _ in 0..count {
+        let a = size * draws.in_cube();
+        let (b, c) = (a + 0.1 * size * draws.in_cube(), a + 0.1 * size * draws.in_cube());
+        let triangle = match kind {
+            0 => [Vec3::ZERO, Vec3::X, Vec3::Y],
+            1 => [a; 3],
+            2 => [a, b, 0.5 * a + 0.5 * b],
+            3 => [a, b, c].map(|p| Vec3::new(p.x, 0.0, p.z)),
+            4 if draws.below(4) == 0 => [a, Vec3::NAN, c],
+            4 if draws.below(4) == 0 => [a, b, Vec3::INFINITY],
+            // Ever smaller towards the origin, which clusters one by one.
+            5 => [a, b, c].map(|p| p * 2f32.powi(-((positions.len() / 3) as i32))),
+            _ => [a, b, c],
+        };
+        positions.extend(triangle);
+    }
+    let mut indices: Vec<u32> = (0..positions.len() as u32).collect();
+    if kind == 6 {
+        let place = draws.below(indices.len() as u32) as usize;
+        indices[place] = u32::MAX;
+    }
+    Mesh { normals: vec![Vec3::Y; positions.len()], positions, indices }
+}
+
+/// What a shader relies on.
+fn check_hierarchy(mesh: &Mesh, bvh: &Bvh) {
+    assert!(bvh.depth() <= BVH_TRACE_DEPTH, "{} deep", bvh.depth());
+    assert_eq!(bvh.indices.len(), 3 * bvh.order.len());
+    let finite = |index: &u32| mesh.positions.get(*index as usize).is_some_and(|position| position.is_finite());
+    let mut wanted: Vec<u32> =
+        mesh.indices.chunks_exact(3).zip(0..).filter(|(t, _)| t.iter().all(finite)).map(|(_, number)| number).collect();
+    let mut reached = Vec::new();
+    let inside = |point: Vec3, node: &[glam::Vec4; 2]| {
+        point.cmpge(node[0].truncate()).all() && point.cmple(node[1].truncate()).all()
+    };
+    for (index, node) in bvh.nodes.iter().enumerate() {
+        let (count, first) = (node[0].w.to_bits() as usize, node[1].w.to_bits() as usize);
+        if count == 0 {
+            assert!(first > index && first + 1 < bvh.nodes.len());
+            for child in &bvh.nodes[first..first + 2] {
+                assert!(inside(child[0].truncate(), node) && inside(child[1].truncate(), node));
+            }
+            continue;
+        }
+        for triangle in first..first + count {
+            let number = bvh.order[triangle];
+            reached.push(number);
+            for k in 0..3 {
+                let vertex = mesh.indices[3 * number as usize + k];
+                assert_eq!(bvh.indices[3 * triangle + k], vertex);
+                assert!(inside(mesh.positions[vertex as usize], node));
+            }
+        }
+    }
+    reached.sort_unstable();
+    wanted.sort_unstable();
+    assert_eq!(reached, wanted, "every triangle once");
+}
+
+#[test]
+fn every_hierarchy_holds_its_mesh() {
+    let meshes = Domain::new(any_mesh);
+    for row in 0..2_000 {
+        let mesh = meshes.row(15, row);
+        check_hierarchy(&mesh, &Bvh::build(&mesh));
+    }
+    for body in bodies() {
+        check_hierarchy(&body.mesh, &body.bvh);
+    }
+    let empty = Bvh::build(&Mesh::default());
+    assert_eq!((empty.nodes.len(), empty.indices.len(), empty.depth()), (0, 0, 0));
+}
+
+#[test]
+fn many_equal_triangles_still_fit_the_stack() {
+    let count = 20_000;
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y].repeat(count);
+    let indices = (0..3 * count as u32).collect();
+    let mesh = Mesh { normals: vec![Vec3::Z; positions.len()], positions, indices };
+    let bvh = Bvh::build(&mesh);
+    check_hierarchy(&mesh, &bvh);
+    println!("{count} equal triangles: {} deep", bvh.depth());
+}
