@@ -11,6 +11,7 @@ pub mod gpu;
 pub mod mutation;
 pub mod nearest;
 pub mod property;
+pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod snapshot;

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 mod built_in;
 mod camera;
+pub mod convex;
 pub mod cuts;
 pub mod environment_map;
 mod error;
@@ -23,6 +24,7 @@ pub mod polyhedron;
 
 pub use built_in::{BUILT_IN, BuiltIn};
 pub use camera::Camera;
+pub use convex::Convex;
 pub use error::SceneError;
 pub use material::{Dispersion, Material, Mineral};
 pub use mesh::Mesh;
