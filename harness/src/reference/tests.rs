@@ -220,7 +220,7 @@ fn settings_out_of_range_are_refused() {
 fn timing() {
     let scene = diamond();
     let start = std::time::Instant::now();
-    let window = Window { left: 0, top: 112, width: 256, height: 32 };
+    let window = Window { left: 0, top: 124, width: 256, height: 8 };
     let rendering =
         render(&scene, &Settings { window: Some(window), ..Settings::of_size(256, 256) }, &|_, _| {}).unwrap();
     println!("{:?} {:?}", start.elapsed(), rendering.lost);

@@ -122,26 +122,32 @@ impl Surroundings<'_> {
         }
         waiting.extend(transmitted);
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
+        // The strongest, where it is known without asking the heap: most often a ray under total reflection.
+        let mut strongest: Option<Ray> = None;
         let mut hits = 1;
         while pending >= self.energy_bound
             && hits < MOST_HITS
-            && let Some(ray) = waiting.pop()
+            && let Some(ray) = strongest.take().or_else(|| waiting.pop())
         {
             pending -= ray.energy();
             let Some(arrival) = self.travel(&ray, optics, &mut outcome) else { continue };
             hits += 1;
             let (reflectance, transmitted) = arrival.split(optics);
-            let mut set_out = |ray: Ray| {
+            if let Some(ray) = transmitted {
                 pending += ray.energy();
                 waiting.push(ray);
-            };
-            if reflectance > 0.0 {
-                let reflected = refraction::reflect(arrival.direction, arrival.normal);
-                set_out(arrival.leave(reflected, arrival.inside, arrival.throughput * reflectance));
             }
-            transmitted.map(set_out);
+            if reflectance > 0.0 {
+                let direction = refraction::reflect(arrival.direction, arrival.normal);
+                let ray = arrival.leave(direction, arrival.inside, arrival.throughput * reflectance);
+                pending += ray.energy();
+                match waiting.peek() {
+                    Some(other) if *other > ray => waiting.push(ray),
+                    _ => strongest = Some(ray),
+                }
+            }
         }
-        outcome.lost += waiting.iter().map(Ray::energy).sum::<f64>();
+        outcome.lost += waiting.iter().chain(&strongest).map(Ray::energy).sum::<f64>();
         outcome
     }
 

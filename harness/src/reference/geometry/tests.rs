@@ -76,6 +76,38 @@ fn planes_and_triangles_of_one_stone_are_met_alike() {
     assert!(met > 800, "{met}");
 }
 
+/// The sieve is an aid: what it leaves out is never the answer.
+#[test]
+fn the_sieve_keeps_the_nearest_plane() {
+    for (name, offset) in [("brilliant", 0.0), ("step_cut", 0.0), ("prism", 0.0), ("brilliant", 300.0)] {
+        let mut scene = Scene::named(name).unwrap();
+        scene.objects[0].mesh.positions.iter_mut().for_each(|position| *position += offset);
+        let bodies = Bodies::new(&scene.objects, Geometry::Planes);
+        let [Body::Convex(planes)] = &bodies.bodies[..] else { panic!("{name} is convex") };
+        let (mut searches, mut candidates) = (0, 0);
+        for (origin, direction) in rays(&scene, 2000) {
+            let Some(hit) = bodies.enter(origin, direction, None) else { continue };
+            let (mut origin, mut direction, mut left) = (origin + hit.distance * direction, direction, hit.place.face);
+            // Reflected again and again, to come near edges.
+            for _ in 0..20 {
+                let distances = planes.planes.iter().enumerate().filter_map(|(face, plane)| {
+                    let slope = plane.normal.dot(direction);
+                    (slope > 0.0 && face != left).then(|| (face, -plane.height(origin) / slope))
+                });
+                let (face, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a way out");
+                let found = planes.leave(origin, direction, left).expect("a way out");
+                assert_eq!((found.0, found.1), (distance.max(0.0), face), "{name}");
+                planes.sieve.candidates(origin, direction, |_| candidates += 1);
+                searches += 1;
+                (origin, left) = (origin + found.0 * direction, face);
+                direction -= 2.0 * direction.dot(found.2) * found.2;
+            }
+        }
+        println!("{name}: {candidates} candidates in {searches} searches");
+        assert!(searches > 5000 && candidates < 3 * searches, "{name}: {candidates} of {searches}");
+    }
+}
+
 /// Through an edge that two triangles share, and through a corner that several share, exactly.
 #[test]
 fn nothing_slips_through_edges_and_corners() {
