@@ -1,0 +1,297 @@
+//! Bodies, and where rays enter and leave them, in f64.
+
+use super::bvh::{Bvh, Extent};
+use crate::scene::convex::{TOLERANCE, planes_of_convex};
+use crate::scene::polyhedron::{MAX_PLANES, Plane};
+use crate::scene::{Mesh, Object};
+use glam::{DVec3, Mat4, Vec4};
+
+/// How bodies are met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// A convex body by its facets' planes, another by its triangles.
+    Planes,
+    /// Every body by its triangles.
+    Triangles,
+}
+
+/// Where a ray meets a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hit {
+    /// In units of the direction, at least 0 up to rounding.
+    pub(super) distance: f64,
+    /// Unit normal, out of the body.
+    pub(super) normal: DVec3,
+    /// Where.
+    pub(super) place: Place,
+}
+
+/// A facet or triangle of a body: a ray that sets out from it does not meet it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) body: usize,
+    pub(super) face: usize,
+}
+
+/// All bodies of a scene. They are closed and do not overlap.
+pub(super) struct Bodies {
+    bodies: Vec<Body>,
+    tree: Bvh,
+}
+
+enum Body {
+    Convex(Planes),
+    Triangles(Triangles),
+}
+
+impl Bodies {
+    pub(super) fn new(objects: &[Object], geometry: Geometry) -> Self {
+        let extents: Vec<Extent> = objects
+            .iter()
+            .map(|object| {
+                let extent = Extent::of(object.mesh.triangles().flatten().map(|corner| corner.as_dvec3()));
+                // A facet's plane may lie that far outside of its vertices.
+                extent.padded(TOLERANCE * extent.largest_coordinate())
+            })
+            .collect();
+        let body = |(object, extent): (&Object, &Extent)| {
+            let planes = (geometry == Geometry::Planes).then(|| planes_of_convex(&object.mesh)).flatten();
+            match planes {
+                Some(planes) => Body::Convex(Planes::new(planes, extent)),
+                None => Body::Triangles(Triangles::new(&object.mesh)),
+            }
+        };
+        let bodies = objects.iter().zip(&extents).map(body).collect();
+        Self { bodies, tree: Bvh::new(&extents) }
+    }
+
+    /// Where a ray outside enters a body first, `left` being the face that it comes from.
+    pub(super) fn enter(&self, origin: DVec3, direction: DVec3, left: Option<Place>) -> Option<Hit> {
+        // What leaves a convex body goes past it.
+        if let (Some(place), [Body::Convex(_)]) = (left, &self.bodies[..]) {
+            debug_assert_eq!(place.body, 0);
+            return None;
+        }
+        let mut first: Option<Hit> = None;
+        self.tree.visit(origin, direction, (0.0, f64::INFINITY), |body, limit| {
+            let left = left.filter(|place| place.body == body).map(|place| place.face);
+            let found = match &self.bodies[body] {
+                Body::Convex(_) if left.is_some() => None,
+                Body::Convex(planes) => planes.enter(origin, direction),
+                Body::Triangles(triangles) => triangles.first(origin, direction, left, limit, Side::Front),
+            };
+            if let Some((distance, face, normal)) = found.filter(|(distance, ..)| *distance < limit) {
+                first = Some(Hit { distance, normal, place: Place { body, face } });
+            }
+            first.map_or(limit, |hit| hit.distance)
+        });
+        first
+    }
+
+    /// Where a ray inside the body of `left`, which it comes from, leaves it. `None` where it finds no way out: the surface is not
+    /// closed there.
+    pub(super) fn leave(&self, origin: DVec3, direction: DVec3, left: Place) -> Option<Hit> {
+        let found = match &self.bodies[left.body] {
+            Body::Convex(planes) => planes.leave(origin, direction, left.face),
+            Body::Triangles(triangles) => {
+                triangles.first(origin, direction, Some(left.face), f64::INFINITY, Side::Back)
+            }
+        };
+        found.map(|(distance, face, normal)| Hit { distance, normal, place: Place { body: left.body, face } })
+    }
+}
+
+/// Distance, face and outward normal.
+type Found = (f64, usize, DVec3);
+
+/// The planes of a convex body.
+struct Planes {
+    planes: Vec<Plane>,
+    sieve: Sieve,
+}
+
+impl Planes {
+    /// `extent` holds the body.
+    fn new(planes: Vec<Plane>, extent: &Extent) -> Self {
+        Self { sieve: Sieve::new(&planes, extent), planes }
+    }
+
+    /// The nearest plane that the ray runs towards, leaving out the face just left: no epsilon is needed.
+    fn leave(&self, origin: DVec3, direction: DVec3, left: usize) -> Option<Found> {
+        let mut nearest: Option<Found> = None;
+        self.sieve.candidates(origin, direction, |face| {
+            let Some(plane) = self.planes.get(face).filter(|_| face != left) else { return };
+            let slope = plane.normal.dot(direction);
+            let distance = -plane.height(origin) / slope;
+            if slope > 0.0 && nearest.is_none_or(|(least, ..)| distance < least) {
+                nearest = Some((distance, face, plane.normal));
+            }
+        });
+        // An edge, and rounding, may put the origin a hair outside of the next plane.
+        nearest.map(|(distance, face, normal)| (distance.max(0.0), face, normal))
+    }
+
+    /// The last plane that the ray crosses inwards, if it comes before the first that it crosses outwards.
+    fn enter(&self, origin: DVec3, direction: DVec3) -> Option<Found> {
+        let mut entry: Option<Found> = None;
+        let mut exit = f64::INFINITY;
+        for (face, plane) in self.planes.iter().enumerate() {
+            let slope = plane.normal.dot(direction);
+            let depth = -plane.height(origin);
+            if slope > 0.0 {
+                exit = exit.min(depth / slope);
+            } else if slope < 0.0 {
+                let distance = depth / slope;
+                if entry.is_none_or(|(last, ..)| distance > last) {
+                    entry = Some((distance, face, plane.normal));
+                }
+            } else if depth < 0.0 {
+                return None;
+            }
+        }
+        entry.filter(|(distance, ..)| (0.0..exit).contains(distance))
+    }
+}
+
+/// Leaves of all planes of a convex body the one or two that a ray may leave through, by f32 with its errors counted in. Most of a
+/// picture's time goes into this search.
+struct Sieve {
+    /// x, y and z of the normal, and the distance from the centre, of four planes.
+    rows: Vec<[Vec4; 4]>,
+    centre: DVec3,
+    /// Bounds of the errors of n · direction and of a depth below a plane: a vector is rounded from f64 by 2^-24 of it, a product of
+    /// two by 5 · 2^-24, and a depth is the difference of two numbers of the body's size. The bounds are twice as large.
+    slope_error: f32,
+    depth_error: f32,
+}
+
+impl Sieve {
+    fn new(planes: &[Plane], extent: &Extent) -> Self {
+        let centre = 0.5 * (extent.least + extent.greatest);
+        let parts = |plane: &Plane| plane.normal.extend(-plane.height(centre)).as_vec4();
+        // What the last row lacks has no direction and lies far away.
+        let lane = |planes: &[Plane], lane: usize| planes.get(lane).map_or(Vec4::W * 1e30, parts);
+        let row =
+            |planes: &[Plane]| Mat4::from_cols(lane(planes, 0), lane(planes, 1), lane(planes, 2), lane(planes, 3));
+        let rows = planes.chunks(4).map(|planes| {
+            let transposed = row(planes).transpose();
+            [transposed.x_axis, transposed.y_axis, transposed.z_axis, transposed.w_axis]
+        });
+        let radius = extent.greatest.distance(centre) as f32;
+        Self { rows: rows.collect(), centre, slope_error: 5.0 * f32::EPSILON, depth_error: 8.0 * f32::EPSILON * radius }
+    }
+
+    /// Calls `visit` with each plane that may be the nearest that a ray runs towards.
+    fn candidates(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(usize)) {
+        let from = (origin - self.centre).as_vec3();
+        let towards = direction.as_vec3();
+        let (slope_error, depth_error) = (Vec4::splat(self.slope_error), Vec4::splat(self.depth_error));
+        // The distance of each plane is at least this.
+        let mut least = [Vec4::INFINITY; MAX_PLANES.div_ceil(4)];
+        // And that of the nearest at most this.
+        let mut most = Vec4::INFINITY;
+        for ([x, y, z, distance], least) in self.rows.iter().zip(&mut least) {
+            let slope = *x * towards.x + *y * towards.y + *z * towards.z;
+            let depth = *distance - (*x * from.x + *y * from.y + *z * from.z);
+            let (least_slope, greatest_slope) = (slope - slope_error, slope + slope_error);
+            let sure = least_slope.cmpgt(Vec4::ZERO);
+            most = most.min(Vec4::select(sure, (depth + depth_error) / least_slope, Vec4::INFINITY));
+            let possible = greatest_slope.cmpgt(Vec4::ZERO);
+            *least = Vec4::select(possible, (depth - depth_error) / greatest_slope, Vec4::INFINITY);
+        }
+        // The quotients are rounded too.
+        let most = Vec4::splat(most.min_element() * (1.0 + 4.0 * f32::EPSILON)).min(Vec4::MAX);
+        for (row, least) in least[..self.rows.len()].iter().enumerate() {
+            let mut lanes = least.cmple(most).bitmask();
+            while lanes != 0 {
+                visit(4 * row + lanes.trailing_zeros() as usize);
+                lanes &= lanes - 1;
+            }
+        }
+    }
+}
+
+/// Which side of a triangle a ray comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Front,
+    Back,
+}
+
+/// A closed surface of triangles.
+struct Triangles {
+    corners: Vec<[DVec3; 3]>,
+    normals: Vec<DVec3>,
+    tree: Bvh,
+    /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by rounding, outside of
+    /// the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
+    reach_back: f64,
+}
+
+impl Triangles {
+    fn new(mesh: &Mesh) -> Self {
+        let corners: Vec<[DVec3; 3]> =
+            mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
+        let normals = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
+        let extents: Vec<Extent> = corners.iter().map(|corners| Extent::of(*corners)).collect();
+        let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
+        let reach_back = largest * f64::EPSILON * f64::from(1 << 12);
+        let padded: Vec<Extent> = extents.iter().map(|extent| extent.padded(reach_back)).collect();
+        Self { tree: Bvh::new(&padded), corners, normals, reach_back }
+    }
+
+    /// The first triangle before `limit` that a ray meets from `side`, leaving out the one just left.
+    fn first(&self, origin: DVec3, direction: DVec3, left: Option<usize>, limit: f64, side: Side) -> Option<Found> {
+        let shear = Shear::new(direction);
+        let mut found: Option<Found> = None;
+        self.tree.visit(origin, direction, (-self.reach_back, limit), |item, limit| {
+            let met = if left == Some(item) { None } else { shear.meet(origin, &self.corners[item], side) };
+            if let Some(distance) = met.filter(|distance| (-self.reach_back..limit).contains(distance)) {
+                found = Some((distance, item, self.normals[item]));
+                return distance;
+            }
+            limit
+        });
+        found.map(|(distance, face, normal)| (distance.max(0.0), face, normal))
+    }
+}
+
+/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared so that the ray runs along
+/// an axis; two triangles then compute the same number for the edge that they share, with opposite signs, so that nothing slips through.
+struct Shear {
+    axes: [usize; 3],
+    shear: DVec3,
+}
+
+impl Shear {
+    fn new(direction: DVec3) -> Self {
+        let along = direction.abs().max_position();
+        let (mut first, mut second) = ((along + 1) % 3, (along + 2) % 3);
+        // Keeps the winding.
+        if direction[along] < 0.0 {
+            std::mem::swap(&mut first, &mut second);
+        }
+        let shear = DVec3::new(direction[first], direction[second], 1.0) / direction[along];
+        Self { axes: [first, second, along], shear }
+    }
+
+    /// The t at which the line meets the triangle from `side`.
+    fn meet(&self, origin: DVec3, corners: &[DVec3; 3], side: Side) -> Option<f64> {
+        let [a, b, c] = corners.map(|corner| {
+            let offset = corner - origin;
+            let [first, second, along] = self.axes.map(|axis| offset[axis]);
+            DVec3::new(first - self.shear.x * along, second - self.shear.y * along, self.shear.z * along)
+        });
+        let edges = DVec3::new(c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x);
+        // Counter-clockwise from outside: the edges count positive from the front.
+        let edges = if side == Side::Front { edges } else { -edges };
+        let sum = edges.element_sum();
+        if edges.min_element() < 0.0 || sum == 0.0 {
+            return None;
+        }
+        Some(edges.dot(DVec3::new(a.z, b.z, c.z)) / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,144 @@
+use super::*;
+use crate::scene::Scene;
+
+fn bodies(name: &str, geometry: Geometry) -> (Scene, Bodies) {
+    let scene = Scene::named(name).unwrap();
+    let bodies = Bodies::new(&scene.objects, geometry);
+    (scene, bodies)
+}
+
+/// Rays from a sphere about the bunny through a ball within its bounds, evenly spread.
+fn rays(scene: &Scene, count: u32) -> impl Iterator<Item = (DVec3, DVec3)> {
+    let centre = scene.bounds().centre().as_dvec3();
+    let radius = f64::from(scene.bounds().radius());
+    let spiral = move |k: f64, turn: f64| {
+        let height = 1.0 - 2.0 * (k + 0.5) / f64::from(count);
+        let (sine, cosine) = (turn * k).sin_cos();
+        DVec3::new(cosine, 0.0, sine) * (1.0 - height * height).sqrt() + DVec3::Y * height
+    };
+    (0..count).map(move |k| {
+        let origin = centre + 2.0 * radius * spiral(f64::from(k), 2.4);
+        let through = centre + 0.5 * radius * spiral(f64::from(k * 7 % count), 5.1);
+        (origin, (through - origin).normalize())
+    })
+}
+
+#[test]
+fn through_a_closed_surface_ways_in_and_out_alternate() {
+    let (scene, bodies) = bodies("bunny_stone", Geometry::Triangles);
+    let mut entered = 0;
+    for (mut origin, direction) in rays(&scene, 5000) {
+        let mut left = None;
+        while let Some(hit) = bodies.enter(origin, direction, left) {
+            assert!(hit.normal.dot(direction) < 1e-9);
+            origin += hit.distance * direction;
+            let out = bodies.leave(origin, direction, hit.place).expect("a way out");
+            assert!(out.normal.dot(direction) > -1e-9);
+            origin += out.distance * direction;
+            left = Some(out.place);
+            entered += 1;
+        }
+    }
+    assert!(entered > 2000, "{entered}");
+}
+
+#[test]
+fn the_tree_finds_what_a_search_of_all_triangles_finds() {
+    let (scene, _) = bodies("bunny_stone", Geometry::Triangles);
+    let triangles = Triangles::new(&scene.objects[0].mesh);
+    for (origin, direction) in rays(&scene, 500) {
+        let shear = Shear::new(direction);
+        let all = triangles.corners.iter().filter_map(|corners| shear.meet(origin, corners, Side::Front));
+        let nearest = all.filter(|distance| *distance >= 0.0).reduce(f64::min);
+        let found = triangles.first(origin, direction, None, f64::INFINITY, Side::Front);
+        assert_eq!(found.map(|(distance, ..)| distance), nearest);
+    }
+}
+
+#[test]
+fn planes_and_triangles_of_one_stone_are_met_alike() {
+    let (scene, planes) = bodies("brilliant", Geometry::Planes);
+    let (_, triangles) = bodies("brilliant", Geometry::Triangles);
+    let mut met = 0;
+    for (origin, direction) in rays(&scene, 2000) {
+        let (a, b) = (planes.enter(origin, direction, None), triangles.enter(origin, direction, None));
+        // A ray past the very edge may meet one and not the other.
+        let (Some(a), Some(b)) = (a, b) else { continue };
+        let slope = a.normal.dot(direction).abs();
+        assert!((a.distance - b.distance).abs() < 1e-6 / slope, "{a:?} {b:?}");
+        let inside = origin + a.distance * direction;
+        let (c, d) = (planes.leave(inside, direction, a.place), triangles.leave(inside, direction, b.place));
+        let (c, d) = (c.unwrap(), d.unwrap());
+        let slope = c.normal.dot(direction).abs();
+        assert!((c.distance - d.distance).abs() < 2e-6 / slope, "{c:?} {d:?}");
+        met += 1;
+    }
+    assert!(met > 800, "{met}");
+}
+
+/// The sieve is an aid: what it leaves out is never the answer.
+#[test]
+fn the_sieve_keeps_the_nearest_plane() {
+    for (name, offset) in [("brilliant", 0.0), ("step_cut", 0.0), ("prism", 0.0), ("brilliant", 300.0)] {
+        let mut scene = Scene::named(name).unwrap();
+        scene.objects[0].mesh.positions.iter_mut().for_each(|position| *position += offset);
+        let bodies = Bodies::new(&scene.objects, Geometry::Planes);
+        let [Body::Convex(planes)] = &bodies.bodies[..] else { panic!("{name} is convex") };
+        let (mut searches, mut candidates) = (0, 0);
+        for (origin, direction) in rays(&scene, 2000) {
+            let Some(hit) = bodies.enter(origin, direction, None) else { continue };
+            let (mut origin, mut direction, mut left) = (origin + hit.distance * direction, direction, hit.place.face);
+            // Reflected again and again, to come near edges.
+            for _ in 0..20 {
+                let distances = planes.planes.iter().enumerate().filter_map(|(face, plane)| {
+                    let slope = plane.normal.dot(direction);
+                    (slope > 0.0 && face != left).then(|| (face, -plane.height(origin) / slope))
+                });
+                let (face, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a way out");
+                let found = planes.leave(origin, direction, left).expect("a way out");
+                assert_eq!((found.0, found.1), (distance.max(0.0), face), "{name}");
+                planes.sieve.candidates(origin, direction, |_| candidates += 1);
+                searches += 1;
+                (origin, left) = (origin + found.0 * direction, face);
+                direction -= 2.0 * direction.dot(found.2) * found.2;
+            }
+        }
+        println!("{name}: {candidates} candidates in {searches} searches");
+        assert!(searches > 5000 && candidates < 3 * searches, "{name}: {candidates} of {searches}");
+    }
+}
+
+/// Through an edge that two triangles share, and through a corner that several share, exactly.
+#[test]
+fn nothing_slips_through_edges_and_corners() {
+    let (_, octahedron) = bodies("octahedron", Geometry::Triangles);
+    for direction in [DVec3::Z, -DVec3::Z, DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
+        for aside in [DVec3::ZERO, 0.25 * direction.any_orthonormal_vector(), DVec3::splat(0.0625)] {
+            let aside = aside - aside.dot(direction) * direction;
+            let hit = octahedron.enter(aside - 3.0 * direction, direction, None).expect("a way in");
+            let inside = aside + (hit.distance - 3.0) * direction;
+            let out = octahedron.leave(inside, direction, hit.place).expect("a way out");
+            let depth = 2.0 * (1.0 - aside.abs().element_sum());
+            assert!((out.distance - depth).abs() < 1e-12, "{direction} {aside}");
+        }
+    }
+}
+
+#[test]
+fn what_leaves_a_stone_may_enter_another() {
+    let (mut scene, _) = bodies("octahedron", Geometry::Planes);
+    let mut second = scene.objects[0].clone();
+    second.mesh.positions.iter_mut().for_each(|position| position.z += 5.0);
+    scene.objects.push(second);
+    for geometry in [Geometry::Planes, Geometry::Triangles] {
+        let bodies = Bodies::new(&scene.objects, geometry);
+        let aside = DVec3::new(0.125, 0.25, -3.0);
+        let first = bodies.enter(aside, DVec3::Z, None).unwrap();
+        let out = bodies.leave(aside + first.distance * DVec3::Z, DVec3::Z, first.place).unwrap();
+        let after = aside + (first.distance + out.distance) * DVec3::Z;
+        let second = bodies.enter(after, DVec3::Z, Some(out.place)).unwrap();
+        assert_eq!((first.place.body, out.place.body, second.place.body), (0, 0, 1));
+        assert!((after.z + second.distance - (5.0 - 0.625)).abs() < 1e-12);
+        assert!(bodies.enter(after, -DVec3::Y, Some(out.place)).is_none());
+    }
+}

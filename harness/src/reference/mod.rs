@@ -1,0 +1,276 @@
+//! The spectral reference: what a stone shows when light is followed wherever it goes.
+//!
+//! Every ray that meets a surface is split into its reflection and its refraction, by the oracles of `fresnel` and `refraction`, at
+//! every wavelength separately, in f64, until the energy that is left is under a bound. What is not followed is dropped: a picture is
+//! too dark, never too bright, and [`Lost`] says by how much at most. There is no chance in it, so two runs give the same picture.
+//!
+//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not overlap; a ray that leaves one may
+//! enter another or the same one again. Surfaces are flat: shared normals play no part. Light that enters is multiplied by the base
+//! colour, channel by channel as in the gem recipe; absorption goes by wavelength ([`spectrum`]).
+
+mod bvh;
+mod geometry;
+mod index;
+pub mod spectrum;
+mod surroundings;
+mod trace;
+mod view;
+
+pub use geometry::Geometry;
+
+use crate::render::{Environment, LARGEST_SIDE};
+use crate::scene::{Object, Scene};
+use geometry::Bodies;
+use glam::DVec3;
+use rayon::prelude::*;
+use spectrum::Wavelength;
+use std::sync::atomic::{AtomicU64, Ordering};
+use trace::{Optics, Surroundings};
+use view::View;
+
+/// The most wavelengths of a spectrum.
+pub const MOST_WAVELENGTHS: usize = 301;
+/// The most samples along each side of a pixel.
+pub const MOST_SAMPLES: u32 = 64;
+
+/// What to render.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'environment> {
+    /// The whole picture's, in pixels, 1 to [`LARGEST_SIDE`].
+    pub width: u32,
+    /// The whole picture's, in pixels, 1 to [`LARGEST_SIDE`].
+    pub height: u32,
+    /// The part that is rendered; all of the picture without one.
+    pub window: Option<Window>,
+    /// How many wavelengths from 400 to 700 nm, [`spectrum::FEWEST`] to [`MOST_WAVELENGTHS`].
+    pub wavelengths: usize,
+    /// Along each side of a pixel, 1 to [`MOST_SAMPLES`].
+    pub samples: u32,
+    /// The share of a camera ray's energy that need not be followed, above 0 and below 1.
+    pub energy_bound: f64,
+    /// The light around the scene.
+    pub environment: &'environment Environment,
+    /// How bodies are met.
+    pub geometry: Geometry,
+}
+
+impl Settings<'static> {
+    /// The whole picture in the studio, with 31 wavelengths, the renderer's 4 × 4 samples and a bound of 1e-4.
+    #[must_use]
+    pub fn of_size(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            window: None,
+            wavelengths: 31,
+            samples: 4,
+            energy_bound: 1e-4,
+            environment: &Environment::Studio,
+            geometry: Geometry::Planes,
+        }
+    }
+}
+
+/// A rectangle of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Pixels to the left of it.
+    pub left: u32,
+    /// Pixels above it.
+    pub top: u32,
+    /// At least 1.
+    pub width: u32,
+    /// At least 1.
+    pub height: u32,
+}
+
+/// A picture, or a window of one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendering {
+    /// The window's, in pixels.
+    pub width: u32,
+    /// The window's, in pixels.
+    pub height: u32,
+    /// Linear radiance and coverage, row by row from the top; transparent black where there is no body.
+    pub linear: Vec<[f32; 4]>,
+    /// What was dropped.
+    pub lost: Lost,
+}
+
+/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` may have cost a radiance of x times
+/// the environment's greatest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lost {
+    /// Of any sample that meets a body, at any wavelength. Above the energy bound only where a ray was caught by total reflection for
+    /// 20,000 hits, or a surface is not closed.
+    pub max: f64,
+    /// Over all of them.
+    pub mean: f64,
+}
+
+/// Why there is no picture.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// Width or height out of range.
+    #[error("size {width}x{height} is out of range; each side must be 1 to {LARGEST_SIDE} pixels")]
+    Size {
+        /// What was asked for.
+        width: u32,
+        /// What was asked for.
+        height: u32,
+    },
+    /// A part that is none.
+    #[error("the window {window:?} does not lie within the picture's {width}x{height} pixels")]
+    Window {
+        /// What was asked for.
+        window: Window,
+        /// The picture's.
+        width: u32,
+        /// The picture's.
+        height: u32,
+    },
+    /// Too few or too many wavelengths.
+    #[error("{0} wavelengths are out of range; take {least} to {MOST_WAVELENGTHS}", least = spectrum::FEWEST)]
+    Wavelengths(usize),
+    /// Too few or too many samples.
+    #[error("{0} samples a side are out of range; take 1 to {MOST_SAMPLES}")]
+    Samples(u32),
+    /// A bound that ends nothing or everything.
+    #[error("an energy bound of {0} is out of range; it must be above 0 and below 1")]
+    EnergyBound(f64),
+}
+
+impl Settings<'_> {
+    /// The window, once all is in range.
+    fn checked(&self) -> Result<Window, ReferenceError> {
+        let &Self { width, height, .. } = self;
+        if !(1..=LARGEST_SIDE).contains(&width) || !(1..=LARGEST_SIDE).contains(&height) {
+            return Err(ReferenceError::Size { width, height });
+        }
+        let window = self.window.unwrap_or(Window { left: 0, top: 0, width, height });
+        let within = |start: u32, size: u32, whole: u32| size > 0 && start <= whole && size <= whole - start;
+        if !within(window.left, window.width, width) || !within(window.top, window.height, height) {
+            return Err(ReferenceError::Window { window, width, height });
+        }
+        if !(spectrum::FEWEST..=MOST_WAVELENGTHS).contains(&self.wavelengths) {
+            return Err(ReferenceError::Wavelengths(self.wavelengths));
+        }
+        if !(1..=MOST_SAMPLES).contains(&self.samples) {
+            return Err(ReferenceError::Samples(self.samples));
+        }
+        // Written so that NaN fails it too.
+        if !(self.energy_bound > 0.0 && self.energy_bound < 1.0) {
+            return Err(ReferenceError::EnergyBound(self.energy_bound));
+        }
+        Ok(window)
+    }
+}
+
+/// Renders `scene` on all cores, and says after each row how many of how many are done.
+///
+/// # Errors
+/// [`ReferenceError`], where a setting is out of range.
+pub fn render(
+    scene: &Scene,
+    settings: &Settings<'_>,
+    progress: &(dyn Fn(u64, u64) + Sync),
+) -> Result<Rendering, ReferenceError> {
+    let window = settings.checked()?;
+    let job = Job::new(scene, settings);
+    let done = AtomicU64::new(0);
+    let row = |y: u32| {
+        let pixels = (window.left..window.left + window.width).map(|x| job.pixel(x, y));
+        let row: Vec<Pixel> = pixels.collect();
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, window.height.into());
+        row
+    };
+    let rows: Vec<Vec<Pixel>> = (window.top..window.top + window.height).into_par_iter().map(row).collect();
+    let pixels = || rows.iter().flatten();
+    let covered: u64 = pixels().map(|pixel| u64::from(pixel.covered)).sum();
+    let lost_sum: f64 = pixels().map(|pixel| pixel.lost_sum).sum();
+    let lost = Lost {
+        max: pixels().map(|pixel| pixel.lost_max).fold(0.0, f64::max),
+        mean: lost_sum / (covered.max(1) as f64 * settings.wavelengths as f64),
+    };
+    let share = 1.0 / f64::from(settings.samples * settings.samples);
+    let linear = pixels().map(|pixel| {
+        let [red, green, blue] = (pixel.radiance * share).as_vec3().to_array();
+        [red, green, blue, (f64::from(pixel.covered) * share) as f32]
+    });
+    Ok(Rendering { width: window.width, height: window.height, linear: linear.collect(), lost })
+}
+
+/// Sums over the samples of a pixel.
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    radiance: DVec3,
+    /// Samples that meet a body.
+    covered: u32,
+    lost_sum: f64,
+    lost_max: f64,
+}
+
+/// All that pixels share.
+struct Job<'scene> {
+    view: View,
+    surroundings: Surroundings<'scene>,
+    /// Each wavelength with every body's optics at it.
+    spectrum: Vec<(Wavelength, Vec<Optics>)>,
+    samples: u32,
+}
+
+impl<'scene> Job<'scene> {
+    fn new(scene: &Scene, settings: &Settings<'scene>) -> Self {
+        let spectrum = spectrum::weights(settings.wavelengths).into_iter().map(|wavelength| {
+            let optics = scene.objects.iter().map(|object| optics(object, &wavelength)).collect();
+            (wavelength, optics)
+        });
+        Self {
+            view: View::new(&scene.camera, settings.width, settings.height),
+            surroundings: Surroundings {
+                bodies: Bodies::new(&scene.objects, settings.geometry),
+                environment: settings.environment,
+                energy_bound: settings.energy_bound,
+            },
+            spectrum: spectrum.collect(),
+            samples: settings.samples,
+        }
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> Pixel {
+        let mut pixel = Pixel::default();
+        let place = |index: u32, sample: u32| f64::from(index) + (f64::from(sample) + 0.5) / f64::from(self.samples);
+        for row in 0..self.samples {
+            for column in 0..self.samples {
+                let direction = self.view.direction(place(x, column), place(y, row));
+                self.add_sample(direction, &mut pixel);
+            }
+        }
+        pixel
+    }
+
+    fn add_sample(&self, direction: DVec3, pixel: &mut Pixel) {
+        let Some(primary) = self.surroundings.primary(self.view.eye, direction) else { return };
+        pixel.covered += 1;
+        for (wavelength, optics) in &self.spectrum {
+            let outcome = self.surroundings.follow(&primary, optics);
+            pixel.radiance += wavelength.weights * outcome.radiance;
+            pixel.lost_sum += outcome.lost;
+            pixel.lost_max = pixel.lost_max.max(outcome.lost);
+        }
+    }
+}
+
+/// A body's optics at one wavelength.
+fn optics(object: &Object, wavelength: &Wavelength) -> Optics {
+    let material = &object.material;
+    let absorption = material.attenuation_color.as_dvec3().ln() / -f64::from(material.attenuation_distance);
+    Optics {
+        index: index::index(material, wavelength.nanometres),
+        absorption: absorption.dot(wavelength.basis),
+        base_color: material.base_color.as_dvec3(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

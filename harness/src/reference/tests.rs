@@ -1,0 +1,227 @@
+use super::*;
+use crate::scene::environment_map::EnvironmentMap;
+use crate::scene::{Dispersion, Mineral};
+use trace::Outcome;
+
+fn ones() -> Environment {
+    Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] })
+}
+
+fn diamond() -> Scene {
+    let mut scene = Scene::named("brilliant").unwrap();
+    scene.objects[0].material.dispersion = Dispersion::Sellmeier(Mineral::Diamond);
+    scene
+}
+
+fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
+    render(scene, settings, &|_, _| {}).unwrap()
+}
+
+/// Root mean square and largest difference over the channels of covered pixels.
+fn difference(a: &Rendering, b: &Rendering) -> (f64, f64) {
+    let pairs = a.linear.iter().zip(&b.linear).filter(|(a, _)| a[3] > 0.0);
+    let parts = pairs.flat_map(|(a, b)| [0, 1, 2].map(|k| f64::from((a[k] - b[k]).abs())));
+    let parts: Vec<f64> = parts.collect();
+    let squares: f64 = parts.iter().map(|part| part * part).sum();
+    ((squares / parts.len() as f64).sqrt(), parts.iter().copied().fold(0.0, f64::max))
+}
+
+/// A factor from what is dropped at each wavelength to what a channel may lack of it.
+fn gain(wavelengths: usize) -> f64 {
+    let rows = spectrum::weights(wavelengths).into_iter().map(|wavelength| (wavelength.weights * DVec3::ONE).abs());
+    rows.sum::<DVec3>().max_element()
+}
+
+/// Surrounded by radiance 1 a clear stone shows 1 less what was dropped: at each wavelength of each ray to f64's digits, and in the
+/// picture within the bound.
+#[test]
+fn white_furnace() {
+    let environment = ones();
+    for (name, side, samples) in [("brilliant", 24, 2), ("prism", 24, 2), ("octahedron", 24, 2), ("bunny_stone", 12, 1)]
+    {
+        for geometry in [Geometry::Planes, Geometry::Triangles] {
+            let mut scene = Scene::named(name).unwrap();
+            scene.objects[0].material.dispersion = Dispersion::Abbe(20.0 / 55.3);
+            let settings = Settings {
+                environment: &environment,
+                geometry,
+                samples,
+                wavelengths: 5,
+                energy_bound: 1e-3,
+                ..Settings::of_size(side, side)
+            };
+            let job = Job::new(&scene, &settings);
+            let mut met = 0;
+            for (x, y) in (0..side * side).map(|k| (k % side, k / side)) {
+                let direction = job.view.direction(f64::from(x) + 0.37, f64::from(y) + 0.61);
+                let Some(primary) = job.surroundings.primary(job.view.eye, direction) else { continue };
+                met += 1;
+                for (_, optics) in &job.spectrum {
+                    let Outcome { radiance, lost } = job.surroundings.follow(&primary, optics);
+                    assert!((radiance + lost - 1.0).abs().max_element() <= 1e-9, "{name}: {radiance} with {lost} lost");
+                    assert!((0.0..settings.energy_bound).contains(&lost), "{name}: {lost} lost");
+                }
+            }
+            assert!(met > side * side / 8, "{name}: {met}");
+
+            let rendering = rendered(&scene, &settings);
+            assert!(rendering.lost.max < settings.energy_bound && rendering.lost.mean <= rendering.lost.max);
+            let bound = gain(5) * settings.energy_bound;
+            for [red, green, blue, covered] in rendering.linear {
+                let channels = [red, green, blue].map(|channel| f64::from(channel - covered).abs());
+                assert!(channels.iter().all(|missing| *missing <= bound), "{name}: {channels:?}");
+            }
+        }
+    }
+}
+
+/// Two stones, one in front of the other: what leaves one and enters the other is followed too.
+#[test]
+fn white_furnace_of_several_bodies() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let away = scene.camera.target - scene.camera.eye;
+    let mut second = scene.objects[0].clone();
+    second.mesh.positions.iter_mut().for_each(|position| *position += 2.2 * away.normalize());
+    second.material.ior = 1.5;
+    scene.objects.push(second);
+    let environment = ones();
+    let settings = Settings { environment: &environment, samples: 1, wavelengths: 3, ..Settings::of_size(24, 24) };
+    let both = rendered(&scene, &settings);
+    assert!(both.lost.max < settings.energy_bound);
+    let near = |pixel: &[f32; 4]| (0..3).all(|k| f64::from(pixel[k] - pixel[3]).abs() <= gain(3) * 1e-4);
+    assert!(both.linear.iter().all(near));
+    // The one behind is seen through the other: in the studio it makes a difference.
+    let settings = Settings { environment: &Environment::Studio, ..settings };
+    let with = rendered(&scene, &settings);
+    scene.objects.pop();
+    assert!(difference(&rendered(&scene, &settings), &with).0 > 0.05);
+}
+
+#[test]
+fn twice_as_many_wavelengths_change_little() {
+    let scene = diamond();
+    let window = Window { left: 24, top: 24, width: 16, height: 16 };
+    let settings = Settings { window: Some(window), samples: 2, ..Settings::of_size(64, 64) };
+    let coarse = rendered(&scene, &settings);
+    let fine = rendered(&scene, &Settings { wavelengths: 61, ..settings });
+    let (rms, largest) = difference(&coarse, &fine);
+    println!("31 against 61 wavelengths: rms {rms:.4}, largest {largest:.4}");
+    // Against nine, to see that the number matters at all.
+    let few = difference(&rendered(&scene, &Settings { wavelengths: 9, ..settings }), &fine).0;
+    println!("9 against 61 wavelengths: rms {few:.4}");
+    assert!(rms < 0.02 && 2.0 * rms < few);
+}
+
+#[test]
+fn without_dispersion_the_spectrum_plays_no_part() {
+    let mut scene = Scene::named("step_cut").unwrap();
+    let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(16, 16) };
+    let gain = gain(3) + gain(31);
+    let few = rendered(&scene, &settings);
+    let all = rendered(&scene, &Settings { wavelengths: 31, ..settings });
+    assert!(difference(&few, &all).1 < 20.0 * gain * settings.energy_bound);
+    // The base colour goes by channel: a stone that lets blue in alone shows more than its surface in blue alone.
+    scene.objects[0].material.base_color = glam::Vec3::Z;
+    let blue = rendered(&scene, &settings);
+    scene.objects[0].material.base_color = glam::Vec3::ZERO;
+    let surface = rendered(&scene, &settings);
+    let total = |rendering: &Rendering, k: usize| rendering.linear.iter().map(|pixel| pixel[k]).sum::<f32>();
+    assert!((total(&blue, 0) - total(&surface, 0)).abs() < 1e-3);
+    assert!(total(&blue, 2) > 2.0 * total(&surface, 2));
+}
+
+#[test]
+fn absorption_takes_the_other_colors() {
+    let mut scene = Scene::named("brilliant").unwrap();
+    let environment = ones();
+    let settings = Settings { environment: &environment, samples: 1, ..Settings::of_size(16, 16) };
+    let material = &mut scene.objects[0].material;
+    material.attenuation_color = glam::Vec3::new(0.9, 0.2, 0.3);
+    material.attenuation_distance = 2.0;
+    let near = rendered(&scene, &settings);
+    scene.objects[0].material.attenuation_distance = 20.0;
+    let far = rendered(&scene, &settings);
+    for (near, far) in near.linear.iter().zip(&far.linear).filter(|(near, _)| near[3] == 1.0) {
+        assert!(near[0] > near[1] && near[0] > near[2], "{near:?}");
+        assert!((0..3).all(|k| near[k] < far[k] && far[k] < 1.0), "{near:?} {far:?}");
+    }
+}
+
+#[test]
+fn a_window_is_a_crop_and_every_run_the_same() {
+    let scene = diamond();
+    let settings = Settings { samples: 1, wavelengths: 7, ..Settings::of_size(40, 24) };
+    let whole = rendered(&scene, &settings);
+    assert_eq!(whole, rendered(&scene, &settings));
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    assert_eq!(whole, alone.install(|| rendered(&scene, &settings)));
+    let window = Window { left: 13, top: 5, width: 9, height: 11 };
+    let part = rendered(&scene, &Settings { window: Some(window), ..settings });
+    assert_eq!((part.width, part.height), (9, 11));
+    for (k, pixel) in part.linear.iter().enumerate() {
+        assert_eq!(*pixel, whole.linear[(5 + k / 9) * 40 + 13 + k % 9]);
+    }
+    assert!(whole.linear.iter().any(|pixel| *pixel == [0.0; 4]) && whole.linear.iter().any(|pixel| pixel[3] == 1.0));
+}
+
+/// A stone's facets as planes and as triangles differ by f32's roundings of the corners, 6e-8: light that passes near an edge may
+/// then go another way.
+#[test]
+fn planes_and_triangles_show_the_same_stone() {
+    let scene = diamond();
+    let settings = Settings { samples: 1, wavelengths: 5, ..Settings::of_size(48, 48) };
+    let planes = rendered(&scene, &settings);
+    let triangles = rendered(&scene, &Settings { geometry: Geometry::Triangles, ..settings });
+    let covered = planes.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
+    let pairs = planes.linear.iter().zip(&triangles.linear);
+    let apart = pairs.filter(|(a, b)| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3)).count();
+    println!("{apart} of {covered} pixels differ; rms and largest {:?}", difference(&planes, &triangles));
+    assert!(covered > 800 && apart * 100 <= covered, "{apart} of {covered}");
+}
+
+#[test]
+fn progress_counts_every_row_once() {
+    let scene = Scene::named("octahedron").unwrap();
+    let seen = std::sync::Mutex::new(Vec::new());
+    let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(4, 6) };
+    render(&scene, &settings, &|done, total| seen.lock().unwrap().push((done, total))).unwrap();
+    let mut seen = seen.into_inner().unwrap();
+    seen.sort_unstable();
+    assert_eq!(seen, (1..=6).map(|row| (row, 6)).collect::<Vec<_>>());
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    let scene = Scene::named("octahedron").unwrap();
+    let good = Settings::of_size(8, 8);
+    let window = |left, top, width, height| Some(Window { left, top, width, height });
+    let wrong = [
+        Settings { width: 0, ..good },
+        Settings { height: LARGEST_SIDE + 1, ..good },
+        Settings { window: window(0, 0, 0, 8), ..good },
+        Settings { window: window(4, 0, 5, 8), ..good },
+        Settings { window: window(0, u32::MAX, 1, 1), ..good },
+        Settings { wavelengths: 2, ..good },
+        Settings { wavelengths: MOST_WAVELENGTHS + 1, ..good },
+        Settings { samples: 0, ..good },
+        Settings { samples: MOST_SAMPLES + 1, ..good },
+        Settings { energy_bound: 0.0, ..good },
+        Settings { energy_bound: f64::NAN, ..good },
+        Settings { energy_bound: 1.0, ..good },
+    ];
+    for settings in wrong {
+        let message = render(&scene, &settings, &|_, _| {}).unwrap_err().to_string();
+        assert!(!message.contains('\n') && message.contains("range") || message.contains("within"), "{message}");
+    }
+}
+
+#[test]
+#[ignore]
+fn timing() {
+    let scene = diamond();
+    let start = std::time::Instant::now();
+    let window = Window { left: 0, top: 124, width: 256, height: 8 };
+    let rendering =
+        render(&scene, &Settings { window: Some(window), ..Settings::of_size(256, 256) }, &|_, _| {}).unwrap();
+    println!("{:?} {:?}", start.elapsed(), rendering.lost);
+}
