@@ -121,35 +121,34 @@ fn dispersion_abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
 
 // The gradient after a ray enters the gem: dispersion_refract with no gradient before and a slope of 1, for less work.
 // With t the tangential part of the ray, c = -n . r and root = sqrt(m + c^2) = n cos(angle of refraction), it is
-// -(root t + |t|^2 normal) / (n^2 root). Its length is tan(angle of refraction) / n.
-// Returns: d(refracted direction) / d(relative_index), perpendicular to the refracted ray; 0 under total internal reflection.
+// -(t + |t|^2 / root normal) / n^2, tan(angle of refraction) / n long. `root` is held at DISPERSION_CRITICAL from below.
+// Returns: d(refracted direction) / d(relative_index), 0 under total internal reflection.
 // Units: none; unit vectors and a ratio, index_gem / index_outside.
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4].
 // Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
-// Accuracy: lavapipe 8 ulp + 6 backward; portable 16 ulp + 12 backward
+// Accuracy: lavapipe 8 ulp + 10 backward; portable 16 ulp + 20 backward
 fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec3f {
     let cosine = max(-dot(normal, direction), 0.0f);
     let radicand = (relative_index - 1.0f) * (relative_index + 1.0f) + cosine * cosine;
     if (radicand < 0.0f) {
         return vec3f(0.0f);
     }
-    let root = sqrt(radicand);
     let tangent = direction + cosine * normal;
-    let bent = root * tangent + dot(tangent, tangent) * normal;
-    return bent / (-relative_index * relative_index * max(root, DISPERSION_CRITICAL));
+    let across = dot(tangent, tangent) / max(sqrt(radicand), DISPERSION_CRITICAL);
+    return (tangent + across * normal) / (-relative_index * relative_index);
 }
 
 // The gradient after a refraction: the derivative of refraction.wgsl's direction, by either branch. With the symbols above,
-// dc = -normal . gradient and b = (slope / n) |t|^2 + c dc, it is (gradient + dc normal - (slope / n) t - b / root normal) / n. Near the
-// critical angle root -> 0; the whole is held at root / DISPERSION_CRITICAL of itself there, which keeps its direction and ends finite.
-// Returns: d(direction) / d(index of the gem), perpendicular to the new direction, at most 17 / n (|gradient| + |slope| / n) long;
-//   under total internal reflection the gradient reflected.
+// dc = -normal . gradient and b = (slope / n) |t|^2 + c dc, it is (gradient + dc normal - (slope / n) t - b / root normal) / n. Only the
+// part along the normal grows without bound near the critical angle, and only its root is held there.
+// Returns: d(direction) / d(index of the gem), at most 17 / n (|gradient| + |slope| / n) long, and perpendicular to the new direction but
+//   where the root is held; under total internal reflection the gradient reflected.
 // Units: none; unit vectors and ratios. `relative_index_slope` is d(relative_index) / d(index of the gem): 1 / index_outside on the way in,
 //   1 in air; -relative_index / index_gem on the way out, -1 / index_gem^2 into air.
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4], gradient . direction = 0,
 //   |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40, 1] or 0.
 // Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
-// Accuracy: lavapipe 12 ulp + 8 backward; portable 24 ulp + 16 backward
+// Accuracy: lavapipe 12 ulp + 10 backward; portable 24 ulp + 20 backward
 fn dispersion_refract(
     direction: vec3f,
     gradient: vec3f,
@@ -163,12 +162,11 @@ fn dispersion_refract(
     if (radicand < 0.0f) {
         return gradient + 2.0f * cosine_slope * normal;
     }
-    let root = sqrt(radicand);
     let tangent = direction + cosine * normal;
     let bending = relative_index_slope / relative_index;
     let along = gradient + cosine_slope * normal - bending * tangent;
-    let across = bending * dot(tangent, tangent) + cosine * cosine_slope;
-    return (root * along - across * normal) / (relative_index * max(root, DISPERSION_CRITICAL));
+    let across = (bending * dot(tangent, tangent) + cosine * cosine_slope) / max(sqrt(radicand), DISPERSION_CRITICAL);
+    return (along - across * normal) / relative_index;
 }
 
 // The derivative of refraction as one writes it from eq. (6), with eta = 1 / n. Kept to be compared with.
@@ -199,7 +197,7 @@ fn dispersion_refract_naive(
 // Units: any; `normal` is a unit vector.
 // Domain: |normal| = 1, |gradient| up to 1e37.
 // Outside: for other lengths of the normal the same linear map, which then is no reflection.
-// Accuracy: lavapipe 6 ulp; portable 6 ulp
+// Accuracy: lavapipe 10 ulp; portable 12 ulp
 fn dispersion_reflect(gradient: vec3f, normal: vec3f) -> vec3f {
     return gradient - 2.0f * dot(normal, gradient) * normal;
 }
@@ -210,7 +208,7 @@ fn dispersion_reflect(gradient: vec3f, normal: vec3f) -> vec3f {
 // Units: none; `index_offset` is the index at that wavelength less the index at which `direction` was traced.
 // Domain: |direction| = 1, gradient . direction = 0, |index_offset gradient| up to 1e18.
 // Outside: not a number where the sum is 0, which a perpendicular gradient cannot bring about.
-// Accuracy: lavapipe 3 ulp + 2 backward; portable 6 ulp + 3 backward
+// Accuracy: lavapipe 4 ulp + 2 backward; portable 7 ulp + 3 backward
 fn dispersion_direction(direction: vec3f, gradient: vec3f, index_offset: f32) -> vec3f {
     return normalize(direction + index_offset * gradient);
 }

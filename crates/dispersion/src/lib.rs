@@ -112,10 +112,9 @@ pub fn enter(direction: Vec3, normal: Vec3, relative_index: f32) -> Vec3 {
     if radicand < 0.0 {
         return Vec3::ZERO;
     }
-    let root = radicand.sqrt();
     let tangent = direction + cosine * normal;
-    let bent = root * tangent + tangent.dot(tangent) * normal;
-    bent / (-relative_index * relative_index * root.max(DISPERSION_CRITICAL))
+    let across = tangent.dot(tangent) / radicand.sqrt().max(DISPERSION_CRITICAL);
+    (tangent + across * normal) / (-relative_index * relative_index)
 }
 
 /// The gradient after a refraction, or after the total internal reflection in its place.
@@ -126,12 +125,11 @@ pub fn refract(direction: Vec3, gradient: Vec3, normal: Vec3, relative_index: f3
     if radicand < 0.0 {
         return gradient + 2.0 * cosine_slope * normal;
     }
-    let root = radicand.sqrt();
     let tangent = direction + cosine * normal;
     let bending = relative_index_slope / relative_index;
     let along = gradient + cosine_slope * normal - bending * tangent;
-    let across = bending * tangent.dot(tangent) + cosine * cosine_slope;
-    (root * along - across * normal) / (relative_index * root.max(DISPERSION_CRITICAL))
+    let across = (bending * tangent.dot(tangent) + cosine * cosine_slope) / radicand.sqrt().max(DISPERSION_CRITICAL);
+    (along - across * normal) / relative_index
 }
 
 /// The derivative of refraction as one writes it from eq. (6), with eta = 1 / n.

@@ -83,8 +83,7 @@ pub fn abbe_number(index_d: f64, index_f: f64, index_c: f64) -> f64 {
 pub fn enter(direction: DVec3, normal: DVec3, relative_index: f64) -> DVec3 {
     let plane = Incidence::new(direction, normal);
     let Some(refraction) = plane.refraction(relative_index) else { return DVec3::ZERO };
-    let rate = -refraction.sine / (relative_index * refraction.cosine).max(CRITICAL);
-    rate * plane.turning(&refraction)
+    plane.turned(&refraction, relative_index, -refraction.sine)
 }
 
 /// Snell's law differentiated in angles; by the reflected angles where it has no solution.
@@ -97,11 +96,11 @@ pub fn refract(
 ) -> DVec3 {
     let plane = Incidence::new(direction, normal);
     let Some(refraction) = plane.refraction(relative_index) else { return reflect(gradient, plane.normal) };
-    let root = relative_index * refraction.cosine;
-    let rate = gradient.dot(plane.turning(&plane.incident));
-    let refracted_rate = (plane.incident.cosine * rate - relative_index_slope * refraction.sine) / root.max(CRITICAL);
-    let across = gradient.dot(plane.binormal()) / relative_index * (root / CRITICAL).min(1.0);
-    refracted_rate * plane.turning(&refraction) + across * plane.binormal()
+    let Angle { sine, cosine } = plane.incident;
+    let rate = gradient.dot(cosine * plane.tangent + sine * plane.normal);
+    let across = gradient.dot(plane.binormal()) / relative_index;
+    let moved = cosine * rate - relative_index_slope * refraction.sine;
+    plane.turned(&refraction, relative_index, moved) + across * plane.binormal()
 }
 
 /// The reflection at a plane is half a turn about its normal, reversed.
@@ -190,9 +189,11 @@ impl Incidence {
         angle.sine * self.tangent - angle.cosine * self.normal
     }
 
-    /// Its derivative by the angle.
-    fn turning(&self, angle: &Angle) -> DVec3 {
-        angle.cosine * self.tangent + angle.sine * self.normal
+    /// How the ray at `angle` moves when n cos θ_t θ_t' = `moved`: along the tangent by cos θ_t θ_t', along the normal by sin θ_t θ_t', and
+    /// only there does cos θ_t divide.
+    fn turned(&self, angle: &Angle, relative_index: f64, moved: f64) -> DVec3 {
+        let root = (relative_index * angle.cosine).max(CRITICAL);
+        moved / relative_index * self.tangent + angle.sine * moved / root * self.normal
     }
 }
 
