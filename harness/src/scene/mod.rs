@@ -8,7 +8,6 @@ use std::path::Path;
 
 use glam::Vec3;
 
-pub mod bvh;
 mod built_in;
 pub mod bvh;
 mod camera;
@@ -25,7 +24,6 @@ pub mod normals;
 pub mod polyhedron;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
-pub use built_in::{BUILT_IN, BuiltIn};
 pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::Convex;
