@@ -2,7 +2,7 @@
 
 use super::timing::{self, Timed};
 use super::views::{self, View};
-use super::{CostError, Errors, Report, RungReport, choices, dispersion};
+use super::{CostError, Errors, Report, RungReport, choices, dispersion, reflection};
 use crate::cookbook;
 use crate::dispatch;
 use crate::gpu::Gpu;
@@ -13,7 +13,7 @@ use crate::spirv_counts::spirv_counts;
 use serde::Serialize;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too.
-pub const RUNGS: [&str; 35] = [
+pub const RUNGS: [&str; 34] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -46,7 +46,6 @@ pub const RUNGS: [&str; 35] = [
     "bvh-1",
     "bvh-4+tracker",
     "bvh-8+tracker",
-    "bvh-8+31",
     "triangles-1",
     "triangles-8+tracker",
 ];
@@ -157,6 +156,7 @@ pub fn run(
         strengths,
         colours,
         choices,
+        reflections: reflection::measure()?,
     };
     report.mark_dominated();
     Ok(report)

@@ -5,6 +5,7 @@ mod dispersion;
 mod error;
 mod gem;
 pub mod plot;
+mod reflection;
 mod table;
 mod timing;
 pub mod views;
@@ -13,6 +14,7 @@ pub use choices::Choice;
 pub use dispersion::Colours;
 pub use error::{Errors, MEASURES};
 pub use gem::{Options, RUNGS, Strength, run};
+pub use reflection::Reflection;
 pub use timing::{Timed, Timing};
 
 use crate::specialise::SpecialiseError;
@@ -76,6 +78,8 @@ pub struct Report {
     pub colours: Vec<Colours>,
     /// What is done with the rest of a ray, and where it ends.
     pub choices: Vec<Choice>,
+    /// Total internal reflection at the first hit, exact and by proxy.
+    pub reflections: Vec<Reflection>,
 }
 
 impl Report {

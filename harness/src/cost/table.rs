@@ -1,6 +1,6 @@
 //! The ladder as text.
 
-use super::{Choice, Errors, MEASURES, Report, RungReport};
+use super::{Choice, Errors, MEASURES, Reflection, Report, RungReport};
 use std::fmt::Write as _;
 
 /// The paper's own figures, for comparison: NVIDIA GeForce GTX 760, 1920×1080 filled by the stone, section 5 and Table 1.
@@ -18,6 +18,7 @@ pub(super) fn text(report: &Report) -> String {
     each_view(&mut text, report);
     dispersion(&mut text, report);
     choices(&mut text, &report.choices);
+    reflections(&mut text, &report.reflections);
     let _ = writeln!(text, "\n{PAPER}");
     text
 }
@@ -141,5 +142,16 @@ fn choices(text: &mut String, choices: &[Choice]) {
             mean(|e| e.rmse),
             mean(|e| e.energy)
         );
+    }
+}
+
+fn reflections(text: &mut String, reflections: &[Reflection]) {
+    let _ = writeln!(
+        text,
+        "\nTotal internal reflection at the first hit, brilliant face-up, share of the rays that enter by\n{:52} {:>7} {:>7}",
+        "", "table", "crown"
+    );
+    for Reflection { mesh, table, crown } in reflections {
+        let _ = writeln!(text, "{mesh:52} {:>6.1}% {:>6.1}%", 100.0 * table, 100.0 * crown);
     }
 }
