@@ -80,7 +80,7 @@ fn absorption_transmittance(coefficient: vec3f, distance: f32) -> vec3f {
 // Returns: pow(attenuation_color, distance / attenuation_distance).
 // Units: none; both distances in the same unit.
 // Domain: colours in [0.01, 0.9], distance at most 4 attenuation distances, those in [1e-3, 1e3].
-// Outside: not a number or anything for a colour of 0 at a distance of 0, and for an attenuation distance of 0; along many attenuation
+// Outside: not a number for two distances of 0; for a colour of 0 at a distance of 0 what 2^(0 log2 0) is on the device; along many attenuation
 //   distances the error of the logarithm in pow is multiplied by their number.
 // Accuracy: naive
 fn absorption_transmittance_naive(attenuation_color: vec3f, attenuation_distance: f32, distance: f32) -> vec3f {

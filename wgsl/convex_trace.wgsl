@@ -10,18 +10,15 @@
 //   for (var face = 0u; face < count; face += 1u) {
 //       hit = convex_trace_step(hit, position, direction, planes[face], face, left);
 //   }
-//   position = convex_trace_point(position, direction, convex_trace_distance(hit), planes[hit.face]);
+//   position = convex_trace_point(position, direction, hit.distance, planes[hit.face]);
 //
 // Trace in the stone's own coordinates, their origin inside it: errors are units in the last place of positions and of d.
 
-// The nearest plane so far. The distance is kept as a fraction, so that no plane costs a division: two fractions compare by their
-// cross products, which carry one rounding each, where a quotient may carry 2.5 ulp.
+// The nearest plane so far.
 struct ConvexTraceHit {
-    // How far the plane is away along its normal. Below 0 where the ray's start lies outside by rounding.
-    numerator: f32,
-    // How much nearer to it one unit along the ray leads; above 0.
-    denominator: f32,
-    // Its number; CONVEX_TRACE_NONE while none is hit.
+    // Along the ray, at least 0; the limit while none is hit.
+    distance: f32,
+    // The plane's number; CONVEX_TRACE_NONE while none is hit.
     face: u32,
 }
 
@@ -35,56 +32,47 @@ const CONVEX_TRACE_FAR: f32 = 1e30f;
 // Returns: ConvexTraceHit without a face, at distance `limit`.
 // Units: lengths in units of the ray's direction.
 // Domain: limit at least 0; limits beyond 1e30 count as 1e30.
-// Outside: for a negative limit only planes are hit behind which the ray starts by more.
-// Accuracy: lavapipe numerator 0 ulp, denominator 0 ulp, face 0 ulp; portable numerator 0 ulp, denominator 0 ulp, face 0 ulp
+// Outside: from a negative limit on nothing is hit.
+// Accuracy: lavapipe distance 0 ulp, face 0 ulp; portable distance 0 ulp, face 0 ulp
 fn convex_trace_start(limit: f32) -> ConvexTraceHit {
-    return ConvexTraceHit(min(limit, CONVEX_TRACE_FAR), 1.0f, CONVEX_TRACE_NONE);
+    return ConvexTraceHit(min(limit, CONVEX_TRACE_FAR), CONVEX_TRACE_NONE);
 }
 
-// Takes one plane into account. It is met if the ray runs towards it, however slowly: of two parallel to each other, ray and plane, the
-// slope is 0 or rounding noise, and its plane, if at all, comes after all others. The face that the ray has just left
-// is told by its number: at grazing incidence rounding may turn a ray back towards it, and no distance tells that apart from a true hit.
-// A ray that starts outside of a plane by rounding and runs further out meets it at once, at a distance below 0, which
-// convex_trace_distance raises to 0: so no ray escapes at an edge or a vertex. At equal distances the hit stays as it was: in ascending
-// order the lower face wins.
+// Takes one plane into account. It is met if the ray runs towards it, however slowly: to a plane that is parallel to the ray the
+// slope is 0, or rounding noise, which puts it beyond all others. The face that the ray has just left is told by its
+// number: at grazing incidence rounding may turn a ray back towards it, and no distance tells that apart from a true hit. A ray that
+// starts outside of a plane by rounding and runs further out meets it at once, at distance 0: so no ray escapes at an edge or a
+// vertex. At equal distances the hit stays as it was: in ascending order the lower face wins.
 // Returns: this plane's ConvexTraceHit if it is met nearer than `hit`, else `hit`.
-// Units: lengths; `plane.xyz` is a unit vector, so is `direction`, or else its length is the unit of distances.
+// Units: lengths in units of the ray's direction; `plane.xyz` is a unit vector.
 // Domain: |direction| = |plane.xyz| = 1; sizes and positions in [1e-4, 1e4], `position` inside up to rounding; slopes of 0 or at least
 //   1e-20; `hit` as convex_trace_start and this function give it.
-// Outside: finite up to 1e18; of two slopes below 1e-26 either may win, since their cross products may be flushed to 0.
-// Accuracy: lavapipe numerator 1 ulp + 2 backward, denominator 1 ulp + 2 backward, face 2 backward; portable numerator 2 ulp + 4 backward, denominator 2 ulp + 4 backward, face 4 backward
+// Outside: finite for sizes up to 1e18; for other directions distances in units of their length.
+// Accuracy: lavapipe distance 2 ulp + 2 backward, face 2 backward; portable distance 4 ulp + 4 backward, face 4 backward
 fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32, left: u32) -> ConvexTraceHit {
     let height = plane.w - dot(plane.xyz, position);
     let slope = dot(plane.xyz, direction);
-    if (slope > 0.0f && height * hit.denominator < hit.numerator * slope && face != left) {
-        return ConvexTraceHit(height, slope, face);
+    // Where the slope is 0 this is not looked at.
+    let distance = max(height, 0.0f) / slope;
+    if (slope > 0.0f && distance < hit.distance && face != left) {
+        return ConvexTraceHit(distance, face);
     }
     return hit;
 }
 
-// The same with a division, and with an epsilon against meeting the face that was left, as one finds it.
-// Returns: ConvexTraceHit, its distance as the numerator over 1.
-// Units: lengths.
+// The same with an epsilon against meeting the face that was left, as one finds it.
+// Returns: this plane's ConvexTraceHit if it is met nearer than `hit` and farther than 1e-4, else `hit`.
+// Units: lengths in units of the ray's direction.
 // Domain: stones of size 1 about the origin, the next plane farther than 1e-4, the ray not nearly parallel to it.
 // Outside: misses facets beside edges, all facets of small stones and those that the ray starts outside of by rounding;
 //   meets the face that was left again, far away, at grazing incidence.
 // Accuracy: naive
 fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32) -> ConvexTraceHit {
     let distance = (plane.w - dot(plane.xyz, position)) / dot(plane.xyz, direction);
-    if (distance > 1e-4f && distance < hit.numerator / hit.denominator) {
-        return ConvexTraceHit(distance, 1.0f, face);
+    if (distance > 1e-4f && distance < hit.distance) {
+        return ConvexTraceHit(distance, face);
     }
     return hit;
-}
-
-// Distance of a hit: the one division of a trace.
-// Returns: distance along the ray, at least 0; the limit where no plane was hit.
-// Units: lengths in units of the ray's direction.
-// Domain: numerator in [-1e30, 1e30], denominator in [1e-20, 1], quotient up to 1e30.
-// Outside: overflows where the quotient exceeds 3e38; infinite or not a number for a denominator of 0, which no hit has.
-// Accuracy: lavapipe 0.5 ulp; portable 2.5 ulp
-fn convex_trace_distance(hit: ConvexTraceHit) -> f32 {
-    return max(hit.numerator, 0.0f) / hit.denominator;
 }
 
 // Where a ray meets a plane, put back onto the plane: x + t r is off it by the rounding of x, t and r, which on a long way is

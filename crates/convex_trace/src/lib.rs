@@ -7,14 +7,12 @@ pub mod oracle;
 
 use glam::{Vec3, Vec4, Vec4Swizzles as _};
 
-/// The nearest plane so far, its distance as a fraction.
+/// The nearest plane so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvexTraceHit {
-    /// How far the plane is away along its normal. Below 0 where the ray's start lies outside by rounding.
-    pub numerator: f32,
-    /// How much nearer to it one unit along the ray leads; above 0.
-    pub denominator: f32,
-    /// Its number; `CONVEX_TRACE_NONE` while none is hit.
+    /// Along the ray, at least 0; the limit while none is hit.
+    pub distance: f32,
+    /// The plane's number; `CONVEX_TRACE_NONE` while none is hit.
     pub face: u32,
 }
 
@@ -25,31 +23,28 @@ pub const CONVEX_TRACE_FAR: f32 = 1e30;
 
 /// The hit to start from: none, nearer than which a plane must be.
 pub fn start(limit: f32) -> ConvexTraceHit {
-    ConvexTraceHit { numerator: limit.min(CONVEX_TRACE_FAR), denominator: 1.0, face: CONVEX_TRACE_NONE }
+    ConvexTraceHit { distance: limit.min(CONVEX_TRACE_FAR), face: CONVEX_TRACE_NONE }
 }
 
 /// Takes one plane into account.
 pub fn step(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, face: u32, left: u32) -> ConvexTraceHit {
     let height = plane.w - plane.xyz().dot(position);
     let slope = plane.xyz().dot(direction);
-    if slope > 0.0 && height * hit.denominator < hit.numerator * slope && face != left {
-        return ConvexTraceHit { numerator: height, denominator: slope, face };
+    // Where the slope is 0 this is not looked at.
+    let distance = height.max(0.0) / slope;
+    if slope > 0.0 && distance < hit.distance && face != left {
+        return ConvexTraceHit { distance, face };
     }
     hit
 }
 
-/// The same with a division, and with an epsilon against meeting the face that was left.
+/// The same with an epsilon against meeting the face that was left.
 pub fn step_naive(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, face: u32) -> ConvexTraceHit {
     let distance = (plane.w - plane.xyz().dot(position)) / plane.xyz().dot(direction);
-    if distance > 1e-4 && distance < hit.numerator / hit.denominator {
-        return ConvexTraceHit { numerator: distance, denominator: 1.0, face };
+    if distance > 1e-4 && distance < hit.distance {
+        return ConvexTraceHit { distance, face };
     }
     hit
-}
-
-/// Distance of a hit: the one division of a trace.
-pub fn distance(hit: ConvexTraceHit) -> f32 {
-    hit.numerator.max(0.0) / hit.denominator
 }
 
 /// Where a ray meets a plane, put back onto the plane.

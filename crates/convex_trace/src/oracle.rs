@@ -1,16 +1,14 @@
-//! The truth in f64. A step compares distances, each from the plane's foot point and from the angle between ray and plane. A
-//! whole trace clips a segment: of the part of the ray that is still inside, what lies outside of a plane is cut off between the heights
-//! of its two ends, so that no slope is ever formed. The mirror compares cross products of heights and slopes.
+//! The truth in f64. A step takes the height from the plane's foot point and the slope from the angle between ray and plane.
+//! A whole trace clips a segment: of the part of the ray that is still inside, what lies outside of a plane is cut off between
+//! the heights of its two ends, so that no slope is ever formed.
 
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
 
 /// The nearest plane so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvexTraceHit {
-    /// How far the plane is away along its normal.
-    pub numerator: f64,
-    /// How much nearer to it one unit along the ray leads.
-    pub denominator: f64,
+    /// Along the ray.
+    pub distance: f64,
     /// Its number.
     pub face: u32,
 }
@@ -22,7 +20,7 @@ const FAR: f64 = 1e30f32 as f64;
 
 /// No face, at the limit.
 pub fn start(limit: f64) -> ConvexTraceHit {
-    ConvexTraceHit { numerator: limit.min(FAR), denominator: 1.0, face: NONE }
+    ConvexTraceHit { distance: limit.min(FAR), face: NONE }
 }
 
 /// Keeps the smaller of two distances.
@@ -34,24 +32,22 @@ pub fn step(
     face: u32,
     left: u32,
 ) -> ConvexTraceHit {
-    let numerator = height(plane, position);
-    let denominator = slope(plane, direction);
-    let approaches = denominator > 0.0 && face != left;
-    if approaches && numerator / denominator < hit.numerator / hit.denominator {
-        ConvexTraceHit { numerator, denominator, face }
-    } else {
-        hit
+    let slope = slope(plane, direction);
+    if slope <= 0.0 || face == left {
+        return hit;
     }
+    nearer(hit, ConvexTraceHit { distance: (height(plane, position) / slope).max(0.0), face })
 }
 
 /// Keeps the smaller of two distances, of those above a ten-thousandth as f32 rounds it.
 pub fn step_naive(hit: ConvexTraceHit, position: DVec3, direction: DVec3, plane: DVec4, face: u32) -> ConvexTraceHit {
     let distance = height(plane, position) / slope(plane, direction);
-    if distance > f64::from(1e-4f32) && distance < hit.numerator / hit.denominator {
-        ConvexTraceHit { numerator: distance, denominator: 1.0, face }
-    } else {
-        hit
-    }
+    if distance > f64::from(1e-4f32) { nearer(hit, ConvexTraceHit { distance, face }) } else { hit }
+}
+
+/// The nearer of two hits; the first, where neither is.
+fn nearer(first: ConvexTraceHit, second: ConvexTraceHit) -> ConvexTraceHit {
+    if second.distance < first.distance { second } else { first }
 }
 
 /// How far a point lies inside of a plane: the way to the plane's foot point, along its normal.
@@ -66,11 +62,6 @@ fn slope(plane: DVec4, direction: DVec3) -> f64 {
     let normal = plane.xyz();
     let elevation = normal.dot(direction).atan2(normal.cross(direction).length());
     normal.length() * direction.length() * elevation.sin()
-}
-
-/// The quotient by logarithms, so that no division is made.
-pub fn distance(hit: ConvexTraceHit) -> f64 {
-    if hit.numerator <= 0.0 { 0.0 } else { (hit.numerator.ln() - hit.denominator.ln()).exp() }
 }
 
 /// The point along the ray split at the plane: its part within the plane by a double cross product, and the plane's foot point.

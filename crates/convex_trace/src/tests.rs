@@ -135,7 +135,7 @@ impl Ray<Vec3> {
     fn bounce(&mut self, planes: &[Vec4], point: fn(Vec3, Vec3, f32, Vec4) -> Vec3) -> Option<f32> {
         let hit = trace(planes, self.position, self.direction, self.left);
         let plane = *planes.get(hit.face as usize)?;
-        let way = distance(hit);
+        let way = hit.distance;
         self.position = point(self.position, self.direction, way, plane);
         self.direction -= 2.0 * plane.xyz().dot(self.direction) * plane.xyz();
         self.left = hit.face;
@@ -372,7 +372,7 @@ fn at_grazing_incidence_to_the_last_ulp_the_face_that_was_left_is_not_met() {
                 let (way, truth) = oracle::trace(&stone.exact, foot.as_vec3().as_dvec3(), direction.as_dvec3(), face);
                 assert_ne!(hit.face, face);
                 // On the edge, two neighbours may be met at one distance.
-                let off = (f64::from(distance(hit)) - way).abs() / size;
+                let off = (f64::from(hit.distance) - way).abs() / size;
                 assert!(hit.face == truth || off < 1e-6, "face {face}: {} for {truth}, {off:e} apart", hit.face);
                 stays_inside(&stone, Ray { position: foot.as_vec3(), direction, left: face });
             }
@@ -400,16 +400,16 @@ fn parallel_to_planes_after_each_bounce() {
 #[test]
 fn at_equal_distances_the_lower_face_wins() {
     let corner = trace(&cube(), Vec3::ZERO, Vec3::ONE, CONVEX_TRACE_NONE);
-    assert_eq!((corner.face, distance(corner)), (0, 1.0));
+    assert_eq!((corner.face, corner.distance), (0, 1.0));
     let edge = trace(&cube(), Vec3::ZERO, Vec3::new(0.0, -1.0, -1.0), CONVEX_TRACE_NONE);
-    assert_eq!((edge.face, distance(edge)), (3, 1.0));
+    assert_eq!((edge.face, edge.distance), (3, 1.0));
 }
 
 #[test]
 fn outside_by_rounding_and_going_out_it_is_met_at_once() {
     let outside = Vec3::new(1.0f32.next_up(), 0.0, 0.0);
     let hit = trace(&cube(), outside, Vec3::new(0.6, 0.8, 0.0), 2);
-    assert_eq!((hit.face, distance(hit)), (0, 0.0));
+    assert_eq!((hit.face, hit.distance), (0, 0.0));
     // Going in it is not.
     let hit = trace(&cube(), outside, Vec3::new(-0.6, 0.8, 0.0), CONVEX_TRACE_NONE);
     assert_eq!(hit.face, 2);
@@ -421,14 +421,14 @@ fn a_limit_ends_the_ray() {
     for (face, plane) in (0..).zip(&cube()) {
         hit = step(hit, Vec3::ZERO, Vec3::X, *plane, face, CONVEX_TRACE_NONE);
     }
-    assert_eq!((hit.face, distance(hit)), (CONVEX_TRACE_NONE, 0.5));
+    assert_eq!((hit.face, hit.distance), (CONVEX_TRACE_NONE, 0.5));
     assert_eq!(start(f32::INFINITY), start(CONVEX_TRACE_FAR));
 }
 
 #[test]
 fn without_planes_ahead_there_is_no_hit() {
     let hit = trace(&cube()[1..2], Vec3::ZERO, Vec3::X, CONVEX_TRACE_NONE);
-    assert_eq!((hit.face, distance(hit)), (CONVEX_TRACE_NONE, CONVEX_TRACE_FAR));
+    assert_eq!((hit.face, hit.distance), (CONVEX_TRACE_NONE, CONVEX_TRACE_FAR));
     assert_eq!(oracle::trace(&[], DVec3::ZERO, DVec3::X, CONVEX_TRACE_NONE), (f64::from(1e30f32), CONVEX_TRACE_NONE));
 }
 
@@ -443,6 +443,6 @@ fn the_oracles_trace_is_the_fold_of_its_steps() {
         });
         let (way, face) = oracle::trace(&planes, position, direction, CONVEX_TRACE_NONE);
         assert_eq!(face, hit.face);
-        assert!((way - oracle::distance(hit)).abs() < 1e-13);
+        assert!((way - hit.distance).abs() < 1e-13);
     }
 }

@@ -46,8 +46,10 @@ fn path(draws: &mut Draws<'_>) -> (Vec3, f32) {
         1 | 2 => draws.magnitude(-30, 19),
         _ => draws.magnitude(-4, 4),
     };
-    let mut depth = || match draws.below(6) {
+    let mut depth = || match draws.below(7) {
         0 => 0.0,
+        // Without rounding, where the distance is 1.
+        6 => 0.5f32.powi(draws.below(12) as i32),
         1 => draws.magnitude(-40, 7),
         2 => draws.between(80.0, 95.0),
         _ => draws.between(0.0, 8.0),
@@ -103,7 +105,7 @@ pub(super) fn formulas() -> Vec<Formula> {
                 return Ok(());
             }
             (0..3).try_for_each(|channel| {
-                let wanted = f64::from(color[channel].clamp(0.0, 1.0));
+                let wanted = f64::from(color[channel].clamp(ABSORPTION_DARKEST, 1.0));
                 let depth = f64::from(coefficient[channel]) * f64::from(distance);
                 // Of a depth of up to 88, the last places.
                 near("color", (-depth).exp(), wanted, (1.0 + depth) * ROUNDING * wanted + f64::from(f32::MIN_POSITIVE))
@@ -179,12 +181,6 @@ pub(super) fn formulas() -> Vec<Formula> {
                     })
                 }
             })
-            .hard_case_with(
-                "black, and no way to go",
-                (mirror::coefficient(Vec3::ZERO, 0.5), 0.0),
-                (&splat(1.0), 0.0),
-                ("absorption_transmittance_naive", (Vec3::ZERO, 0.5, 0.0), f64::INFINITY),
-            )
             .hard_case_with(
                 "an attenuation distance of 0, and no way to go",
                 (mirror::coefficient(Vec3::splat(0.5), 0.0), 0.0),

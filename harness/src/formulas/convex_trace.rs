@@ -7,12 +7,15 @@ use crate::property::draws::Draws;
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_convex_trace::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 
-mirror_struct!(lapidary_convex_trace, ConvexTraceHit { numerator, denominator, face });
+mirror_struct!(lapidary_convex_trace, ConvexTraceHit { distance, face });
 
 const M: &str = "convex_trace";
 
 /// The rounding unit of f32.
 const ULP: f64 = 1.0 / (1 << 23) as f64;
+
+/// What an implementation may flush to zero.
+const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
 
 type Step = (ConvexTraceHit, Vec3, Vec3, Vec4, u32, u32);
 
@@ -53,25 +56,14 @@ fn step(draws: &mut Draws<'_>) -> Step {
     let height = plane.w - plane.xyz().dot(position);
     let slope = plane.xyz().dot(direction);
     let before = 100 + draws.below(8);
+    let distance = if slope > 1e-6 { height.max(0.0) / slope } else { size * draws.between(0.0, 2.0) };
     let hit = match draws.below(6) {
         0 => mirror::start(CONVEX_TRACE_FAR),
         1 => mirror::start(size * draws.magnitude(-2, 2)),
-        // The same distance, as another fraction.
-        2 if slope > 1e-6 => {
-            let factor = draws.pick(&[1.0, 0.5, 0.25]);
-            ConvexTraceHit { numerator: height * factor, denominator: slope * factor, face: before }
-        }
-        3 if slope > 1e-6 => {
-            let factor = draws.between(0.5, 1.0);
-            let denominator = slope * factor;
-            ConvexTraceHit { numerator: draws.nudged(height * factor, 8), denominator, face: before }
-        }
-        4 => ConvexTraceHit { numerator: -size * draws.magnitude(-24, -20), denominator: 0.5, face: before },
-        _ => ConvexTraceHit {
-            numerator: size * draws.between(0.0, 2.0),
-            denominator: draws.between(0.01, 1.0),
-            face: before,
-        },
+        2 => ConvexTraceHit { distance, face: before },
+        3 => ConvexTraceHit { distance: draws.nudged(distance, 8).max(0.0), face: before },
+        4 => ConvexTraceHit { distance: 0.0, face: before },
+        _ => ConvexTraceHit { distance: size * draws.between(0.0, 2.0), face: before },
     };
     (hit, position, direction, plane, face, left)
 }
@@ -85,31 +77,30 @@ fn height_and_slope((_, position, direction, plane, ..): Step) -> (f64, f64, boo
     (height, normal.dot(direction), along_an_axis && f64::from(height as f32) == height)
 }
 
-/// Whether a product is exact in f32.
-fn product(a: f64, b: f64) -> Option<f64> {
-    Some(a * b).filter(|product| f64::from(*product as f32) == *product)
-}
-
-/// The nearer hit of a plane in f32 arithmetic is this plane's or the one so far; told where f32 does not round.
+/// Which plane is met, where f32 computes the distance without rounding.
 fn exact_choice(arguments: Step, result: ConvexTraceHit) -> Result<(), String> {
     let (hit, _, _, _, face, left) = arguments;
     let (height, slope, exact) = height_and_slope(arguments);
-    let products = (product(height, f64::from(hit.denominator)), product(f64::from(hit.numerator), slope));
-    let (true, (Some(this), Some(other))) = (exact, products) else { return Ok(()) };
-    let wanted = if slope > 0.0 && this < other && face != left { face } else { hit.face };
+    let distance = height.max(0.0) / slope;
+    if !exact || slope > 0.0 && f64::from(distance as f32) != distance {
+        return Ok(());
+    }
+    let wanted = if slope > 0.0 && distance < f64::from(hit.distance) && face != left { face } else { hit.face };
     if result.face == wanted { Ok(()) } else { Err(format!("face {} is met, not {wanted}", result.face)) }
 }
 
 fn step_formula() -> Formula {
     let far = mirror::start(CONVEX_TRACE_FAR);
     let none = CONVEX_TRACE_NONE;
-    let right = |normal: Vec3, offset: f32| normal.extend(offset);
-    let oblique = Vec3::new(0.6, 0.8, 0.0);
-    // A point 0.25 under the plane x = 1 of a stone of size 1, once in its own coordinates and once 1e4 units away.
-    let (here, there) = (Vec3::new(0.75, 0.1, -0.2), Vec3::new(1e4, 1e4, 1e4));
+    // The facet on the right.
+    let right = |offset: f32| Vec3::X.extend(offset);
+    let (oblique, grazing) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(1e-6, 1.0, 0.0));
+    let (beside, inside, outside) = (Vec3::X * (1.0 - 1e-5), Vec3::X * 1.0f32.next_down(), Vec3::X * 1.0f32.next_up());
+    // A point under the plane x = 1 of a stone of size 1, once in its own coordinates and once 1e4 units away.
+    let (here, there) = (Vec3::new(0.7504, 0.1, -0.2), Vec3::splat(1e4));
     formula(M, "convex_trace_step", mirror::step, oracle::step, step)
-        .edge("nothing hit so far", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.numerator == CONVEX_TRACE_FAR)
-        .edge("a limit", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.numerator < 100.0)
+        .edge("nothing hit so far", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.distance == CONVEX_TRACE_FAR)
+        .edge("a limit", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.distance < 100.0)
         .edge("exactly parallel", |a: Step| height_and_slope(a).1 == 0.0 && a.0.face == CONVEX_TRACE_NONE)
         .edge("exactly parallel, outside by rounding", |a: Step| {
             let (height, slope, exact) = height_and_slope(a);
@@ -130,8 +121,11 @@ fn step_formula() -> Formula {
         })
         .edge("a tie", |a: Step| {
             let (height, slope, exact) = height_and_slope(a);
-            let distance = height / slope;
-            exact && slope > 0.0 && distance == f64::from(a.0.numerator) / f64::from(a.0.denominator) && a.4 != a.5
+            exact && height > 0.0 && slope > 0.0 && height / slope == f64::from(a.0.distance) && a.4 != a.5
+        })
+        .edge("a tie at distance 0", |a: Step| {
+            let (height, slope, exact) = height_and_slope(a);
+            exact && height <= 0.0 && slope > 0.1 && a.0.distance == 0.0 && a.4 != a.5
         })
         .edge("a stone of size 1e-4", |(_, position, ..)| (1e-5..2e-4).contains(&position.length()))
         .edge("a stone of size 1e4", |(_, position, ..)| (5e3..5e4).contains(&position.length()))
@@ -141,48 +135,42 @@ fn step_formula() -> Formula {
                 return if result == hit { Ok(()) } else { Err(format!("it is {result:?}")) };
             }
             let (height, slope, _) = height_and_slope(arguments);
-            if result.denominator <= 0.0 {
-                return Err(format!("the denominator is {:e}", result.denominator));
-            }
-            // Three products and three sums, each off by up to a whole last place.
-            let magnitude = plane.xyz().abs().dot(position.abs()) + plane.w.abs();
-            near("denominator", f64::from(result.denominator), slope, 4.0 * ULP)?;
-            near("numerator", f64::from(result.numerator), height, 4.0 * ULP * f64::from(magnitude))
+            // Height and slope are three products and three sums each, off by up to a whole last place.
+            let magnitude = f64::from(plane.xyz().abs().dot(position.abs()) + plane.w.abs());
+            let distance = f64::from(result.distance);
+            let bound = 4.0 * ULP * (magnitude + distance) + FLUSHED;
+            near("the height that it covers", distance * slope, height.max(0.0), bound)
         })
         .invariant("the nearer plane, at a tie the one so far, parallel planes never", exact_choice)
         .hard_case_with(
             "a stone of size 1e-4",
-            (far, Vec3::ZERO, Vec3::X, right(Vec3::X, 5e-5), 7, none),
-            (&[f64::from(5e-5f32), 1.0, 7.0], 1e-11),
-            ("convex_trace_step_naive", (far, Vec3::ZERO, Vec3::X, right(Vec3::X, 5e-5), 7), 1e30),
+            (far, Vec3::ZERO, Vec3::X, right(5e-5), 7, none),
+            (&[f64::from(5e-5f32), 7.0], 1e-11),
+            ("convex_trace_step_naive", (far, Vec3::ZERO, Vec3::X, right(5e-5), 7), 1e30),
         )
         .hard_case_with(
             "a facet 1e-5 away, beside an edge",
-            (far, Vec3::new(1.0 - 1e-5, 0.0, 0.0), Vec3::X, right(Vec3::X, 1.0), 7, none),
-            (&[1.0 - f64::from(1.0f32 - 1e-5), 1.0, 7.0], 1e-12),
-            ("convex_trace_step_naive", (far, Vec3::new(1.0 - 1e-5, 0.0, 0.0), Vec3::X, right(Vec3::X, 1.0), 7), 1e30),
+            (far, beside, Vec3::X, right(1.0), 7, none),
+            (&[1.0 - f64::from(beside.x), 7.0], 1e-12),
+            ("convex_trace_step_naive", (far, beside, Vec3::X, right(1.0), 7), 1e30),
         )
         .hard_case_with(
             "one ulp outside of a facet, going out",
-            (far, Vec3::X * 1.0f32.next_up(), oblique, right(Vec3::X, 1.0), 7, none),
-            (&[1.0 - f64::from(1.0f32.next_up()), f64::from(0.6f32), 7.0], 1e-12),
-            ("convex_trace_step_naive", (far, Vec3::X * 1.0f32.next_up(), oblique, right(Vec3::X, 1.0), 7), 1e30),
+            (far, outside, oblique, right(1.0), 7, none),
+            (&[0.0, 7.0], 0.0),
+            ("convex_trace_step_naive", (far, outside, oblique, right(1.0), 7), 1e30),
         )
         .hard_case_with(
             "grazing incidence: one ulp inside of the face that was left, turned back to it by rounding",
-            (far, Vec3::X * 1.0f32.next_down(), Vec3::new(1e-6, 1.0, 0.0), right(Vec3::X, 1.0), 7, 7),
-            (&[f64::from(far.numerator), 1.0, f64::from(none)], 0.0),
-            (
-                "convex_trace_step_naive",
-                (far, Vec3::X * 1.0f32.next_down(), Vec3::new(1e-6, 1.0, 0.0), right(Vec3::X, 1.0), 7),
-                1e9,
-            ),
+            (far, inside, grazing, right(1.0), 7, 7),
+            (&[f64::from(far.distance), f64::from(none)], 0.0),
+            ("convex_trace_step_naive", (far, inside, grazing, right(1.0), 7), 1e9),
         )
         .hard_case_with(
             "1e4 units from the origin, where the stone's own coordinates keep their digits",
-            (far, here, Vec3::X, right(Vec3::X, 1.0), 7, none),
-            (&[0.25, 1.0, 7.0], 1e-7),
-            ("convex_trace_step_naive", (far, here + there, Vec3::X, right(Vec3::X, 10_001.000_3), 7), 2e-4),
+            (far, here, Vec3::X, right(1.0), 7, none),
+            (&[1.0 - f64::from(here.x), 7.0], 1e-12),
+            ("convex_trace_step_naive", (far, here + there, Vec3::X, right(10_001.0), 7), 3e-4),
         )
         .build()
 }
@@ -194,9 +182,7 @@ fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32)
     if draws.below(4) == 0 {
         // Along the normal, which is an axis: no rounding.
         let distance = draws.pick(&[1e-4, 0.99e-4, 0.995e-4, 1.005e-4, 1.01e-4, 0.5]);
-        let numerator = distance * draws.pick(&[1.0, 2.0, 4.0]);
-        let denominator = draws.pick(&[1.0, 2.0]);
-        let hit = ConvexTraceHit { numerator, denominator, face: 100 };
+        let hit = ConvexTraceHit { distance: distance * draws.pick(&[1.0, 0.5, 2.0]), face: 100 };
         return (hit, Vec3::ZERO, Vec3::Z, Vec3::Z.extend(distance), face);
     }
     let (normal, position) = (draws.unit_vector(), 0.5 * draws.in_cube());
@@ -206,13 +192,9 @@ fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32)
     let distance = draws.between(0.02, 2.0);
     let through: DVec3 = position.as_dvec3() + f64::from(distance) * direction.as_dvec3();
     let plane = normal.extend(axis.dot(through) as f32);
-    let denominator = draws.between(0.1, 1.0);
     let hit = match draws.below(4) {
         0 => mirror::start(CONVEX_TRACE_FAR),
-        _ => {
-            let factor = draws.pick(&[0.5, 0.99, 1.01, 2.0]);
-            ConvexTraceHit { numerator: distance * factor * denominator, denominator, face: 100 }
-        }
+        _ => ConvexTraceHit { distance: distance * draws.pick(&[0.5, 0.99, 1.01, 2.0]), face: 100 },
     };
     (hit, position, direction, plane, face)
 }
@@ -228,20 +210,6 @@ fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
 }
 
 pub(super) fn formulas() -> Vec<Formula> {
-    let hit = |draws: &mut Draws<'_>| {
-        let numerator = match draws.below(6) {
-            0 => draws.pick(&[0.0, CONVEX_TRACE_FAR, 1.0]),
-            1 => -draws.magnitude(-40, -10),
-            2 => draws.magnitude(-60, 20),
-            _ => draws.between(0.0, 2.0),
-        };
-        let denominator = match draws.below(3) {
-            0 if numerator < CONVEX_TRACE_FAR => draws.magnitude(-60, -1),
-            1 => 1.0,
-            _ => draws.between(0.01, 1.0),
-        };
-        (ConvexTraceHit { numerator, denominator, face: draws.below(73) },)
-    };
     // From the far side, at 30 degrees to the plane's normal.
     let (across, direction, way) = (Vec3::Z * -1e4, Vec3::new(0.5, 0.0, 0.866_025_4), 11_547.813f32);
     vec![
@@ -258,11 +226,6 @@ pub(super) fn formulas() -> Vec<Formula> {
         .build(),
         step_formula(),
         formula(M, "convex_trace_step_naive", mirror::step_naive, oracle::step_naive, benign_step).benign(1e-3).build(),
-        formula(M, "convex_trace_distance", mirror::distance, oracle::distance, hit)
-            .edge("nothing hit", |(hit,)| hit.numerator == CONVEX_TRACE_FAR && hit.denominator == 1.0)
-            .edge("outside by rounding", |(hit,)| hit.numerator < 0.0)
-            .edge("nearly parallel", |(hit,)| hit.denominator < 1e-15)
-            .build(),
         formula(M, "convex_trace_point", mirror::point, oracle::point, way_to_plane)
             .edge("no way to go", |(_, _, distance, _)| distance == 0.0)
             .edge("nearly parallel", |(_, direction, distance, plane)| {
@@ -270,11 +233,12 @@ pub(super) fn formulas() -> Vec<Formula> {
             })
             .edge("a stone of size 1e-4", |(position, ..)| (1e-5..2e-4).contains(&position.length()))
             .edge("a stone of size 1e4", |(position, ..)| (5e3..5e4).contains(&position.length()))
-            .invariant("it lies on the plane", |(_, _, _, plane), point: Vec3| {
+            .invariant("it lies on the plane", |(position, direction, distance, plane), point: Vec3| {
                 let height = plane.xyz().as_dvec3().dot(point.as_dvec3()) - f64::from(plane.w);
-                // The height's own rounding: three products and three sums of the point's size.
-                let magnitude = f64::from(plane.xyz().abs().dot(point.abs()) + plane.w.abs());
-                near("height", height, 0.0, 4.0 * ULP * magnitude)
+                // The rounding of the height along the ray, and of a normal's length where there is far to go.
+                let far = position.abs() + distance * direction.abs();
+                let magnitude = f64::from(plane.xyz().abs().dot(far) + plane.w.abs());
+                near("height", height, 0.0, 4.0 * ULP * magnitude + FLUSHED)
             })
             .hard_case_with(
                 "through a stone of size 1e4 to a plane near its centre",
