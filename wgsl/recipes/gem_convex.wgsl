@@ -48,8 +48,7 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     }
     (*place).face = nearest.face;
     let plane = planes[nearest.face];
-    let distance = convex_trace_distance(nearest);
-    return GemHit(convex_trace_point(position, direction, distance, plane), -plane.xyz, distance, true);
+    return GemHit(convex_trace_point(position, direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
 
 @fragment

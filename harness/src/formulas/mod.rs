@@ -4,8 +4,8 @@
 mod absorption;
 mod bvh_trace;
 mod closest_point;
-mod dispersion;
 mod convex_trace;
+mod dispersion;
 mod environment;
 mod fresnel;
 mod proxy_geometry;
@@ -23,8 +23,8 @@ pub fn all() -> &'static [Formula] {
             absorption::formulas(),
             bvh_trace::formulas(),
             closest_point::formulas(),
-            dispersion::formulas(),
             convex_trace::formulas(),
+            dispersion::formulas(),
             environment::formulas(),
             fresnel::formulas(),
             proxy_geometry::formulas(),

@@ -160,11 +160,10 @@ impl Place<'_> {
                     return Hit::none(position, direction);
                 };
                 *face = nearest.face;
-                let distance = convex_trace::distance(nearest);
                 Hit {
-                    point: convex_trace::point(position, direction, distance, plane),
+                    point: convex_trace::point(position, direction, nearest.distance, plane),
                     normal: -plane.truncate(),
-                    distance,
+                    distance: nearest.distance,
                     facet: Some(u64::from(nearest.face)),
                 }
             }
