@@ -25,8 +25,11 @@ impl Extent {
         Self { least: self.least - margin, greatest: self.greatest + margin }
     }
 
-    /// The largest distance of a coordinate from 0.
+    /// The largest distance of a coordinate from 0; of an empty box 0.
     pub(super) fn largest_coordinate(&self) -> f64 {
+        if self.least.x > self.greatest.x {
+            return 0.0;
+        }
         self.least.abs().max(self.greatest.abs()).max_element()
     }
 

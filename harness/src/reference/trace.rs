@@ -104,7 +104,7 @@ impl Surroundings<'_> {
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         let hit = self.bodies.enter(eye, direction, None)?;
         let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
-        let reflected = refraction::reflect(direction, arrival.normal);
+        let reflected = reflect(direction, arrival.normal);
         let free = self.bodies.enter(arrival.point, reflected, Some(hit.place)).is_none();
         let reflected_radiance = free.then(|| surroundings::radiance(self.environment, reflected));
         Some(Primary { arrival, reflected, reflected_radiance })
@@ -138,7 +138,7 @@ impl Surroundings<'_> {
                 waiting.push(ray);
             }
             if reflectance > 0.0 {
-                let direction = refraction::reflect(arrival.direction, arrival.normal);
+                let direction = reflect(arrival.direction, arrival.normal);
                 let ray = arrival.leave(direction, arrival.inside, arrival.throughput * reflectance);
                 pending += ray.energy();
                 match waiting.peek() {
@@ -198,6 +198,12 @@ impl Arrival {
         let throughput = self.throughput * color * (1.0 - reflectance);
         (reflectance, Some(self.leave(refracted.direction, !self.inside, throughput)))
     }
+}
+
+/// The law of reflection by vectors. The oracle's form by angles gives the same to the last digits, and would take a quarter of the
+/// time that a picture takes: most hits are reflections.
+fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
+    incident - 2.0 * normal.dot(incident) * normal
 }
 
 #[cfg(test)]

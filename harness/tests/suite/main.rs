@@ -10,6 +10,7 @@ mod formulas;
 mod furnace;
 mod hard_cases;
 mod program;
+mod reference;
 mod snapshots;
 mod text;
 
