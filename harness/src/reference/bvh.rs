@@ -33,8 +33,8 @@ impl Extent {
         self.least.abs().max(self.greatest.abs()).max_element()
     }
 
-    /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A line within one of
-    /// its sides may count as a miss.
+    /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A
+    /// line within one of its sides may count as a miss.
     fn entry(&self, origin: DVec3, inverse: DVec3, from: f64, to: f64) -> Option<f64> {
         let (a, b) = ((self.least - origin) * inverse, (self.greatest - origin) * inverse);
         let near = a.min(b).max_element().max(from);
@@ -94,8 +94,8 @@ impl Bvh {
         self.split(extents, first + middle, end);
     }
 
-    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly from near to far. `visit` gives
-    /// back the t from which on nothing matters any more.
+    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly from near to far.
+    /// `visit` gives back the t from which on nothing matters any more.
     pub(super) fn visit(
         &self,
         origin: DVec3,

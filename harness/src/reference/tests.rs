@@ -32,8 +32,8 @@ fn gain(wavelengths: usize) -> f64 {
     rows.sum::<DVec3>().max_element()
 }
 
-/// Surrounded by radiance 1 a clear stone shows 1 less what was dropped: at each wavelength of each ray to f64's digits, and in the
-/// picture within the bound.
+/// Surrounded by radiance 1 a clear stone shows 1 less what was dropped: at each wavelength of each ray to f64's
+/// digits, and in the picture within the bound.
 #[test]
 fn white_furnace() {
     let environment = ones();
@@ -165,8 +165,8 @@ fn a_window_is_a_crop_and_every_run_the_same() {
     assert!(whole.linear.contains(&[0.0; 4]) && whole.linear.iter().any(|pixel| pixel[3] == 1.0));
 }
 
-/// A stone's facets as planes and as triangles differ by f32's roundings of the corners, 6e-8: light that passes near an edge may
-/// then go another way.
+/// A stone's facets as planes and as triangles differ by f32's roundings of the corners, 6e-8: light that passes near
+/// an edge may then go another way.
 #[test]
 fn planes_and_triangles_show_the_same_stone() {
     let scene = diamond();

@@ -9,8 +9,8 @@ use lapidary_refraction::oracle as refraction;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Surfaces that the rays of one sample and wavelength meet at most, all together. Total reflection takes no energy, so a ray may be
-/// caught for long; what is caught for longer counts as lost.
+/// Surfaces that the rays of one sample and wavelength meet at most, all together. Total reflection takes no energy, so
+/// a ray may be caught for long; what is caught for longer counts as lost.
 const MOST_HITS: u32 = 20_000;
 
 /// A body at one wavelength.
@@ -110,8 +110,8 @@ impl Surroundings<'_> {
         Some(Primary { arrival, reflected, reflected_radiance })
     }
 
-    /// Follows `primary` at one wavelength, at which the bodies have these `optics`: the strongest ray first, until all that are left
-    /// have less energy together than the bound.
+    /// Follows `primary` at one wavelength, at which the bodies have these `optics`: the strongest ray first, until all
+    /// that are left have less energy together than the bound.
     pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
@@ -151,8 +151,8 @@ impl Surroundings<'_> {
         outcome
     }
 
-    /// The next surface on the ray's way. Without one, outside, the environment is added to `outcome`; inside, the surface has a gap,
-    /// and the ray is lost.
+    /// The next surface on the ray's way. Without one, outside, the environment is added to `outcome`; inside, the
+    /// surface has a gap, and the ray is lost.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
         if ray.inside {
             let Some(hit) = self.bodies.leave(ray.origin, ray.direction, ray.left) else {
@@ -200,8 +200,8 @@ impl Arrival {
     }
 }
 
-/// The law of reflection by vectors. The oracle's form by angles gives the same to the last digits, and would take a quarter of the
-/// time that a picture takes: most hits are reflections.
+/// The law of reflection by vectors. The oracle's form by angles gives the same to the last digits, and would take a
+/// quarter of the time that a picture takes: most hits are reflections.
 fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
     incident - 2.0 * normal.dot(incident) * normal
 }

@@ -1,5 +1,5 @@
-//! The reference against the GPU, where both follow the same light: what a stone's surface reflects. That holds camera, sample places,
-//! environment and reflectance of one to those of the other.
+//! The reference against the GPU, where both follow the same light: what a stone's surface reflects. That holds camera,
+//! sample places, environment and reflectance of one to those of the other.
 
 use lapidary_harness::reference;
 use lapidary_harness::render::{self, Environment, Rung, Settings};
