@@ -25,13 +25,16 @@ impl Extent {
         Self { least: self.least - margin, greatest: self.greatest + margin }
     }
 
-    /// The largest distance of a coordinate from 0.
+    /// The largest distance of a coordinate from 0; of an empty box 0.
     pub(super) fn largest_coordinate(&self) -> f64 {
+        if self.least.x > self.greatest.x {
+            return 0.0;
+        }
         self.least.abs().max(self.greatest.abs()).max_element()
     }
 
-    /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A line within one of
-    /// its sides may count as a miss.
+    /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A
+    /// line within one of its sides may count as a miss.
     fn entry(&self, origin: DVec3, inverse: DVec3, from: f64, to: f64) -> Option<f64> {
         let (a, b) = ((self.least - origin) * inverse, (self.greatest - origin) * inverse);
         let near = a.min(b).max_element().max(from);
@@ -91,8 +94,8 @@ impl Bvh {
         self.split(extents, first + middle, end);
     }
 
-    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly from near to far. `visit` gives
-    /// back the t from which on nothing matters any more.
+    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly from near to far.
+    /// `visit` gives back the t from which on nothing matters any more.
     pub(super) fn visit(
         &self,
         origin: DVec3,

@@ -88,8 +88,8 @@ impl Bodies {
         first
     }
 
-    /// Where a ray inside the body of `left`, which it comes from, leaves it. `None` where it finds no way out: the surface is not
-    /// closed there.
+    /// Where a ray inside the body of `left`, which it comes from, leaves it. `None` where it finds no way out: the
+    /// surface is not closed there.
     pub(super) fn leave(&self, origin: DVec3, direction: DVec3, left: Place) -> Option<Hit> {
         let found = match &self.bodies[left.body] {
             Body::Convex(planes) => planes.leave(origin, direction, left.face),
@@ -153,14 +153,15 @@ impl Planes {
     }
 }
 
-/// Leaves of all planes of a convex body the one or two that a ray may leave through, by f32 with its errors counted in. Most of a
-/// picture's time goes into this search.
+/// Leaves of all planes of a convex body the one or two that a ray may leave through, by f32 with its errors counted
+/// in. Most of a picture's time goes into this search.
 struct Sieve {
     /// x, y and z of the normal, and the distance from the centre, of four planes.
     rows: Vec<[Vec4; 4]>,
     centre: DVec3,
-    /// Bounds of the errors of n · direction and of a depth below a plane: a vector is rounded from f64 by 2^-24 of it, a product of
-    /// two by 5 · 2^-24, and a depth is the difference of two numbers of the body's size. The bounds are twice as large.
+    /// Bounds of the errors of n · direction and of a depth below a plane: a vector is rounded from f64 by 2^-24 of it,
+    /// a product of two by 5 · 2^-24, and a depth is the difference of two numbers of the body's size. The bounds are
+    /// twice as large.
     slope_error: f32,
     depth_error: f32,
 }
@@ -223,8 +224,8 @@ struct Triangles {
     corners: Vec<[DVec3; 3]>,
     normals: Vec<DVec3>,
     tree: Bvh,
-    /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by rounding, outside of
-    /// the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
+    /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by
+    /// rounding, outside of the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
     reach_back: f64,
 }
 
@@ -256,8 +257,9 @@ impl Triangles {
     }
 }
 
-/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared so that the ray runs along
-/// an axis; two triangles then compute the same number for the edge that they share, with opposite signs, so that nothing slips through.
+/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared so that the ray
+/// runs along an axis; two triangles then compute the same number for the edge that they share, with opposite signs, so
+/// that nothing slips through.
 struct Shear {
     axes: [usize; 3],
     shear: DVec3,

@@ -17,8 +17,8 @@ fn abbe(at_d: f64, abbe: f64, nanometres: f64) -> f64 {
     (at_d + (at_d - 1.0) / abbe * (523_655.0 / (nanometres * nanometres) - 1.5168)).max(1.0)
 }
 
-/// n² = constant + Σ B λ²/(λ² - C²), λ in µm. Diamond: Peter 1923; corundum: Malitson; quartz: Ghosh; N-BK7: Schott; cubic
-/// zirconia: Wood.
+/// n² = constant + Σ B λ²/(λ² - C²), λ in µm. Diamond: Peter 1923; corundum: Malitson; quartz: Ghosh; N-BK7: Schott;
+/// cubic zirconia: Wood.
 #[rustfmt::skip] // a mineral is a line of terms (B, C²)
 fn sellmeier(mineral: Mineral, nanometres: f64) -> f64 {
     let square = |c: f64| c * c;

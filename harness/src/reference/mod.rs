@@ -1,12 +1,14 @@
 //! The spectral reference: what a stone shows when light is followed wherever it goes.
 //!
-//! Every ray that meets a surface is split into its reflection and its refraction, by the oracles of `fresnel` and `refraction`, at
-//! every wavelength separately, in f64, until the energy that is left is under a bound. What is not followed is dropped: a picture is
-//! too dark, never too bright, and [`Lost`] says by how much at most. There is no chance in it, so two runs give the same picture.
+//! Every ray that meets a surface is split into its reflection and its refraction, by the oracles of `fresnel` and
+//! `refraction`, at every wavelength separately, in f64, until the energy that is left is under a bound. What is not
+//! followed is dropped: a picture is too dark, never too bright, and [`Lost`] says by how much at most. There is no
+//! chance in it, so two runs give the same picture.
 //!
-//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not overlap; a ray that leaves one may
-//! enter another or the same one again. Surfaces are flat: shared normals play no part. Light that enters is multiplied by the base
-//! colour, channel by channel as in the gem recipe; absorption goes by wavelength ([`spectrum`]).
+//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not overlap; a ray that
+//! leaves one may enter another or the same one again. Surfaces are flat: shared normals play no part. Light that
+//! enters is multiplied by the base colour, channel by channel as in the gem recipe; absorption goes by wavelength
+//! ([`spectrum`]).
 
 mod bvh;
 mod geometry;
@@ -97,12 +99,12 @@ pub struct Rendering {
     pub lost: Lost,
 }
 
-/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` may have cost a radiance of x times
-/// the environment's greatest.
+/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` may have cost a radiance of
+/// x times the environment's greatest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
-    /// Of any sample that meets a body, at any wavelength. Above the energy bound only where a ray was caught by total reflection for
-    /// 20,000 hits, or a surface is not closed.
+    /// Of any sample that meets a body, at any wavelength. Above the energy bound only where a ray was caught by total
+    /// reflection for 20,000 hits, or a surface is not closed.
     pub max: f64,
     /// Over all of them.
     pub mean: f64,

@@ -1,9 +1,10 @@
 //! From wavelengths to linear Rec. 709 RGB and back: CIE 1931's observer under daylight.
 //!
-//! Environments and attenuation colours are RGB. Three basis spectra make a spectrum of an RGB colour: σ_R above 591 nm, σ_G between,
-//! σ_B below 489 nm, with soft crossovers. They are nowhere negative and add up to 1. A picture's RGB is the integral of a spectrum
-//! with the matching functions under D65. To get the very colour back that went in, radiance uses the σ combined by the inverse of
-//! their own 3×3 integral: ρ_c. It lies within 3 % of σ, and adds up to 1 as well, since the integral of white is white.
+//! Environments and attenuation colours are RGB. Three basis spectra make a spectrum of an RGB colour: σ_R above 591
+//! nm, σ_G between, σ_B below 489 nm, with soft crossovers. They are nowhere negative and add up to 1. A picture's RGB
+//! is the integral of a spectrum with the matching functions under D65. To get the very colour back that went in,
+//! radiance uses the σ combined by the inverse of their own 3×3 integral: ρ_c. It lies within 3 % of σ, and adds up to
+//! 1 as well, since the integral of white is white.
 
 use glam::{DMat3, DVec3};
 
@@ -12,8 +13,8 @@ pub const SHORTEST: f64 = 400.0;
 /// The longest wavelength in nm. Outside of these two lie 0.03 % of the luminance and 0.3 % of the red and blue of D65.
 pub const LONGEST: f64 = 700.0;
 
-/// x̄, ȳ and z̄ of the CIE 1931 standard observer (2°) at 400, 410 ... 700 nm. Source: CIE 15 (Colorimetry), table T.4; data set
-/// doi:10.25039/CIE.DS.xvudnb9b.
+/// x̄, ȳ and z̄ of the CIE 1931 standard observer (2°) at 400, 410 ... 700 nm. Source: CIE 15 (Colorimetry), table T.4;
+/// data set doi:10.25039/CIE.DS.xvudnb9b.
 const OBSERVER: [[f64; 3]; 31] = [
     [0.014310, 0.000396, 0.067850],
     [0.043510, 0.001210, 0.207400],
@@ -48,8 +49,8 @@ const OBSERVER: [[f64; 3]; 31] = [
     [0.011359, 0.004102, 0.000000],
 ];
 
-/// Relative spectral power of the CIE standard illuminant D65 at 400, 410 ... 700 nm. Source: CIE 15, table T.1; data set
-/// doi:10.25039/CIE.DS.hjfjmt59.
+/// Relative spectral power of the CIE standard illuminant D65 at 400, 410 ... 700 nm. Source: CIE 15, table T.1; data
+/// set doi:10.25039/CIE.DS.hjfjmt59.
 const DAYLIGHT: [f64; 31] = [
     82.7549, 91.4860, 93.4318, 86.6823, 104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
     104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880, 88.6856, 90.0062, 89.5991, 87.6987, 83.2886,
@@ -59,8 +60,8 @@ const DAYLIGHT: [f64; 31] = [
 /// Chromaticities (x, y, z) of the red, green and blue of ITU-R BT.709, which sRGB shares.
 const PRIMARIES: [[f64; 3]; 3] = [[0.64, 0.33, 0.03], [0.30, 0.60, 0.10], [0.15, 0.06, 0.79]];
 
-/// Where blue gives way to green, and green to red, in nm, with the widths of the two logistic curves. With these the integral of
-/// the σ comes nearest to the identity, rounded to whole nm: then ρ differs least from σ.
+/// Where blue gives way to green, and green to red, in nm, with the widths of the two logistic curves. With these the
+/// integral of the σ comes nearest to the identity, rounded to whole nm: then ρ differs least from σ.
 const CROSSOVERS: [(f64, f64); 2] = [(489.0, 9.0), (591.0, 7.0)];
 
 /// The fewest wavelengths that tell three colours apart.
@@ -71,15 +72,16 @@ pub const FEWEST: usize = 3;
 pub struct Wavelength {
     /// In nm.
     pub nanometres: f64,
-    /// What linear RGB radiance seen at this wavelength alone adds to a pixel's linear RGB. Over all wavelengths these add up to
-    /// the identity.
+    /// What linear RGB radiance seen at this wavelength alone adds to a pixel's linear RGB. Over all wavelengths these
+    /// add up to the identity.
     pub weights: DMat3,
-    /// σ_R, σ_G and σ_B: nowhere negative, together 1. The absorption coefficient at this wavelength is their mean of the three
-    /// channels' coefficients.
+    /// σ_R, σ_G and σ_B: nowhere negative, together 1. The absorption coefficient at this wavelength is their mean of
+    /// the three channels' coefficients.
     pub basis: DVec3,
 }
 
-/// `count` wavelengths at equal distances from [`SHORTEST`] to [`LONGEST`]; 31 are the tables' own, others are interpolated linearly.
+/// `count` wavelengths at equal distances from [`SHORTEST`] to [`LONGEST`]; 31 are the tables' own, others are
+/// interpolated linearly.
 ///
 /// # Panics
 /// With fewer than [`FEWEST`].
@@ -154,8 +156,8 @@ mod tests {
         assert!(white.abs_diff_eq(DVec3::ONE, 1e-12), "{white}");
     }
 
-    /// sRGB's white is x = 0.3127, y = 0.3290, and its matrix from XYZ is printed in IEC 61966-2-1. Cut off at 400 and 700 nm white
-    /// lacks 0.15 % of its X and 0.2 % of its Z, which stretches the matrix by up to 0.3 %.
+    /// sRGB's white is x = 0.3127, y = 0.3290, and its matrix from XYZ is printed in IEC 61966-2-1. Cut off at 400 and
+    /// 700 nm white lacks 0.15 % of its X and 0.2 % of its Z, which stretches the matrix by up to 0.3 %.
     #[test]
     fn white_point_and_matrix_are_srgbs() {
         let white: DVec3 = (0..31).map(|k| stimulus(SHORTEST + 10.0 * f64::from(k))).sum();
@@ -195,9 +197,9 @@ mod tests {
         assert!(red.x == 1.0 && red.y < 0.05 && red.z.abs() < 0.05, "{red}");
     }
 
-    /// At the attenuation distance white light must have the attenuation colour. By absorption per wavelength it nearly has: a
-    /// channel also sees wavelengths that its neighbour's coefficient governs, so deep colours come out deeper, by up to a
-    /// tenth of white.
+    /// At the attenuation distance white light must have the attenuation colour. By absorption per wavelength it nearly
+    /// has: a channel also sees wavelengths that its neighbour's coefficient governs, so deep colours come out deeper,
+    /// by up to a tenth of white.
     #[test]
     fn attenuation_gives_nearly_its_color() {
         for color in [[0.16, 0.72, 0.42], [0.2, 0.3, 0.9], [0.8, 0.1, 0.15], [0.9, 0.8, 0.5]] {

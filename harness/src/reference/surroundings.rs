@@ -5,7 +5,8 @@ use crate::scene::environment_map::EnvironmentMap;
 use glam::{DVec3, UVec2};
 use lapidary_environment::oracle;
 
-/// Linear RGB radiance that arrives from a direction, by the recipe's rule: the studio, or the map's four nearest texels.
+/// Linear RGB radiance that arrives from a direction, by the recipe's rule: the studio, or the map's four nearest
+/// texels.
 pub(super) fn radiance(environment: &Environment, direction: DVec3) -> DVec3 {
     match environment {
         Environment::Studio => oracle::studio(direction),

@@ -9,8 +9,8 @@ use lapidary_refraction::oracle as refraction;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Surfaces that the rays of one sample and wavelength meet at most, all together. Total reflection takes no energy, so a ray may be
-/// caught for long; what is caught for longer counts as lost.
+/// Surfaces that the rays of one sample and wavelength meet at most, all together. Total reflection takes no energy, so
+/// a ray may be caught for long; what is caught for longer counts as lost.
 const MOST_HITS: u32 = 20_000;
 
 /// A body at one wavelength.
@@ -104,14 +104,14 @@ impl Surroundings<'_> {
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         let hit = self.bodies.enter(eye, direction, None)?;
         let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
-        let reflected = refraction::reflect(direction, arrival.normal);
+        let reflected = reflect(direction, arrival.normal);
         let free = self.bodies.enter(arrival.point, reflected, Some(hit.place)).is_none();
         let reflected_radiance = free.then(|| surroundings::radiance(self.environment, reflected));
         Some(Primary { arrival, reflected, reflected_radiance })
     }
 
-    /// Follows `primary` at one wavelength, at which the bodies have these `optics`: the strongest ray first, until all that are left
-    /// have less energy together than the bound.
+    /// Follows `primary` at one wavelength, at which the bodies have these `optics`: the strongest ray first, until all
+    /// that are left have less energy together than the bound.
     pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
@@ -138,7 +138,7 @@ impl Surroundings<'_> {
                 waiting.push(ray);
             }
             if reflectance > 0.0 {
-                let direction = refraction::reflect(arrival.direction, arrival.normal);
+                let direction = reflect(arrival.direction, arrival.normal);
                 let ray = arrival.leave(direction, arrival.inside, arrival.throughput * reflectance);
                 pending += ray.energy();
                 match waiting.peek() {
@@ -151,8 +151,8 @@ impl Surroundings<'_> {
         outcome
     }
 
-    /// The next surface on the ray's way. Without one, outside, the environment is added to `outcome`; inside, the surface has a gap,
-    /// and the ray is lost.
+    /// The next surface on the ray's way. Without one, outside, the environment is added to `outcome`; inside, the
+    /// surface has a gap, and the ray is lost.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
         if ray.inside {
             let Some(hit) = self.bodies.leave(ray.origin, ray.direction, ray.left) else {
@@ -198,6 +198,12 @@ impl Arrival {
         let throughput = self.throughput * color * (1.0 - reflectance);
         (reflectance, Some(self.leave(refracted.direction, !self.inside, throughput)))
     }
+}
+
+/// The law of reflection by vectors. The oracle's form by angles gives the same to the last digits, and would take a
+/// quarter of the time that a picture takes: most hits are reflections.
+fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
+    incident - 2.0 * normal.dot(incident) * normal
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! The facet planes of a convex mesh, found from the mesh itself: a cut stone from any file, not only from a list of planes.
+//! The facet planes of a convex mesh, found from the mesh itself: a cut stone from any file, not only from a list of
+//! planes.
 
 use std::collections::HashMap;
 
@@ -7,9 +8,10 @@ use glam::{DVec3, Vec3, Vec4};
 use super::Mesh;
 use super::polyhedron::{MAX_PLANES, Plane};
 
-/// How far a vertex may lie from its facet's plane, relative to the mesh's largest coordinate: 32 times the 2^-24 by which storing it
-/// in f32 moves it. A plane through one triangle carries its corners' roundings on to the rest of the facet, the further the smaller
-/// the triangle; facets start from their largest triangle, so 32 is ample. Two facets that differ by less are one.
+/// How far a vertex may lie from its facet's plane, relative to the mesh's largest coordinate: 32 times the 2^-24 by
+/// which storing it in f32 moves it. A plane through one triangle carries its corners' roundings on to the rest of the
+/// facet, the further the smaller the triangle; facets start from their largest triangle, so 32 is ample. Two facets
+/// that differ by less are one.
 pub const TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 
 /// A convex body as a shader takes it.
@@ -33,8 +35,8 @@ impl Convex {
 
 /// The facet planes of a closed convex mesh, in the order of their first triangles.
 ///
-/// `None` where a vertex lies outside a plane by more than [`TOLERANCE`], where an edge has no triangle on its other side, where a
-/// triangle points inwards, and where there are more than [`MAX_PLANES`] facets.
+/// `None` where a vertex lies outside a plane by more than [`TOLERANCE`], where an edge has no triangle on its other
+/// side, where a triangle points inwards, and where there are more than [`MAX_PLANES`] facets.
 #[must_use]
 pub fn planes_of_convex(mesh: &Mesh) -> Option<Vec<Plane>> {
     Facets::of(mesh).map(|facets| facets.planes)
@@ -114,7 +116,8 @@ fn is_closed(mesh: &Mesh) -> bool {
     edges == opposite
 }
 
-/// The facet of each triangle, numbered by first appearance. The largest triangles come first, since their planes are the best known.
+/// The facet of each triangle, numbered by first appearance. The largest triangles come first, since their planes are
+/// the best known.
 fn group(triangles: &[Triangle], tolerance: f64) -> Option<Vec<u32>> {
     let mut order: Vec<usize> = (0..triangles.len()).collect();
     order.sort_by(|&a, &b| triangles[b].area.length().total_cmp(&triangles[a].area.length()));

@@ -14,6 +14,7 @@ mod gem;
 mod hard_cases;
 mod parity;
 mod program;
+mod reference;
 mod snapshots;
 mod text;
 

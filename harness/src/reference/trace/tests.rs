@@ -99,6 +99,19 @@ fn what_is_dropped_is_counted() {
     }
 }
 
+#[test]
+fn reflection_is_the_oracles() {
+    let normal = DVec3::new(2.0, -3.0, 6.0) / 7.0;
+    let mut direction = DVec3::new(0.6, 0.0, -0.8);
+    for k in 0..1000 {
+        let expected = refraction::reflect(direction, normal);
+        assert!(reflect(direction, normal).abs_diff_eq(expected, 1e-15), "{direction}");
+        // Turned on by an angle that meets no direction twice.
+        direction = glam::DMat3::from_axis_angle(DVec3::new(0.6, 0.48, 0.64), 1.0 + f64::from(k)) * expected;
+        direction = direction.normalize();
+    }
+}
+
 /// The oracle decides total reflection; the shortcut before it must not.
 #[test]
 fn the_shortcut_to_total_reflection_agrees_with_the_oracle() {
