@@ -7,12 +7,11 @@
 //!
 //! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not overlap; a ray that
 //! leaves one may enter another or the same one again. Surfaces are flat: shared normals play no part. Light that
-//! enters is multiplied by the base colour, channel by channel as in the gem recipe; absorption goes by wavelength
-//! ([`spectrum`]).
+//! enters is multiplied by the base colour, and absorbed by the attenuation colour, channel by channel as glTF and the gem
+//! recipes have them.
 
 mod bvh;
 mod geometry;
-mod index;
 pub mod spectrum;
 mod surroundings;
 mod trace;
@@ -24,6 +23,7 @@ use crate::render::{Environment, LARGEST_SIDE};
 use crate::scene::{Object, Scene};
 use geometry::Bodies;
 use glam::DVec3;
+use lapidary_absorption::oracle as absorption;
 use rayon::prelude::*;
 use spectrum::Wavelength;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -266,10 +266,12 @@ impl<'scene> Job<'scene> {
 /// A body's optics at one wavelength.
 fn optics(object: &Object, wavelength: &Wavelength) -> Optics {
     let material = &object.material;
-    let absorption = material.attenuation_color.as_dvec3().ln() / -f64::from(material.attenuation_distance);
     Optics {
-        index: index::index(material, wavelength.nanometres),
-        absorption: absorption.dot(wavelength.basis),
+        index: material.index_at(wavelength.nanometres),
+        absorption: absorption::coefficient(
+            material.attenuation_color.as_dvec3(),
+            f64::from(material.attenuation_distance),
+        ),
         base_color: material.base_color.as_dvec3(),
     }
 }

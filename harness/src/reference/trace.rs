@@ -18,8 +18,8 @@ const MOST_HITS: u32 = 20_000;
 pub(super) struct Optics {
     /// Refractive index relative to the air outside.
     pub(super) index: f64,
-    /// Share of light lost per unit of distance: the coefficient of Beer and Lambert's law.
-    pub(super) absorption: f64,
+    /// The coefficient of Beer and Lambert's law, per unit of distance, for each channel of linear RGB.
+    pub(super) absorption: DVec3,
     /// What light is multiplied by where it enters, linear RGB.
     pub(super) base_color: DVec3,
 }
@@ -159,7 +159,7 @@ impl Surroundings<'_> {
                 outcome.lost += ray.energy();
                 return None;
             };
-            let transmittance = (-optics[ray.left.body].absorption * hit.distance).exp();
+            let transmittance = (-hit.distance * optics[ray.left.body].absorption).exp();
             return Some(Arrival::new(ray.origin, ray.direction, hit, true, ray.throughput * transmittance));
         }
         let hit = self.bodies.enter(ray.origin, ray.direction, Some(ray.left));

@@ -234,7 +234,7 @@ pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> R
 }
 
 /// Clip space of a whole picture of `scene`. Depth runs from 0 near to 1 far.
-pub(crate) fn clip_from_world(scene: &Scene, width: u32, height: u32) -> glam::Mat4 {
+pub fn clip_from_world(scene: &Scene, width: u32, height: u32) -> glam::Mat4 {
     camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, Tile::whole([width, height]))
 }
 

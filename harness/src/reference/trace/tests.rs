@@ -34,7 +34,7 @@ fn outcome(
 }
 
 fn clear(index: f64) -> Optics {
-    Optics { index, absorption: 0.0, base_color: DVec3::ONE }
+    Optics { index, absorption: DVec3::ZERO, base_color: DVec3::ONE }
 }
 
 #[test]
@@ -54,21 +54,21 @@ fn a_plate_reflects_what_the_sum_of_all_its_reflections_says() {
 
 #[test]
 fn an_absorbing_plate_follows_beer_and_lambert() {
-    let (sky, index, absorption, angle) = (sky(), 1.77, 0.35, 0.7f64);
+    let (sky, index, absorption, angle) = (sky(), 1.77, DVec3::new(0.35, 0.0, 2.0), 0.7f64);
     let base_color = DVec3::new(0.2, 0.5, 1.0);
     let optics = Optics { index, absorption, base_color };
     let seen = outcome(&plate(), &sky, Geometry::Planes, optics, DVec3::new(angle.sin(), -angle.cos(), 0.0));
     let once = fresnel::dielectric(angle.cos(), index);
     let path = 1.0 / (angle.sin() / index).asin().cos();
     let through = (-absorption * path).exp();
-    let inside = (1.0 - once).powi(2) * once * through * through / (1.0 - (once * through).powi(2));
+    let inside = (1.0 - once).powi(2) * once * through * through / (1.0 - (once * through).powf(2.0));
     assert!(seen.radiance.abs_diff_eq(once + base_color * inside, 1e-12), "{seen:?}");
 }
 
 #[test]
 fn the_surface_alone_reflects_by_fresnel() {
     // Black inside: what is left is the first reflection.
-    let optics = Optics { absorption: 1e9, ..clear(2.41749) };
+    let optics = Optics { absorption: DVec3::splat(1e9), ..clear(2.41749) };
     let seen = outcome(&plate(), &sky(), Geometry::Planes, optics, -DVec3::Y);
     assert!((seen.radiance.x - 0.1720).abs() < 5e-5, "{seen:?}");
 }
