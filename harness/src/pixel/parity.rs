@@ -2,17 +2,21 @@
 
 use super::{Pixel, Shading, Stone, Viewer};
 use crate::property::draws::Draws;
-use crate::render::{Picture, RenderError, Settings};
+use crate::render::{Picture, RenderError, Settings, Spectrum};
 use crate::scene::Scene;
 use glam::Vec3;
 
 /// How far, in pixels, a rasteriser may have put a pixel's middle beside where it is: Vulkan devices snap vertices to a grid, of
 /// 1/256 pixel on lavapipe and every desktop GPU (at least 1/16 is guaranteed).
 const SNAP: f64 = 1.0 / 256.0;
-/// Rounding of the shading itself: the environment's softest light changes by 20 over an angle of 0.03, so that a direction's
-/// error of 2^-21 after some bounces weighs 3e-4; relative to what else the pixel holds, 2^-12.
+/// Rounding of the shading itself: the environment's sharpest light changes by 20 over an angle of 0.06, so that a direction's
+/// error of 2^-20 after some bounces weighs 3e-4.
 const ABSOLUTE: f32 = 3e-4;
+/// And of sums and products, relative to what the pixel holds.
 const RELATIVE: f32 = 1.0 / 4096.0;
+/// The paper's tracker takes a difference over an epsilon of 2e-4, which knows a direction to 2^-22 / 2e-4 = 1.2e-3; times 0.344, blue's
+/// share, times a path of 4, and a light's edge, 25 of its radiance a radian: 4 % of what the pixel holds.
+const PAPER: f32 = 0.04;
 
 /// What became of the pixels that were compared.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,7 +90,8 @@ pub fn compare(
         edge |= around.iter().any(|pixel| pixel.rays != middle.rays);
         let low = around.iter().map(|pixel: &Pixel| pixel.radiance).fold(middle.radiance, Vec3::min);
         let high = around.iter().map(|pixel: &Pixel| pixel.radiance).fold(middle.radiance, Vec3::max);
-        let tolerance = Vec3::splat(ABSOLUTE) + RELATIVE * high;
+        let relative = if settings.rung.spectrum() == Spectrum::Paper { PAPER } else { RELATIVE };
+        let tolerance = Vec3::splat(ABSOLUTE) + relative * high;
         let beyond = ((low - found).max(found - high) / tolerance).max_element();
         if edge {
             parity.at_an_edge += 1;

@@ -15,9 +15,9 @@ fn the_composite_shows_the_forward_picture() {
         let deferred = render::render(super::gpu(), &scene, &deferred).expect("rendered");
         let errors = Errors::between(&deferred, &forward);
         println!("{} {rung}: {errors:?}", scene.name);
-        // A normal in half floats is off by up to 2^-11, so what is reflected by 2^-10 rad. The studio's lights fade over 0.06 rad, which
-        // such an angle changes by 1.6 %: seen nowhere, and in the mean far less, since lights cover little of the sphere.
-        assert!(errors.flip <= 0.002, "{} {rung}: {errors:?}", scene.name);
+        // A normal in half floats is off by up to 2^-11, so what is reflected by 2^-10 rad. The studio's lights fade over 0.06 rad or more,
+        // which such an angle changes by 1.6 % at the steepest: up to a step of the display's 255 in the mean over their edges.
+        assert!(errors.flip <= 0.006, "{} {rung}: {errors:?}", scene.name);
         assert!(errors.rmse <= 0.005, "{} {rung}: {errors:?}", scene.name);
         assert!(errors.energy.abs() <= 0.001, "{} {rung}: {errors:?}", scene.name);
         for (forward, deferred) in forward.linear.iter().zip(&deferred.linear) {

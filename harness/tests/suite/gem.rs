@@ -37,18 +37,18 @@ fn size_does_not_matter() {
     }
 }
 
-/// 1e4 units from the origin a stone of size 1 is known to 5e-4 at best: still the same stone, facet for facet, and nothing
-/// that is not finite.
+/// 1e4 units from the origin a stone of size 1 is known to 5e-4 at best, and its facets are no longer flat to more: still the same stone to
+/// look at, and nothing that is not finite. Planes are another matter: they want the stone's own coordinates (docs/convex_trace.md).
 #[test]
 fn far_from_the_origin_nothing_breaks() {
-    for rung in ["proxy-4+tracker", "convex-8+tracker", "bvh-8+tracker"] {
+    for (rung, most_flip) in [("proxy-1", 0.05), ("proxy-4+tracker", 0.1), ("bvh-2", 0.1)] {
         let scene = Scene::named("brilliant").expect("built in");
         let expected = picture(&scene, rung);
         let found = picture(&moved(&scene, 1.0, Vec3::new(1e4, -1e4, 1e4)), rung);
         assert!(found.linear.iter().flatten().all(|value| value.is_finite() && *value >= 0.0), "{rung}");
         let errors = Errors::between(&found, &expected);
         println!("{rung} at 1e4: {errors:?}");
-        assert!(errors.flip <= 0.15 && errors.energy.abs() <= 0.05, "{rung}: {errors:?}");
+        assert!(errors.flip <= most_flip && errors.energy.abs() <= 0.05, "{rung}: {errors:?}");
     }
 }
 

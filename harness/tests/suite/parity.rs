@@ -32,30 +32,32 @@ fn check(scene: &str, what: &str, parity: &Parity, most_at_an_edge: f64) {
     );
     assert!(parity.compared > 300, "{scene} {what}: {} pixels", parity.compared);
     assert!(parity.failed.is_empty(), "{scene} {what}: {:?}", &parity.failed[..parity.failed.len().min(3)]);
+    // At an edge the GPU may show either side; what it shows must still be one of them, but for a few where more than two sides meet.
+    assert!(parity.differing_at_an_edge <= parity.compared / 50, "{scene} {what}: {}", parity.differing_at_an_edge);
     assert!(share <= most_at_an_edge, "{scene} {what}: {share}");
     assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
 }
 
 #[test]
 fn the_picture_is_the_mirrors() {
-    // A ray's edges grow with its hits, and with the number of facets that it may meet.
+    // A ray's edges grow with its hits, and with the number of facets that it may meet; most in the bunny, whose are small.
     for (scene, rung, most_at_an_edge) in [
-        ("brilliant", "surface", 0.03),
-        ("brilliant", "proxy-0", 0.03),
-        ("brilliant", "proxy-1", 0.04),
-        ("brilliant", "proxy-1+paper", 0.04),
-        ("brilliant", "proxy-4+tracker", 0.08),
-        ("brilliant", "proxy-2+31", 0.15),
-        ("brilliant", "convex-1", 0.05),
-        ("brilliant", "convex-8+tracker", 0.20),
-        ("brilliant", "triangles-1+3", 0.06),
-        ("brilliant", "bvh-4+paper", 0.15),
-        ("sapphire", "proxy-8", 0.10),
-        ("sapphire", "convex-4+tracker", 0.15),
+        ("brilliant", "surface", 0.01),
+        ("brilliant", "proxy-0", 0.01),
+        ("brilliant", "proxy-1", 0.02),
+        ("brilliant", "proxy-1+paper", 0.02),
+        ("brilliant", "proxy-4+tracker", 0.20),
+        ("brilliant", "proxy-2+31", 0.30),
+        ("brilliant", "convex-1", 0.02),
+        ("brilliant", "convex-8+tracker", 0.30),
+        ("brilliant", "triangles-1+3", 0.05),
+        ("brilliant", "bvh-4+paper", 0.20),
+        ("sapphire", "proxy-8", 0.20),
+        ("sapphire", "convex-4+tracker", 0.20),
         ("step_cut", "convex-8", 0.20),
-        ("octahedron", "bvh-8+tracker", 0.10),
-        ("bunny_stone", "proxy-1+tracker", 0.10),
-        ("bunny_stone", "bvh-2", 0.20),
+        ("octahedron", "bvh-8+tracker", 0.20),
+        ("bunny_stone", "proxy-1+tracker", 0.20),
+        ("bunny_stone", "bvh-2", 0.30),
     ] {
         check(scene, rung, &compare(scene, of_rung(rung)), most_at_an_edge);
     }
@@ -64,17 +66,17 @@ fn the_picture_is_the_mirrors() {
 #[test]
 fn so_it_is_with_every_choice() {
     let limited = Settings { distance_limit: Some(2.5), ..of_rung("convex-8") };
-    check("brilliant", "limited", &compare("brilliant", limited), 0.15);
+    check("brilliant", "limited", &compare("brilliant", limited), 0.20);
     let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
-    check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.08);
+    check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.20);
     let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
-    check("brilliant", "paper's centre", &compare("brilliant", paper), 0.04);
+    check("brilliant", "paper's centre", &compare("brilliant", paper), 0.02);
     let clear = Settings { absorption: false, ..of_rung("convex-4") };
     check("sapphire", "no absorption", &compare("sapphire", clear), 0.10);
     let pixel = |k: usize| [(k % 7) as f32 / 3.0, (k % 5) as f32 / 2.0, (k % 3) as f32, 1.0];
     let map = EnvironmentMap { width: 16, height: 8, pixels: (0..128).map(pixel).collect() };
     let mapped = Settings { environment: Environment::Map(map), ..of_rung("convex-2+tracker") };
-    check("brilliant", "a map", &compare("brilliant", mapped), 0.10);
+    check("brilliant", "a map", &compare("brilliant", mapped), 0.20);
 }
 
 /// A comparison that a wrong shader passes checks nothing.
