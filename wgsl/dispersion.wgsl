@@ -78,8 +78,8 @@ const DISPERSION_CRITICAL: f32 = 0.0625f;
 // Outside: the same formula while no resonance is met; infinite or not a number where wavelength^2 is a resonance.
 // Accuracy: lavapipe 6 ulp; portable 16 ulp
 fn dispersion_sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
-    let micrometres = wavelength * 0.001f;
-    let squared = micrometres * micrometres;
+    // From nm² to µm².
+    let squared = wavelength * wavelength * 1e-6f;
     let terms = squared / (squared - material.resonances);
     return sqrt(max(1.0f + material.constant + dot(material.strengths, terms), 1.0f));
 }
@@ -91,14 +91,13 @@ fn dispersion_sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
 // Outside: the same formula, while the wavelength is in [1e-3, 1e9].
 // Accuracy: lavapipe 6 ulp; portable 10 ulp
 fn dispersion_cauchy(coefficients: vec3f, wavelength: f32) -> f32 {
-    let micrometres = wavelength * 0.001f;
-    let squared = micrometres * micrometres;
+    // From nm² to µm².
+    let squared = wavelength * wavelength * 1e-6f;
     return coefficients.x + (coefficients.y + coefficients.z / squared) / squared;
 }
 
 // Index of refraction as glTF has it (KHR_materials_dispersion): Cauchy's first two terms, from the index at the d line and
-// Abbe's number V_d = 20 / dispersion. At that
-// line's wavelength it gives the index but for 2e-4 (n_d - 1) / V_d.
+// Abbe's number V_d = 20 / dispersion. At that line's wavelength it gives the index but for 2e-4 (n_d - 1) / V_d.
 // Returns: the index, at least 1.
 // Units: wavelength in nm; `dispersion` is glTF's, 20 / V_d.
 // Domain: wavelength in [380, 780], index in [1, 4], dispersion in [0, 64]; 0 is none: the index at every wavelength.
@@ -119,28 +118,28 @@ fn dispersion_abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
     return (index_d - 1.0f) / max(index_f - index_c, 1e-12f);
 }
 
-// The gradient after a ray enters the gem: dispersion_refract with no gradient before and a slope of 1, for less work.
-// With t the tangential part of the ray, c = -n . r and root = sqrt(m + c^2) = n cos(angle of refraction), it is
+// The gradient after a ray enters the gem: dispersion_refract with no gradient before, for less work.
+// With t the tangential part of the ray, c = -normal . direction and root = sqrt(m + c^2) = n cos(angle of refraction), it is
 // -(t + |t|^2 / root normal) / n^2, tan(angle of refraction) / n long. `root` is held at DISPERSION_CRITICAL from below.
-// Returns: d(refracted direction) / d(relative_index), 0 under total internal reflection.
-// Units: none; unit vectors and a ratio, index_gem / index_outside.
-// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4].
-// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
-// Accuracy: lavapipe 8 ulp + 10 backward; portable 16 ulp + 20 backward
+// Returns: d(refracted direction) / d(relative_index).
+// Units: none; unit vectors and a ratio, index_gem / index_outside. Where that outside is not air, divide by its index for the derivative
+//   by the gem's own.
+// Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1, 4].
+// Outside: finite. A gem in a denser medium takes dispersion_refract, which knows total internal reflection. A normal that faces away is
+//   taken to be at grazing incidence, as refraction.wgsl does.
+// Accuracy: lavapipe 8 ulp + 6 backward; portable 16 ulp + 12 backward
 fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec3f {
     let cosine = max(-dot(normal, direction), 0.0f);
     let radicand = (relative_index - 1.0f) * (relative_index + 1.0f) + cosine * cosine;
-    if (radicand < 0.0f) {
-        return vec3f(0.0f);
-    }
     let tangent = direction + cosine * normal;
-    let across = dot(tangent, tangent) / max(sqrt(radicand), DISPERSION_CRITICAL);
+    let across = dot(tangent, tangent) / sqrt(max(radicand, DISPERSION_CRITICAL * DISPERSION_CRITICAL));
     return (tangent + across * normal) / (-relative_index * relative_index);
 }
 
 // The gradient after a refraction: the derivative of refraction.wgsl's direction, by either branch. With the symbols above,
 // dc = -normal . gradient and b = (slope / n) |t|^2 + c dc, it is (gradient + dc normal - (slope / n) t - b / root normal) / n. Only the
-// part along the normal grows without bound near the critical angle, and only its root is held there.
+// part along the normal grows without bound near the critical angle, and only its root is held there. Where rounding (12 * 2^-24 in root^2)
+// refracts a ray that is just beyond that angle, |t|^2 exceeds n^2 by as much: relatively up to 96 ulp for the least index.
 // Returns: d(direction) / d(index of the gem), at most 17 / n (|gradient| + |slope| / n) long, and perpendicular to the new direction but
 //   where the root is held; under total internal reflection the gradient reflected.
 // Units: none; unit vectors and ratios. `relative_index_slope` is d(relative_index) / d(index of the gem): 1 / index_outside on the way in,
@@ -148,7 +147,7 @@ fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4], gradient . direction = 0,
 //   |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40, 1] or 0.
 // Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
-// Accuracy: lavapipe 12 ulp + 10 backward; portable 24 ulp + 20 backward
+// Accuracy: lavapipe 96 ulp + 10 backward; portable 192 ulp + 20 backward
 fn dispersion_refract(
     direction: vec3f,
     gradient: vec3f,

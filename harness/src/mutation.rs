@@ -87,7 +87,17 @@ pub fn mutants(module: &cookbook::Module, function: &str, kernel: &KernelModule)
             }
         }
     }
-    for (_, constant) in ir.constants.iter() {
+    // Compaction keeps every const that has a name; one that no function reads is for recipes, and no run can tell its value.
+    let read: Vec<Handle<naga::Constant>> = ir
+        .functions
+        .iter()
+        .flat_map(|(_, function)| function.expressions.iter())
+        .filter_map(|(_, expression)| match expression {
+            Expression::Constant(constant) => Some(*constant),
+            _ => None,
+        })
+        .collect();
+    for (_, constant) in ir.constants.iter().filter(|(handle, _)| read.contains(handle)) {
         let Some(name) = constant.name.as_deref() else { continue };
         // A const holds a literal.
         for (change, edit) in edits(&|_| false, &ir.global_expressions[constant.init]) {

@@ -81,16 +81,16 @@ pub const DISPERSION_CRITICAL: f32 = 0.0625;
 
 /// Index of refraction by Sellmeier's formula; wavelength in nm.
 pub fn sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
-    let micrometres = wavelength * 0.001;
-    let squared = micrometres * micrometres;
+    // From nm² to µm².
+    let squared = wavelength * wavelength * 1e-6;
     let terms = squared / (squared - material.resonances);
     (1.0 + material.constant + material.strengths.dot(terms)).max(1.0).sqrt()
 }
 
 /// Index of refraction by Cauchy's formula; wavelength in nm, coefficients for µm.
 pub fn cauchy(coefficients: Vec3, wavelength: f32) -> f32 {
-    let micrometres = wavelength * 0.001;
-    let squared = micrometres * micrometres;
+    // From nm² to µm².
+    let squared = wavelength * wavelength * 1e-6;
     coefficients.x + (coefficients.y + coefficients.z / squared) / squared
 }
 
@@ -109,11 +109,8 @@ pub fn abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
 pub fn enter(direction: Vec3, normal: Vec3, relative_index: f32) -> Vec3 {
     let cosine = (-normal.dot(direction)).max(0.0);
     let radicand = (relative_index - 1.0) * (relative_index + 1.0) + cosine * cosine;
-    if radicand < 0.0 {
-        return Vec3::ZERO;
-    }
     let tangent = direction + cosine * normal;
-    let across = tangent.dot(tangent) / radicand.sqrt().max(DISPERSION_CRITICAL);
+    let across = tangent.dot(tangent) / radicand.max(DISPERSION_CRITICAL * DISPERSION_CRITICAL).sqrt();
     (tangent + across * normal) / (-relative_index * relative_index)
 }
 

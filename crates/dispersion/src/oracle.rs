@@ -82,7 +82,8 @@ pub fn abbe_number(index_d: f64, index_f: f64, index_c: f64) -> f64 {
 /// θ_t' = -tan θ_t / n, since θ_i stands still.
 pub fn enter(direction: DVec3, normal: DVec3, relative_index: f64) -> DVec3 {
     let plane = Incidence::new(direction, normal);
-    let Some(refraction) = plane.refraction(relative_index) else { return DVec3::ZERO };
+    let sine = plane.incident.sine / relative_index;
+    let refraction = plane.refraction(relative_index).unwrap_or(Angle { sine, cosine: 0.0 });
     plane.turned(&refraction, relative_index, -refraction.sine)
 }
 
@@ -100,7 +101,11 @@ pub fn refract(
     let rate = gradient.dot(cosine * plane.tangent + sine * plane.normal);
     let across = gradient.dot(plane.binormal()) / relative_index;
     let moved = cosine * rate - relative_index_slope * refraction.sine;
-    plane.turned(&refraction, relative_index, moved) + across * plane.binormal()
+    // What rounding leaves of the gradient along the ray lengthens it: the tangential part alike, the cosine by c² of root².
+    let longer = gradient.dot(sine * plane.tangent - cosine * plane.normal) / relative_index;
+    let root = (relative_index * refraction.cosine).max(CRITICAL);
+    let lengthened = longer * (sine * plane.tangent - cosine * cosine / root * plane.normal);
+    plane.turned(&refraction, relative_index, moved) + across * plane.binormal() + lengthened
 }
 
 /// The reflection at a plane is half a turn about its normal, reversed.

@@ -293,11 +293,11 @@ fn oracle_and_mirror_follow_central_differences_over_whole_paths() {
 fn entering_is_refracting_without_a_gradient() {
     let mut random = Random(2);
     for _ in 0..10_000 {
-        let (ray, index) = (random.direction(), random.between(0.25, 4.0) as f32);
+        let (ray, index) = (random.direction(), random.between(1.0, 4.0) as f32);
         let cosine = random.unit();
         let (normal, ray) = (random.facing(ray, cosine).as_vec3(), ray.as_vec3());
         let [one, other] = [enter(ray, normal, index), refract(ray, Vec3::ZERO, normal, index, 1.0)];
-        // Divided by n² root in one step or in two.
+        // Divided by n² in one step or in two.
         assert!((one - other).length() <= 1e-5 * one.length().max(1.0), "{one} {other}");
     }
 }
@@ -377,8 +377,6 @@ fn blue_bends_more() {
                 assert!(red[way] < green[way] && green[way] < blue[way], "{name}: {red:?} {green:?} {blue:?}");
             }
         }
-        // As frequencies the paper's channels are in that order too, and red is the reference itself.
-        assert!(1.0 < DISPERSION_PAPER_GREEN && DISPERSION_PAPER_GREEN < DISPERSION_PAPER_BLUE);
     }
     // Eq. (10) points the way that a rising index turns the ray: with wavelengths the sign would be wrong.
     let ray = DVec3::new(0.8, 0.0, -0.6);

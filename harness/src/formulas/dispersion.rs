@@ -199,41 +199,44 @@ fn flat(v: DVec3) -> [f64; 3] {
 }
 
 fn enter() -> Formula {
-    formula(M, "dispersion_enter", mirror::enter, oracle::enter, incident)
-        .edge("total internal reflection", |(r, n, index)| radicand(r, n, index) < 0.0)
-        .edge("just above the critical angle", |(r, n, index)| {
-            index < 0.9 && (0.0..1e-6).contains(&radicand(r, n, index))
-        })
-        .edge("held near the critical angle", |(r, n, index)| (1e-5..3e-3).contains(&radicand(r, n, index)))
-        .edge("equal indices", |(_, _, index)| index == 1.0)
-        .edge("equal indices at exactly grazing incidence", |(r, n, index)| index == 1.0 && r.dot(n) == 0.0)
-        .edge("normal incidence", |(r, n, _)| r == -n)
-        .edge("into a denser medium", |(_, _, index)| index > 1.5)
-        .invariant("perpendicular to the ray", |(r, n, index), gradient: Vec3| {
-            perpendicular(gradient, (r, n, index), 17.0 / f64::from(index).powi(2))
-        })
-        .invariant("tan θ_t / n long, away from the critical angle", |(r, n, index), gradient: Vec3| {
-            let squared = radicand(r, n, index);
-            if squared < 0.004 {
-                return Ok(());
-            }
-            let sine = r.as_dvec3().cross(n.as_dvec3()).length();
-            let length = sine / squared.sqrt() / f64::from(index);
-            near("length", gradient.as_dvec3().length(), length, 64.0 * UNIT * (1.0 + length / squared))
-        })
-        .hard_case_with(
-            "normal incidence: eq. (10) is 0 / 0",
-            (Vec3::NEG_Z, Vec3::Z, DIAMOND),
-            (&[0.0; 3], 0.0),
-            ("dispersion_paper_enter_naive", (Vec3::NEG_Z, Vec3::NEG_Z), f64::INFINITY),
-        )
-        .hard_case_with(
-            "normal incidence, refracted an ulp short: eq. (10) is noise of unit length",
-            (Vec3::NEG_Z, Vec3::Z, DIAMOND),
-            (&[0.0; 3], 0.0),
-            ("dispersion_paper_enter_naive", (Vec3::NEG_Z, Vec3::new(0.0, 0.0, -1.0f32.next_down())), 0.9),
-        )
-        .build()
+    formula(M, "dispersion_enter", mirror::enter, oracle::enter, |draws| {
+        let index = relative_index(draws);
+        let index = if index < 1.0 { 1.0 / index } else { index };
+        let cosine = cosine_near_critical(draws, index);
+        let (direction, normal) = incidence(draws, cosine);
+        (direction, normal, index)
+    })
+    .edge("held near the critical angle", |(r, n, index)| (1e-5..3e-3).contains(&radicand(r, n, index)))
+    .edge("equal indices", |(_, _, index)| index == 1.0)
+    .edge("equal indices at exactly grazing incidence", |(r, n, index)| index == 1.0 && r.dot(n) == 0.0)
+    .edge("normal incidence", |(r, n, _)| r == -n)
+    .edge("grazing to the last ulp", |(r, n, _)| r.dot(n) != 0.0 && r.dot(n).abs() < 1e-30)
+    .edge("into a denser medium", |(_, _, index)| index > 1.5)
+    .invariant("perpendicular to the ray", |(r, n, index), gradient: Vec3| {
+        perpendicular(gradient, (r, n, index), 17.0 / f64::from(index).powi(2))
+    })
+    .invariant("tan θ_t / n long, away from the critical angle", |(r, n, index), gradient: Vec3| {
+        let squared = radicand(r, n, index);
+        if squared < 0.004 {
+            return Ok(());
+        }
+        let sine = r.as_dvec3().cross(n.as_dvec3()).length();
+        let length = sine / squared.sqrt() / f64::from(index);
+        near("length", gradient.as_dvec3().length(), length, 64.0 * UNIT * (1.0 + length / squared))
+    })
+    .hard_case_with(
+        "normal incidence: eq. (10) is 0 / 0",
+        (Vec3::NEG_Z, Vec3::Z, DIAMOND),
+        (&[0.0; 3], 0.0),
+        ("dispersion_paper_enter_naive", (Vec3::NEG_Z, Vec3::NEG_Z), f64::INFINITY),
+    )
+    .hard_case_with(
+        "normal incidence, refracted an ulp short: eq. (10) is noise of unit length",
+        (Vec3::NEG_Z, Vec3::Z, DIAMOND),
+        (&[0.0; 3], 0.0),
+        ("dispersion_paper_enter_naive", (Vec3::NEG_Z, Vec3::new(0.0, 0.0, -1.0f32.next_down())), 0.9),
+    )
+    .build()
 }
 
 type Refraction = (Vec3, Vec3, Vec3, f32, f32);
