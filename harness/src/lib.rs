@@ -14,3 +14,5 @@ pub mod property;
 pub mod render;
 pub mod scene;
 pub mod snapshot;
+pub mod specialise;
+pub mod spirv_counts;

@@ -11,6 +11,7 @@ mod furnace;
 mod hard_cases;
 mod program;
 mod snapshots;
+mod specialise;
 mod text;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
