@@ -116,7 +116,7 @@ impl<'gpu> Kernel<'gpu> {
         let compiled = match known.get(&key) {
             Some(compiled) => compiled.clone(),
             None => {
-                let compiled = compile(gpu, KernelModule::reflect(source, path, function)?)?;
+                let compiled = compile(gpu, KernelModule::reflect(source, path, function)?, &[])?;
                 known.insert(key, compiled.clone());
                 compiled
             }
@@ -126,7 +126,16 @@ impl<'gpu> Kernel<'gpu> {
 
     /// Compiles a kernel that nobody asks for again, such as a mutant.
     pub fn new(gpu: &'gpu Gpu, kernel: KernelModule) -> Result<Kernel<'gpu>, DispatchError> {
-        Ok(Kernel { gpu, compiled: compile(gpu, kernel)?, buffers: None })
+        Self::with_constants(gpu, kernel, &[])
+    }
+
+    /// Compiles a kernel with values for its overrides: (name, value), a bool as 0 or 1.
+    pub fn with_constants(
+        gpu: &'gpu Gpu,
+        kernel: KernelModule,
+        constants: &[(&str, f64)],
+    ) -> Result<Kernel<'gpu>, DispatchError> {
+        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None })
     }
 
     /// The function's signature.
@@ -218,7 +227,7 @@ impl<'gpu> Kernel<'gpu> {
     }
 }
 
-fn compile(gpu: &Gpu, kernel: KernelModule) -> Result<Compiled, DispatchError> {
+fn compile(gpu: &Gpu, kernel: KernelModule, constants: &[(&str, f64)]) -> Result<Compiled, DispatchError> {
     let KernelModule { signature, module, input, output } = kernel;
     let pipeline = gpu.guarded(&format!("compiling `{}`", signature.function), |device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -230,7 +239,7 @@ fn compile(gpu: &Gpu, kernel: KernelModule) -> Result<Compiled, DispatchError> {
             layout: None,
             module: &module,
             entry_point: Some(ENTRY_POINT),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         })
     })?;

@@ -16,6 +16,7 @@ mod parity;
 mod program;
 mod reference;
 mod snapshots;
+mod specialise;
 mod text;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};

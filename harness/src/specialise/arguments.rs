@@ -1,0 +1,110 @@
+//! Function arguments: one that is the same constant in every call becomes that constant, and one that nobody reads is
+//! no longer passed.
+
+use super::operands;
+use super::value::{Globals, Value};
+use naga::{Constant, Expression, Function, Handle, Module, Span, Statement};
+use std::collections::HashMap;
+
+/// Puts an argument's value in its place wherever every call passes the same one; whether there was any.
+///
+/// Entry points are left alone: the pipeline calls them.
+pub(super) fn propagate_constant_arguments(module: &mut Module) -> bool {
+    let calls = common_arguments(module);
+    let mut changed = false;
+    for (callee, arguments) in calls {
+        for (index, value) in arguments.into_iter().enumerate() {
+            let Some(value) = value else { continue };
+            let is_argument =
+                |expression: &Expression| matches!(expression, Expression::FunctionArgument(i) if *i as usize == index);
+            let function = &module.functions[callee];
+            if !function.expressions.iter().any(|(_, expression)| is_argument(expression)) {
+                continue;
+            }
+            let constant = match value {
+                Value::Literal(literal) => Expression::Literal(literal),
+                Value::Constant(constant) => Expression::Constant(constant),
+                Value::Zero(ty) => Expression::ZeroValue(ty),
+                // Its parts cannot be put before it among the function's expressions, but before it in the module.
+                composite => {
+                    let ty = function.arguments[index].ty;
+                    let init = composite.write(&mut module.global_expressions);
+                    Expression::Constant(module.constants.append(Constant { name: None, ty, init }, Span::UNDEFINED))
+                }
+            };
+            for (_, expression) in module.functions.get_mut(callee).expressions.iter_mut() {
+                if is_argument(expression) {
+                    *expression = constant.clone();
+                }
+            }
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Per called function and argument: the constant that all calls pass, where they do.
+fn common_arguments(module: &Module) -> Vec<(Handle<Function>, Vec<Option<Value>>)> {
+    let globals = Globals::of(module);
+    let mut common: HashMap<Handle<Function>, Vec<Option<Value>>> = HashMap::new();
+    let functions = module.functions.iter().map(|(_, function)| function);
+    for caller in functions.chain(module.entry_points.iter().map(|entry| &entry.function)) {
+        operands::for_each_statement(&caller.body, &mut |statement| {
+            let Statement::Call { function, arguments, .. } = statement else { return };
+            let passed = arguments.iter().map(|argument| Value::of(globals, &caller.expressions, *argument));
+            match common.get_mut(function) {
+                None => {
+                    common.insert(*function, passed.collect());
+                }
+                Some(common) => {
+                    for (common, passed) in common.iter_mut().zip(passed) {
+                        if !matches!((&common, passed), (Some(common), Some(passed)) if common.is(&passed)) {
+                            *common = None;
+                        }
+                    }
+                }
+            }
+        });
+    }
+    // In the order of the module, so that the same module always comes out the same.
+    let mut common: Vec<_> = common.into_iter().collect();
+    common.sort_by_key(|(callee, _)| callee.index());
+    common
+}
+
+/// Drops the arguments that no expression names, in functions and in their calls; whether there was any. The module is
+/// compact, so that an expression is one in use.
+pub(super) fn drop_unread_arguments(module: &mut Module) -> bool {
+    let mut kept: HashMap<Handle<Function>, Vec<usize>> = HashMap::new();
+    for (handle, function) in module.functions.iter_mut() {
+        let named = |expression: &Expression| match expression {
+            Expression::FunctionArgument(index) => Some(*index as usize),
+            _ => None,
+        };
+        let mut read: Vec<usize> = function.expressions.iter().filter_map(|(_, e)| named(e)).collect();
+        read.sort_unstable();
+        read.dedup();
+        if read.len() == function.arguments.len() {
+            continue;
+        }
+        function.arguments = read.iter().map(|index| function.arguments[*index].clone()).collect();
+        for (_, expression) in function.expressions.iter_mut() {
+            if let Expression::FunctionArgument(index) = expression {
+                let position = read.binary_search(&(*index as usize)).expect("every argument that is named was read");
+                *index = u32::try_from(position).expect("moved towards the front");
+            }
+        }
+        kept.insert(handle, read);
+    }
+    let functions = module.functions.iter_mut().map(|(_, function)| function);
+    for caller in functions.chain(module.entry_points.iter_mut().map(|entry| &mut entry.function)) {
+        operands::for_each_statement_mut(&mut caller.body, &mut |statement| {
+            if let Statement::Call { function, arguments, .. } = statement
+                && let Some(kept) = kept.get(function)
+            {
+                *arguments = kept.iter().map(|index| arguments[*index]).collect();
+            }
+        });
+    }
+    !kept.is_empty()
+}

@@ -1,0 +1,105 @@
+//! A specialised shader does what the whole one does: to the bit, on the device, whatever it is made of.
+
+mod program;
+
+use crate::gpu;
+use lapidary_harness::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
+use lapidary_harness::property::draws::Draws;
+use lapidary_harness::specialise::specialise;
+use naga::back;
+use program::{random_constants, random_program};
+
+const SEED: u64 = 0x5bec;
+/// Programs that are run; each is compiled twice.
+const RUN: u64 = 60;
+/// Programs that are specialised and written.
+const WRITTEN: u64 = 300;
+/// Calls of each.
+const ROWS: usize = 256;
+
+/// The kernel of a random program, with values for its overrides.
+fn kernel(row: u64) -> (String, KernelModule, Vec<(&'static str, f64)>) {
+    let mut draws = Draws::of_row(SEED, row);
+    let source = random_program(&mut draws);
+    let constants = random_constants(&mut draws);
+    let kernel = KernelModule::reflect(&source, "program", "subject").unwrap_or_else(|e| panic!("{e}\n{source}"));
+    (source, kernel, constants)
+}
+
+fn specialised(kernel: &KernelModule, constants: &[(&str, f64)]) -> KernelModule {
+    let (module, _) = specialise(kernel.module.clone(), constants, &[ENTRY_POINT]).unwrap_or_else(|e| panic!("{e}"));
+    let mut special = kernel.clone();
+    special.module = module;
+    special
+}
+
+/// `x`, `n` of each call.
+fn arguments(draws: &mut Draws<'_>) -> Vec<u32> {
+    (0..ROWS).flat_map(|_| [draws.between(-2.0, 2.0).to_bits(), draws.bits()]).collect()
+}
+
+fn outcomes(kernel: KernelModule, constants: &[(&str, f64)], arguments: &[u32]) -> Vec<u32> {
+    let mut kernel = Kernel::with_constants(gpu(), kernel, constants).unwrap_or_else(|error| panic!("{error}"));
+    let mut results = Vec::new();
+    kernel.run(arguments, &mut results).unwrap_or_else(|error| panic!("{error}"));
+    results
+}
+
+#[test]
+fn a_specialised_program_gives_the_same_bits() {
+    let (mut varied, mut sensitive, mut others) = (0, 0, 0);
+    for row in 0..RUN {
+        let (source, kernel, constants) = kernel(row);
+        let arguments = arguments(&mut Draws::of_row(SEED + 1, row));
+        let whole = outcomes(kernel.clone(), &constants, &arguments);
+        let special = outcomes(specialised(&kernel, &constants), &[], &arguments);
+        if let Some(word) = (0..whole.len()).find(|word| whole[*word] != special[*word]) {
+            let call = word / 2;
+            panic!(
+                "program {row} with {constants:?}: subject({}, {}): word {} is {:#x}, specialised {:#x}\n{source}",
+                f32::from_bits(arguments[2 * call]),
+                arguments[2 * call + 1],
+                word % 2,
+                whole[word],
+                special[word],
+            );
+        }
+        varied += u32::from(whole.chunks(2).any(|outcome| outcome != &whole[..2]));
+        // Now and then, that other values would have been seen.
+        if row % 6 == 0 {
+            let turned: Vec<_> = constants.iter().map(|(name, value)| (*name, 1.0 - value.min(1.0))).collect();
+            others += 1;
+            sensitive += u32::from(outcomes(specialised(&kernel, &turned), &[], &arguments) != whole);
+        }
+    }
+    assert!(varied * 2 > RUN as u32, "only {varied} of {RUN} programs depend on their arguments");
+    assert!(sensitive * 2 > others, "only {sensitive} of {others} programs depend on their overrides");
+}
+
+/// Branches, switches and loops in WGSL text.
+fn decisions(text: &str) -> usize {
+    ["if ", "switch ", "for ", "loop "].iter().map(|word| text.matches(word).count()).sum()
+}
+
+/// Every shading language's writer takes what is left, WGSL can be read back, and specialising it again changes nothing.
+#[test]
+fn a_specialised_program_can_be_written_and_is_final() {
+    let (mut before, mut after) = (0, 0);
+    for row in 0..WRITTEN {
+        let (source, kernel, constants) = kernel(row);
+        let write = |module: &naga::Module| {
+            let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
+            back::spv::write_vec(module, &info, &back::spv::Options::default(), None)
+                .unwrap_or_else(|error| panic!("program {row}: {error}"));
+            back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
+                .unwrap_or_else(|error| panic!("program {row}: {error}"))
+        };
+        let special = specialised(&kernel, &constants);
+        let text = write(&special.module);
+        dispatch::parse(&text, "specialised").unwrap_or_else(|error| panic!("program {row}: {error}"));
+        assert_eq!(write(&specialised(&special, &[]).module), text, "program {row} with {constants:?}:\n{source}");
+        before += decisions(&source);
+        after += decisions(&text);
+    }
+    assert!(after * 2 < before, "{after} of {before} decisions are left");
+}
