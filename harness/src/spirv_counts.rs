@@ -39,7 +39,8 @@ pub enum SpirvCountsError {
     },
 }
 
-/// Counts what a vertex and a fragment entry point of a valid module are made of.
+/// Counts what a vertex and a fragment entry point of a valid module are made of. Its overrides have been applied, as
+/// [`specialise`](crate::specialise::specialise) does.
 pub fn spirv_counts(
     ir: &Module,
     info: &ModuleInfo,
