@@ -19,8 +19,8 @@ pub struct SpirvCounts {
     pub vertex_instructions: u32,
     /// Instructions that the fragment entry point reaches.
     pub fragment_instructions: u32,
-    /// Bytes of the uniform buffers, and of the arrays of constants, that either entry point uses, each once. A struct of
-    /// constants with an array in it counts whole.
+    /// Bytes of the uniform buffers, and of the arrays of constants, that either entry point uses, each once. A struct
+    /// of constants with an array in it counts whole.
     pub constant_bytes: u32,
     /// Storage buffers that either entry point uses.
     pub storage_bindings: u32,

@@ -52,7 +52,7 @@ fn pure_functions(module: &Module) -> HashSet<Handle<Function>> {
     pure
 }
 
-/// Whether a break and a continue found here leave something that matters.
+/// Whether a break and a continue matter where they stand.
 #[derive(Clone, Copy)]
 struct Leaving {
     by_break: bool,
@@ -70,7 +70,7 @@ struct Uses<'a> {
 impl<'a> Uses<'a> {
     fn of(function: &'a Function, body: &Block, pure: &'a HashSet<Handle<Function>>) -> Self {
         let mut uses = Uses { expressions: &function.expressions, pure, live: HashSet::new(), read: HashSet::new() };
-        // A store is needed once its variable is read, perhaps by what stands before it in a loop: until nothing is new.
+        // A store is needed once its variable is read, perhaps by what stands before it: until nothing is new.
         loop {
             let before = uses.live.len();
             uses.block_is_needed(body, Leaving { by_break: true, by_continue: true });
@@ -137,9 +137,9 @@ impl<'a> Uses<'a> {
         needed
     }
 
-    /// What a break and a continue inside a statement leave. Out of a switch, a break matters if anything else in the
-    /// switch does; out of a loop, or on to its next round, either matters if anything else in the loop does. A loop that
-    /// does nothing is taken to end.
+    /// Whether a break and a continue inside a statement matter. Out of a switch, a break does if anything else in the
+    /// switch does; out of a loop, or on to its next round, either does if anything else in the loop does. A loop
+    /// without effect is taken to end.
     fn leaving_from_inside(&mut self, statement: &Statement, leaving: Leaving) -> Leaving {
         match statement {
             Statement::Switch { .. } => {

@@ -305,7 +305,8 @@ fn what_only_a_dead_branch_uses_goes_too() {
         fn noted_first(x: f32) -> f32 { result[7] = x; return x; }
         fn noted(x: f32) -> f32 { return noted_first(x) + 1.0; }";
     let body = "
-        let lit = texel(); var sum = 0.0; for (var i = 0u; i < 4u; i++) { if (table[i] < 0.0) { break; } sum += table[i]; }
+        let lit = texel(); var sum = 0.0;
+        for (var i = 0u; i < 4u; i++) { if (table[i] < 0.0) { break; } sum += table[i]; }
         let seen = noted(3.0); result[0] = 1.0; if (A) { result[0] = lit + sum + seen; }";
     let (module, text) = special(declarations, body, &[("A", 0.0)]);
     assert_eq!(globals(&module), ["result"], "{text}");
