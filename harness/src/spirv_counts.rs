@@ -19,8 +19,8 @@ pub struct SpirvCounts {
     pub vertex_instructions: u32,
     /// Instructions that the fragment entry point reaches.
     pub fragment_instructions: u32,
-    /// Bytes of the uniform buffers, and of the arrays of constants, that either entry point uses, each once. A struct of
-    /// constants with an array in it counts whole.
+    /// Bytes of the uniform buffers, and of the arrays of constants, that either entry point uses, each once. A struct
+    /// of constants with an array in it counts whole.
     pub constant_bytes: u32,
     /// Storage buffers that either entry point uses.
     pub storage_bindings: u32,
@@ -39,7 +39,8 @@ pub enum SpirvCountsError {
     },
 }
 
-/// Counts what a vertex and a fragment entry point of a valid module are made of.
+/// Counts what a vertex and a fragment entry point of a valid module are made of. Its overrides have been applied, as
+/// [`specialise`](crate::specialise::specialise) does.
 pub fn spirv_counts(
     ir: &Module,
     info: &ModuleInfo,

@@ -52,7 +52,7 @@ fn pure_functions(module: &Module) -> HashSet<Handle<Function>> {
     pure
 }
 
-/// Whether a break and a continue found here leave something that matters.
+/// Whether a break and a continue matter where they stand.
 #[derive(Clone, Copy)]
 struct Leaving {
     by_break: bool,
@@ -70,7 +70,7 @@ struct Uses<'a> {
 impl<'a> Uses<'a> {
     fn of(function: &'a Function, body: &Block, pure: &'a HashSet<Handle<Function>>) -> Self {
         let mut uses = Uses { expressions: &function.expressions, pure, live: HashSet::new(), read: HashSet::new() };
-        // A store is needed once its variable is read, perhaps by what stands before it in a loop: until nothing is new.
+        // A store is needed once its variable is read, perhaps by what stands before it: until nothing is new.
         loop {
             let before = uses.live.len();
             uses.block_is_needed(body, Leaving { by_break: true, by_continue: true });
@@ -93,10 +93,22 @@ impl<'a> Uses<'a> {
         }
     }
 
-    /// Whether a statement of the block is needed. Marks what the needed ones use.
+    /// Whether a statement of the block is needed. Marks what the needed ones use: every one is looked at.
     fn block_is_needed(&mut self, block: &Block, leaving: Leaving) -> bool {
-        // Every statement is looked at, for its marks.
-        block.iter().fold(false, |needed, statement| self.is_needed(statement, leaving) || needed)
+        let mut needed = false;
+        for statement in block.iter() {
+            needed |= self.is_needed(statement, leaving);
+        }
+        needed
+    }
+
+    /// Whether a statement of one of the blocks inside `statement` is needed, likewise.
+    fn inside_is_needed(&mut self, statement: &Statement, leaving: Leaving) -> bool {
+        let mut needed = false;
+        for block in operands::blocks(statement) {
+            needed |= self.block_is_needed(block, leaving);
+        }
+        needed
     }
 
     /// Whether a statement is needed, as far as is known yet. Marks what it uses if it is.
@@ -113,21 +125,9 @@ impl<'a> Uses<'a> {
             Statement::Call { function, result, .. } => {
                 !self.pure.contains(function) || result.is_some_and(|result| self.live.contains(&result))
             }
-            Statement::Block(block) => self.block_is_needed(block, leaving),
-            Statement::If { accept, reject, .. } => {
-                let accept = self.block_is_needed(accept, leaving);
-                let reject = self.block_is_needed(reject, leaving);
-                accept || reject
-            }
-            Statement::Switch { cases, .. } => {
-                let inside = self.leaving_switch(statement, leaving);
-                cases.iter().fold(false, |needed, case| self.block_is_needed(&case.body, inside) || needed)
-            }
-            Statement::Loop { body, continuing, .. } => {
-                let inside = self.leaving_loop(statement);
-                let body = self.block_is_needed(body, inside);
-                let continuing = self.block_is_needed(continuing, inside);
-                body || continuing
+            Statement::Block(_) | Statement::If { .. } | Statement::Switch { .. } | Statement::Loop { .. } => {
+                let inside = self.leaving_from_inside(statement, leaving);
+                self.inside_is_needed(statement, inside)
             }
             _ => true,
         };
@@ -137,23 +137,22 @@ impl<'a> Uses<'a> {
         needed
     }
 
-    /// A break out of a switch matters if anything else in the switch does.
-    fn leaving_switch(&mut self, switch: &Statement, leaving: Leaving) -> Leaving {
-        let quiet = Leaving { by_break: false, ..leaving };
-        let by_break = operands::blocks(switch)
-            .into_iter()
-            .fold(false, |needed, case| self.block_is_needed(case, quiet) || needed);
-        Leaving { by_break, ..leaving }
-    }
-
-    /// A break out of a loop, or on to its next round, matters if anything else in the loop does. One that does nothing
-    /// is taken to end.
-    fn leaving_loop(&mut self, looped: &Statement) -> Leaving {
-        let quiet = Leaving { by_break: false, by_continue: false };
-        let matters = operands::blocks(looped)
-            .into_iter()
-            .fold(false, |needed, part| self.block_is_needed(part, quiet) || needed);
-        Leaving { by_break: matters, by_continue: matters }
+    /// Whether a break and a continue inside a statement matter. Out of a switch, a break does if anything else in the
+    /// switch does; out of a loop, or on to its next round, either does if anything else in the loop does. A loop
+    /// without effect is taken to end.
+    fn leaving_from_inside(&mut self, statement: &Statement, leaving: Leaving) -> Leaving {
+        match statement {
+            Statement::Switch { .. } => {
+                let quiet = Leaving { by_break: false, ..leaving };
+                Leaving { by_break: self.inside_is_needed(statement, quiet), ..leaving }
+            }
+            Statement::Loop { .. } => {
+                let quiet = Leaving { by_break: false, by_continue: false };
+                let matters = self.inside_is_needed(statement, quiet);
+                Leaving { by_break: matters, by_continue: matters }
+            }
+            _ => leaving,
+        }
     }
 
     /// The block without the statements that are not needed.
@@ -168,11 +167,7 @@ impl<'a> Uses<'a> {
             if !emits && !self.is_needed(&statement, leaving) {
                 continue;
             }
-            let inside = match &statement {
-                Statement::Switch { .. } => self.leaving_switch(&statement, leaving),
-                Statement::Loop { .. } => self.leaving_loop(&statement),
-                _ => leaving,
-            };
+            let inside = self.leaving_from_inside(&statement, leaving);
             let mut keep = |inner: &mut Block| *inner = self.keep(std::mem::take(inner), inside);
             match &mut statement {
                 Statement::Block(block) => keep(block),

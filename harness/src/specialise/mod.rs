@@ -6,11 +6,11 @@
 //! 1. `keep_entry_points`: the others go.
 //! 2. `apply_overrides`: naga gives every `override` its value and evaluates the constant expressions above it.
 //! 3. In rounds, until nothing changes:
-//!    - [`fold`]: branches, switches and loops on what is constant, with the local variables between (naga lowers `&&`
+//!    - `fold`: branches, switches and loops on what is constant, with the local variables between (naga lowers `&&`
 //!      and `||` to an `if` and a variable);
-//!    - [`dead`]: stores that nobody reads, calls without effect whose result nobody reads;
+//!    - `dead`: stores that nobody reads, calls without effect whose result nobody reads;
 //!    - naga's own compaction: functions, globals, types and expressions that nothing reaches;
-//!    - [`arguments`]: those that are the same constant in every call, those that nobody reads.
+//!    - `arguments`: those that are the same constant in every call, those that nobody reads.
 //! 4. `finish`: constants that nothing uses, and naga's validation.
 //!
 //! What is left does what the whole shader does with these values, to the bit: a sum of floats is never computed here,
@@ -49,7 +49,7 @@ pub enum SpecialiseError {
     },
     /// An override has no value, a value has no override, or a value does not fit.
     #[error("the override values do not fit the shader: {0}")]
-    Override(#[from] PipelineConstantError),
+    Override(#[source] Box<PipelineConstantError>),
     /// An override is the length of a workgroup array, which naga's IR ties to the override itself.
     #[error("override `{name}` is the length of an array; give the array a constant length")]
     ArrayLength {
@@ -107,7 +107,8 @@ fn keep_entry_points(mut module: Module, names: &[&str]) -> Result<Module, Speci
 /// The module with constants instead of overrides.
 fn apply_overrides(module: &Module, info: &ModuleInfo, constants: &[(&str, f64)]) -> Result<Module, SpecialiseError> {
     let constants = constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-    let (module, _) = process_overrides(module, info, None, &constants)?;
+    let (module, _) = process_overrides(module, info, None, &constants)
+        .map_err(|error| SpecialiseError::Override(Box::new(error)))?;
     Ok(module.into_owned())
 }
 

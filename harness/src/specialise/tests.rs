@@ -189,6 +189,57 @@ fn a_variable_that_a_loop_writes_is_not_constant() {
     assert!(text.contains("var first") && !text.contains("steady"), "{text}");
 }
 
+/// Of two arms, one that returns says nothing about what follows.
+#[test]
+fn an_arm_that_returns_does_not_count() {
+    let body = "
+        var bright = true; if (table[0] > 0.0) { bright = false; result[0] = 1.0; return; }
+        if (bright) { result[1] = texel(); }";
+    let (module, text) = special("", body, &[]);
+    assert_eq!((globals(&module), text.matches("if").count()), (vec!["picture", "table", "result"], 1), "{text}");
+    // Nor is what it or the other has computed at hand there.
+    let body = "var x = 0.0; if (table[0] > 0.0) { x = table[1]; } else { return; } result[0] = x;";
+    let (_, text) = special("", body, &[]);
+    assert!(text.contains("var x"), "{text}");
+}
+
+#[test]
+fn a_variable_that_a_case_writes_is_not_constant() {
+    for body in [
+        "switch (u32(table[0])) { case 1u: { bright = true; } default: {} }",
+        "switch (N) { default: { if (table[0] > 0.0) { bright = true; break; } result[0] = 2.0; } }",
+    ] {
+        let body = format!("var bright = false; {body} if (bright) {{ result[1] = texel(); }}");
+        assert_eq!(globals(&special("", &body, &[]).0), ["picture", "table", "result"]);
+    }
+}
+
+#[test]
+fn a_variable_that_takes_an_atomics_result_is_not_constant() {
+    let count = "@group(0) @binding(3) var<storage, read_write> count: atomic<u32>;";
+    let body = "var seen = 3u; seen = atomicAdd(&count, 1u); if (seen != 3u) { result[0] = texel(); }";
+    assert_eq!(globals(&special(count, body, &[]).0), ["picture", "result", "count"]);
+    let body = "
+        var seen = 3u; if (table[0] > 0.0) { seen = atomicAdd(&count, 1u); } else { return; }
+        result[seen] = 1.0;";
+    assert_eq!(globals(&special(count, body, &[]).0), ["table", "result", "count"]);
+}
+
+/// A loop may run once and still need to be one.
+#[test]
+fn a_loop_that_is_left_from_within_stays() {
+    for (body, word) in [
+        ("loop { if (table[0] > 0.0) { break; } result[0] = 1.0; break; }", "break"),
+        ("for (var i = 0u; i < 4u; i++) { if (table[i] > 0.0) { continue; } result[i] = 1.0; break; }", "continue"),
+        ("for (var i = 0u; i < 4u; i++) { if (table[i] > 0.0) { continue; } result[i] = 1.0; }", "continue"),
+    ] {
+        let (_, text) = special("", body, &[]);
+        assert!(text.contains("loop") && text.contains(word), "{text}");
+    }
+    let (_, text) = special("", "loop { result[0] = table[0]; if (A) { break; } result[1] = 1.0; }", &[]);
+    assert!(text.contains("result[0]") && !text.contains("loop") && !text.contains("result[1]"), "{text}");
+}
+
 #[test]
 fn a_variable_written_through_a_pointer_is_not_constant() {
     let declarations = "fn assign(to: ptr<function, bool>) { *to = table[0] > 0.0; }";
@@ -250,13 +301,16 @@ fn a_select_on_a_constant_is_the_operand_it_takes() {
 /// A value prepared for a branch that is gone is not prepared; one with an effect is.
 #[test]
 fn what_only_a_dead_branch_uses_goes_too() {
-    let declarations = "fn noted(x: f32) -> f32 { result[7] = x; return x; }";
+    let declarations = "
+        fn noted_first(x: f32) -> f32 { result[7] = x; return x; }
+        fn noted(x: f32) -> f32 { return noted_first(x) + 1.0; }";
     let body = "
-        let lit = texel(); var sum = 0.0; for (var i = 0u; i < 4u; i++) { if (table[i] < 0.0) { break; } sum += table[i]; }
+        let lit = texel(); var sum = 0.0;
+        for (var i = 0u; i < 4u; i++) { if (table[i] < 0.0) { break; } sum += table[i]; }
         let seen = noted(3.0); result[0] = 1.0; if (A) { result[0] = lit + sum + seen; }";
     let (module, text) = special(declarations, body, &[("A", 0.0)]);
     assert_eq!(globals(&module), ["result"], "{text}");
-    assert_eq!(functions(&module), ["noted"]);
+    assert_eq!(functions(&module), ["noted_first", "noted"]);
     assert!(!text.contains("loop") && !text.contains("    var "), "{text}");
     assert_eq!(globals(&special(declarations, body, &[]).0), ["picture", "table", "result"]);
 }
@@ -287,7 +341,7 @@ fn floats_are_not_computed_here() {
     assert!(text.contains("0.1f + 0.2f"), "{text}");
 }
 
-/// A sum of integers wraps, as on the device; a division by zero, an error in a constant, is left to it.
+/// A sum of integers wraps, as on the device.
 #[test]
 fn integers_are_computed_as_on_the_device() {
     let declarations = "fn sum(a: i32, b: i32) -> i32 { return a + b; }";

@@ -118,8 +118,8 @@ pub(super) fn same_bits(left: Literal, right: Literal) -> bool {
 }
 
 /// The value of an expression whose operands are constants, where it is a scalar that every device agrees on: a bool or
-/// an integer, or a float that is picked from the operands or has its sign turned. Sums and functions of floats are left
-/// to the device, whose rounding may be another.
+/// an integer, or a float that is picked from the operands or has its sign turned. Sums and functions of floats are
+/// left to the device, whose rounding may be another.
 pub(super) fn evaluate(
     module: &mut Module,
     expressions: &Arena<Expression>,

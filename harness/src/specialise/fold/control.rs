@@ -56,8 +56,9 @@ impl Folder<'_> {
                 let (body, flow) = self.inner_block(body, &mut known_in_case);
                 // A case that was to fall through and now ends, ends.
                 let fall_through = fall_through && flow == Flow::GoesOn;
+                // `case 1, 2` falls through from an empty case, which changes nothing.
+                entered_from_above = fall_through && !body.is_empty();
                 folded_cases.push(SwitchCase { value, body, fall_through });
-                entered_from_above = fall_through;
             }
             folded.push(Statement::Switch { selector, cases: folded_cases }, span);
             *known = known_behind;
