@@ -1,6 +1,7 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
+use lapidary_harness::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;
@@ -42,13 +43,38 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &[] })?;
+    let figures = ladder();
+    let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &figures })?;
     let index = index.canonicalize().unwrap_or(index);
     output::line(&index.display().to_string())?;
     if arguments.open {
         open(&index)?;
     }
     Ok(Outcome::Passed)
+}
+
+/// The committed plots of the ladder: to measure it anew takes minutes and a quiet machine.
+fn ladder() -> Vec<(String, Picture)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/lavapipe");
+    let figure = |measure: &str, title: &str, paragraph: &str| {
+        let picture = Picture {
+            title: title.to_owned(),
+            file: folder.join(format!("gem_{measure}.svg")),
+            paragraph: paragraph.to_owned(),
+            command: "./cook cost gem --out docs/measurements/lavapipe".to_owned(),
+            size: PLOT_SIZE,
+        };
+        ("gem".to_owned(), picture)
+    };
+    vec![
+        figure(
+            "flip",
+            "What accuracy costs: FLIP",
+            "Time of a frame that the stone fills against the visible difference from the spectral reference. On the grey line lie the \
+                rungs to choose from: nothing faster is better.",
+        ),
+        figure("rmse", "What accuracy costs: RMSE", "The same by the error in linear radiance."),
+    ]
 }
 
 /// Hands the page to the system's own opener.

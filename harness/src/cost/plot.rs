@@ -5,7 +5,8 @@ use crate::render::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const SIZE: (u32, u32) = (1200, 760);
+/// Width and height of the plot.
+pub const SIZE: (u32, u32) = (1200, 760);
 /// Of a series: colour-blind safe (Okabe and Ito 2008).
 const COLORS: [RGBColor; 5] = [
     RGBColor(0x00, 0x00, 0x00),

@@ -19,7 +19,7 @@ use std::{
 pub struct Picture {
     /// Its name; the picture of the brilliant, by this name, opens the page.
     pub title: String,
-    /// The PNG, which is copied into the gallery.
+    /// The PNG or SVG, which is copied into the gallery.
     pub file: PathBuf,
     /// What it shows, in a paragraph of plain text with `` `code` ``.
     pub paragraph: String,
@@ -36,7 +36,7 @@ pub struct Site<'a> {
     pub adapter: String,
     /// The scenes.
     pub pictures: &'a [Picture],
-    /// Figures of single modules, each with its module's name; may be empty.
+    /// Figures of single modules and recipes, each with that one's name; may be empty.
     pub figures: &'a [(String, Picture)],
 }
 
@@ -55,7 +55,7 @@ pub enum GalleryError {
         /// The file system's reason.
         source: io::Error,
     },
-    /// A figure's module does not exist.
+    /// A figure's module or recipe does not exist.
     #[error("figure `{title}` belongs to module `{module}`, which the cookbook does not have")]
     UnknownModule {
         /// The figure's title.
@@ -114,7 +114,7 @@ struct Placed<'a> {
 /// Where a picture is missing, a figure's module is unknown, the file system refuses, or `out` holds anything that an
 /// earlier call did not write.
 pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
-    if let Some((module, figure)) = site.figures.iter().find(|(name, _)| crate::cookbook::module(name).is_none()) {
+    if let Some((module, figure)) = site.figures.iter().find(|(name, _)| !is_known(name)) {
         return Err(GalleryError::UnknownModule { title: figure.title.clone(), module: module.clone() });
     }
     let pictures = site.pictures.iter().map(|picture| (None, picture));
@@ -138,6 +138,11 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
     Ok(folder.join("index.html"))
 }
 
+/// Whether the cookbook has a module or a recipe of that name.
+fn is_known(name: &str) -> bool {
+    crate::cookbook::module(name).is_some() || crate::cookbook::recipe(name).is_some()
+}
+
 /// Gives each picture a file name of its own, after its title.
 fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> Vec<Placed<'a>> {
     let mut taken = HashSet::new();
@@ -152,7 +157,8 @@ fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> 
                 count += 1;
                 name = format!("{stem}-{count}");
             }
-            Placed { picture, module, place: format!("images/{name}.png") }
+            let extension = picture.file.extension().and_then(|extension| extension.to_str()).unwrap_or("png");
+            Placed { picture, module, place: format!("images/{name}.{extension}") }
         })
         .collect()
 }

@@ -28,7 +28,7 @@ pub fn page(adapter: &str, placed: &[Placed<'_>]) -> String {
     let (style, script) = (include_str!("page.css"), include_str!("page.js"));
     let hero = hero.map(|at| opening_picture(pictures[at])).unwrap_or_default();
     let modules_html: String = modules.iter().map(|module| section::module(module, placed)).collect();
-    let recipes_html: String = recipes.iter().map(section::recipe).collect();
+    let recipes_html: String = recipes.iter().map(|recipe| section::recipe(recipe, placed)).collect();
     let (modules, recipes, adapter) = (modules.len(), recipes.len(), escape(adapter));
     format!(
         r##"<!DOCTYPE html>

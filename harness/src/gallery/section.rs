@@ -17,9 +17,7 @@ pub fn module(module: &Module, placed: &[Placed<'_>]) -> String {
     let page = markdown::page(module.page, name);
     let lead = framed("<div class=\"lead\">", &page.lead, "</div>\n");
     let equation = framed("<div class=\"key\">", &page.equation, "</div>\n");
-    let figures: String =
-        placed.iter().filter(|placed| placed.module == Some(name)).map(|placed| figure(placed, 4)).collect();
-    let figures = framed("<h3>Figures</h3>\n<div class=\"grid\">\n", &figures, "</div>\n");
+    let figures = figures(name, placed);
     let rows: String = module.functions.iter().map(|function| row(module, function)).collect();
     let (purpose, source) = (prose(&module.header.purpose), prose(&module.header.source));
     let listing = listing(&format!("{name}.wgsl"), module.source);
@@ -125,9 +123,16 @@ fn bound(bound: &FieldBound) -> String {
     words.join(" ")
 }
 
+/// The figures of the module or recipe `name`.
+fn figures(name: &str, placed: &[Placed<'_>]) -> String {
+    let own = placed.iter().filter(|placed| placed.module == Some(name));
+    framed("<h3>Figures</h3>\n<div class=\"grid\">\n", &own.map(|placed| figure(placed, 4)).collect::<String>(), "</div>\n")
+}
+
 /// The article of a recipe, with the modules that it requires pasted in.
-pub fn recipe(recipe: &Recipe) -> String {
+pub fn recipe(recipe: &Recipe, placed: &[Placed<'_>]) -> String {
     let name = recipe.name;
+    let figures = figures(name, placed);
     let (purpose, source) = match parse_header(recipe.source) {
         Ok(header) => (
             format!("<p class=\"purpose\">{}</p>\n", prose(&header.purpose)),
@@ -148,7 +153,7 @@ pub fn recipe(recipe: &Recipe) -> String {
     format!(
         r##"<article id="recipe-{name}" class="module">
 <h3>{name} <a class="anchor" href="#recipe-{name}" aria-label="Link to recipe {name}">#</a></h3>
-{purpose}{requires}{listing}{source}{overrides}</article>
+{purpose}{requires}{listing}{source}{overrides}{figures}</article>
 "##
     )
 }

@@ -34,6 +34,15 @@ const RENDER: &[Row] = &[
     ("octahedron --exposure inf --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --exposure 0 --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --rung proxy1 --out {}/out.png", Usage, &["--rung", "did you mean `proxy-1`"]),
+    ("octahedron --rung proxy-65 --out {}/out.png", Usage, &["--rung", "at most 64"]),
+    ("octahedron --rung convex-1+2 --out {}/out.png", Usage, &["--rung", "3 to 61"]),
+    ("bunny_stone --rung convex-2 --out {}/out.png", One, &["not convex", "bvh"]),
+    ("octahedron --from 20 --out {}/out.png", Usage, &["--from", "20,11"]),
+    ("octahedron --from nan,0 --out {}/out.png", Usage, &["--from", "degrees"]),
+    ("octahedron --strength nan --out {}/out.png", Usage, &["--strength", "above 0"]),
+    ("octahedron --distance-limit 0 --out {}/out.png", Usage, &["--distance-limit", "above 0"]),
+    ("octahedron --without fire --out {}/out.png", Usage, &["--without", "absorption"]),
+    ("octahedron --rest lost --out {}/out.png", Usage, &["--rest", "dropped"]),
     ("octahedron --centre wrong --out {}/out.png", Usage, &["--centre", "stable"]),
 ];
 
@@ -95,6 +104,11 @@ const CHECK: &[Row] = &[
 ];
 
 const OTHERS: &[Row] = &[
+    ("cost skin", One, &["no ladder `skin`", "gem"]),
+    ("cost gem --rungs proxi-1", Usage, &["did you mean `proxy-1`"]),
+    ("cost gem --rungs reference", Usage, &["compared with"]),
+    ("cost gem --views briliant", Usage, &["did you mean `brilliant`"]),
+    ("cost gem --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
     ("chek", Usage, &["chek", "check"]),
     ("list --jsn", Usage, &["--jsn"]),
     ("copy", Usage, &["MODULE"]),

@@ -228,9 +228,25 @@ fn rungs_and_exposure_change_the_picture() {
         std::fs::read(folder.path().join("out.png")).expect("the output")
     };
     let usual = picture(&[]);
-    assert!(usual == picture(&["--rung", "proxy-1", "--exposure", "1", "--centre", "stable"]));
+    assert!(usual == picture(&["--rung", "proxy-4+tracker", "--exposure", "1", "--centre", "stable"]));
     assert!(usual != picture(&["--rung", "surface"]));
     assert!(usual != picture(&["--exposure", "2"]));
+    assert!(usual != picture(&["--from", "20,11"]));
+    assert!(usual != picture(&["--rest", "dropped"]));
+    assert!(usual != picture(&["--distance-limit", "1"]));
+    assert!(picture(&["--rung", "proxy-1+paper"]) != picture(&["--rung", "proxy-1+paper", "--strength", "0.01"]));
+    assert!(usual != picture(&["--rung", "reference"]));
+}
+
+#[test]
+fn absorption_can_be_left_out() {
+    let folder = folder();
+    let picture = |extra: &[&str]| {
+        let arguments = [["render", "ruby", "--size", "32x32", "--out", "out.png"].as_slice(), extra].concat();
+        succeeds(folder.path(), &arguments);
+        std::fs::read(folder.path().join("out.png")).expect("the output")
+    };
+    assert!(picture(&[]) != picture(&["--without", "absorption"]));
 }
 
 #[test]

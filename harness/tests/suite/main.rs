@@ -6,6 +6,7 @@ mod bvh;
 mod cli;
 mod comparator;
 mod contract;
+mod cost;
 mod deferred;
 mod dispatch;
 mod formulas;

@@ -1,0 +1,49 @@
+//! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
+
+use super::program::{folder, succeeds};
+use lapidary_harness::cost::{MEASURES, views};
+use serde_json::Value;
+
+#[test]
+fn every_rung_measure_and_view_has_a_row() {
+    let folder = folder();
+    let arguments = ["cost", "gem", "--json", "--rounds", "0", "--rungs", "surface,proxy-1,convex-4+tracker", "--views", "brilliant,sapphire"];
+    let rows: Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON alone");
+    let rows = rows.as_array().expect("an array");
+    assert_eq!(rows.len(), 3 * 2 * MEASURES.len());
+    let error = |rung: &str, view: &str, measure: &str| {
+        let row = rows.iter().find(|row| row["rung"] == rung && row["view"] == view && row["error_measure"] == measure);
+        let row = row.unwrap_or_else(|| panic!("{rung} {view} {measure}"));
+        assert_eq!(row["technique"], "gem");
+        assert!(row["ms"].is_null() && row["dominated"] == false);
+        row["error"].as_f64().expect("a number")
+    };
+    for view in ["brilliant", "sapphire"] {
+        for measure in ["flip", "rmse"] {
+            let [surface, proxy, convex] =
+                ["surface", "proxy-1", "convex-4+tracker"].map(|rung| error(rung, view, measure));
+            assert!(convex < proxy && convex < surface, "{view} {measure}: {surface} {proxy} {convex}");
+        }
+    }
+}
+
+#[test]
+fn a_report_is_written_with_plots_when_timed() {
+    let folder = folder();
+    let arguments = ["cost", "gem", "--rounds", "1", "--rungs", "surface,proxy-1", "--views", "octahedron", "--out", "report"];
+    let text = succeeds(folder.path(), &arguments).stdout;
+    assert!(text.contains("proxy-1") && text.contains("GTX 760") && text.contains("dominated"), "{text}");
+    for file in ["gem.txt", "gem.json", "gem_flip.svg", "gem_rmse.svg"] {
+        let contents = std::fs::read_to_string(folder.path().join("report").join(file)).expect(file);
+        assert!(contents.contains("proxy-1"), "{file}");
+    }
+}
+
+#[test]
+fn every_view_has_its_committed_reference() {
+    for view in views::VIEWS.into_iter().chain(views::SHOWN) {
+        let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
+        let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.5).count();
+        assert!(covered > 1000, "{}: {covered}", view.name);
+    }
+}
