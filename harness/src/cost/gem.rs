@@ -168,7 +168,9 @@ fn count(entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostE
     let scene = Scene::named("brilliant")?;
     let source = cookbook::recipe_source(rung.recipe());
     let (ir, _) = dispatch::parse(&source, rung.recipe()).map_err(render::RenderError::from)?;
+    let declared = |key: &str| ir.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
     let constants = render::constants(&scene, &entry.settings);
+    let constants: Vec<(&str, f64)> = constants.into_iter().filter(|(key, _)| declared(key)).collect();
     let (ir, info) = specialise(ir, &constants, &["gem_vertex", "gem_fragment"])?;
     let counts = spirv_counts(&ir, &info, "gem_vertex", "gem_fragment")?;
     Ok(RungReport {

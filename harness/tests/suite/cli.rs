@@ -1,23 +1,12 @@
 //! `cook` does what its help says.
 
-use crate::program::{Answer, cook};
+use crate::program::{cook, folder, succeeds};
 use lapidary_harness::cookbook;
 use lapidary_harness::dispatch;
 use lapidary_harness::scene::{Scene, gltf};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-/// Runs `cook` in `folder` and asserts that it succeeds without a word on stderr.
-fn succeeds(folder: &Path, arguments: &[&str]) -> Answer {
-    let answer = cook(folder, arguments);
-    assert_eq!((answer.code, answer.stderr.as_str()), (Some(0), ""), "{arguments:?}: {}", answer.stdout);
-    answer
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
 
 fn json(text: &str) -> Vec<Value> {
     match serde_json::from_str(text) {

@@ -1,6 +1,6 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
-use super::program::{folder, succeeds};
+use crate::program::{folder, succeeds};
 use lapidary_harness::cost::{MEASURES, views};
 use serde_json::Value;
 

@@ -32,3 +32,15 @@ pub(crate) fn cook_in(folder: &Path, arguments: &[impl AsRef<OsStr>], environmen
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     Answer { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
 }
+
+/// Runs `cook` in `folder` and asserts that it succeeds without a word on stderr.
+pub(crate) fn succeeds(folder: &Path, arguments: &[&str]) -> Answer {
+    let answer = cook(folder, arguments);
+    assert_eq!((answer.code, answer.stderr.as_str()), (Some(0), ""), "{arguments:?}: {}", answer.stdout);
+    answer
+}
+
+/// A folder that goes when it is dropped.
+pub(crate) fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
