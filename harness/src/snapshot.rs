@@ -27,6 +27,8 @@ pub struct Shot {
     pub scene: &'static str,
     /// The rung, by its name.
     pub rung: &'static str,
+    /// Where it is seen from, in degrees off the vertical and from +z towards +x; the scene's own camera where there is none.
+    pub from: Option<(f32, f32)>,
     /// The proxy's centre by the paper's eq. (4).
     pub paper_centre: bool,
     /// What it shows; where empty, the scene's own description.
@@ -34,7 +36,7 @@ pub struct Shot {
 }
 
 /// Every committed picture.
-pub const SHOTS: [Shot; 18] = [
+pub const SHOTS: [Shot; 20] = [
     shot("brilliant", "Round brilliant, diamond", "brilliant", "proxy-4+tracker"),
     shot("sapphire", "Round brilliant, sapphire", "sapphire", "proxy-4+tracker"),
     shot("ruby", "Round brilliant, ruby", "ruby", "proxy-4+tracker"),
@@ -72,16 +74,35 @@ pub const SHOTS: [Shot; 18] = [
             there, and depends on the order of the vertices.",
         ..shot("brilliant_paper_centre", "Round brilliant, the paper's centre", "brilliant", "proxy-1")
     },
-    shot("brilliant_fan", "The table as a fan from one corner", "brilliant_fan", "proxy-1"),
-    shot("brilliant_strip", "The table as a strip", "brilliant_strip", "proxy-1"),
-    shot("brilliant_sliver", "The table in slivers", "brilliant_sliver", "proxy-1"),
+    Shot {
+        paragraph: "Face-up, every ray inside is tested against all facet planes, to eight hits. What the five pictures of the table beside \
+            this one should show.",
+        ..face_up("table_exact", "Face-up, exact", "brilliant", "convex-8")
+    },
+    Shot {
+        paragraph: "Face-up by proxy, one hit, the table cut into triangles about its centre: the inside repeats the triangles.",
+        ..face_up("table_centre", "Face-up by proxy, the table about its centre", "brilliant", "proxy-1")
+    },
+    face_up("table_fan", "Face-up by proxy, the table as a fan", "brilliant_fan", "proxy-1"),
+    face_up("table_strip", "Face-up by proxy, the table as a strip", "brilliant_strip", "proxy-1"),
+    face_up("table_sliver", "Face-up by proxy, the table in slivers", "brilliant_sliver", "proxy-1"),
 ];
 
 const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
-    Shot { name, title, scene, rung, paper_centre: false, paragraph: "" }
+    Shot { name, title, scene, rung, from: None, paper_centre: false, paragraph: "" }
+}
+
+const fn face_up(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
+    Shot { from: Some((0.0, 0.0)), ..shot(name, title, scene, rung) }
 }
 
 impl Shot {
+    /// Its scene, with its camera.
+    pub fn open(&self) -> Result<Scene, SceneError> {
+        let scene = Scene::named(self.scene)?;
+        Ok(self.from.map_or_else(|| scene.clone(), |(polar, azimuth)| scene.seen_from(polar, azimuth)))
+    }
+
     /// How to render it at `side` pixels.
     ///
     /// # Panics
@@ -99,7 +120,8 @@ impl Shot {
     /// The command that renders it.
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
-        format!("./cook render {} --rung {}{centre} --out {}.png", self.scene, self.rung, self.name)
+        let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
+        format!("./cook render {}{from} --rung {}{centre} --out {}.png", self.scene, self.rung, self.name)
     }
 }
 
@@ -170,8 +192,7 @@ impl Comparison {
 
 /// Renders `shot` with `source`, the composed gem recipe, as PNG and as EXR would hold it.
 pub fn render_shot(gpu: &Gpu, shot: &Shot, source: &str) -> Result<[Picture; 2], SnapshotError> {
-    let scene = Scene::named(shot.scene)?;
-    render_scene(gpu, shot, &scene, source)
+    render_scene(gpu, shot, &shot.open()?, source)
 }
 
 /// The same for another scene in the shot's place.
