@@ -12,10 +12,6 @@
 // Only triangles that the ray leaves the solid through count: counter-clockwise seen from outside, normal . direction > 0. From
 // inside there is no other to meet. For those that a ray enters through, from outside, pass b and c exchanged.
 
-// What a component of the direction is replaced by if it is smaller, 2^-24: its reciprocal is finite, and a ray moves by
-// less than 2^-23 of the mesh while it crosses the mesh, which the margin holds.
-const BVH_TRACE_SMALLEST = 5.9604644775390625e-8f;
-
 // The margin relative to the largest distance of the mesh along an axis, 2^-18, and to the largest coordinate of the origin, 2^-21.
 // With e = 2^-23, WGSL's relative error of + - *: a sheared coordinate is off by 7.5 e (offset, depth and difference 2 e + 2 e,
 // division 2.5 e, product e), an edge function over its edge by 6 e more, a box's planes by 9 e; an origin on the
@@ -44,7 +40,7 @@ struct BvhTraceRay {
     origin: vec3f,
     // Unit direction.
     direction: vec3f,
-    // 1 / direction, finite.
+    // 1 / direction, at most 2^24.
     reciprocal: vec3f,
     // With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
     shear: vec3f,
@@ -89,8 +85,10 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
     let toward = select(vec3f(-1.0f), vec3f(1.0f), direction >= vec3f(0.0f));
-    let reciprocal = toward / max(abs(direction), vec3f(BVH_TRACE_SMALLEST));
     let size = abs(direction);
+    // A component below 2^-24 is replaced by that. Its reciprocal is finite, and the ray moves by less than 2^-23 of the mesh while it
+    // crosses the mesh, which the margin holds.
+    let reciprocal = toward / max(size, vec3f(5.9604644775390625e-8f));
     let largest = max(size.x, max(size.y, size.z));
     let axis = select(select(0u, 1u, size.y == largest), 2u, size.z == largest);
     let turned = bvh_trace_turn(direction, axis);
@@ -162,13 +160,15 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 // and counts if the origin lies inside it: if no edge passes it on the wrong side by more than the margin. Sharp corners end at the margin as well.
 // Its plane may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
 // Edges are taken as differences, so that the error of an edge function is relative to its edge, as the margin is.
-// Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes beside it. At equal distances
+// Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes beside it, and beside a corner
+//   by rounding those of the corner. At equal distances
 //   the lower number wins, so that the order of the triangles does not matter.
 // Units: those of the positions.
-// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e12, edges 0 or at least 1e-10.
-// Outside: `triangle` equal to `left`, the one just left, never counts. Nor does a triangle without area in the frame of the ray:
-//   its neighbours, of which it is an edge there, do. Smaller triangles count as such, larger ones overflow.
-// Accuracy: lavapipe distance 4 ulp + 4 backward, barycentrics 4 ulp + 4 backward, triangle 4 backward; portable distance 8 ulp + 8 backward, barycentrics 8 ulp + 8 backward, triangle 8 backward
+// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e12, edges 0 or at least 1e-10 and
+//   1/1000 of the coordinates; in the frame of the ray at least 1/32 as thick as long.
+// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in the frame of the ray need not: its
+//   neighbours, of which it is an edge there, do. Of thin ones none is refused that the ray meets, but the point in it is less sure.
+// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0005 abs + 6 backward, triangle 6 backward; portable distance 8 ulp + 12 backward, barycentrics 8 ulp + 0.001 abs + 12 backward, triangle 12 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -184,8 +184,13 @@ fn bvh_trace_triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest component is negative.
-    let spanned = vec3f(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
+    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's error is that end's
+    // distance times the edge. Seen against the ray where its largest component is negative.
+    let squared = vec3f(dot(p.xy, p.xy), dot(q.xy, q.xy), dot(r.xy, r.xy));
+    let on_qr = select(q.xy, r.xy, squared.z < squared.y);
+    let on_rp = select(r.xy, p.xy, squared.x < squared.z);
+    let on_pq = select(p.xy, q.xy, squared.y < squared.x);
+    let spanned = vec3f(on_qr.x * qr.y - on_qr.y * qr.x, on_rp.x * rp.y - on_rp.y * rp.x, on_pq.x * pq.y - on_pq.y * pq.x);
     let area = sign(ray.shear.z) * spanned;
     if (triangle == left || area.x + area.y + area.z <= 0.0f) {
         return hit;

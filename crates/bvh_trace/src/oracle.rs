@@ -11,7 +11,7 @@ pub struct BvhTraceRay {
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// 1 / direction, finite.
+    /// 1 / direction, at most 2²⁴.
     pub reciprocal: DVec3,
     /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
     pub shear: DVec3,
@@ -158,16 +158,16 @@ pub fn triangle(
     }
     let weights = volumes.map(|volume| volume.max(0.0));
     let total: f64 = weights.iter().sum();
-    let along = if volumes.iter().all(|volume| *volume >= 0.0) {
-        normal.dot(corners[0]) / normal.dot(direction)
+    // How high the plane stands over the origin, times its normal, and the same at a point of the triangle beside the ray.
+    let (height, slope) = if volumes.iter().all(|volume| *volume >= 0.0) {
+        (normal.dot(corners[0]), normal.dot(direction))
     } else {
         let point: DVec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-        point[axis] / total / direction[axis]
+        (point[axis] * direction[axis].signum(), total * direction[axis].abs())
     };
-    let distance = along.max(0.0);
-    // Along the frame's axes, which are two coordinate axes and the direction, the plane is met at height / slope.
+    let distance = (height / slope).max(0.0);
+    // Along the frame's axes, which are two coordinate axes and the direction, a plane is met at height / slope.
     let slopes: f64 = (0..3).filter(|other| *other != axis).map(|other| normal[other].abs()).sum();
-    let height = along * total * direction[axis].abs();
     if height < -ray.margin * (slopes + normal.dot(direction))
         || distance > hit.distance
         || (distance == hit.distance && triangle > hit.triangle)
