@@ -305,7 +305,7 @@ fn any_box(draws: &mut Draws<'_>) -> BoxCase {
     let mut share = || draws.pick(&[0.5, 0.0, 1.0, 0.25, 1.25, 1.0 + 2f64.powi(-19)]);
     let share = DVec3::new(share(), share(), share());
     let target = lower + share * (upper - lower);
-    let distance = f64::from(draws.pick(&[1.0, 0.0, 3.0, -1.0])) * size;
+    let distance = draws.pick(&[1.0, 0.0, 3.0, -1.0]) * size;
     let origin = (target - distance * toward.as_dvec3()).as_vec3();
     let (lower, upper) = (lower.as_vec3(), upper.as_vec3());
     let nearest = match draws.below(4) {
