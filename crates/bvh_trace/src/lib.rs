@@ -1,8 +1,8 @@
-//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding
-//! volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
+//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a
+//! bounding volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. [`traversal`]
-//! mirrors the kernel of `wgsl/recipes/bvh_trace.wgsl`.
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! [`traversal`] mirrors the kernel of `wgsl/recipes/bvh_trace.wgsl`.
 
 pub mod oracle;
 pub mod traversal;
@@ -71,8 +71,8 @@ pub fn turn(vector: Vec3, axis: u32) -> Vec3 {
 pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceRay {
     let toward = Vec3::select(direction.cmpge(Vec3::ZERO), Vec3::ONE, Vec3::NEG_ONE);
     let size = direction.abs();
-    // A component below 2⁻²⁴ is replaced by that. Its reciprocal is finite, and the ray moves by less than 2⁻²³ of the mesh while
-    // it crosses the mesh, which the margin holds.
+    // A component below 2⁻²⁴ is replaced by that. Its reciprocal is finite, and the ray moves by less than 2⁻²³ of the
+    // mesh while it crosses the mesh, which the margin holds.
     let reciprocal = toward / size.max(Vec3::splat(5.9604644775390625e-8));
     let largest = size.x.max(size.y.max(size.z));
     let y_or_x = if size.y == largest { 1 } else { 0 };
@@ -136,8 +136,8 @@ pub fn triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's error is
-    // that end's distance times the edge. Seen against the ray where its largest component is negative.
+    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's
+    // error is that end's distance times the edge. Seen against the ray where its largest component is negative.
     let squared =
         Vec3::new(p.truncate().length_squared(), q.truncate().length_squared(), r.truncate().length_squared());
     let on_qr = if squared.z < squared.y { r } else { q };
@@ -161,8 +161,8 @@ pub fn triangle(
     }
     let weight = area.max(Vec3::ZERO);
     let total = weight.x + weight.y + weight.z;
-    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along
-    // the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance
+    // along the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
     let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
     let normal = qr.cross(rp).abs();
     let distance = (height / total).max(0.0);

@@ -115,7 +115,8 @@ fn grid_case(draws: &mut Draws<'_>) -> Case {
     (hit, ray, a, b, c, draws.below(4), draws.pick(&[BVH_TRACE_NONE, 0, 1, 2, 3]))
 }
 
-/// Weights of the second and third corner at the point that the ray is aimed at: inside, at an edge, at a corner, just beside, far away.
+/// Weights of the second and third corner at the point that the ray is aimed at: inside, at an edge, at a corner, just
+/// beside, far away.
 fn aim(draws: &mut Draws<'_>, aside: f64) -> (f64, f64) {
     let inside = |draws: &mut Draws<'_>| {
         let (v, w) = (draws.unit(), draws.unit());
@@ -165,8 +166,9 @@ fn any_case(draws: &mut Draws<'_>) -> Case {
         2 => -2.0 * size * draws.unit(),
         _ => 2.0 * size * draws.unit(),
     };
-    // At an edge and at the start of the ray the result has a kink: no input that is a few last places off need have the rounded
-    // result. Seen squarely that is within the bounds; not so where a thin outline magnifies it, nor where both kinks meet.
+    // At an edge and at the start of the ray the result has a kink: no input that is a few last places off need have
+    // the rounded result. Seen squarely that is within the bounds; not so where a thin outline magnifies it, nor where
+    // both kinks meet.
     let close = distance.abs() < 0.01 * size;
     let (v, w) = if close || cosine.abs() < 0.5 || shape < 6 {
         let (v, w) = draws.pick(&[(0.3, 0.3), (0.1, 0.5), (0.6, 0.2), (0.2, 0.6), (1.5, -0.2), (-0.3, 0.6)]);
@@ -200,8 +202,8 @@ fn any_case(draws: &mut Draws<'_>) -> Case {
     (hit, ray, a, b, c, number, if draws.below(16) == 0 { number } else { BVH_TRACE_NONE })
 }
 
-/// A needle that the ray, along an axis, meets at its blunt end: positions in the frame are exact there, and the weights are as exact as
-/// two of the corners are near.
+/// A needle that the ray, along an axis, meets at its blunt end: positions in the frame are exact there, and the
+/// weights are as exact as two of the corners are near.
 fn straight_case(draws: &mut Draws<'_>) -> Case {
     let along = draws.pick(&[Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y]);
     let (side, up) = (Vec3::new(along.z, along.x, along.y), Vec3::new(along.y, along.z, along.x));
@@ -238,7 +240,8 @@ fn crossing(case: &Case) -> Option<oracle::Crossing> {
     oracle::crossing([a, b, c].map(|p| p.as_dvec3()), triangle, ray.origin.as_dvec3(), ray.direction.as_dvec3())
 }
 
-/// Away from edges and from edge-on, and small whole numbers about the epsilon, where Möller and Trumbore's test does well.
+/// Away from edges and from edge-on, and small whole numbers about the epsilon, where Möller and Trumbore's test does
+/// well.
 fn benign_case(draws: &mut Draws<'_>) -> Case {
     let number = draws.below(4);
     let left = draws.pick(&[BVH_TRACE_NONE, BVH_TRACE_NONE, BVH_TRACE_NONE, 0]);
@@ -450,7 +453,8 @@ fn triangle_formulas() -> Vec<Formula> {
         Vec3::new(0.577_350_26, 0.577_350_26, 0.577_350_26),
         [Vec3::new(0.5, -0.8, 0.1), Vec3::splat(0.2), Vec3::new(-0.6, 0.9, 1.0)],
     );
-    // The middle of the edge between b and c, which the ray meets from both sides of the edge, and Möller and Trumbore's test from neither.
+    // The middle of the edge between b and c, which the ray meets from both sides of the edge, and Möller and
+    // Trumbore's test from neither.
     let toward = Vec3::new(0.531_890_63, -0.576_214_85, 0.620_539_07);
     let (b, c) = (Vec3::new(0.3, -0.9, 0.7), Vec3::new(0.9, -0.4, 0.7));
     let one = Vec3::new(0.7, -0.1, 0.8);
