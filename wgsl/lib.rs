@@ -42,4 +42,4 @@ pub const MODULES: &[Module] =
     modules!["bvh_trace", "closest_point", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["bvh_trace", "display", "gem"];
+pub const RECIPES: &[Recipe] = recipes!["display", "gem", "trace"];

@@ -1,4 +1,4 @@
-//! Mirror of the kernel of `wgsl/recipes/bvh_trace.wgsl`: the loops over nodes and over all triangles, line by line, on
+//! Mirror of the kernel of `wgsl/recipes/trace.wgsl`: the loops over nodes and over all triangles, line by line, on
 //! the buffers that it binds.
 
 use crate::{BVH_TRACE_NONE, BvhTraceHit, BvhTraceRay};

@@ -111,8 +111,8 @@ impl Body {
 
 /// Runs the recipe over `queries`.
 fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) -> Vec<BvhTraceHit> {
-    let source = cookbook::recipe_source("bvh_trace");
-    let (module, _) = dispatch::parse(&source, "recipe bvh_trace").unwrap_or_else(|error| panic!("{error}"));
+    let source = cookbook::recipe_source("trace");
+    let (module, _) = dispatch::parse(&source, "recipe trace").unwrap_or_else(|error| panic!("{error}"));
     let words: Vec<[u32; 8]> = queries
         .iter()
         .map(|query| {
@@ -125,11 +125,11 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
     let bytes = (queries.len() * 24) as u64;
     let readback = gpu.guarded("tracing rays", |device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("bvh_trace"),
+            label: Some("trace"),
             source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
         });
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("bvh_trace"),
+            label: Some("trace"),
             layout: None,
             module: &module,
             entry_point: Some("trace_rays"),
