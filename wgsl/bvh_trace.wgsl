@@ -1,26 +1,26 @@
 // bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis permutation, shear, edge functions);
-//   Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013 (conservative boxes). The naive triangle: Möller and Trumbore, "Fast, Minimum
-//   Storage Ray/Triangle Intersection", 1997. Compared with: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
+// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis permutation, shear,
+//   edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013 (conservative boxes). The naive triangle: Möller
+//   and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Compared with: Imagire, "Proxy Geometry Gem
+//   Rendering", Fig. 7.
 //
-// Woop, Benthin and Wald find the same sign for an edge from both of its sides by giving both the very same roundings, and repeat an
-// edge function that comes out as 0 in f64. WGSL promises neither: a compiler may fuse a product and a sum on one side only, and there is no f64.
-// Here every comparison gives way by a margin that is larger than what WGSL lets the rounding be. A ray that meets a triangle in exact
-// arithmetic is never refused; along an edge, and within the margin beside it, both of its triangles count, and the nearer one is kept.
+// Woop, Benthin and Wald find the same sign for an edge from both of its sides by giving both the very same roundings,
+// and repeat an edge function that comes out as 0 in f64. WGSL promises neither: a compiler may fuse a product and a
+// sum on one side only, and there is no f64. Here every comparison gives way by a margin that is larger than what WGSL
+// lets the rounding be. A triangle that a ray meets in exact arithmetic is not refused, unless it is edge-on to
+// rounding, and then its neighbours count; along an edge, and within the margin beside it, both of its triangles count,
+// and the nearer one is kept.
 //
-// Only triangles that the ray leaves the solid through count: counter-clockwise seen from outside, normal . direction > 0. From
-// inside there is no other to meet. For those that a ray enters through, from outside, pass b and c exchanged.
+// Only triangles that the ray leaves the solid through count: counter-clockwise seen from outside, normal . direction >
+// 0. From inside there is no other to meet. For those that a ray enters through, from outside, pass b and c exchanged.
 
-// What a component of the direction is replaced by if it is smaller, 2^-24: its reciprocal is finite, and a ray moves by
-// less than 2^-23 of the mesh while it crosses the mesh, which the margin holds.
-const BVH_TRACE_SMALLEST = 5.9604644775390625e-8f;
-
-// The margin relative to the largest distance of the mesh along an axis, 2^-18, and to the largest coordinate of the origin, 2^-21.
-// With e = 2^-23, WGSL's relative error of + - *: a sheared coordinate is off by 7.5 e (offset, depth and difference 2 e + 2 e,
-// division 2.5 e, product e), an edge function over its edge by 6 e more, a box's planes by 9 e; an origin on the
-// surface, as a position that was computed, by 5 e. The worst sum, 7.5 + 6 + 1.7 * 5 = 22 e, is under the 32 e of the first. The second
-// is that of the origin's last place, e / 2 to e, in coordinates that may be 1.7 times as large.
+// The margin relative to the largest distance of the mesh along an axis, 2^-18, and to the largest coordinate of the
+// origin, 2^-21. With e = 2^-23, WGSL's relative error of + - *: a sheared coordinate is off by 7.5 e (offset, depth
+// and difference 2 e + 2 e, division 2.5 e, product e), an edge function over its edge by 6 e more, a box's planes by 9
+// e; an origin on the surface, as a position that was computed, by 5 e. The worst sum, 7.5 + 6 + 1.7 * 5 = 22 e, is
+// under the 32 e of the first. The second is that of the origin's last place, e / 2 to e, in coordinates that may be
+// 1.7 times as large.
 const BVH_TRACE_MARGIN_REACH = 3.814697265625e-6f;
 const BVH_TRACE_MARGIN_ORIGIN = 4.76837158203125e-7f;
 
@@ -44,7 +44,7 @@ struct BvhTraceRay {
     origin: vec3f,
     // Unit direction.
     direction: vec3f,
-    // 1 / direction, finite.
+    // 1 / direction, at most 2^24.
     reciprocal: vec3f,
     // With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
     shear: vec3f,
@@ -70,7 +70,8 @@ struct BvhTraceHit {
     triangle: u32,
 }
 
-// A vector's components in a cyclic order that brings the one numbered `axis` to z. Being cyclic, it keeps the handedness.
+// A vector's components in a cyclic order that brings the one numbered `axis` to z. Being cyclic, it keeps the
+// handedness.
 // Returns: (vector[axis + 1], vector[axis + 2], vector[axis]), indices modulo 3.
 // Units: those of `vector`.
 // Domain: axis 0, 1 or 2.
@@ -84,13 +85,16 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // What the tests of all boxes and triangles need of a ray, computed once.
 // Returns: BvhTraceRay.
 // Units: those of the positions; `margin` is a length.
-// Domain: |direction| = 1; lower <= upper, the box of the whole mesh; coordinates up to 1e12, the box at least 1e-10 large.
+// Domain: |direction| = 1; lower <= upper, the box of the whole mesh; coordinates up to 1e12, the box at least 1e-10
+//   large.
 // Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction divides by 0.
 // Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
     let toward = select(vec3f(-1.0f), vec3f(1.0f), direction >= vec3f(0.0f));
-    let reciprocal = toward / max(abs(direction), vec3f(BVH_TRACE_SMALLEST));
     let size = abs(direction);
+    // A component below 2^-24 is replaced by that. Its reciprocal is finite, and the ray moves by less than 2^-23 of
+    // the mesh while it crosses the mesh, which the margin holds.
+    let reciprocal = toward / max(size, vec3f(5.9604644775390625e-8f));
     let largest = max(size.x, max(size.y, size.z));
     let axis = select(select(0u, 1u, size.y == largest), 2u, size.z == largest);
     let turned = bvh_trace_turn(direction, axis);
@@ -102,8 +106,9 @@ fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) ->
     return BvhTraceRay(origin, direction, reciprocal, shear, axis, margin);
 }
 
-// Whether a ray meets a box, made larger by the ray's margin on all sides, at a distance in [0, nearest]: the box of a triangle that
-// the ray hits before `nearest` is never missed, though its planes be met in any rounding, or the box be flat.
+// Whether a ray meets a box, made larger by the ray's margin on all sides, at a distance in [0, nearest]: the box of a
+// triangle that the ray hits before `nearest` is never missed, though its planes be met in any rounding, or the box be
+// flat.
 // Returns: BvhTraceBox; without a hit, `entry` is the distance of the last plane that the ray enters by, or 0.
 // Units: those of the positions.
 // Domain: lower <= upper inside the box that the ray was made for; nearest in [0, 1e37].
@@ -119,8 +124,8 @@ fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> 
     return BvhTraceBox(entry, entry <= exit);
 }
 
-// The slab test as one finds it. Kept to show where it fails: a plane through the origin of a ray along it is 0 * infinity, and a flat
-// box is missed by rounding.
+// The slab test as one finds it. Kept to show where it fails: a plane through the origin of a ray along it is 0 *
+// infinity, and a flat box is missed by rounding.
 // Returns: BvhTraceBox.
 // Units: those of the positions.
 // Domain: components of the direction of at least 0.05; the ray passes the box's edges at 1/100 of its size or more.
@@ -147,7 +152,8 @@ fn bvh_trace_start(limit: f32) -> BvhTraceHit {
     return BvhTraceHit(limit, vec2f(0.0f), BVH_TRACE_NONE);
 }
 
-// A position in the frame of a ray: the ray is its z axis, x and y are two of the coordinate axes, and all three may be aslant.
+// A position in the frame of a ray: the ray is its z axis, x and y are two of the coordinate axes, and all three may be
+// aslant.
 // Returns: (x, y, distance along the ray); position = origin + x e(axis + 1) + y e(axis + 2) + distance direction.
 // Units: those of the positions.
 // Domain: rays of bvh_trace_ray; coordinates up to 1e12.
@@ -158,17 +164,21 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
     return vec3f(turned.xy - ray.shear.xy * turned.z, turned.z * ray.shear.z);
 }
 
-// The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that. In the frame of the ray the triangle is flat,
-// and counts if the origin lies inside it: if no edge passes it on the wrong side by more than the margin. Sharp corners end at the margin as well.
-// Its plane may lie behind the origin by as much as the margin: an origin that was computed on one facet can lie outside of the next.
-// Edges are taken as differences, so that the error of an edge function is relative to its edge, as the margin is.
-// Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes beside it. At equal distances
-//   the lower number wins, so that the order of the triangles does not matter.
+// The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that. In the frame of the ray the
+// triangle is flat, and counts if the origin lies inside it: if no edge passes it on the wrong side by more than the
+// margin. Sharp corners end at the margin as well. Its plane may lie behind the origin by as much as the margin: an
+// origin that was computed on one facet can lie outside of the next. Edges are taken as differences, so that the error
+// of an edge function is relative to its edge, as the margin is.
+// Returns: BvhTraceHit: distance >= 0, and weights in [0, 1]: those of a point of the triangle, though the ray passes
+//   beside it, and beside a corner by rounding those of the corner. At equal distances the lower number wins, so that
+//   the order of the triangles does not matter.
 // Units: those of the positions.
-// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e12, edges 0 or at least 1e-10.
-// Outside: `triangle` equal to `left`, the one just left, never counts. Nor does a triangle without area in the frame of the ray:
-//   its neighbours, of which it is an edge there, do. Smaller triangles count as such, larger ones overflow.
-// Accuracy: lavapipe distance 4 ulp + 4 backward, barycentrics 4 ulp + 4 backward, triangle 4 backward; portable distance 8 ulp + 8 backward, barycentrics 8 ulp + 8 backward, triangle 8 backward
+// Domain: a, b, c counter-clockwise from outside, inside the box that the ray was made for; coordinates up to 1e12,
+//   edges 0 or at least 1e-10 and 1/1000 of the coordinates; in the frame of the ray at least 1/32 as thick as long.
+// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in the frame of the ray
+//   need not: its neighbours, of which it is an edge there, do. Of thin ones none is refused that the ray meets, but
+//   the point in it is less sure.
+// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0005 abs + 6 backward, triangle 6 backward; portable distance 8 ulp + 12 backward, barycentrics 8 ulp + 0.001 abs + 12 backward, triangle 12 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -184,8 +194,13 @@ fn bvh_trace_triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest component is negative.
-    let spanned = vec3f(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
+    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's
+    // error is that end's distance times the edge. Seen against the ray where its largest component is negative.
+    let squared = vec3f(dot(p.xy, p.xy), dot(q.xy, q.xy), dot(r.xy, r.xy));
+    let on_qr = select(q.xy, r.xy, squared.z < squared.y);
+    let on_rp = select(r.xy, p.xy, squared.x < squared.z);
+    let on_pq = select(p.xy, q.xy, squared.y < squared.x);
+    let spanned = vec3f(on_qr.x * qr.y - on_qr.y * qr.x, on_rp.x * rp.y - on_rp.y * rp.x, on_pq.x * pq.y - on_pq.y * pq.x);
     let area = sign(ray.shear.z) * spanned;
     if (triangle == left || area.x + area.y + area.z <= 0.0f) {
         return hit;
@@ -199,8 +214,8 @@ fn bvh_trace_triangle(
     }
     let weight = max(area, vec3f(0.0f));
     let total = weight.x + weight.y + weight.z;
-    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along the ray, by which
-    // a plane close to the origin, met at a shallow angle, may lie far behind.
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance
+    // along the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
     let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
     let normal = abs(cross(qr, rp));
     let distance = max(height / total, 0.0f);
@@ -211,9 +226,9 @@ fn bvh_trace_triangle(
     return BvhTraceHit(distance, weight.yz / total, triangle);
 }
 
-// The triangle test that one finds: Möller and Trumbore's, with an epsilon for the determinant and the distance. Kept to show where
-// it fails: the signs at an edge are rounded otherwise for each of its triangles, so that both may refuse a ray between them; and the
-// epsilon is a length and an area at once, and right for one size of mesh.
+// The triangle test that one finds: Möller and Trumbore's, with an epsilon for the determinant and the distance. Kept
+// to show where it fails: the signs at an edge are rounded otherwise for each of its triangles, so that both may refuse
+// a ray between them; and the epsilon is a length and an area at once, and right for one size of mesh.
 // Returns: BvhTraceHit.
 // Units: those of the positions.
 // Domain: edges in [0.01, 4], normal . direction at least 0.1, the ray at 1/100 of the triangle or more from its edges.

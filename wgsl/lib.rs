@@ -54,10 +54,21 @@ macro_rules! parts {
 }
 
 /// Every module, in the order of their names.
-pub const MODULES: &[Module] = modules!["absorption", "bvh_trace", "closest_point", "convex_trace", "dispersion", "environment", "fresnel", "proxy_geometry", "refraction", "srgb"];
+pub const MODULES: &[Module] = modules![
+    "absorption",
+    "bvh_trace",
+    "closest_point",
+    "convex_trace",
+    "dispersion",
+    "environment",
+    "fresnel",
+    "proxy_geometry",
+    "refraction",
+    "srgb"
+];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["bvh_trace", "display", "gem", "gem_bvh", "gem_composite", "gem_convex"];
+pub const RECIPES: &[Recipe] = recipes!["display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
 
 /// Every part, in the order of their names.
 pub const PARTS: &[Part] = parts!["gem_shading"];

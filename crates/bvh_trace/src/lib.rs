@@ -1,8 +1,8 @@
-//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding
-//! volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
+//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a
+//! bounding volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. [`traversal`]
-//! mirrors the kernel of `wgsl/recipes/bvh_trace.wgsl`.
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! [`traversal`] mirrors the kernel of `wgsl/recipes/trace.wgsl`.
 
 pub mod oracle;
 pub mod traversal;
@@ -11,9 +11,6 @@ pub mod traversal;
 mod tests;
 
 use glam::{Vec2, Vec3};
-
-/// What a component of the direction is replaced by if it is smaller, 2⁻²⁴.
-pub const BVH_TRACE_SMALLEST: f32 = 5.9604644775390625e-8;
 
 /// The margin relative to the largest distance of the mesh along an axis, 2⁻¹⁸.
 pub const BVH_TRACE_MARGIN_REACH: f32 = 3.814697265625e-6;
@@ -33,7 +30,7 @@ pub struct BvhTraceRay {
     pub origin: Vec3,
     /// Unit direction.
     pub direction: Vec3,
-    /// 1 / direction, finite.
+    /// 1 / direction, at most 2²⁴.
     pub reciprocal: Vec3,
     /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
     pub shear: Vec3,
@@ -73,8 +70,10 @@ pub fn turn(vector: Vec3, axis: u32) -> Vec3 {
 /// What the tests of all boxes and triangles need of a ray, computed once.
 pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceRay {
     let toward = Vec3::select(direction.cmpge(Vec3::ZERO), Vec3::ONE, Vec3::NEG_ONE);
-    let reciprocal = toward / direction.abs().max(Vec3::splat(BVH_TRACE_SMALLEST));
     let size = direction.abs();
+    // A component below 2⁻²⁴ is replaced by that. Its reciprocal is finite, and the ray moves by less than 2⁻²³ of the
+    // mesh while it crosses the mesh, which the margin holds.
+    let reciprocal = toward / size.max(Vec3::splat(5.9604644775390625e-8));
     let largest = size.x.max(size.y.max(size.z));
     let y_or_x = if size.y == largest { 1 } else { 0 };
     let axis = if size.z == largest { 2 } else { y_or_x };
@@ -137,9 +136,15 @@ pub fn triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas that the origin spans with the edges opposite to a, b, c. Seen against the ray where its largest
-    // component is negative.
-    let spanned = Vec3::new(q.x * qr.y - q.y * qr.x, r.x * rp.y - r.y * rp.x, p.x * pq.y - p.y * pq.x);
+    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's
+    // error is that end's distance times the edge. Seen against the ray where its largest component is negative.
+    let squared =
+        Vec3::new(p.truncate().length_squared(), q.truncate().length_squared(), r.truncate().length_squared());
+    let on_qr = if squared.z < squared.y { r } else { q };
+    let on_rp = if squared.x < squared.z { p } else { r };
+    let on_pq = if squared.y < squared.x { q } else { p };
+    let spanned =
+        Vec3::new(on_qr.x * qr.y - on_qr.y * qr.x, on_rp.x * rp.y - on_rp.y * rp.x, on_pq.x * pq.y - on_pq.y * pq.x);
     let area = ray.shear.z.signum() * spanned;
     if triangle == left || area.x + area.y + area.z <= 0.0 {
         return hit;
@@ -156,8 +161,8 @@ pub fn triangle(
     }
     let weight = area.max(Vec3::ZERO);
     let total = weight.x + weight.y + weight.z;
-    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance along
-    // the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
+    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance
+    // along the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
     let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
     let normal = qr.cross(rp).abs();
     let distance = (height / total).max(0.0);

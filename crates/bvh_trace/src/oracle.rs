@@ -1,6 +1,6 @@
-//! The truth in f64. A box is met if the ray crosses one of its faces inside that face's rectangle; a triangle is judged by
-//! the signed volumes of tetrahedra and by its plane, without a turned or sheared frame. [`crossings`] is the whole mesh by brute
-//! force, without any margin: what [`crate::traversal::trace`] is compared with.
+//! The truth in f64. A box is met if the ray crosses one of its faces inside that face's rectangle; a triangle is
+//! judged by the signed volumes of tetrahedra and by its plane, without a turned or sheared frame. [`crossings`] is the
+//! whole mesh by brute force, without any margin: what [`crate::traversal::trace`] is compared with.
 
 use glam::{DVec2, DVec3};
 
@@ -11,7 +11,7 @@ pub struct BvhTraceRay {
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// 1 / direction, finite.
+    /// 1 / direction, at most 2²⁴.
     pub reciprocal: DVec3,
     /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
     pub shear: DVec3,
@@ -81,8 +81,8 @@ pub fn ray(origin: DVec3, direction: DVec3, lower: DVec3, upper: DVec3) -> BvhTr
     BvhTraceRay { origin, direction, reciprocal, shear, axis, margin }
 }
 
-/// Every face of the enlarged box in turn: is it crossed within its rectangle? `entry` by the middle and half the width of the
-/// slabs.
+/// Every face of the enlarged box in turn: is it crossed within its rectangle? `entry` by the middle and half the width
+/// of the slabs.
 pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhTraceBox {
     let direction = 1.0 / ray.reciprocal;
     let middle = 0.5 * (lower + upper) - ray.origin;
@@ -109,7 +109,8 @@ fn sheared_direction(ray: &BvhTraceRay) -> DVec3 {
     turn_back(DVec3::new(ray.shear.x, ray.shear.y, 1.0) / ray.shear.z, ray.axis)
 }
 
-/// The foot of `position` on the plane through the origin across the ray's axis, along the ray; then how far along it was.
+/// The foot of `position` on the plane through the origin across the ray's axis, along the ray; then how far along it
+/// was.
 pub fn shear(ray: BvhTraceRay, position: DVec3) -> DVec3 {
     let direction = sheared_direction(&ray);
     let axis = ray.axis.min(2) as usize;
@@ -119,8 +120,8 @@ pub fn shear(ray: BvhTraceRay, position: DVec3) -> DVec3 {
     DVec3::new(foot[(axis + 1) % 3], foot[(axis + 2) % 3], along)
 }
 
-/// Signed volumes: the direction with two corners seen from the origin. The distance is that of the triangle's plane, or where the ray
-/// passes beside it, that of the point of the triangle whose weights are those volumes, none below 0.
+/// Signed volumes: the direction with two corners seen from the origin. The distance is that of the triangle's plane,
+/// or where the ray passes beside it, that of the point of the triangle whose weights are those volumes, none below 0.
 pub fn triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -158,16 +159,17 @@ pub fn triangle(
     }
     let weights = volumes.map(|volume| volume.max(0.0));
     let total: f64 = weights.iter().sum();
-    let along = if volumes.iter().all(|volume| *volume >= 0.0) {
-        normal.dot(corners[0]) / normal.dot(direction)
+    // How high the plane stands over the origin, times its normal, and the same at a point of the triangle beside the
+    // ray.
+    let (height, slope) = if volumes.iter().all(|volume| *volume >= 0.0) {
+        (normal.dot(corners[0]), normal.dot(direction))
     } else {
         let point: DVec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-        point[axis] / total / direction[axis]
+        (point[axis] * direction[axis].signum(), total * direction[axis].abs())
     };
-    let distance = along.max(0.0);
-    // Along the frame's axes, which are two coordinate axes and the direction, the plane is met at height / slope.
+    let distance = (height / slope).max(0.0);
+    // Along the frame's axes, which are two coordinate axes and the direction, a plane is met at height / slope.
     let slopes: f64 = (0..3).filter(|other| *other != axis).map(|other| normal[other].abs()).sum();
-    let height = along * total * direction[axis].abs();
     if height < -ray.margin * (slopes + normal.dot(direction))
         || distance > hit.distance
         || (distance == hit.distance && triangle > hit.triangle)
@@ -177,8 +179,8 @@ pub fn triangle(
     BvhTraceHit { distance, barycentrics: DVec2::new(weights[1], weights[2]) / total, triangle }
 }
 
-/// The plane of the triangle, and the winding of its edges about the point where the ray meets it; with the epsilon that the naive
-/// form has for the determinant and for the distance.
+/// The plane of the triangle, and the winding of its edges about the point where the ray meets it; with the epsilon
+/// that the naive form has for the determinant and for the distance.
 pub fn triangle_naive(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -230,7 +232,8 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     for k in 0..3 {
         let (from, to) = (across[k], across[(k + 1) % 3]);
         let edge = to - from;
-        // A triangle that the ray leaves through winds counter-clockwise about its direction: left of each edge is inside.
+        // A triangle that the ray leaves through winds counter-clockwise about its direction: left of each edge is
+        // inside.
         let height = direction.dot(from.cross(to)) / edge.length().max(f64::MIN_POSITIVE);
         inside = inside.min(height);
         let share = (-from.dot(edge) / edge.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -239,7 +242,8 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     Some(Crossing { triangle, distance, clearance: if inside >= 0.0 { inside } else { -nearest } })
 }
 
-/// Every triangle of a mesh that the line leaves the solid through at a clearance of more than `-bound`, but for `left`.
+/// Every triangle of a mesh that the line leaves the solid through at a clearance of more than `-bound`, but for
+/// `left`.
 pub fn crossings(
     positions: &[DVec3],
     indices: &[u32],

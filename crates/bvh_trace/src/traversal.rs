@@ -1,4 +1,4 @@
-//! Mirror of the kernel of `wgsl/recipes/bvh_trace.wgsl`: the loops over nodes and over all triangles, line by line, on
+//! Mirror of the kernel of `wgsl/recipes/trace.wgsl`: the loops over nodes and over all triangles, line by line, on
 //! the buffers that it binds.
 
 use crate::{BVH_TRACE_NONE, BvhTraceHit, BvhTraceRay};
@@ -44,9 +44,9 @@ fn test(
     with(hit, ray, corner(0), corner(1), corner(2), triangle, left)
 }
 
-/// The nearest triangle that the ray leaves the solid through, found by the hierarchy. `nodes` are pairs of (lower corner,
-/// count as bits) and (upper corner, first as bits); `indices` are in the order of the leaves; `left` is the triangle just
-/// left, or [`BVH_TRACE_NONE`].
+/// The nearest triangle that the ray leaves the solid through, found by the hierarchy. `nodes` are pairs of (lower
+/// corner, count as bits) and (upper corner, first as bits); `indices` are in the order of the leaves; `left` is the
+/// triangle just left, or [`BVH_TRACE_NONE`].
 pub fn trace(
     nodes: &[[Vec4; 2]],
     positions: &[Vec3],

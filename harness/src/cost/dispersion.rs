@@ -102,9 +102,8 @@ pub(super) fn colours(
     for strength in strengths {
         let Ok(paper) = strength.rung.parse::<Rung>() else { continue };
         for (view, scene) in views.iter().zip(scenes) {
-            let picture = |spectrum, strength| {
-                render::render(gpu, scene, &settings(with_spectrum(paper, spectrum), strength))
-            };
+            let picture =
+                |spectrum, strength| render::render(gpu, scene, &settings(with_spectrum(paper, spectrum), strength));
             let separate = picture(Spectrum::Separate(3), 1.0)?;
             let mask = shared(scene, with_spectrum(paper, Spectrum::Separate(3)), &separate)?;
             let covered = separate.linear.iter().filter(|pixel| pixel[3] > 0.0).count();

@@ -111,8 +111,7 @@ pub fn run(
     progress: &mut dyn FnMut(&'static str, u64, u64),
 ) -> Result<Report, CostError> {
     let scenes: Vec<Scene> = options.views.iter().map(View::open).collect::<Result<_, _>>()?;
-    let references: Vec<Picture> =
-        options.views.iter().map(|view| view.reference(gpu)).collect::<Result<_, _>>()?;
+    let references: Vec<Picture> = options.views.iter().map(|view| view.reference(gpu)).collect::<Result<_, _>>()?;
     let papers: Vec<Rung> = options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper).collect();
     let mut strengths = Vec::new();
     for (done, &rung) in (1..).zip(&papers) {

@@ -33,9 +33,9 @@ fn ladder(text: &mut String, report: &Report) {
     );
     let proxy = report.rungs.iter().find(|rung| rung.rung == "proxy-1").and_then(|rung| rung.timing);
     for rung in &report.rungs {
-        let ms = rung.timing.map_or("-".to_owned(), |timing| {
-            format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" })
-        });
+        let ms = rung
+            .timing
+            .map_or("-".to_owned(), |timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" }));
         let ratio = match (rung.timing, proxy) {
             (Some(timing), Some(proxy)) => format!("{:.2}", timing.ms / proxy.ms),
             _ => "-".to_owned(),

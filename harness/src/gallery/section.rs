@@ -126,7 +126,11 @@ fn bound(bound: &FieldBound) -> String {
 /// The figures of the module or recipe `name`.
 fn figures(name: &str, placed: &[Placed<'_>]) -> String {
     let own = placed.iter().filter(|placed| placed.module == Some(name));
-    framed("<h3>Figures</h3>\n<div class=\"grid\">\n", &own.map(|placed| figure(placed, 4)).collect::<String>(), "</div>\n")
+    framed(
+        "<h3>Figures</h3>\n<div class=\"grid\">\n",
+        &own.map(|placed| figure(placed, 4)).collect::<String>(),
+        "</div>\n",
+    )
 }
 
 /// The article of a recipe, with the modules that it requires pasted in.

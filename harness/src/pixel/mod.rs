@@ -114,8 +114,7 @@ impl<'a> Shading<'a> {
         let Environment::Map(map) = &self.settings.environment else {
             return environment::studio(direction);
         };
-        let texels =
-            environment::texels(environment::uv_from_direction(direction), UVec2::new(map.width, map.height));
+        let texels = environment::texels(environment::uv_from_direction(direction), UVec2::new(map.width, map.height));
         let load = |x: u32, y: u32| {
             let [r, g, b, _] = map.pixels[(y * map.width + x) as usize];
             Vec3::new(r, g, b)

@@ -37,9 +37,8 @@ impl<'gpu> DeferredPass<'gpu> {
         )?;
         let size = [TILE * settings.samples; 2];
         let [emission, normal_reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
-            [GEOMETRY_FORMAT, GEOMETRY_FORMAT, DEPTH_FORMAT].map(|format| {
-                device::view(&device::target(device, size, format, wgpu::TextureUsages::TEXTURE_BINDING))
-            })
+            [GEOMETRY_FORMAT, GEOMETRY_FORMAT, DEPTH_FORMAT]
+                .map(|format| device::view(&device::target(device, size, format, wgpu::TextureUsages::TEXTURE_BINDING)))
         })?;
         let environment = super::environment::texture(gpu, &settings.environment)?;
         Ok(Self { gpu, pipeline, environment, emission, normal_reflectance, depth })

@@ -81,8 +81,7 @@ impl<'gpu> DisplayPass<'gpu> {
             [tile.left as f32, tile.top as f32, settings.width as f32, settings.height as f32, settings.exposure];
         let [linear, encoded] = self.gpu.guarded("displaying a tile", |device| {
             let uniform = device::uniform(device, &frame);
-            let resources =
-                vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.samples_view)];
+            let resources = vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.samples_view)];
             let group = device::bind_group(device, &self.pipeline, 0, resources);
             self.draw(&mut encoder, tile, &group);
             let linear = self.copy_out(&mut encoder, &self.linear, 16, tile);

@@ -33,11 +33,11 @@ impl<'gpu> Frame<'gpu> {
         let gem = GemPass::new(gpu, scene, settings, &source, "gem_fragment", &[SAMPLE_FORMAT])?;
         let size = [settings.width, settings.height];
         let [color, depth] = gpu.guarded("allocating a frame", |device| {
-            [SAMPLE_FORMAT, DEPTH_FORMAT].map(|format| {
-                device::view(&device::target(device, size, format, wgpu::TextureUsages::empty()))
-            })
+            [SAMPLE_FORMAT, DEPTH_FORMAT]
+                .map(|format| device::view(&device::target(device, size, format, wgpu::TextureUsages::empty())))
         })?;
-        let matrix = camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
+        let matrix =
+            camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
         let view = gem.view(matrix, scene.camera.eye);
         Ok(Self { gpu, gem, view, color, depth, size })
     }
@@ -46,8 +46,7 @@ impl<'gpu> Frame<'gpu> {
     pub fn run(&self) -> Result<FrameTime, RenderError> {
         let start = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let target =
-            GemTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
+        let target = GemTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
         self.gem.draw(&mut encoder, &self.view, &target);
         self.gpu.queue.submit([encoder.finish()]);
         let encode = start.elapsed();

@@ -92,8 +92,7 @@ impl<'gpu> GemPass<'gpu> {
         let mut values = clip_from_world.to_cols_array().to_vec();
         values.extend(eye.to_array());
         let uniform = device::uniform(device, &values);
-        let resources =
-            vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.environment)];
+        let resources = vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.environment)];
         device::bind_group(device, &self.pipeline, 0, resources)
     }
 

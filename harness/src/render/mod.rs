@@ -16,14 +16,14 @@ use crate::gpu::{Gpu, GpuError};
 use crate::reference;
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
-use std::sync::Mutex;
 use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
-use gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
 pub(crate) use gem::constants;
-pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
+use gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
+use std::sync::Mutex;
+pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
@@ -190,8 +190,7 @@ pub fn render_with(
             if let Some(deferred) = &deferred {
                 deferred.draw(&mut encoder, &gem, clip_from_world, eye, display.samples(), size);
             } else {
-                let target =
-                    GemTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
+                let target = GemTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
                 gem.draw(&mut encoder, &gem.view(clip_from_world, eye), &target);
             }
             encoder

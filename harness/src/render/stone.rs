@@ -29,8 +29,7 @@ impl Stone {
         let shared = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices)];
         let limits = gpu.device.limits();
         let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let too_large =
-            |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
+        let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
         let sizes = shared.iter().map(|part| part.len()).chain(own.iter().map(|part| part.len()));
         if let Some(bytes) = sizes.map(|bytes| bytes as u64).find(|bytes| *bytes > limit) {
             return Err(too_large(bytes));
@@ -118,7 +117,10 @@ pub(crate) fn material(material: &Material, settings: &Settings) -> [f32; 12] {
 
 /// The indices at the wavelengths that stand for the three channels.
 pub(crate) fn channel_indices(material: &Material) -> Vec3 {
-    Vec3::from([DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE].map(|wavelength| material.index_at(f64::from(wavelength)) as f32))
+    Vec3::from(
+        [DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE]
+            .map(|wavelength| material.index_at(f64::from(wavelength)) as f32),
+    )
 }
 
 /// `GemWavelength` of the recipe, 16 floats each.

@@ -1,11 +1,12 @@
-//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/bvh_trace.wgsl`.
+//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/trace.wgsl`.
 //!
-//! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few dependencies; but
-//! its clustering does not bound the depth, which a shader's stack must, and with debug assertions, as the tests are built, it
-//! panics over some degenerate meshes and overflows the stack over 20,000 equal triangles. bvh 0.13 keeps an enum of nodes with
-//! parents, or a list of 36-byte nodes to skip through, which has no order from near to far, and it brings nalgebra. What is
-//! left to do is short: splits by the surface area heuristic in bins (Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies", 2007), and halves wherever those would make the hierarchy too deep.
+//! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few
+//! dependencies; but its clustering does not bound the depth, which a shader's stack must, and with debug assertions,
+//! as the tests are built, it panics over some degenerate meshes and overflows the stack over 20,000 equal triangles.
+//! bvh 0.13 keeps an enum of nodes with parents, or a list of 36-byte nodes to skip through, which has no order from
+//! near to far, and it brings nalgebra. What is left to do is short: splits by the surface area heuristic in bins
+//! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), and halves wherever those would make
+//! the hierarchy too deep.
 
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_bvh_trace::traversal::BVH_TRACE_DEPTH;
@@ -22,9 +23,10 @@ const STEP: f64 = 1.0;
 /// A hierarchy of boxes over the triangles of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
-    /// 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner, first), the last of each a `u32` as bits. With
-    /// count above 0 a leaf of the triangles first, …, first + count - 1; with 0 an inner node whose children are the nodes first
-    /// and first + 1. The root is the first node, and a node stands before its children. None if the mesh has no triangle.
+    /// 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner, first), the last of each a `u32`
+    /// as bits. With count above 0 a leaf of the triangles first, …, first + count - 1; with 0 an inner node whose
+    /// children are the nodes first and first + 1. The root is the first node, and a node stands before its children.
+    /// None if the mesh has no triangle.
     pub nodes: Vec<[Vec4; 2]>,
     /// Three vertex indices a triangle, in the order of the leaves.
     pub indices: Vec<u32>,
@@ -77,8 +79,8 @@ impl Extent {
 }
 
 impl Bvh {
-    /// The hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root. Triangles with a corner that is not finite,
-    /// or that does not exist, cannot be met and are left out.
+    /// The hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root. Triangles with a corner that is
+    /// not finite, or that does not exist, cannot be met and are left out.
     #[must_use]
     pub fn build(mesh: &Mesh) -> Self {
         let corner = |index: u32| mesh.positions.get(index as usize).copied().filter(|position| position.is_finite());

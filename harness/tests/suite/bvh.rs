@@ -1,5 +1,5 @@
-//! The hierarchy over a mesh, and the recipe that traces rays with it: whole buffers against the mirror's, and against f64 by
-//! brute force.
+//! The hierarchy over a mesh, and the recipe that traces rays with it: whole buffers against the mirror's, and against
+//! f64 by brute force.
 
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
@@ -66,8 +66,8 @@ impl Body {
         }
     }
 
-    /// Rays that start on the surface and go inwards: to a vertex or to a point of an edge that is not behind it, or anywhere; and after
-    /// some reflections.
+    /// Rays that start on the surface and go inwards: to a vertex or to a point of an edge that is not behind it, or
+    /// anywhere; and after some reflections.
     fn queries(&self, seed: u64, count: usize) -> Vec<Query> {
         (0..count as u64)
             .map(|row| {
@@ -111,8 +111,8 @@ impl Body {
 
 /// Runs the recipe over `queries`.
 fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) -> Vec<BvhTraceHit> {
-    let source = cookbook::recipe_source("bvh_trace");
-    let (module, _) = dispatch::parse(&source, "recipe bvh_trace").unwrap_or_else(|error| panic!("{error}"));
+    let source = cookbook::recipe_source("trace");
+    let (module, _) = dispatch::parse(&source, "recipe trace").unwrap_or_else(|error| panic!("{error}"));
     let words: Vec<[u32; 8]> = queries
         .iter()
         .map(|query| {
@@ -125,11 +125,11 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
     let bytes = (queries.len() * 24) as u64;
     let readback = gpu.guarded("tracing rays", |device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("bvh_trace"),
+            label: Some("trace"),
             source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
         });
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("bvh_trace"),
+            label: Some("trace"),
             layout: None,
             module: &module,
             entry_point: Some("trace_rays"),
@@ -190,8 +190,9 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
     hits.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up. By how much a ray
-/// may pass a triangle and still meet it is the margin in the ray's own, slanted frame: √3 of it across and √3 for the slant.
+/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up. By how
+/// much a ray may pass a triangle and still meet it is the margin in the ray's own, slanted frame: √3 of it across and
+/// √3 for the slant.
 fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> Option<String> {
     let root = body.bvh.nodes[0];
     let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
@@ -204,7 +205,8 @@ fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> 
         return Some(format!("{hit:?} is passed by more than {bound:e}"));
     }
     let nearer = |crossing: &&oracle::Crossing| {
-        // Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the cosine.
+        // Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the
+        // cosine.
         let normal = {
             let [a, b, c] = body.corners(crossing.triangle as usize).map(|p| p.as_dvec3());
             (b - a).cross(c - a).normalize()
@@ -242,7 +244,8 @@ fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
             body.bvh.nodes.len(),
             body.bvh.depth()
         );
-        // On lavapipe every operation rounds as the mirror's does, but for the order of a product of matrices, which is not here.
+        // On lavapipe every operation rounds as the mirror's does, but for the order of a product of matrices, which is
+        // not here.
         if gpu.is_lavapipe() {
             assert_eq!(found, mirrored, "{}", body.name);
         }
@@ -286,7 +289,8 @@ fn sixty_four_reflections_inside_the_bunny_lose_no_ray() {
     }
 }
 
-/// A mesh of any kind: random, of equal triangles, without area, huge, tiny, flat, with corners that are not finite or do not exist.
+/// A mesh of any kind: random, of equal triangles, without area, huge, tiny, flat, with corners that are not finite or
+/// do not exist.
 fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
     let count = 1 + draws.below(300);
     let size = draws.pick(&[1.0, 1e-30, 1e37, 1.0, 3e38]);

@@ -7,7 +7,17 @@ use serde_json::Value;
 #[test]
 fn every_rung_measure_and_view_has_a_row() {
     let folder = folder();
-    let arguments = ["cost", "gem", "--json", "--rounds", "0", "--rungs", "surface,proxy-1,convex-4+tracker", "--views", "brilliant,sapphire"];
+    let arguments = [
+        "cost",
+        "gem",
+        "--json",
+        "--rounds",
+        "0",
+        "--rungs",
+        "surface,proxy-1,convex-4+tracker",
+        "--views",
+        "brilliant,sapphire",
+    ];
     let rows: Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON alone");
     let rows = rows.as_array().expect("an array");
     assert_eq!(rows.len(), 3 * 2 * MEASURES.len());
@@ -30,7 +40,8 @@ fn every_rung_measure_and_view_has_a_row() {
 #[test]
 fn a_report_is_written_with_plots_when_timed() {
     let folder = folder();
-    let arguments = ["cost", "gem", "--rounds", "1", "--rungs", "surface,proxy-1", "--views", "octahedron", "--out", "report"];
+    let arguments =
+        ["cost", "gem", "--rounds", "1", "--rungs", "surface,proxy-1", "--views", "octahedron", "--out", "report"];
     let text = succeeds(folder.path(), &arguments).stdout;
     assert!(text.contains("proxy-1") && text.contains("GTX 760") && text.contains("dominated"), "{text}");
     for file in ["gem.txt", "gem.json", "gem_flip.svg", "gem_rmse.svg"] {

@@ -7,7 +7,12 @@ use lapidary_harness::scene::Scene;
 
 #[test]
 fn the_composite_shows_the_forward_picture() {
-    for (scene, rung) in [("brilliant", "proxy-1"), ("brilliant", "convex-4+tracker"), ("sapphire", "bvh-4"), ("step_cut", "proxy-4+tracker")] {
+    for (scene, rung) in [
+        ("brilliant", "proxy-1"),
+        ("brilliant", "convex-4+tracker"),
+        ("sapphire", "bvh-4"),
+        ("step_cut", "proxy-4+tracker"),
+    ] {
         let scene = Scene::named(scene).expect("built in");
         let settings = Settings { rung: rung.parse().expect(rung), ..Settings::of_size(256, 256) };
         let forward = render::render(super::gpu(), &scene, &settings).expect("rendered");

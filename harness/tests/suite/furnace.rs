@@ -30,7 +30,10 @@ fn a_clear_stone_disappears() {
             let covered: Vec<&[f32; 4]> = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).collect();
             assert!(covered.len() > 1000, "{name}: {} pixels", covered.len());
             for [r, g, b, _] in covered {
-                assert!([r, g, b].iter().all(|value| (*value - 1.0).abs() <= bound(rung)), "{name} {rung}: {r} {g} {b}");
+                assert!(
+                    [r, g, b].iter().all(|value| (*value - 1.0).abs() <= bound(rung)),
+                    "{name} {rung}: {r} {g} {b}"
+                );
             }
         }
     }

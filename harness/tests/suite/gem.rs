@@ -25,7 +25,12 @@ fn moved(scene: &Scene, scale: f32, offset: Vec3) -> Scene {
 
 #[test]
 fn size_does_not_matter() {
-    for (name, rung) in [("brilliant", "proxy-4+tracker"), ("sapphire", "convex-8+tracker"), ("brilliant", "bvh-8"), ("brilliant", "triangles-2")] {
+    for (name, rung) in [
+        ("brilliant", "proxy-4+tracker"),
+        ("sapphire", "convex-8+tracker"),
+        ("brilliant", "bvh-8"),
+        ("brilliant", "triangles-2"),
+    ] {
         let scene = Scene::named(name).expect("built in");
         let expected = picture(&scene, rung);
         for scale in [1e-4, 1e4] {
@@ -69,7 +74,8 @@ fn the_papers_dispersion_depends_on_size() {
 fn less_is_left_after_more_hits() {
     let scene = Scene::named("brilliant").expect("built in");
     let dropped = |rung: &str| {
-        let settings = Settings { rung: rung.parse().expect(rung), rest_from_environment: false, ..Settings::of_size(128, 128) };
+        let settings =
+            Settings { rung: rung.parse().expect(rung), rest_from_environment: false, ..Settings::of_size(128, 128) };
         let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
         picture.linear.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
     };

@@ -86,16 +86,23 @@ fn a_wrong_picture_is_seen() {
     let scene = Scene::named("brilliant").expect("built in");
     let settings = Settings { samples: 1, ..of_rung("proxy-1") };
     let wrong = [
-        ("another index", "refraction_refract(direction, input.face_normal, index)", "refraction_refract(direction, input.face_normal, 1.01f * index)"),
+        (
+            "another index",
+            "refraction_refract(direction, input.face_normal, index)",
+            "refraction_refract(direction, input.face_normal, 1.01f * index)",
+        ),
         ("no Fresnel", "throughput *= 1.0f - exit.share;", "throughput *= 1.0f;"),
-        ("the tile of the other half", "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates))", "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates + 0.5f))"),
+        (
+            "the tile of the other half",
+            "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates))",
+            "proxy_geometry_facet(plane, proxy_geometry_cell(coordinates + 0.5f))",
+        ),
     ];
     let source = lapidary_harness::cookbook::recipe_source("gem");
     for (what, old, new) in wrong {
         assert!(source.contains(old), "{what}");
         let planted = source.replace(old, new);
-        let picture =
-            render::render_with(super::gpu(), &scene, &settings, &planted, &mut |_, _| {}).expect("rendered");
+        let picture = render::render_with(super::gpu(), &scene, &settings, &planted, &mut |_, _| {}).expect("rendered");
         let parity = parity::compare(&scene, &settings, &picture, PIXELS, 1).expect("compared");
         assert!(parity.failed.len() > parity.compared / 20, "{what}: {} fail", parity.failed.len());
     }

@@ -3,8 +3,8 @@
 
 use lapidary_harness::reference;
 use lapidary_harness::render::{self, Environment, Rung, Settings};
-use lapidary_harness::scene::{Dispersion, Scene};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_harness::scene::{Dispersion, Scene};
 
 const SIDE: u32 = 96;
 
@@ -57,16 +57,15 @@ fn the_committed_references_are_remade() {
         let scene = view.open().expect("built in");
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let window = reference::Window { left: 124, top: 120, width: 8, height: 4 };
-        let settings = reference::Settings {
-            window: Some(window),
-            ..reference::Settings::of_size(picture.width, picture.height)
-        };
+        let settings =
+            reference::Settings { window: Some(window), ..reference::Settings::of_size(picture.width, picture.height) };
         let crop = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
         for (row, line) in (window.top..).zip(crop.linear.chunks_exact(window.width as usize)) {
             let start = (row * picture.width + window.left) as usize;
             for (found, expected) in line.iter().zip(&picture.linear[start..]) {
                 // Half floats keep 11 bits; another processor's f64 functions may send a ray to the other side of an edge.
-                let apart = (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, f32::max);
+                let apart =
+                    (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, f32::max);
                 assert!(apart <= 0.002, "{} row {row}: {found:?}, committed {expected:?}", view.name);
             }
         }

@@ -66,7 +66,10 @@ fn a_turn_of_one_degree_is_seen() {
 
 #[test]
 fn swapped_channels_are_seen() {
-    let swapped = source().replace("vec4f(radiance.surface + radiance.inside, 1.0f)", "vec4f((radiance.surface + radiance.inside).bgr, 1.0f)");
+    let swapped = source().replace(
+        "vec4f(radiance.surface + radiance.inside, 1.0f)",
+        "vec4f((radiance.surface + radiance.inside).bgr, 1.0f)",
+    );
     assert_ne!(swapped, source());
     let comparison = planted(&Scene::named("brilliant").expect("built in"), &swapped);
     assert!(!comparison.holds(), "{comparison:?}");

@@ -1,7 +1,7 @@
-// bvh_trace: rays from inside closed meshes, each to the nearest triangle that it leaves through, one invocation a ray.
+// trace: rays from inside closed meshes, each to the nearest triangle that it leaves through, one invocation a ray.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009;
-//   the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
+// Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of Ray Traversal on
+//   GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
 // requires: bvh_trace
 //
 // Whatever traces inside a shader copies `trace_nearest` and the bindings of its group 0.
