@@ -93,10 +93,12 @@ pub fn compare(
         let relative = if settings.rung.spectrum() == Spectrum::Paper { PAPER } else { RELATIVE };
         let tolerance = Vec3::splat(ABSOLUTE) + relative * high;
         let beyond = ((low - found).max(found - high) / tolerance).max_element();
+        // A NaN does not hold.
+        let holds = beyond <= 1.0;
         if edge {
             parity.at_an_edge += 1;
-            parity.differing_at_an_edge += usize::from(!(beyond <= 1.0));
-        } else if beyond <= 1.0 {
+            parity.differing_at_an_edge += usize::from(!holds);
+        } else if holds {
             parity.worst = parity.worst.max(beyond);
         } else {
             parity.failed.push(Failure { pixel: (column, line), found, expected: middle.radiance });

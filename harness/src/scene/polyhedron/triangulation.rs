@@ -17,7 +17,7 @@ pub enum Triangulation {
     /// A zigzag between the two sides of the face, as a triangle strip would run: no inner vertex, and no
     /// corner in more than three triangles.
     Strip,
-    /// The fan, with each of its triangles cut into needles: [`SLIVERS`] vertices stand evenly along its median
+    /// The fan, with each of its triangles cut into needles: some vertices stand evenly along its median
     /// from the first corner, and each of its other two corners is joined to all of them. Most
     /// triangles so have an angle of a few degrees.
     Sliver,
