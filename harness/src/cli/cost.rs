@@ -1,7 +1,7 @@
 //! `cook cost`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cost::{self, CostError, Options, plot, views};
+use lapidary_harness::cost::{self, CostError, Options, Report, plot, views};
 use lapidary_harness::render::Rung;
 use lapidary_harness::render::file;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,9 @@ pub(super) struct Arguments {
     /// Rounds of timing; 0 leaves times out.
     #[arg(long, default_value_t = Options::default().rounds)]
     rounds: u32,
+    /// Show an earlier run's gem.json again instead of measuring.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds"])]
+    from: Option<PathBuf>,
     /// One JSON document on stdout, a row for each rung, measure and view, and nothing else.
     #[arg(long)]
     json: bool,
@@ -47,6 +50,24 @@ fn parse_view(text: &str) -> Result<views::View, String> {
     found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
 }
 
+fn measure(context: &Context, options: &Options) -> Result<Report, Failure> {
+    let bar = progress::bar(0, "measuring");
+    let report = cost::run(context.gpu()?, options, &mut |what, done, total| {
+        bar.set_message(what);
+        bar.set_length(total);
+        bar.set_position(done);
+    })?;
+    bar.finish_and_clear();
+    Ok(report)
+}
+
+fn read(path: &Path) -> Result<Report, Failure> {
+    let wrong = |reason: String| Failure(format!("{}: {reason}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    serde_json::from_str(&text)
+        .map_err(|error| wrong(format!("not a gem.json of `./cook cost gem --out`: {error}; measure anew")))
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.technique != "gem" {
         return Err(CostError::Technique(arguments.technique.clone()).into());
@@ -63,13 +84,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         std::fs::create_dir_all(out).map_err(failed)?;
         file::check_writable(&out.join("gem.txt"))?;
     }
-    let bar = progress::bar(0, "measuring");
-    let report = cost::run(context.gpu()?, &options, &mut |what, done, total| {
-        bar.set_message(what);
-        bar.set_length(total);
-        bar.set_position(done);
-    })?;
-    bar.finish_and_clear();
+    let mut report = match &arguments.from {
+        Some(path) => read(path)?,
+        None => measure(context, &options)?,
+    };
+    report.mark_dominated();
     let text = report.text();
     if let Some(out) = &arguments.out {
         let write = |name: &str, contents: &str| -> Result<(), Failure> {
@@ -78,7 +97,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         };
         write("gem.txt", &text)?;
         write("gem.json", &serde_json::to_string_pretty(&report)?)?;
-        if options.rounds > 0 {
+        if report.rungs.iter().any(|rung| rung.timing.is_some()) {
             for measure in ["flip", "rmse"] {
                 write(&format!("gem_{measure}.svg"), &plot::svg(&report, measure)?)?;
             }

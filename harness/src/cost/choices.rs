@@ -5,17 +5,17 @@ use super::{CostError, Errors};
 use crate::gpu::Gpu;
 use crate::render::{self, Picture, Rung, Settings};
 use crate::scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One way to end a ray, and its errors.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Choice {
     /// The rung.
     pub rung: String,
     /// How a ray ends.
     pub choice: String,
     /// The view's name.
-    pub view: &'static str,
+    pub view: String,
     /// Against the reference.
     pub errors: Errors,
 }
@@ -48,7 +48,7 @@ pub(super) fn measure(
             }
             for (choice, settings) in ways {
                 let errors = Errors::between(&render::render(gpu, scene, &settings)?, reference);
-                found.push(Choice { rung: name.to_owned(), choice, view: view.name, errors });
+                found.push(Choice { rung: name.to_owned(), choice, view: view.name.to_owned(), errors });
             }
         }
     }

@@ -6,18 +6,18 @@ use crate::gpu::Gpu;
 use crate::pixel::{Shading, Stone, Viewer};
 use crate::render::{self, Picture, Rung, Settings, Spectrum};
 use crate::scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Side of the pictures that are compared, one sample a pixel, so that a pixel is one ray.
 const SIDE: u32 = 256;
 
 /// How far the colours of a rung's trackers are from three separate wavelengths', where all three meet the same facets.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Colours {
     /// Geometry and hits.
     pub rung: String,
     /// The view's name.
-    pub view: &'static str,
+    pub view: String,
     /// Share of the stone's pixels whose three wavelengths meet the same facets throughout.
     pub shared: f64,
     /// RMS of the difference in radiance there: no dispersion at all.
@@ -111,7 +111,7 @@ pub(super) fn colours(
             let without = Rung::Inside { geometry: paper.geometry(), hits: paper.hits(), spectrum: Spectrum::One };
             found.push(Colours {
                 rung: without.to_string(),
-                view: view.name,
+                view: view.name.to_owned(),
                 shared: mask.iter().filter(|masked| **masked).count() as f64 / covered as f64,
                 none_rms: difference(&picture(Spectrum::One, 1.0)?),
                 paper_rms: difference(&picture(Spectrum::Paper, 1.0)?),

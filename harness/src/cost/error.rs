@@ -2,13 +2,13 @@
 
 use crate::render::Picture;
 use crate::snapshot;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What is measured, in the order of [`Errors`].
 pub const MEASURES: [&str; 3] = ["flip", "rmse", "energy"];
 
 /// The distance of a picture from its reference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Mean FLIP of the tone-mapped pictures, over the pixels that the stone covers, 0 to 1.
     pub flip: f64,

@@ -10,7 +10,7 @@ use crate::render::{self, Picture, Rung, Settings, Spectrum};
 use crate::scene::Scene;
 use crate::specialise::specialise;
 use crate::spirv_counts::spirv_counts;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too.
 pub const RUNGS: [&str; 34] = [
@@ -71,7 +71,7 @@ impl Default for Options {
 }
 
 /// The strength at which the paper's dispersion comes nearest to that of separate wavelengths.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Strength {
     /// The rung.
     pub rung: String,
@@ -147,18 +147,16 @@ pub fn run(
     progress("comparing colours", 0, 1);
     let colours = dispersion::colours(gpu, &options.views, &scenes, &strengths)?;
     let choices = choices::measure(gpu, &options.views, &scenes, &references)?;
-    let mut report = Report {
+    Ok(Report {
         adapter: gpu.describe(),
-        views: options.views.iter().map(|view| view.name).collect(),
+        views: options.views.iter().map(|view| view.name.to_owned()).collect(),
         frame: options.frame,
         rungs,
         strengths,
         colours,
         choices,
         reflections: reflection::measure()?,
-    };
-    report.mark_dominated();
-    Ok(report)
+    })
 }
 
 /// The rung's shaders, specialised to what it uses, counted in SPIR-V.

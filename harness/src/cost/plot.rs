@@ -26,12 +26,8 @@ struct Point<'a> {
 }
 
 fn points(report: &Report, measure: usize) -> Vec<Point<'_>> {
-    let mean = |rung: &RungReport| {
-        let errors: Vec<f64> = rung.errors.iter().flatten().map(|errors| errors.of(measure)).collect();
-        errors.iter().sum::<f64>() / errors.len() as f64
-    };
     let all: Vec<(&RungReport, f64, f64)> =
-        report.rungs.iter().filter_map(|rung| Some((rung, rung.timing?.ms, mean(rung)))).collect();
+        report.rungs.iter().filter_map(|rung| Some((rung, rung.timing?.ms, rung.mean(measure)))).collect();
     all.iter()
         .map(|&(rung, ms, error)| Point {
             name: &rung.rung,

@@ -7,13 +7,13 @@ use crate::render::{Geometry, Rung, Settings, Spectrum};
 use crate::scene::cuts::{BrilliantParameters, round_brilliant};
 use crate::scene::polyhedron::Triangulation;
 use crate::scene::{Averaging, Scene};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Side of the grid of rays.
 const SIDE: u32 = 128;
 
 /// The share of rays through the stone that the first facet reflects totally.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reflection {
     /// `exact`, or how the proxy's mesh was made.
     pub mesh: String,

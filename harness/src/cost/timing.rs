@@ -3,7 +3,7 @@
 use crate::gpu::Gpu;
 use crate::render::{Frame, RenderError, Settings};
 use crate::scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A rung slower than this is timed on fewer pixels.
@@ -12,7 +12,7 @@ const SLOW: Duration = Duration::from_secs(2);
 const REDUCTION: u32 = 4;
 
 /// A rung's time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// The least of the rounds, in milliseconds for the whole frame.
     pub ms: f64,

@@ -105,6 +105,8 @@ const CHECK: &[Row] = &[
 
 const OTHERS: &[Row] = &[
     ("cost skin", One, &["no ladder `skin`", "gem"]),
+    ("cost gem --from {}/none.json", One, &["none.json: ", "cannot be read"]),
+    ("cost gem --from {}/text.glb", One, &["text.glb: ", "not a gem.json"]),
     ("cost gem --rungs proxi-1", Usage, &["did you mean `proxy-1`"]),
     ("cost gem --rungs reference", Usage, &["compared with"]),
     ("cost gem --views briliant", Usage, &["did you mean `brilliant`"]),
