@@ -38,10 +38,10 @@ pub struct Shot {
 /// Every committed picture.
 pub const SHOTS: [Shot; 20] = [
     shot("brilliant", "Round brilliant, diamond", "brilliant", "proxy-4+tracker"),
-    shot("sapphire", "Round brilliant, sapphire", "sapphire", "proxy-4+tracker"),
-    shot("ruby", "Round brilliant, ruby", "ruby", "proxy-4+tracker"),
+    shot("sapphire", "Round brilliant, sapphire", "sapphire", "convex-8+tracker"),
+    shot("ruby", "Round brilliant, ruby", "ruby", "convex-8+tracker"),
     shot("quartz", "Round brilliant, quartz", "quartz", "proxy-4+tracker"),
-    shot("step_cut", "Step cut, emerald", "step_cut", "proxy-4+tracker"),
+    shot("step_cut", "Step cut, emerald", "step_cut", "convex-8+tracker"),
     shot("octahedron", "Octahedron, diamond", "octahedron", "proxy-4+tracker"),
     shot("prism", "Pentagonal prism, quartz", "prism", "proxy-2+tracker"),
     shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker"),
