@@ -157,7 +157,8 @@ fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> 
                 count += 1;
                 name = format!("{stem}-{count}");
             }
-            let extension = picture.file.extension().and_then(|extension| extension.to_str()).unwrap_or("png");
+            let extension =
+                if picture.file.extension().is_some_and(|extension| extension == "svg") { "svg" } else { "png" };
             Placed { picture, module, place: format!("images/{name}.{extension}") }
         })
         .collect()

@@ -116,6 +116,7 @@ fn twice_as_many_wavelengths_change_little() {
 #[test]
 fn without_dispersion_the_spectrum_plays_no_part() {
     let mut scene = Scene::named("step_cut").unwrap();
+    scene.objects[0].material.dispersion = Dispersion::None;
     let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(16, 16) };
     let gain = gain(3) + gain(31);
     let few = rendered(&scene, &settings);
@@ -137,6 +138,8 @@ fn absorption_takes_the_other_colors() {
     let environment = ones();
     let settings = Settings { environment: &environment, samples: 1, ..Settings::of_size(16, 16) };
     let material = &mut scene.objects[0].material;
+    // With it, wavelengths travel differently far, and a channel's colour is no longer one coefficient's.
+    material.dispersion = Dispersion::None;
     material.attenuation_color = glam::Vec3::new(0.9, 0.2, 0.3);
     material.attenuation_distance = 2.0;
     let near = rendered(&scene, &settings);
