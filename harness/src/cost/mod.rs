@@ -156,7 +156,15 @@ pub enum CostError {
     /// A view's scene could not be made.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneError),
-    /// A committed reference is missing or damaged.
+    /// No reference to compare with: it is never made by itself.
+    #[error("{}: missing; restore it from version control, or remake it: {command}", path.display())]
+    NoReference {
+        /// Where it should be.
+        path: std::path::PathBuf,
+        /// What makes it.
+        command: String,
+    },
+    /// A committed reference is damaged.
     #[error(transparent)]
     Reference(#[from] crate::snapshot::SnapshotError),
     /// The recipe could not be specialised for the count of its instructions.
