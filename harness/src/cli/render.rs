@@ -3,7 +3,7 @@
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Environment, GRAMMAR, Rung, Settings};
+use lapidary_harness::render::{self, Environment, GRAMMAR, Geometry, Rung, Settings, Spectrum};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::{self, Scene};
 use std::path::PathBuf;
@@ -77,11 +77,31 @@ fn parse_exposure(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A flag that the rung does not obey would be believed to have been obeyed.
+fn refuse_what_is_ignored(arguments: &Arguments) -> Result<(), Failure> {
+    let rung = arguments.rung;
+    let reference = rung == Rung::Reference;
+    let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
+    let ignored = [
+        ("--without", reference && !arguments.without.is_empty()),
+        ("--rest dropped", reference && arguments.rest == "dropped"),
+        ("--distance-limit", reference && arguments.distance_limit.is_some()),
+        ("--deferred", reference && arguments.deferred),
+        ("--centre paper", !proxy && arguments.centre == "paper"),
+        ("--strength", rung.spectrum() != Spectrum::Paper && arguments.strength != 1.0),
+    ];
+    match ignored.iter().find(|(_, ignored)| *ignored) {
+        Some((flag, _)) => Err(Failure(format!("rung `{rung}` knows no {flag}; leave it out or take another rung"))),
+        None => Ok(()),
+    }
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut scene = Scene::open(&arguments.scene)?;
     if let Some((polar, azimuth)) = arguments.from {
         scene = scene.seen_from(polar, azimuth);
     }
+    refuse_what_is_ignored(arguments)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
     file::check_writable(&out)?;

@@ -177,3 +177,77 @@ pub enum CostError {
     #[error("drawing the plot: {0}")]
     Plot(String),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rung(name: &str, ms: f64, flip: f64, rmse: f64) -> RungReport {
+        RungReport {
+            rung: name.to_owned(),
+            errors: vec![Some(Errors { flip, rmse, energy: 0.0 })],
+            timing: Some(Timing { ms, median_ms: ms, share: 1.0, encode_us: 1.0, draw_calls: 1 }),
+            fragment_instructions: 1,
+            vertex_instructions: 1,
+            geometry_bytes: 0,
+            dominated: false,
+        }
+    }
+
+    fn report(rungs: Vec<RungReport>) -> Report {
+        let mut report = Report {
+            adapter: String::new(),
+            views: vec!["view".to_owned()],
+            frame: [1920, 1080],
+            rungs,
+            strengths: Vec::new(),
+            colours: Vec::new(),
+            choices: Vec::new(),
+            reflections: Vec::new(),
+        };
+        report.mark_dominated();
+        report
+    }
+
+    fn marked(report: &Report) -> Vec<&str> {
+        report.rungs.iter().filter(|rung| rung.dominated).map(|rung| rung.rung.as_str()).collect()
+    }
+
+    #[test]
+    fn a_rung_is_dominated_by_a_faster_one_that_errs_no_more() {
+        let cheap = rung("cheap", 1.0, 0.5, 0.5);
+        let slow = rung("slow", 2.0, 0.5, 0.5);
+        let mixed = rung("mixed", 3.0, 0.4, 0.6);
+        let best = rung("best", 4.0, 0.1, 0.1);
+        let worse = rung("worse", 5.0, 0.2, 0.2);
+        assert_eq!(marked(&report(vec![cheap, slow, mixed, best, worse])), ["slow", "worse"]);
+    }
+
+    #[test]
+    fn nothing_untimed_is_dominated() {
+        let untimed = RungReport { timing: None, ..rung("untimed", 0.0, 0.9, 0.9) };
+        assert!(marked(&report(vec![rung("cheap", 1.0, 0.1, 0.1), untimed])).is_empty());
+    }
+
+    #[test]
+    fn rows_are_marked_by_measure_and_view() {
+        let report = report(vec![rung("cheap", 1.0, 0.5, 0.5), rung("mixed", 3.0, 0.4, 0.6)]);
+        let of = |name: &str, measure: &str| {
+            let rows = report.rows();
+            let row = rows.iter().find(|row| row.rung == name && row.error_measure == measure);
+            row.expect("a row").dominated
+        };
+        assert!(!of("mixed", "flip") && of("mixed", "rmse") && !of("cheap", "rmse"));
+    }
+
+    #[test]
+    fn a_plot_shows_every_timed_rung() {
+        let report = report(vec![rung("surface", 1.0, 0.5, 0.5), rung("convex-4+tracker", 3.0, 0.4, 0.6)]);
+        for measure in ["flip", "rmse"] {
+            let svg = plot::svg(&report, measure).expect("drawn");
+            assert!(svg.contains("surface") && svg.contains("convex-4+tracker") && svg.ends_with("</svg>\n"), "{svg}");
+        }
+        let untimed = RungReport { timing: None, ..rung("surface", 0.0, 0.9, 0.9) };
+        assert!(plot::svg(&Report { rungs: vec![untimed], ..report }, "flip").is_err());
+    }
+}

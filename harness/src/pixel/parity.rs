@@ -25,7 +25,7 @@ pub struct Parity {
     pub compared: usize,
     /// Of them, those whose rays meet other facets when the pixel is moved by 1/256.
     pub at_an_edge: usize,
-    /// Of those, the ones whose value is none of the values around: how far the value may lie is unknown there.
+    /// Of those, the ones whose value lies outside of the span of the values around.
     pub differing_at_an_edge: usize,
     /// Away from edges, and beyond the tolerance.
     pub failed: Vec<Failure>,

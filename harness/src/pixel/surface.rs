@@ -60,15 +60,6 @@ impl Viewer {
         nearest.map(|(distance, triangle)| self.point(direction, distance, triangle))
     }
 
-    /// A point of the picture on the plane of a triangle that was seen beside it.
-    pub fn on_plane(&self, mesh: &Mesh, triangle: u32, x: f64, y: f64) -> Option<SurfacePoint> {
-        let direction = self.direction(x, y);
-        let [a, b, c] = mesh.triangles().nth(triangle as usize)?.map(|corner| corner.as_dvec3() - self.eye);
-        let normal = (b - a).cross(c - a);
-        let distance = normal.dot(a) / normal.dot(direction);
-        (distance.is_finite() && distance > 0.0).then(|| self.point(direction, distance, triangle))
-    }
-
     fn point(&self, direction: DVec3, distance: f64, triangle: u32) -> SurfacePoint {
         SurfacePoint { position: (self.eye + distance * direction).as_vec3(), triangle }
     }

@@ -42,6 +42,10 @@ const RENDER: &[Row] = &[
     ("octahedron --strength nan --out {}/out.png", Usage, &["--strength", "above 0"]),
     ("octahedron --distance-limit 0 --out {}/out.png", Usage, &["--distance-limit", "above 0"]),
     ("octahedron --without fire --out {}/out.png", Usage, &["--without", "absorption"]),
+    ("octahedron --rung reference --without absorption --out {}/out.png", One, &["`reference` knows no --without"]),
+    ("octahedron --rung reference --distance-limit 2 --out {}/out.png", One, &["knows no --distance-limit"]),
+    ("octahedron --rung convex-1 --centre paper --out {}/out.png", One, &["knows no --centre paper"]),
+    ("octahedron --rung proxy-1 --strength 2 --out {}/out.png", One, &["knows no --strength"]),
     ("octahedron --rest lost --out {}/out.png", Usage, &["--rest", "dropped"]),
     ("octahedron --centre wrong --out {}/out.png", Usage, &["--centre", "stable"]),
 ];

@@ -32,7 +32,7 @@ fn check(scene: &str, what: &str, parity: &Parity, most_at_an_edge: f64) {
     );
     assert!(parity.compared > 300, "{scene} {what}: {} pixels", parity.compared);
     assert!(parity.failed.is_empty(), "{scene} {what}: {:?}", &parity.failed[..parity.failed.len().min(3)]);
-    // At an edge the GPU may show either side; what it shows must still be one of them, but for a few where more than two sides meet.
+    // At an edge the GPU may show either side; what it shows must lie in the span of the sides, but for a few where more than two meet.
     assert!(parity.differing_at_an_edge <= parity.compared / 50, "{scene} {what}: {}", parity.differing_at_an_edge);
     assert!(share <= most_at_an_edge, "{scene} {what}: {share}");
     assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
@@ -51,6 +51,7 @@ fn the_picture_is_the_mirrors() {
         ("brilliant", "proxy-2+31", 0.30),
         ("brilliant", "convex-1", 0.02),
         ("brilliant", "convex-8+tracker", 0.30),
+        ("brilliant", "convex-64", 0.50),
         ("brilliant", "triangles-1+3", 0.05),
         ("brilliant", "bvh-4+paper", 0.20),
         ("sapphire", "proxy-8", 0.90),
