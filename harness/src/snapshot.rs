@@ -37,7 +37,12 @@ pub struct Shot {
 
 /// Every committed picture.
 pub const SHOTS: [Shot; 20] = [
-    shot("brilliant", "Round brilliant, diamond", "brilliant", "proxy-4+tracker"),
+    Shot {
+        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
+            picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
+        ..shot("brilliant_exact", "Round brilliant, diamond", "brilliant", "convex-8+tracker")
+    },
+    shot("brilliant", "Round brilliant by proxy, diamond", "brilliant", "proxy-4+tracker"),
     shot("sapphire", "Round brilliant, sapphire", "sapphire", "convex-8+tracker"),
     shot("ruby", "Round brilliant, ruby", "ruby", "convex-8+tracker"),
     shot("quartz", "Round brilliant, quartz", "quartz", "proxy-4+tracker"),
@@ -47,11 +52,6 @@ pub const SHOTS: [Shot; 20] = [
     shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker"),
     shot("chandelier", "A chandelier, one draw call", "chandelier", "proxy-2+tracker"),
     shot("bunny_stone", "Bunny, glass", "bunny_stone", "bvh-8+tracker"),
-    Shot {
-        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
-            picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
-        ..shot("brilliant_exact", "Round brilliant, exact", "brilliant", "convex-8+tracker")
-    },
     Shot {
         paragraph: "As the paper has it: one internal hit, no dispersion. What is reflected inside comes from the environment along \
             the reflected ray.",

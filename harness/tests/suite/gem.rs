@@ -85,3 +85,33 @@ fn less_is_left_after_more_hits() {
         assert!(sums.windows(2).all(|pair| pair[1] > pair[0]), "{geometry}: {sums:?}");
     }
 }
+
+/// After a bounce the proxy's next plane may lie behind the ray, which then leaves through the plane that it came from, or along it. Both
+/// are misses with a stated result; without the cases the ray would go backwards, or nowhere.
+#[test]
+fn a_ray_that_a_tile_turns_from_the_next_plane_meets_nothing() {
+    use lapidary_proxy_geometry as proxy;
+    let (a, b, c) = (Vec3::ZERO, Vec3::Z, Vec3::X);
+    let (centre, normal) = (Vec3::new(0.3, -1.0, 0.3), proxy::face_normal(a, b, c));
+    assert_eq!(normal, Vec3::Y);
+    let plane = proxy::plane(centre, a, b, c);
+    let hit = proxy::intersect(Vec3::new(0.2, 0.0, 0.2), Vec3::NEG_Y, plane.origin, normal);
+    assert!(hit.hit && hit.point == Vec3::new(0.2, -2.0, 0.2), "{hit:?}");
+    let coordinates = proxy::coordinates(hit.point, plane.origin, plane.edge_first, plane.edge_second);
+    let next = proxy::next_plane(centre, proxy::facet(plane, proxy::cell(coordinates)));
+    let meet = |direction: Vec3| proxy::intersect(hit.point, direction, next.origin, normal);
+    let naive = |direction: Vec3| proxy::intersect_naive(hit.point, direction, next.origin, normal);
+    // Back up it meets the triangle's own plane.
+    assert!(meet(Vec3::new(0.6, 0.8, 0.0)).distance == 2.5);
+    for away in [Vec3::new(0.6, -0.8, 0.0), Vec3::NEG_Y, Vec3::X, Vec3::new(0.0, -0.0, 1.0)] {
+        let hit_next = meet(away);
+        assert!(!hit_next.hit && hit_next.point == hit.point && hit_next.distance == 0.0, "{away}: {hit_next:?}");
+        let wrong = naive(away);
+        assert!(wrong.distance < 0.0 || !wrong.distance.is_finite(), "{away}: {wrong:?}");
+    }
+    // The whole recipe goes on from there: every value of a proxy of many hits is finite, also where its rays ended so.
+    let scene = Scene::named("octahedron").expect("built in");
+    assert!(
+        picture(&scene, "proxy-64+tracker").linear.iter().flatten().all(|value| value.is_finite() && *value >= 0.0)
+    );
+}
