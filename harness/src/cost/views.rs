@@ -37,7 +37,7 @@ pub const VIEWS: [View; 7] = [
 ];
 
 /// Views with a reference that the ladder leaves out: their stones are concave or many, or show nothing that those above do not. The
-/// chandelier has none: a ray there meets so many prisms that its tree is not followed to the energy bound in an hour.
+/// chandelier has none: a ray there meets so many prisms that ten minutes on two cores did not end its picture.
 pub const SHOWN: [View; 4] = [own("prism"), own("ruby"), own("bunny_stone"), own("prism_chain")];
 
 impl View {
