@@ -22,7 +22,7 @@ pub struct Recipe {
     pub source: &'static str,
 }
 
-/// What several recipes share: bindings and functions that belong to none of the modules. Not valid by itself.
+/// What several recipes share: overrides, bindings and functions that belong to none of the modules. Not valid by itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// The part's name.
@@ -71,4 +71,4 @@ pub const MODULES: &[Module] = modules![
 pub const RECIPES: &[Recipe] = recipes!["display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading"];
+pub const PARTS: &[Part] = parts!["gem_shading", "mesh", "surroundings", "trace_nearest"];

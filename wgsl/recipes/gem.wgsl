@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: gem_shading
+// parts: mesh, surroundings, gem_shading
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh itself is read from storage buffers, so that
 // each vertex sees its whole triangle and the proxy needs no further data and no further pass.
@@ -32,9 +32,9 @@ fn gem_normal(index: u32) -> vec3f {
 
 // The proxy's centre, from the three vertex normals.
 fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
-    let position_a = gem_position(a);
-    let position_b = gem_position(b);
-    let position_c = gem_position(c);
+    let position_a = mesh_position(a);
+    let position_b = mesh_position(b);
+    let position_c = mesh_position(c);
     if (CENTRE_PAPER) {
         return closest_point_centre_paper(position_a, gem_normal(a), position_b, gem_normal(b), position_c, gem_normal(c));
     }
@@ -44,10 +44,10 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
 @vertex
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     let first = vertex - vertex % 3u;
-    let position_a = gem_position(indices[first]);
-    let position_b = gem_position(indices[first + 1u]);
-    let position_c = gem_position(indices[first + 2u]);
-    let position = gem_position(indices[vertex]);
+    let position_a = mesh_position(indices[first]);
+    let position_b = mesh_position(indices[first + 1u]);
+    let position_c = mesh_position(indices[first + 2u]);
+    let position = mesh_position(indices[vertex]);
     let face_normal = proxy_geometry_face_normal(position_a, position_b, position_c);
     var centre = position_a;
     if (EFFECT_PROXY_GEOMETRY) {

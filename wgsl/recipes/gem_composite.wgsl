@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 4.3.1 and 4.3.4.
 // requires: environment, refraction
+// parts: surroundings
 //
 // The stone is lit like any other surface: its emission is added to what its surface reflects. The position comes back from depth.
-
-// An image as the environment instead of the procedural studio. Called for by the user, who has one.
-override EFFECT_ENVIRONMENT_MAP: bool = false;
 
 struct GemCompositeView {
     world_from_clip: mat4x4f,
@@ -16,7 +14,6 @@ struct GemCompositeView {
 }
 
 @group(0) @binding(0) var<uniform> view: GemCompositeView;
-@group(0) @binding(1) var environment_map: texture_2d<f32>;
 @group(0) @binding(2) var emission: texture_2d<f32>;
 @group(0) @binding(3) var normal_reflectance: texture_2d<f32>;
 @group(0) @binding(4) var depth: texture_depth_2d;
@@ -35,21 +32,6 @@ fn gem_composite_position(texel: vec2f, depth_value: f32) -> vec3f {
     return world.xyz / world.w;
 }
 
-// Radiance that arrives from a direction.
-fn gem_composite_environment(direction: vec3f) -> vec3f {
-    if (EFFECT_ENVIRONMENT_MAP) {
-        let texels = environment_texels(environment_uv_from_direction(direction), textureDimensions(environment_map));
-        let lower_left = textureLoad(environment_map, texels.lower, 0).rgb;
-        let lower_right = textureLoad(environment_map, vec2u(texels.upper.x, texels.lower.y), 0).rgb;
-        let upper_left = textureLoad(environment_map, vec2u(texels.lower.x, texels.upper.y), 0).rgb;
-        let upper_right = textureLoad(environment_map, texels.upper, 0).rgb;
-        let lower = mix(lower_left, lower_right, texels.weight.x);
-        let upper = mix(upper_left, upper_right, texels.weight.x);
-        return mix(lower, upper, texels.weight.y);
-    }
-    return environment_studio(direction);
-}
-
 @fragment
 fn gem_composite_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(position.xy);
@@ -60,5 +42,5 @@ fn gem_composite_fragment(@builtin(position) position: vec4f) -> @location(0) ve
     let surface = textureLoad(normal_reflectance, texel, 0);
     let world = gem_composite_position(position.xy, textureLoad(depth, texel, 0));
     let reflected = refraction_reflect(normalize(world - view.eye), normalize(surface.xyz));
-    return vec4f(surface.w * gem_composite_environment(reflected) + inside.rgb, 1.0f);
+    return vec4f(surface.w * surroundings_radiance(reflected) + inside.rgb, 1.0f);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", Fig. 7.
 // requires: absorption, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: gem_shading
+// parts: mesh, surroundings, gem_shading
 //
 // Draw as the recipe `gem`, and bind the stone's facet planes besides. One stone a draw, and a convex one.
 
@@ -23,7 +23,7 @@ struct GemVertex {
 
 @vertex
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
-    let position = gem_position(indices[vertex]);
+    let position = mesh_position(indices[vertex]);
     let face = face_of_triangle[vertex / 3u];
     return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, planes[face].xyz, face);
 }

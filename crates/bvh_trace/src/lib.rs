@@ -2,7 +2,7 @@
 //! bounding volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
-//! [`traversal`] mirrors the kernel of `wgsl/recipes/trace.wgsl`.
+//! [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
 
 pub mod oracle;
 pub mod traversal;

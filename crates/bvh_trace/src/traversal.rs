@@ -1,5 +1,5 @@
-//! Mirror of the kernel of `wgsl/recipes/trace.wgsl`: the loops over nodes and over all triangles, line by line, on
-//! the buffers that it binds.
+//! Mirror of the part `wgsl/recipes/parts/trace_nearest.wgsl`: the loops over nodes and over all triangles, line by line, on
+//! the buffers that its recipes bind.
 
 use crate::{BVH_TRACE_NONE, BvhTraceHit, BvhTraceRay};
 use glam::{Vec3, Vec4};

@@ -92,8 +92,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let text = report.text();
     if let Some(out) = &arguments.out {
         let write = |name: &str, contents: &str| -> Result<(), Failure> {
-            let path: PathBuf = Path::new(out).join(name);
-            Ok(file::replace(&path, contents.as_bytes())?)
+            Ok(file::replace(&out.join(name), contents.as_bytes())?)
         };
         write("gem.txt", &text)?;
         write("gem.json", &serde_json::to_string_pretty(&report)?)?;

@@ -36,13 +36,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "EFFECT", value_parser = ["absorption"])]
     without: Vec<String>,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_exposure)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
     strength: f32,
     /// What a ray still carries at its last hit: taken from the environment along it, or dropped.
     #[arg(long, value_name = "WAY", default_value = "environment", value_parser = ["environment", "dropped"])]
     rest: String,
     /// In units of length: a ray ends that has travelled farther inside.
-    #[arg(long, value_name = "LENGTH", value_parser = parse_exposure)]
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     distance_limit: Option<f32>,
     /// By a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     environment: Option<PathBuf>,
     /// Radiance is multiplied by this before the tone curve.
-    #[arg(long, default_value_t = 1.0, value_parser = parse_exposure)]
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
 }
 
@@ -70,7 +70,7 @@ fn parse_from(text: &str) -> Result<(f32, f32), String> {
     parsed.ok_or_else(|| "expected two angles in degrees, such as 20,11".to_owned())
 }
 
-fn parse_exposure(text: &str) -> Result<f32, String> {
+fn parse_positive(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(exposure) if exposure.is_finite() && exposure > 0.0 => Ok(exposure),
         _ => Err("expected a number above 0".to_owned()),

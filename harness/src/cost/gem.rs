@@ -120,6 +120,7 @@ pub fn run(
     }
     let entries = entries(options, &strengths);
     let total = (entries.len() * scenes.len()) as u64;
+    let brilliant = Scene::named("brilliant")?;
     let mut rungs = Vec::new();
     for entry in &entries {
         let mut errors = Vec::new();
@@ -127,10 +128,10 @@ pub fn run(
             errors.push(Some(Errors::between(&render::render(gpu, scene, &entry.settings)?, reference)));
             progress("comparing", (rungs.len() * scenes.len() + errors.len()) as u64, total);
         }
-        rungs.push(count(entry, errors)?);
+        rungs.push(count(&brilliant, entry, errors)?);
     }
     if options.rounds > 0 {
-        let filled = views::filled(&Scene::named("brilliant")?);
+        let filled = views::filled(&brilliant);
         let [width, height] = options.frame;
         let timed: Vec<Timed<'_>> = entries
             .iter()
@@ -159,15 +160,12 @@ pub fn run(
     })
 }
 
-/// The rung's shaders, specialised to what it uses, counted in SPIR-V.
-fn count(entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostError> {
+/// The rung's shaders for the brilliant, specialised to what it uses, counted in SPIR-V.
+fn count(brilliant: &Scene, entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostError> {
     let rung = entry.settings.rung;
-    let scene = Scene::named("brilliant")?;
     let source = cookbook::recipe_source(rung.recipe());
     let (ir, _) = dispatch::parse(&source, rung.recipe()).map_err(render::RenderError::from)?;
-    let declared = |key: &str| ir.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
-    let constants = render::constants(&scene, &entry.settings);
-    let constants: Vec<(&str, f64)> = constants.into_iter().filter(|(key, _)| declared(key)).collect();
+    let constants = dispatch::declared(&ir, &render::constants(brilliant, &entry.settings));
     let (ir, info) = specialise(ir, &constants, &["gem_vertex", "gem_fragment"])?;
     let counts = spirv_counts(&ir, &info, "gem_vertex", "gem_fragment")?;
     Ok(RungReport {
@@ -176,7 +174,7 @@ fn count(entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostE
         timing: None,
         fragment_instructions: counts.fragment_instructions,
         vertex_instructions: counts.vertex_instructions,
-        geometry_bytes: render::geometry_bytes(&scene.objects[0], &entry.settings)?,
+        geometry_bytes: render::geometry_bytes(&brilliant.objects[0], &entry.settings)?,
         dominated: false,
     })
 }

@@ -41,6 +41,13 @@ pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::Mod
     Ok((module, info))
 }
 
+/// Those of `constants` that `module` declares as overrides. One that it does not is an error to wgpu and naga; a user's recipe
+/// may have left one out, and recipes that share settings need not have all.
+pub fn declared<'a>(module: &naga::Module, constants: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
+    let is_declared = |key: &str| module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
+    constants.iter().copied().filter(|(key, _)| is_declared(key)).collect()
+}
+
 /// Validates a module for what core WebGPU offers.
 pub fn validate(
     module: &naga::Module,

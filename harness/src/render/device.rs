@@ -14,7 +14,7 @@ pub(super) struct PipelineSource<'a> {
     pub(super) source: &'a str,
     /// Its vertex and fragment entry points.
     pub(super) entries: [&'a str; 2],
-    /// Values of its overrides. One that the text does not declare is left out: a user's recipe need not have all.
+    /// Values of its overrides; those that the text does not declare are left out.
     pub(super) constants: &'a [(&'a str, f64)],
     /// Formats of its colour targets.
     pub(super) formats: &'a [wgpu::TextureFormat],
@@ -26,8 +26,7 @@ pub(super) struct PipelineSource<'a> {
 pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::RenderPipeline, RenderError> {
     let name = from.recipe;
     let (module, _) = dispatch::parse(from.source, &format!("recipe {name}"))?;
-    let declared = |key: &str| module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
-    let constants: Vec<(&str, f64)> = from.constants.iter().copied().filter(|(key, _)| declared(key)).collect();
+    let constants = dispatch::declared(&module, from.constants);
     for entry in from.entries {
         if !module.entry_points.iter().any(|point| point.name == entry) {
             return Err(DispatchError::Source(format!("recipe {name}: no entry point `{entry}`")).into());

@@ -1,4 +1,4 @@
-//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/trace.wgsl`.
+//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/trace.wgsl` and `gem_bvh.wgsl`.
 //!
 //! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few
 //! dependencies; but its clustering does not bound the depth, which a shader's stack must, and with debug assertions,

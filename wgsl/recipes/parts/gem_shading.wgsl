@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 //
-// A geometry recipe adds: struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
+// A geometry recipe adds: the parts mesh and surroundings, struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
 // struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).
 
-// An image as the environment instead of the procedural studio. Called for by the user, who has one.
-override EFFECT_ENVIRONMENT_MAP: bool = false;
 // Light inside is absorbed on its way. Called for by KHR_materials_volume: an attenuation colour below white.
 override EFFECT_ABSORPTION: bool = false;
 // The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
@@ -55,7 +53,6 @@ struct GemWavelength {
 }
 
 @group(0) @binding(0) var<uniform> view: GemView;
-@group(0) @binding(1) var environment_map: texture_2d<f32>;
 @group(1) @binding(0) var<uniform> material: GemMaterial;
 // Three floats a vertex, in world space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
@@ -70,26 +67,6 @@ struct GemHit {
     // Along the ray.
     distance: f32,
     hit: bool,
-}
-
-fn gem_position(index: u32) -> vec3f {
-    return vec3f(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]);
-}
-
-// Radiance that arrives from a direction.
-fn gem_environment(direction: vec3f) -> vec3f {
-    if (EFFECT_ENVIRONMENT_MAP) {
-        // Filtered by hand: 32-bit float textures need not be filterable.
-        let texels = environment_texels(environment_uv_from_direction(direction), textureDimensions(environment_map));
-        let lower_left = textureLoad(environment_map, texels.lower, 0).rgb;
-        let lower_right = textureLoad(environment_map, vec2u(texels.upper.x, texels.lower.y), 0).rgb;
-        let upper_left = textureLoad(environment_map, vec2u(texels.lower.x, texels.upper.y), 0).rgb;
-        let upper_right = textureLoad(environment_map, texels.upper, 0).rgb;
-        let lower = mix(lower_left, lower_right, texels.weight.x);
-        let upper = mix(upper_left, upper_right, texels.weight.x);
-        return mix(lower, upper, texels.weight.y);
-    }
-    return environment_studio(direction);
 }
 
 // What absorption leaves of light over a distance inside.
@@ -138,21 +115,21 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
         throughput *= gem_transmittance(hit.distance);
         let exit = gem_exit(inside, hit.normal, index);
         if (exit.share > 0.0f) {
-            radiance += exit.share * throughput * gem_environment(exit.direction);
+            radiance += exit.share * throughput * surroundings_radiance(exit.direction);
             throughput *= 1.0f - exit.share;
         }
         position = hit.point;
         inside = refraction_reflect(inside, hit.normal);
     }
     if (REST_FROM_ENVIRONMENT) {
-        radiance += throughput * gem_environment(inside);
+        radiance += throughput * surroundings_radiance(inside);
     }
     return radiance;
 }
 
 // Radiance from three directions, one a channel.
 fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
-    return vec3f(gem_environment(red).r, gem_environment(green).g, gem_environment(blue).b);
+    return vec3f(surroundings_radiance(red).r, surroundings_radiance(green).g, surroundings_radiance(blue).b);
 }
 
 // The same for three channels by one ray at the d line and its derivative by the refractive index. The derivative gives each channel's
@@ -248,7 +225,7 @@ struct GemRadiance {
 fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
     let direction = normalize(input.position - view.eye);
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
-    let reflected = gem_environment(refraction_reflect(direction, input.face_normal));
+    let reflected = surroundings_radiance(refraction_reflect(direction, input.face_normal));
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
         var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f));
         for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {

@@ -1,0 +1,80 @@
+// trace_nearest: the nearest triangle that a ray inside a closed mesh leaves through, by a hierarchy or by a loop.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of Ray Traversal on
+//   GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
+//
+// A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes`, array<BvhTraceNode>, the root first, the two
+// children of a node side by side; and `indices`, array<u32>, three a triangle, counter-clockwise from outside, in the order of
+// the leaves. A triangle's number is its place there.
+
+// A loop over all triangles instead of the hierarchy: the paper's comparator.
+override TRAVERSAL_LOOP: bool = false;
+// Möller and Trumbore's test with an epsilon instead of the watertight one.
+override TRIANGLE_NAIVE: bool = false;
+
+// The largest number of nodes between the root and a leaf. Whoever builds the hierarchy keeps to it.
+const TRACE_DEPTH = 32u;
+// Farther than anything that a ray may meet.
+const TRACE_FAR = 1e37f;
+
+// One triangle, by its number.
+fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) -> BvhTraceHit {
+    let a = mesh_position(indices[3u * triangle]);
+    let b = mesh_position(indices[3u * triangle + 1u]);
+    let c = mesh_position(indices[3u * triangle + 2u]);
+    if (TRIANGLE_NAIVE) {
+        return bvh_trace_triangle_naive(hit, ray, a, b, c, triangle, left);
+    }
+    return bvh_trace_triangle(hit, ray, a, b, c, triangle, left);
+}
+
+// The nearest triangle that a ray leaves the solid through.
+fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
+    var hit = bvh_trace_start(TRACE_FAR);
+    let ray = bvh_trace_ray(origin, direction, nodes[0].lower, nodes[0].upper);
+    if (TRAVERSAL_LOOP) {
+        for (var triangle = 0u; triangle < arrayLength(&indices) / 3u; triangle += 1u) {
+            hit = trace_triangle(hit, ray, triangle, left);
+        }
+        return hit;
+    }
+    // The farther children, and where the ray enters them.
+    var stack: array<u32, TRACE_DEPTH>;
+    var entries: array<f32, TRACE_DEPTH>;
+    var depth = 0u;
+    var node = 0u;
+    loop {
+        let first = nodes[node].first;
+        let count = nodes[node].count;
+        if (count == 0u) {
+            let box_one = bvh_trace_box(ray, nodes[first].lower, nodes[first].upper, hit.distance);
+            let box_other = bvh_trace_box(ray, nodes[first + 1u].lower, nodes[first + 1u].upper, hit.distance);
+            // The nearer child first: what it finds culls the farther.
+            let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
+            let near = select(first, first + 1u, other_first);
+            if (box_one.hit && box_other.hit) {
+                stack[depth] = 2u * first + 1u - near;
+                entries[depth] = max(box_one.entry, box_other.entry);
+                depth += 1u;
+            }
+            if (box_one.hit || box_other.hit) {
+                node = near;
+                continue;
+            }
+        }
+        for (var triangle = first; triangle < first + count; triangle += 1u) {
+            hit = trace_triangle(hit, ray, triangle, left);
+        }
+        // Back to the last box that may still hold something nearer.
+        var found = false;
+        while (depth > 0u && !found) {
+            depth -= 1u;
+            node = stack[depth];
+            found = entries[depth] <= hit.distance;
+        }
+        if (!found) {
+            break;
+        }
+    }
+    return hit;
+}
