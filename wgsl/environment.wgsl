@@ -162,13 +162,14 @@ fn environment_texels_naive(uv: vec2f, size: vec2u) -> EnvironmentTexels {
 // Accuracy: lavapipe 6 ulp + 3 backward; portable 16 ulp + 8 backward
 fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
     let depth = dot(direction, axis);
-    // The projection knows no sign: -axis would land in the middle of the light.
-    if depth <= 0.0f {
+    // The projection knows no sign: -axis would land in the middle of the light. The least normal number still has a reciprocal.
+    if depth < 1.1754944e-38f {
         return 0.0f;
     }
     let right = cross(up, axis);
-    let position = vec2f(dot(direction, right), dot(direction, up)) / depth;
-    let inside = (half_size + softness - abs(position)) / (2.0f * softness);
+    // Reciprocals: a division costs several multiplications, and that by a constant softness is none at all.
+    let position = vec2f(dot(direction, right), dot(direction, up)) * (1.0f / depth);
+    let inside = (half_size + softness - abs(position)) * (0.5f / softness);
     let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));
     let coverage = t * t * (3.0f - 2.0f * t);
     return coverage.x * coverage.y;
@@ -183,8 +184,8 @@ fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2
 fn environment_softbox_naive(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
     let depth = dot(direction, axis);
     let right = cross(up, axis);
-    let position = vec2f(dot(direction, right), dot(direction, up)) / depth;
-    let inside = (half_size + softness - abs(position)) / (2.0f * softness);
+    let position = vec2f(dot(direction, right), dot(direction, up)) * (1.0f / depth);
+    let inside = (half_size + softness - abs(position)) * (0.5f / softness);
     let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));
     let coverage = t * t * (3.0f - 2.0f * t);
     return coverage.x * coverage.y;

@@ -102,13 +102,14 @@ pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
 /// How much of a rectangular, soft-edged light a direction meets, in [0, 1].
 pub fn softbox(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
     let depth = direction.dot(axis);
-    // The projection knows no sign: -axis would land in the middle of the light.
-    if depth <= 0.0 {
+    // The projection knows no sign: -axis would land in the middle of the light. The least normal number still has a reciprocal.
+    if depth < f32::MIN_POSITIVE {
         return 0.0;
     }
     let right = up.cross(axis);
-    let position = Vec2::new(direction.dot(right), direction.dot(up)) / depth;
-    let inside = (half_size + softness - position.abs()) / (2.0 * softness);
+    // Reciprocals: a division costs several multiplications, and that by a constant softness is none at all.
+    let position = Vec2::new(direction.dot(right), direction.dot(up)) * (1.0 / depth);
+    let inside = (half_size + softness - position.abs()) * (0.5 / softness);
     let t = inside.clamp(Vec2::ZERO, Vec2::ONE);
     let coverage = t * t * (3.0 - 2.0 * t);
     coverage.x * coverage.y
@@ -118,8 +119,8 @@ pub fn softbox(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness:
 pub fn softbox_naive(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
     let depth = direction.dot(axis);
     let right = up.cross(axis);
-    let position = Vec2::new(direction.dot(right), direction.dot(up)) / depth;
-    let inside = (half_size + softness - position.abs()) / (2.0 * softness);
+    let position = Vec2::new(direction.dot(right), direction.dot(up)) * (1.0 / depth);
+    let inside = (half_size + softness - position.abs()) * (0.5 / softness);
     let t = inside.clamp(Vec2::ZERO, Vec2::ONE);
     let coverage = t * t * (3.0 - 2.0 * t);
     coverage.x * coverage.y

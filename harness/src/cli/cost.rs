@@ -1,7 +1,7 @@
 //! `cook cost`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cost::{self, CostError, Options, Report, plot, views};
+use lapidary_harness::cost::{self, CostError, Options, Report, page, plot, views};
 use lapidary_harness::render::Rung;
 use lapidary_harness::render::file;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Takes minutes. Times are the least of interleaved rounds; leave the machine alone meanwhile.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost"
+    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md"
 )]
 pub(super) struct Arguments {
     /// The ladder: gem.
@@ -35,6 +35,9 @@ pub(super) struct Arguments {
     /// A folder for gem.txt, gem.json (everything), gem_flip.svg and gem_rmse.svg.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Pages, comma-separated, whose generated tables are made anew.
+    #[arg(long, value_name = "FILE", value_delimiter = ',')]
+    fill: Vec<PathBuf>,
 }
 
 fn parse_rung(text: &str) -> Result<Rung, String> {
@@ -61,11 +64,14 @@ fn measure(context: &Context, options: &Options) -> Result<Report, Failure> {
     Ok(report)
 }
 
+fn read_text(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| Failure(format!("{}: cannot be read: {error}", path.display())))
+}
+
 fn read(path: &Path) -> Result<Report, Failure> {
-    let wrong = |reason: String| Failure(format!("{}: {reason}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
-    serde_json::from_str(&text)
-        .map_err(|error| wrong(format!("not a gem.json of `./cook cost gem --out`: {error}; measure anew")))
+    serde_json::from_str(&read_text(path)?).map_err(|error| {
+        Failure(format!("{}: not a gem.json of `./cook cost gem --out`: {error}; measure anew", path.display()))
+    })
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -84,6 +90,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         std::fs::create_dir_all(out).map_err(failed)?;
         file::check_writable(&out.join("gem.txt"))?;
     }
+    let pages: Vec<(&PathBuf, String)> =
+        arguments.fill.iter().map(|path| Ok((path, read_text(path)?))).collect::<Result<_, Failure>>()?;
     let mut report = match &arguments.from {
         Some(path) => read(path)?,
         None => measure(context, &options)?,
@@ -101,6 +109,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                 write(&format!("gem_{measure}.svg"), &plot::svg(&report, measure)?)?;
             }
         }
+    }
+    for (path, page) in pages {
+        let filled = page::fill(&page, &report).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
+        file::replace(path, filled.as_bytes())?;
     }
     if arguments.json {
         output::line(&serde_json::to_string_pretty(&report.rows())?)?;

@@ -20,6 +20,16 @@ pub struct Choice {
     pub errors: Errors,
 }
 
+impl Choice {
+    /// FLIP, RMSE and signed energy of a rung's choice, in the mean over the views.
+    pub(super) fn means(choices: &[Choice], (rung, choice): (&str, &str)) -> [f64; 3] {
+        let same: Vec<&Errors> =
+            choices.iter().filter(|c| c.rung == rung && c.choice == choice).map(|c| &c.errors).collect();
+        let mean = |value: fn(&Errors) -> f64| same.iter().map(|e| value(e)).sum::<f64>() / same.len() as f64;
+        [mean(|e| e.flip), mean(|e| e.rmse), mean(|e| e.energy)]
+    }
+}
+
 /// Distance limits, in radii of the stone.
 const LIMITS: [f32; 4] = [2.0, 4.0, 8.0, 16.0];
 

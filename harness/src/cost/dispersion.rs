@@ -1,7 +1,7 @@
 //! Tracked colours against those of separate wavelengths through the same geometry, so that dispersion alone differs.
 
+use super::CostError;
 use super::views::View;
-use super::{CostError, Strength};
 use crate::gpu::Gpu;
 use crate::pixel::{Shading, Stone, Viewer};
 use crate::render::{self, Picture, Rung, Settings, Spectrum};
@@ -24,7 +24,9 @@ pub struct Colours {
     pub none_rms: f64,
     /// The paper's tracker, as printed.
     pub paper_rms: f64,
-    /// The paper's tracker at its best-fit strength.
+    /// The factor of eq. (12) that serves the paper best: in this view, over these pixels.
+    pub strength: f32,
+    /// The paper's tracker at that strength.
     pub fitted_rms: f64,
     /// The exact tracker.
     pub tracker_rms: f64,
@@ -41,86 +43,63 @@ fn with_spectrum(rung: Rung, spectrum: Spectrum) -> Rung {
     }
 }
 
-/// Sum of squared differences over the pixels of `mask`, and how many values that were.
-fn squares(one: &Picture, other: &Picture, mask: &[bool]) -> (f64, f64) {
+/// RMS of the difference over the pixels of `mask`.
+fn difference(one: &Picture, other: &Picture, mask: &[bool]) -> f64 {
     let pixels = one.linear.iter().zip(&other.linear).zip(mask).filter(|(_, masked)| **masked);
-    pixels.fold((0.0, 0.0), |(sum, count), ((one, other), _)| {
+    let (sum, count) = pixels.fold((0.0, 0.0), |(sum, count), ((one, other), _)| {
         let difference: f64 = (0..3).map(|k| f64::from(one[k] - other[k]).powi(2)).sum();
         (sum + difference, count + 3.0)
-    })
-}
-
-fn rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
-    let (sum, count) = pairs.into_iter().fold((0.0, 0.0), |total, pair| (total.0 + pair.0, total.1 + pair.1));
+    });
     (sum / count).sqrt()
 }
 
-/// The strength of `rung`, which follows the paper's dispersion, that comes nearest to separate wavelengths over all scenes:
-/// the best of a grid over all magnitudes, then golden sections about it.
-pub(super) fn fit(gpu: &Gpu, rung: Rung, scenes: &[Scene]) -> Result<Strength, CostError> {
-    let separate = with_spectrum(rung, Spectrum::Separate(3));
-    let targets: Vec<Picture> =
-        scenes.iter().map(|scene| render::render(gpu, scene, &settings(separate, 1.0))).collect::<Result<_, _>>()?;
-    let error = |strength: f32| -> Result<f64, CostError> {
-        let mut pairs = Vec::new();
-        for (scene, target) in scenes.iter().zip(&targets) {
-            let picture = render::render(gpu, scene, &settings(rung, strength))?;
-            pairs.push(squares(&picture, target, &vec![true; picture.linear.len()]));
-        }
-        Ok(rms(pairs))
-    };
+/// Where `error` is least: at 0, or at the best of a grid over all magnitudes and golden sections about it; and how large it is there.
+fn least(mut error: impl FnMut(f32) -> Result<f64, CostError>) -> Result<(f32, f64), CostError> {
     const STEPS: i32 = 14;
+    const GOLDEN: f32 = 0.618_034;
     let step = |k: i32| 2f32.powf(-0.75 * k as f32);
-    let mut best = (f64::INFINITY, 0);
+    let mut best = (0.0, error(0.0)?);
+    let mut take = |strength: f32, best: &mut (f32, f64)| -> Result<f64, CostError> {
+        let found = error(strength)?;
+        if found < best.1 {
+            *best = (strength, found);
+        }
+        Ok(found)
+    };
+    let mut nearest = 0;
     for k in 0..STEPS {
-        let found = error(step(k))?;
-        if found < best.0 {
-            best = (found, k);
+        if take(step(k), &mut best)? == best.1 {
+            nearest = k;
         }
     }
-    let (mut low, mut high) = (step(best.1 + 1), step(best.1 - 1));
-    const GOLDEN: f32 = 0.618_034;
+    let (mut low, mut high) = (step(nearest + 1), step(nearest - 1));
     for _ in 0..6 {
         let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if error(left)? < error(right)? { high = right } else { low = left }
+        if take(left, &mut best)? < take(right, &mut best)? { high = right } else { low = left }
     }
-    let middle = 0.5 * (low + high);
-    let refined = error(middle)?;
-    let (fitted_rms, fitted) = if refined < best.0 { (refined, middle) } else { (best.0, step(best.1)) };
-    let (literal_rms, none_rms) = (error(1.0)?, error(0.0)?);
-    Ok(Strength { rung: rung.to_string(), fitted, literal_rms, fitted_rms, none_rms })
+    Ok(best)
 }
 
-/// The colours of every rung that was fitted, in every view.
-pub(super) fn colours(
-    gpu: &Gpu,
-    views: &[View],
-    scenes: &[Scene],
-    strengths: &[Strength],
-) -> Result<Vec<Colours>, CostError> {
-    let mut found = Vec::new();
-    for strength in strengths {
-        let Ok(paper) = strength.rung.parse::<Rung>() else { continue };
-        for (view, scene) in views.iter().zip(scenes) {
-            let picture =
-                |spectrum, strength| render::render(gpu, scene, &settings(with_spectrum(paper, spectrum), strength));
-            let separate = picture(Spectrum::Separate(3), 1.0)?;
-            let mask = shared(scene, with_spectrum(paper, Spectrum::Separate(3)), &separate)?;
-            let covered = separate.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
-            let difference = |picture: &Picture| rms([squares(picture, &separate, &mask)]);
-            let without = Rung::Inside { geometry: paper.geometry(), hits: paper.hits(), spectrum: Spectrum::One };
-            found.push(Colours {
-                rung: without.to_string(),
-                view: view.name.to_owned(),
-                shared: mask.iter().filter(|masked| **masked).count() as f64 / covered as f64,
-                none_rms: difference(&picture(Spectrum::One, 1.0)?),
-                paper_rms: difference(&picture(Spectrum::Paper, 1.0)?),
-                fitted_rms: difference(&picture(Spectrum::Paper, strength.fitted)?),
-                tracker_rms: difference(&picture(Spectrum::Tracker, 1.0)?),
-            });
-        }
-    }
-    Ok(found)
+/// The colours of `paper`'s geometry and hits in a view, the paper's tracker fitted to it.
+pub(super) fn colours(gpu: &Gpu, paper: Rung, view: &View, scene: &Scene) -> Result<Colours, CostError> {
+    let picture = |spectrum, strength| render::render(gpu, scene, &settings(with_spectrum(paper, spectrum), strength));
+    let separate = picture(Spectrum::Separate(3), 1.0)?;
+    let mask = shared(scene, with_spectrum(paper, Spectrum::Separate(3)), &separate)?;
+    let covered = separate.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
+    let error = |spectrum, strength| -> Result<f64, CostError> {
+        Ok(difference(&picture(spectrum, strength)?, &separate, &mask))
+    };
+    let (strength, fitted_rms) = least(|strength| error(Spectrum::Paper, strength))?;
+    Ok(Colours {
+        rung: with_spectrum(paper, Spectrum::One).to_string(),
+        view: view.name.to_owned(),
+        shared: mask.iter().filter(|masked| **masked).count() as f64 / covered as f64,
+        none_rms: error(Spectrum::One, 1.0)?,
+        paper_rms: error(Spectrum::Paper, 1.0)?,
+        strength,
+        fitted_rms,
+        tracker_rms: error(Spectrum::Tracker, 1.0)?,
+    })
 }
 
 /// Which pixels show the stone by three wavelengths that meet the same facets, and are totally reflected at the same.
@@ -139,4 +118,18 @@ fn shared(scene: &Scene, rung: Rung, picture: &Picture) -> Result<Vec<bool>, Cos
             rays.windows(2).all(|pair| pair[0] == pair[1])
         })
         .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least;
+
+    #[test]
+    fn the_least_is_found_wherever_it_is() {
+        for at in [0.9f32, 0.1, 0.0031, 0.0009] {
+            let (found, error) = least(|strength| Ok(f64::from((strength / at).ln().abs()))).expect("no error");
+            assert!((found / at - 1.0).abs() < 0.1 && error < 0.1, "{at}: {found} {error}");
+        }
+        assert_eq!(least(|strength| Ok(f64::from(strength))).expect("no error"), (0.0, 0.0));
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::timing::{self, Timed};
 use super::views::{self, View};
-use super::{CostError, Errors, Report, RungReport, choices, dispersion, reflection};
+use super::{Colours, CostError, Errors, Report, RungReport, choices, dispersion, reflection};
 use crate::cookbook;
 use crate::dispatch;
 use crate::gpu::Gpu;
@@ -10,10 +10,10 @@ use crate::render::{self, Picture, Rung, Settings, Spectrum};
 use crate::scene::Scene;
 use crate::specialise::specialise;
 use crate::spirv_counts::spirv_counts;
-use serde::{Deserialize, Serialize};
 
-/// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too.
-pub const RUNGS: [&str; 34] = [
+/// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
+/// the loop over triangles give the planes' pictures, so a few rungs show what they take.
+pub const RUNGS: [&str; 42] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -22,6 +22,7 @@ pub const RUNGS: [&str; 34] = [
     "proxy-1+3",
     "proxy-1+31",
     "proxy-2",
+    "proxy-2+paper",
     "proxy-2+tracker",
     "proxy-2+3",
     "proxy-4",
@@ -29,15 +30,20 @@ pub const RUNGS: [&str; 34] = [
     "proxy-4+tracker",
     "proxy-4+3",
     "proxy-8",
+    "proxy-8+paper",
     "proxy-8+tracker",
+    "proxy-8+3",
     "proxy-8+31",
     "convex-1",
     "convex-2",
+    "convex-2+paper",
     "convex-2+tracker",
+    "convex-2+3",
     "convex-4",
     "convex-4+paper",
     "convex-4+tracker",
     "convex-4+3",
+    "convex-4+31",
     "convex-8",
     "convex-8+paper",
     "convex-8+tracker",
@@ -45,7 +51,9 @@ pub const RUNGS: [&str; 34] = [
     "convex-8+31",
     "bvh-1",
     "bvh-4+tracker",
+    "bvh-8",
     "bvh-8+tracker",
+    "bvh-8+3",
     "triangles-1",
     "triangles-8+tracker",
 ];
@@ -70,38 +78,31 @@ impl Default for Options {
     }
 }
 
-/// The strength at which the paper's dispersion comes nearest to that of separate wavelengths.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Strength {
-    /// The rung.
-    pub rung: String,
-    /// Factor of eq. (12).
-    pub fitted: f32,
-    /// RMS of the difference in radiance from separate wavelengths, as printed.
-    pub literal_rms: f64,
-    /// The same at the fitted strength.
-    pub fitted_rms: f64,
-    /// The same without any dispersion.
-    pub none_rms: f64,
-}
-
-/// A rung with its name in the report and its settings.
+/// A rung with its name in the report, its settings, and the strength of the paper's dispersion in each view.
 struct Entry {
     name: String,
     settings: Settings,
+    strengths: Vec<f32>,
 }
 
-fn entries(options: &Options, strengths: &[Strength]) -> Vec<Entry> {
+fn entries(options: &Options, colours: &[Vec<Colours>]) -> Vec<Entry> {
+    let views = options.views.len();
     let mut entries = Vec::new();
+    let mut fitted = papers(options).zip(colours);
     for &rung in &options.rungs {
         let settings = Settings { rung, ..Settings::of_size(views::SIDE, views::SIDE) };
-        entries.push(Entry { name: rung.to_string(), settings: settings.clone() });
-        if let Some(strength) = strengths.iter().find(|strength| strength.rung == rung.to_string()) {
-            let settings = Settings { dispersion_strength: strength.fitted, ..settings };
-            entries.push(Entry { name: format!("{rung}-fitted"), settings });
+        entries.push(Entry { name: rung.to_string(), settings: settings.clone(), strengths: vec![1.0; views] });
+        if rung.spectrum() == Spectrum::Paper {
+            let strengths = fitted.next().map(|(_, found)| found.iter().map(|c| c.strength).collect());
+            entries.extend(strengths.map(|strengths| Entry { name: format!("{rung}-fitted"), settings, strengths }));
         }
     }
     entries
+}
+
+/// The rungs that follow the paper's dispersion.
+fn papers(options: &Options) -> impl Iterator<Item = Rung> + '_ {
+    options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper)
 }
 
 /// Measures the ladder. `progress` is told what is done, and how much of it.
@@ -112,20 +113,25 @@ pub fn run(
 ) -> Result<Report, CostError> {
     let scenes: Vec<Scene> = options.views.iter().map(View::open).collect::<Result<_, _>>()?;
     let references: Vec<Picture> = options.views.iter().map(|view| view.reference(gpu)).collect::<Result<_, _>>()?;
-    let papers: Vec<Rung> = options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper).collect();
-    let mut strengths = Vec::new();
-    for (done, &rung) in (1..).zip(&papers) {
-        strengths.push(dispersion::fit(gpu, rung, &scenes)?);
-        progress("fitting the paper's dispersion", done, papers.len() as u64);
+    let fits = (papers(options).count() * scenes.len()) as u64;
+    let mut colours: Vec<Vec<Colours>> = Vec::new();
+    for rung in papers(options) {
+        let mut found = Vec::new();
+        for (view, scene) in options.views.iter().zip(&scenes) {
+            found.push(dispersion::colours(gpu, rung, view, scene)?);
+            progress("fitting the paper's dispersion", (colours.len() * scenes.len() + found.len()) as u64, fits);
+        }
+        colours.push(found);
     }
-    let entries = entries(options, &strengths);
+    let entries = entries(options, &colours);
     let total = (entries.len() * scenes.len()) as u64;
     let brilliant = Scene::named("brilliant")?;
     let mut rungs = Vec::new();
     for entry in &entries {
         let mut errors = Vec::new();
-        for (scene, reference) in scenes.iter().zip(&references) {
-            errors.push(Some(Errors::between(&render::render(gpu, scene, &entry.settings)?, reference)));
+        for ((scene, reference), &dispersion_strength) in scenes.iter().zip(&references).zip(&entry.strengths) {
+            let settings = Settings { dispersion_strength, ..entry.settings.clone() };
+            errors.push(Some(Errors::between(&render::render(gpu, scene, &settings)?, reference)));
             progress("comparing", (rungs.len() * scenes.len() + errors.len()) as u64, total);
         }
         rungs.push(count(&brilliant, entry, errors)?);
@@ -145,16 +151,14 @@ pub fn run(
             rung.timing = Some(timing);
         }
     }
-    progress("comparing colours", 0, 1);
-    let colours = dispersion::colours(gpu, &options.views, &scenes, &strengths)?;
+    progress("comparing how rays end", 0, 1);
     let choices = choices::measure(gpu, &options.views, &scenes, &references)?;
     Ok(Report {
         adapter: gpu.describe(),
         views: options.views.iter().map(|view| view.name.to_owned()).collect(),
         frame: options.frame,
         rungs,
-        strengths,
-        colours,
+        colours: colours.concat(),
         choices,
         reflections: reflection::measure()?,
     })

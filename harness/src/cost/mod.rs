@@ -4,6 +4,7 @@ mod choices;
 mod dispersion;
 mod error;
 mod gem;
+pub mod page;
 pub mod plot;
 mod reflection;
 mod table;
@@ -13,7 +14,7 @@ pub mod views;
 pub use choices::Choice;
 pub use dispersion::Colours;
 pub use error::{Errors, MEASURES};
-pub use gem::{Options, RUNGS, Strength, run};
+pub use gem::{Options, RUNGS, run};
 pub use reflection::Reflection;
 pub use timing::{Timed, Timing};
 
@@ -72,8 +73,6 @@ pub struct Report {
     pub frame: [u32; 2],
     /// From cheap to exact.
     pub rungs: Vec<RungReport>,
-    /// The paper's dispersion, literal and fitted.
-    pub strengths: Vec<Strength>,
     /// How far tracked colours are from those of separate wavelengths.
     pub colours: Vec<Colours>,
     /// What is done with the rest of a ray, and where it ends.
@@ -200,7 +199,6 @@ mod tests {
             views: vec!["view".to_owned()],
             frame: [1920, 1080],
             rungs,
-            strengths: Vec::new(),
             colours: Vec::new(),
             choices: Vec::new(),
             reflections: Vec::new(),

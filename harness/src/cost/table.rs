@@ -1,6 +1,6 @@
 //! The ladder as text.
 
-use super::{Choice, Errors, MEASURES, Reflection, Report};
+use super::{Choice, Colours, Errors, MEASURES, Reflection, Report};
 use std::fmt::Write as _;
 
 /// The paper's own figures, for comparison: NVIDIA GeForce GTX 760, 1920×1080 filled by the stone, section 5 and Table 1.
@@ -11,7 +11,7 @@ pub(super) fn text(report: &Report) -> String {
     let mut text = String::new();
     ladder(&mut text, report);
     each_view(&mut text, report);
-    dispersion(&mut text, report);
+    colours(&mut text, &report.colours);
     choices(&mut text, &report.choices);
     reflections(&mut text, &report.reflections);
     let _ = writeln!(text, "\n{PAPER}");
@@ -74,38 +74,26 @@ fn each_view(text: &mut String, report: &Report) {
     }
 }
 
-fn dispersion(text: &mut String, report: &Report) {
-    if report.strengths.is_empty() {
+fn colours(text: &mut String, colours: &[Colours]) {
+    if colours.is_empty() {
         return;
     }
     let _ = writeln!(
         text,
-        "\nThe paper's dispersion, RMS of the difference from three separate wavelengths over all pixels of all views\n\
-         {:26} {:>9} {:>9} {:>9} {:>9}",
-        "rung", "strength", "fitted", "literal", "none"
-    );
-    for strength in &report.strengths {
-        let _ = writeln!(
-            text,
-            "{:26} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
-            strength.rung, strength.fitted, strength.fitted_rms, strength.literal_rms, strength.none_rms
-        );
-    }
-    let _ = writeln!(
-        text,
         "\nColours where the three wavelengths meet the same facets, RMS of the difference from separate wavelengths\n\
-         {:12} {:18} {:>7} {:>9} {:>9} {:>9} {:>9} {:>16}",
-        "geometry", "view", "shared", "none", "paper", "fitted", "tracker", "fitted/tracker"
+         {:12} {:18} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>16}",
+        "geometry", "view", "shared", "none", "paper", "strength", "fitted", "tracker", "fitted/tracker"
     );
-    for colours in &report.colours {
+    for colours in colours {
         let _ = writeln!(
             text,
-            "{:12} {:18} {:>6.1}% {:>9.5} {:>9.5} {:>9.5} {:>9.5} {:>16.1}",
+            "{:12} {:18} {:>6.1}% {:>9.5} {:>9.5} {:>9.5} {:>9.5} {:>9.5} {:>16.1}",
             colours.rung,
             colours.view,
             100.0 * colours.shared,
             colours.none_rms,
             colours.paper_rms,
+            colours.strength,
             colours.fitted_rms,
             colours.tracker_rms,
             colours.fitted_rms / colours.tracker_rms
@@ -126,17 +114,8 @@ fn choices(text: &mut String, choices: &[Choice]) {
             continue;
         }
         seen.push(key);
-        let same: Vec<&Choice> = choices.iter().filter(|c| (c.rung.as_str(), c.choice.as_str()) == key).collect();
-        let mean = |value: fn(&Errors) -> f64| same.iter().map(|c| value(&c.errors)).sum::<f64>() / same.len() as f64;
-        let _ = writeln!(
-            text,
-            "{:20} {:28} {:>8.4} {:>8.4} {:>+8.4}",
-            key.0,
-            key.1,
-            mean(|e| e.flip),
-            mean(|e| e.rmse),
-            mean(|e| e.energy)
-        );
+        let [flip, rmse, energy] = Choice::means(choices, key);
+        let _ = writeln!(text, "{:20} {:28} {flip:>8.4} {rmse:>8.4} {energy:>+8.4}", key.0, key.1);
     }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A rung slower than this is timed on fewer pixels.
-const SLOW: Duration = Duration::from_secs(2);
+const SLOW: Duration = Duration::from_secs(4);
 /// Each side of the frame is divided by this then.
 const REDUCTION: u32 = 4;
 

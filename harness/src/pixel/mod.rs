@@ -12,7 +12,7 @@ pub use surface::{SurfacePoint, Viewer};
 
 use crate::render::{Environment, Rung, Settings, Spectrum};
 use crate::scene::Material;
-use geometry::{Entry, Place};
+use geometry::{Entry, Hit, Place};
 use glam::{Mat3, UVec2, Vec3};
 use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
@@ -56,17 +56,35 @@ struct GemMaterial {
     dispersion_strength: f32,
 }
 
-/// A pixel in the making.
-struct Trace {
-    events: Vec<Event>,
+/// `GemRay` of the recipe, and what it met.
+struct Ray {
+    position: Vec3,
+    direction: Vec3,
     travelled: f32,
     throughput: Vec3,
     radiance: Vec3,
+    followed: bool,
+    events: Vec<Event>,
 }
 
-impl Trace {
-    fn new() -> Self {
-        Self { events: Vec::new(), travelled: 0.0, throughput: Vec3::ONE, radiance: Vec3::ZERO }
+impl Ray {
+    fn new(position: Vec3, direction: Vec3) -> Self {
+        let (throughput, radiance) = (Vec3::ONE, Vec3::ZERO);
+        Self { position, direction, travelled: 0.0, throughput, radiance, followed: true, events: Vec::new() }
+    }
+
+    fn leave(&mut self, share: Vec3, outside: Vec3) {
+        self.radiance += share * self.throughput * outside;
+        self.throughput *= 1.0 - share;
+    }
+
+    fn reflect(&mut self, hit: &Hit) {
+        self.position = hit.point;
+        self.direction = refraction::reflect(self.direction, hit.normal);
+    }
+
+    fn end(&mut self, outside: Vec3) {
+        self.radiance += self.throughput * outside;
     }
 }
 
@@ -125,10 +143,6 @@ impl<'a> Shading<'a> {
         mix(lower, upper, texels.weight.y)
     }
 
-    fn environment_channels(&self, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
-        Vec3::new(self.environment(red).x, self.environment(green).y, self.environment(blue).z)
-    }
-
     fn transmittance(&self, distance: f32) -> Vec3 {
         if self.absorbs { absorption::transmittance(self.material.absorption, distance) } else { Vec3::ONE }
     }
@@ -137,73 +151,75 @@ impl<'a> Shading<'a> {
         self.settings.distance_limit.is_some() && travelled > self.material.distance_limit
     }
 
-    /// Follows a ray to its next facet and absorbs; `None` where its following ends.
-    fn next(&self, trace: &mut Trace, place: &mut Place<'_>, position: Vec3, inside: Vec3) -> Option<geometry::Hit> {
-        let hit = place.hit(position, inside);
-        trace.travelled += hit.distance;
-        if hit.facet.is_none() || self.ends(trace.travelled) {
-            trace.events.push(Event { facet: None, total: 0 });
-            return None;
+    /// Follows a ray to its next facet. A ray that has ended meets no more; the recipe goes on and takes no notice.
+    fn next(&self, ray: &mut Ray, place: &mut Place<'_>) -> Hit {
+        let hit = place.hit(ray.position, ray.direction);
+        ray.travelled += hit.distance;
+        ray.followed = ray.followed && hit.facet.is_some() && !self.ends(ray.travelled);
+        if ray.followed {
+            ray.throughput *= self.transmittance(hit.distance);
+        } else {
+            ray.events.push(Event { facet: None, total: 0 });
         }
-        trace.throughput *= self.transmittance(hit.distance);
-        Some(hit)
+        hit
     }
 
-    fn trace(&self, entry: &Entry<'_>, direction: Vec3, index: f32) -> Trace {
-        let mut trace = Trace::new();
+    fn trace(&self, entry: &Entry<'_>, direction: Vec3, index: f32) -> Ray {
         let mut place = entry.enter();
-        let mut position = entry.position;
-        let mut inside = refraction::refract(direction, entry.face_normal, index).direction;
+        let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
         for _ in 0..self.settings.rung.hits() {
-            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
-            let exit = exit(inside, hit.normal, index);
-            trace.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
-            if exit.share > 0.0 {
-                trace.radiance += exit.share * trace.throughput * self.environment(exit.direction);
-                trace.throughput *= 1.0 - exit.share;
+            let hit = self.next(&mut ray, &mut place);
+            if !ray.followed {
+                break;
             }
-            position = hit.point;
-            inside = refraction::reflect(inside, hit.normal);
+            let exit = exit(ray.direction, hit.normal, index);
+            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            if exit.share > 0.0 {
+                ray.leave(Vec3::splat(exit.share), self.environment(exit.direction));
+            }
+            ray.reflect(&hit);
         }
         if self.settings.rest_from_environment {
-            trace.radiance += trace.throughput * self.environment(inside);
+            ray.end(self.environment(ray.direction));
         }
-        trace
+        ray
     }
 
-    fn trace_tracked(&self, entry: &Entry<'_>, direction: Vec3) -> Trace {
+    fn environment_channels(&self, red: Vec3, green: Vec3, blue: Vec3) -> Vec3 {
+        Vec3::new(self.environment(red).x, self.environment(green).y, self.environment(blue).z)
+    }
+
+    fn trace_tracked(&self, entry: &Entry<'_>, direction: Vec3) -> Ray {
         let indices = self.material.channel_indices;
         let offsets = indices - self.material.index;
-        let mut trace = Trace::new();
         let mut place = entry.enter();
-        let mut position = entry.position;
-        let mut inside = refraction::refract(direction, entry.face_normal, self.material.index).direction;
+        let inside = refraction::refract(direction, entry.face_normal, self.material.index).direction;
+        let mut ray = Ray::new(entry.position, inside);
         let mut gradient = dispersion::enter(direction, entry.face_normal, self.material.index);
         for _ in 0..self.settings.rung.hits() {
-            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
-            let red = exit(dispersion::direction(inside, gradient, offsets.x), hit.normal, indices.x);
-            let green = exit(dispersion::direction(inside, gradient, offsets.y), hit.normal, indices.y);
-            let blue = exit(dispersion::direction(inside, gradient, offsets.z), hit.normal, indices.z);
-            let share = Vec3::new(red.share, green.share, blue.share);
-            trace.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8 });
-            if share.cmpgt(Vec3::ZERO).any() {
-                let outside = self.environment_channels(red.direction, green.direction, blue.direction);
-                trace.radiance += share * trace.throughput * outside;
-                trace.throughput *= 1.0 - share;
+            let hit = self.next(&mut ray, &mut place);
+            if !ray.followed {
+                break;
             }
-            position = hit.point;
-            inside = refraction::reflect(inside, hit.normal);
+            let red = exit(dispersion::direction(ray.direction, gradient, offsets.x), hit.normal, indices.x);
+            let green = exit(dispersion::direction(ray.direction, gradient, offsets.y), hit.normal, indices.y);
+            let blue = exit(dispersion::direction(ray.direction, gradient, offsets.z), hit.normal, indices.z);
+            let share = Vec3::new(red.share, green.share, blue.share);
+            ray.events.push(Event { facet: hit.facet, total: share.cmpeq(Vec3::ZERO).bitmask() as u8 });
+            if share.cmpgt(Vec3::ZERO).any() {
+                ray.leave(share, self.environment_channels(red.direction, green.direction, blue.direction));
+            }
+            ray.reflect(&hit);
             gradient = dispersion::reflect(gradient, hit.normal);
         }
         if self.settings.rest_from_environment {
-            let rest = self.environment_channels(
-                dispersion::direction(inside, gradient, offsets.x),
-                dispersion::direction(inside, gradient, offsets.y),
-                dispersion::direction(inside, gradient, offsets.z),
-            );
-            trace.radiance += trace.throughput * rest;
+            ray.end(self.environment_channels(
+                dispersion::direction(ray.direction, gradient, offsets.x),
+                dispersion::direction(ray.direction, gradient, offsets.y),
+                dispersion::direction(ray.direction, gradient, offsets.z),
+            ));
         }
-        trace
+        ray
     }
 
     fn environment_paper(&self, red: Vec3, spread: Vec3, travelled: f32) -> Vec3 {
@@ -215,32 +231,34 @@ impl<'a> Shading<'a> {
         )
     }
 
-    fn trace_paper(&self, entry: &Entry<'_>, direction: Vec3) -> Trace {
+    fn trace_paper(&self, entry: &Entry<'_>, direction: Vec3) -> Ray {
         let index = self.material.channel_indices.x;
         let epsilon = dispersion::DISPERSION_PAPER_EPSILON;
-        let mut trace = Trace::new();
         let mut place = entry.enter();
-        let mut position = entry.position;
-        let mut inside = refraction::refract(direction, entry.face_normal, index).direction;
-        let mut spread = dispersion::paper_enter(direction, inside);
+        let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
+        let mut spread = dispersion::paper_enter(direction, ray.direction);
         for _ in 0..self.settings.rung.hits() {
-            let Some(hit) = self.next(&mut trace, &mut place, position, inside) else { break };
-            let exit = exit(inside, hit.normal, index);
-            trace.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
-            if exit.share > 0.0 {
-                let leaving_spread = dispersion::paper_refract(inside, spread, hit.normal, 1.0 / index, epsilon);
-                let outside = self.environment_paper(exit.direction, leaving_spread, trace.travelled);
-                trace.radiance += exit.share * trace.throughput * outside;
-                trace.throughput *= 1.0 - exit.share;
+            let hit = self.next(&mut ray, &mut place);
+            if !ray.followed {
+                break;
             }
-            spread = dispersion::paper_reflect(inside, spread, hit.normal, epsilon);
-            position = hit.point;
-            inside = refraction::reflect(inside, hit.normal);
+            let exit = exit(ray.direction, hit.normal, index);
+            ray.events.push(Event { facet: hit.facet, total: u8::from(exit.share == 0.0) });
+            if exit.share > 0.0 {
+                let leaving = dispersion::paper_refract(ray.direction, spread, hit.normal, 1.0 / index, epsilon);
+                ray.leave(Vec3::splat(exit.share), self.environment_paper(exit.direction, leaving, ray.travelled));
+            }
+            spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
+            ray.reflect(&hit);
         }
         if self.settings.rest_from_environment {
-            trace.radiance += trace.throughput * self.environment_paper(inside, spread, trace.travelled);
+            ray.end(self.environment_paper(ray.direction, spread, ray.travelled));
         }
-        trace
+        ray
+    }
+
+    fn reflectance_channels(&self, cosine: f32) -> Vec3 {
+        Vec3::from_array(self.material.channel_indices.to_array().map(|index| fresnel::dielectric(cosine, index)))
     }
 
     /// The radiance of a pixel whose middle shows `point` of `stone` to an eye at `eye`.
@@ -257,24 +275,26 @@ impl<'a> Shading<'a> {
                 let reflectance = fresnel::dielectric(cosine, index);
                 surface += weights * (reflectance * reflected);
                 if transmits {
-                    let trace = self.trace(&entry, direction, index);
-                    inside += weights * ((1.0 - reflectance) * trace.radiance);
-                    rays.push(trace.events);
+                    let ray = self.trace(&entry, direction, index);
+                    inside += weights * ((1.0 - reflectance) * ray.radiance);
+                    rays.push(ray.events);
                 }
             }
             return Pixel { radiance: surface + inside * self.material.base_color, rays };
         }
-        let reflectance = fresnel::dielectric(cosine, self.material.index);
-        let mut inside = Vec3::ZERO;
-        if transmits {
-            let trace = match self.settings.rung.spectrum() {
-                Spectrum::Paper => self.trace_paper(&entry, direction),
-                Spectrum::Tracker => self.trace_tracked(&entry, direction),
-                Spectrum::One | Spectrum::Separate(_) => self.trace(&entry, direction, self.material.index),
-            };
-            inside = trace.radiance;
-            rays.push(trace.events);
-        }
+        let mut reflectance = Vec3::splat(fresnel::dielectric(cosine, self.material.index));
+        let ray = match self.settings.rung.spectrum() {
+            Spectrum::Paper => transmits.then(|| self.trace_paper(&entry, direction)),
+            Spectrum::Tracker => {
+                reflectance = self.reflectance_channels(cosine);
+                transmits.then(|| self.trace_tracked(&entry, direction))
+            }
+            Spectrum::One | Spectrum::Separate(_) => {
+                transmits.then(|| self.trace(&entry, direction, self.material.index))
+            }
+        };
+        let inside = ray.as_ref().map_or(Vec3::ZERO, |ray| ray.radiance);
+        rays.extend(ray.map(|ray| ray.events));
         let radiance = reflectance * reflected + (1.0 - reflectance) * self.material.base_color * inside;
         Pixel { radiance, rays }
     }

@@ -29,8 +29,12 @@ pub struct FrameTime {
 impl<'gpu> Frame<'gpu> {
     /// Compiles the rung and uploads the scene.
     pub fn new(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
-        let source = cookbook::recipe_source(settings.rung.recipe());
-        let gem = GemPass::new(gpu, scene, settings, &source, "gem_fragment", &[SAMPLE_FORMAT])?;
+        Self::of_source(gpu, scene, settings, &cookbook::recipe_source(settings.rung.recipe()))
+    }
+
+    /// The same of another text of the rung's recipe.
+    pub fn of_source(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Self, RenderError> {
+        let gem = GemPass::new(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT])?;
         let size = [settings.width, settings.height];
         let [color, depth] = gpu.guarded("allocating a frame", |device| {
             [SAMPLE_FORMAT, DEPTH_FORMAT]

@@ -1,7 +1,7 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
 use crate::program::{folder, succeeds};
-use lapidary_harness::cost::{MEASURES, views};
+use lapidary_harness::cost::{MEASURES, page, views};
 use serde_json::Value;
 
 #[test]
@@ -56,5 +56,20 @@ fn every_view_has_its_committed_reference() {
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.5).count();
         assert!(covered > 1000, "{}: {covered}", view.name);
+    }
+}
+
+/// The record of the repository, and the pages that show it.
+#[test]
+fn the_pages_show_the_record() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let read = |name: &str| std::fs::read_to_string(docs.join(name)).expect(name);
+    let report = serde_json::from_str(&read("measurements/lavapipe/gem.json")).expect("a report");
+    for page in ["gem_ladder.md", "gem_proxy.md"] {
+        let text = read(page);
+        assert!(text.contains("<!-- generated: "), "{page}");
+        let again =
+            "./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md";
+        assert!(page::fill(&text, &report).expect("filled") == text, "{page} is not the record's: {again}");
     }
 }

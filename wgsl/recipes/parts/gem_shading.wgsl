@@ -97,34 +97,72 @@ fn gem_ends(travelled: f32) -> bool {
     return LIMIT_DISTANCE && travelled > material.distance_limit;
 }
 
+// A ray inside the stone.
+struct GemRay {
+    position: vec3f,
+    // Unit.
+    direction: vec3f,
+    // Distance inside so far.
+    travelled: f32,
+    // Share of each channel's light that it still carries.
+    throughput: vec3f,
+    // What it has found so far.
+    radiance: vec3f,
+    // False once it has ended; what it carries then is its rest.
+    followed: bool,
+}
+
+fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
+    return GemRay(position, direction, 0.0f, vec3f(1.0f), vec3f(0.0f), true);
+}
+
+// Follows a ray to the next facet. The loops below have no `break`: a compiler may unroll them, and rays seldom end before the last bounce.
+fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHit {
+    let hit = gem_hit(place, (*ray).position, (*ray).direction);
+    (*ray).travelled += hit.distance;
+    (*ray).followed = (*ray).followed && hit.hit && !gem_ends((*ray).travelled);
+    if ((*ray).followed) {
+        (*ray).throughput *= gem_transmittance(hit.distance);
+    }
+    return hit;
+}
+
+// A share of each channel leaves and meets the radiance outside.
+fn gem_leave(ray: ptr<function, GemRay>, share: vec3f, outside: vec3f) {
+    (*ray).radiance += share * (*ray).throughput * outside;
+    (*ray).throughput *= 1.0f - share;
+}
+
+// The rest is reflected.
+fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
+    (*ray).position = hit.point;
+    (*ray).direction = refraction_reflect((*ray).direction, hit.normal);
+}
+
+// All that a ray has found when its following has ended, with the environment in place of what was not followed.
+fn gem_end(ray: GemRay, outside: vec3f) -> vec3f {
+    return ray.radiance + ray.throughput * outside;
+}
+
 // Radiance that a ray of one refractive index finds inside the stone. At each facet a share leaves and meets the environment; the
 // rest is reflected and followed further.
 fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     var place = gem_enter(input);
-    var position = input.position;
-    var inside = refraction_refract(direction, input.face_normal, index).direction;
-    var throughput = vec3f(1.0f);
-    var radiance = vec3f(0.0f);
-    var travelled = 0.0f;
+    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        let hit = gem_hit(&place, position, inside);
-        travelled += hit.distance;
-        if (!hit.hit || gem_ends(travelled)) {
-            break;
+        let hit = gem_next(&ray, &place);
+        if (ray.followed) {
+            let exit = gem_exit(ray.direction, hit.normal, index);
+            if (exit.share > 0.0f) {
+                gem_leave(&ray, vec3f(exit.share), surroundings_radiance(exit.direction));
+            }
+            gem_reflect(&ray, hit);
         }
-        throughput *= gem_transmittance(hit.distance);
-        let exit = gem_exit(inside, hit.normal, index);
-        if (exit.share > 0.0f) {
-            radiance += exit.share * throughput * surroundings_radiance(exit.direction);
-            throughput *= 1.0f - exit.share;
-        }
-        position = hit.point;
-        inside = refraction_reflect(inside, hit.normal);
     }
     if (REST_FROM_ENVIRONMENT) {
-        radiance += throughput * surroundings_radiance(inside);
+        return gem_end(ray, surroundings_radiance(ray.direction));
     }
-    return radiance;
+    return ray.radiance;
 }
 
 // Radiance from three directions, one a channel.
@@ -138,39 +176,30 @@ fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
 fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     let offsets = material.channel_indices - material.index;
     var place = gem_enter(input);
-    var position = input.position;
-    var inside = refraction_refract(direction, input.face_normal, material.index).direction;
+    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, material.index).direction);
     var gradient = dispersion_enter(direction, input.face_normal, material.index);
-    var throughput = vec3f(1.0f);
-    var radiance = vec3f(0.0f);
-    var travelled = 0.0f;
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        let hit = gem_hit(&place, position, inside);
-        travelled += hit.distance;
-        if (!hit.hit || gem_ends(travelled)) {
-            break;
+        let hit = gem_next(&ray, &place);
+        if (ray.followed) {
+            let red = gem_exit(dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r);
+            let green = gem_exit(dispersion_direction(ray.direction, gradient, offsets.g), hit.normal, material.channel_indices.g);
+            let blue = gem_exit(dispersion_direction(ray.direction, gradient, offsets.b), hit.normal, material.channel_indices.b);
+            let share = vec3f(red.share, green.share, blue.share);
+            if (any(share > vec3f(0.0f))) {
+                gem_leave(&ray, share, gem_environment_channels(red.direction, green.direction, blue.direction));
+            }
+            gem_reflect(&ray, hit);
+            gradient = dispersion_reflect(gradient, hit.normal);
         }
-        throughput *= gem_transmittance(hit.distance);
-        let red = gem_exit(dispersion_direction(inside, gradient, offsets.r), hit.normal, material.channel_indices.r);
-        let green = gem_exit(dispersion_direction(inside, gradient, offsets.g), hit.normal, material.channel_indices.g);
-        let blue = gem_exit(dispersion_direction(inside, gradient, offsets.b), hit.normal, material.channel_indices.b);
-        let share = vec3f(red.share, green.share, blue.share);
-        if (any(share > vec3f(0.0f))) {
-            radiance += share * throughput * gem_environment_channels(red.direction, green.direction, blue.direction);
-            throughput *= 1.0f - share;
-        }
-        position = hit.point;
-        inside = refraction_reflect(inside, hit.normal);
-        gradient = dispersion_reflect(gradient, hit.normal);
     }
     if (REST_FROM_ENVIRONMENT) {
-        radiance += throughput * gem_environment_channels(
-            dispersion_direction(inside, gradient, offsets.r),
-            dispersion_direction(inside, gradient, offsets.g),
-            dispersion_direction(inside, gradient, offsets.b),
-        );
+        return gem_end(ray, gem_environment_channels(
+            dispersion_direction(ray.direction, gradient, offsets.r),
+            dispersion_direction(ray.direction, gradient, offsets.g),
+            dispersion_direction(ray.direction, gradient, offsets.b),
+        ));
     }
-    return radiance;
+    return ray.radiance;
 }
 
 // Radiance around a red ray, with green and blue moved along the paper's direction of dispersion, eq. (12).
@@ -186,39 +215,39 @@ fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
 fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     let index = material.channel_indices.r;
     var place = gem_enter(input);
-    var position = input.position;
-    var inside = refraction_refract(direction, input.face_normal, index).direction;
-    var spread = dispersion_paper_enter(direction, inside);
-    var throughput = vec3f(1.0f);
-    var radiance = vec3f(0.0f);
-    var travelled = 0.0f;
+    var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
+    var spread = dispersion_paper_enter(direction, ray.direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
-        let hit = gem_hit(&place, position, inside);
-        travelled += hit.distance;
-        if (!hit.hit || gem_ends(travelled)) {
-            break;
+        let hit = gem_next(&ray, &place);
+        if (ray.followed) {
+            let exit = gem_exit(ray.direction, hit.normal, index);
+            if (exit.share > 0.0f) {
+                let leaving = dispersion_paper_refract(ray.direction, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
+                gem_leave(&ray, vec3f(exit.share), gem_environment_paper(exit.direction, leaving, ray.travelled));
+            }
+            spread = dispersion_paper_reflect(ray.direction, spread, hit.normal, DISPERSION_PAPER_EPSILON);
+            gem_reflect(&ray, hit);
         }
-        throughput *= gem_transmittance(hit.distance);
-        let exit = gem_exit(inside, hit.normal, index);
-        if (exit.share > 0.0f) {
-            let leaving_spread = dispersion_paper_refract(inside, spread, hit.normal, 1.0f / index, DISPERSION_PAPER_EPSILON);
-            radiance += exit.share * throughput * gem_environment_paper(exit.direction, leaving_spread, travelled);
-            throughput *= 1.0f - exit.share;
-        }
-        spread = dispersion_paper_reflect(inside, spread, hit.normal, DISPERSION_PAPER_EPSILON);
-        position = hit.point;
-        inside = refraction_reflect(inside, hit.normal);
     }
     if (REST_FROM_ENVIRONMENT) {
-        radiance += throughput * gem_environment_paper(inside, spread, travelled);
+        return gem_end(ray, gem_environment_paper(ray.direction, spread, ray.travelled));
     }
-    return radiance;
+    return ray.radiance;
 }
 
 // What a stone's surface and its inside send to the eye.
 struct GemRadiance {
     surface: vec3f,
     inside: vec3f,
+}
+
+// The surface's reflectance for each channel's own index.
+fn gem_reflectance_channels(cosine: f32) -> vec3f {
+    return vec3f(
+        fresnel_dielectric(cosine, material.channel_indices.r),
+        fresnel_dielectric(cosine, material.channel_indices.g),
+        fresnel_dielectric(cosine, material.channel_indices.b),
+    );
 }
 
 // With `transmits` false the surface alone.
@@ -239,14 +268,19 @@ fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
         separate.inside *= material.base_color;
         return separate;
     }
-    let reflectance = fresnel_dielectric(cosine, material.index);
+    var reflectance = vec3f(fresnel_dielectric(cosine, material.index));
     var inside = vec3f(0.0f);
-    if (transmits) {
-        if (!EFFECT_DISPERSION) {
+    if (!EFFECT_DISPERSION) {
+        if (transmits) {
             inside = gem_trace(input, direction, material.index);
-        } else if (DISPERSION_FORM == GEM_DISPERSION_PAPER) {
+        }
+    } else if (DISPERSION_FORM == GEM_DISPERSION_PAPER) {
+        if (transmits) {
             inside = gem_trace_paper(input, direction);
-        } else {
+        }
+    } else {
+        reflectance = gem_reflectance_channels(cosine);
+        if (transmits) {
             inside = gem_trace_tracked(input, direction);
         }
     }
