@@ -15,8 +15,9 @@ struct GemCompositeView {
 
 @group(0) @binding(0) var<uniform> view: GemCompositeView;
 @group(0) @binding(2) var emission: texture_2d<f32>;
-@group(0) @binding(3) var normal_reflectance: texture_2d<f32>;
-@group(0) @binding(4) var depth: texture_depth_2d;
+@group(0) @binding(3) var normal: texture_2d<f32>;
+@group(0) @binding(4) var reflectance: texture_2d<f32>;
+@group(0) @binding(5) var depth: texture_depth_2d;
 
 // One triangle that covers the target.
 @vertex
@@ -39,8 +40,7 @@ fn gem_composite_fragment(@builtin(position) position: vec4f) -> @location(0) ve
     if (inside.a == 0.0f) {
         return vec4f(0.0f);
     }
-    let surface = textureLoad(normal_reflectance, texel, 0);
     let world = gem_composite_position(position.xy, textureLoad(depth, texel, 0));
-    let reflected = refraction_reflect(normalize(world - view.eye), normalize(surface.xyz));
-    return vec4f(surface.w * surroundings_radiance(reflected) + inside.rgb, 1.0f);
+    let reflected = refraction_reflect(normalize(world - view.eye), normalize(textureLoad(normal, texel, 0).xyz));
+    return vec4f(textureLoad(reflectance, texel, 0).rgb * surroundings_radiance(reflected) + inside.rgb, 1.0f);
 }

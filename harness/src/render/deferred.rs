@@ -3,12 +3,17 @@
 use super::device::{self, PipelineSource};
 use super::gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
 use super::{Environment, RenderError, Settings, TILE};
-use crate::cookbook;
 use crate::gpu::Gpu;
 use glam::{Mat4, Vec3};
 
-/// Of both colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
+/// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
 pub(super) const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// The lighting pass's recipe.
+pub(super) const COMPOSITE: &str = "gem_composite";
+
+/// How many colour targets there are: emission, normal, reflectance.
+pub(super) const TARGETS: usize = 3;
 
 /// The geometry buffer of one tile and the lighting pass.
 pub(super) struct DeferredPass<'gpu> {
@@ -16,19 +21,20 @@ pub(super) struct DeferredPass<'gpu> {
     pipeline: wgpu::RenderPipeline,
     environment: wgpu::TextureView,
     emission: wgpu::TextureView,
-    normal_reflectance: wgpu::TextureView,
+    normal: wgpu::TextureView,
+    reflectance: wgpu::TextureView,
     depth: wgpu::TextureView,
 }
 
 impl<'gpu> DeferredPass<'gpu> {
-    /// For the settings' environment and samples.
-    pub(super) fn new(gpu: &'gpu Gpu, settings: &Settings) -> Result<Self, RenderError> {
+    /// For the settings' environment and samples; `source` is the composed recipe of the lighting pass.
+    pub(super) fn new(gpu: &'gpu Gpu, settings: &Settings, source: &str) -> Result<Self, RenderError> {
         let map = f64::from(u8::from(matches!(settings.environment, Environment::Map(_))));
         let pipeline = device::pipeline(
             gpu,
             &PipelineSource {
-                recipe: "gem_composite",
-                source: &cookbook::recipe_source("gem_composite"),
+                recipe: COMPOSITE,
+                source,
                 entries: ["gem_composite_vertex", "gem_composite_fragment"],
                 constants: &[("EFFECT_ENVIRONMENT_MAP", map)],
                 formats: &[SAMPLE_FORMAT],
@@ -36,12 +42,12 @@ impl<'gpu> DeferredPass<'gpu> {
             },
         )?;
         let size = [TILE * settings.samples; 2];
-        let [emission, normal_reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
-            [GEOMETRY_FORMAT, GEOMETRY_FORMAT, DEPTH_FORMAT]
+        let [emission, normal, reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
+            [GEOMETRY_FORMAT, GEOMETRY_FORMAT, GEOMETRY_FORMAT, DEPTH_FORMAT]
                 .map(|format| device::view(&device::target(device, size, format, wgpu::TextureUsages::TEXTURE_BINDING)))
         })?;
         let environment = super::environment::texture(gpu, &settings.environment)?;
-        Ok(Self { gpu, pipeline, environment, emission, normal_reflectance, depth })
+        Ok(Self { gpu, pipeline, environment, emission, normal, reflectance, depth })
     }
 
     /// Fills the geometry buffer, then lights it.
@@ -55,7 +61,7 @@ impl<'gpu> DeferredPass<'gpu> {
         size: [u32; 2],
     ) {
         let target = GemTarget {
-            colors: vec![&self.emission, &self.normal_reflectance],
+            colors: vec![&self.emission, &self.normal, &self.reflectance],
             depth: &self.depth,
             keep_depth: true,
             size,
@@ -66,7 +72,7 @@ impl<'gpu> DeferredPass<'gpu> {
         let mut values = clip_from_world.as_dmat4().inverse().as_mat4().to_cols_array().to_vec();
         values.extend([eye.x, eye.y, eye.z, 0.0, size[0] as f32, size[1] as f32]);
         let uniform = device::uniform(device, &values);
-        let textures = [&self.environment, &self.emission, &self.normal_reflectance, &self.depth];
+        let textures = [&self.environment, &self.emission, &self.normal, &self.reflectance, &self.depth];
         let mut resources = vec![uniform.as_entire_binding()];
         resources.extend(textures.map(wgpu::BindingResource::TextureView));
         let group = device::bind_group(device, &self.pipeline, 0, resources);
@@ -79,5 +85,53 @@ impl<'gpu> DeferredPass<'gpu> {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::COMPOSITE;
+    use crate::cookbook;
+    use crate::gpu::{AdapterChoice, Gpu};
+    use crate::pixel::Viewer;
+    use crate::render::{Settings, render_from};
+    use crate::scene::Scene;
+    use glam::Vec3;
+
+    /// The paper's section 4.3.1 through a real depth buffer: its 32-bit values end 2^-24 of the range from near to far away from the
+    /// truth, the interpolation of clip coordinates and the product with the inverse matrix add a few units in the last place of the distance.
+    #[test]
+    fn positions_come_back_from_the_depth_buffer() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let shown = "return vec4f(textureLoad(reflectance, texel, 0).rgb * surroundings_radiance(reflected) + inside.rgb, 1.0f);";
+        let source = cookbook::recipe_source(COMPOSITE);
+        assert!(source.contains(shown));
+        // Every binding stays in use, and the position is what is seen.
+        let planted =
+            source.replace(shown, &format!("if (inside.r < 0.0f) {{ {shown} }}\n    return vec4f(world, 1.0f);"));
+        for name in ["brilliant", "prism", "bunny_stone"] {
+            let scene = Scene::named(name).expect("built in");
+            let rung = "proxy-1".parse().expect("a rung");
+            let settings = Settings { rung, samples: 1, deferred: true, ..Settings::of_size(128, 128) };
+            let gem = cookbook::recipe_source(rung.recipe());
+            let picture = render_from(gpu, &scene, &settings, [&gem, &planted], &mut |_, _| {}).expect("rendered");
+            let viewer = Viewer::new(&scene, 128, 128);
+            let (mut worst, mut seen) = (0f32, 0);
+            for (index, &[x, y, z, alpha]) in (0..).zip(&picture.linear) {
+                let (row, column): (u32, u32) = (index / 128, index % 128);
+                let point = viewer.see(&scene.objects[0].mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
+                let (Some(point), true) = (point, alpha > 0.0) else { continue };
+                let eye = scene.camera.eye;
+                // Across the ray nothing is lost; along it the depth decides, the more the more the facet slants: where it is seen edge-on the
+                // two differ by which point of the pixel is meant.
+                let (direction, from_eye) = ((point.position - eye).normalize(), Vec3::new(x, y, z) - eye);
+                worst = worst.max(from_eye.cross(direction).length() / point.position.distance(eye));
+                let along = (from_eye.dot(direction) - point.position.distance(eye)).abs();
+                worst = worst.max(along / point.position.distance(eye));
+                seen += 1;
+            }
+            println!("{name}: {seen} pixels, off by {worst:e} of the distance at most");
+            assert!(seen > 1000 && worst <= 16.0 * f32::EPSILON, "{name}: {seen} pixels, {worst:e}");
+        }
     }
 }

@@ -157,6 +157,17 @@ pub fn render_with(
     source: &str,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
+    render_from(gpu, scene, settings, [source, &cookbook::recipe_source(deferred::COMPOSITE)], progress)
+}
+
+/// The same with both texts: of the rung's recipe, and of the lighting pass.
+fn render_from(
+    gpu: &Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    [source, composite]: [&str; 2],
+    progress: &mut (dyn FnMut(u64, u64) + Send),
+) -> Result<Picture, RenderError> {
     let (width, height) = (settings.width, settings.height);
     let largest = LARGEST_SIDE.min(gpu.device.limits().max_texture_dimension_2d);
     if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
@@ -170,9 +181,9 @@ pub fn render_with(
         return Ok(picture);
     }
     let display = DisplayPass::new(gpu, settings.samples)?;
-    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, settings)).transpose()?;
+    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, settings, composite)).transpose()?;
     let (fragment, formats): (&str, &[_]) = match deferred {
-        Some(_) => ("gem_deferred_fragment", &[deferred::GEOMETRY_FORMAT; 2]),
+        Some(_) => ("gem_deferred_fragment", &[deferred::GEOMETRY_FORMAT; deferred::TARGETS]),
         None => ("gem_fragment", &[SAMPLE_FORMAT]),
     };
     let gem = GemPass::new(gpu, scene, settings, source, fragment, formats)?;

@@ -235,10 +235,14 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     return ray.radiance;
 }
 
-// What a stone's surface and its inside send to the eye.
+// What a stone sends to the eye.
 struct GemRadiance {
+    // The environment in its surface.
     surface: vec3f,
+    // What comes from inside.
     inside: vec3f,
+    // Of the surface, for each channel.
+    reflectance: vec3f,
 }
 
 // The surface's reflectance for each channel's own index.
@@ -256,13 +260,16 @@ fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
     let reflected = surroundings_radiance(refraction_reflect(direction, input.face_normal));
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
-        var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f));
+        var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
         for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
+            let weights = wavelengths[wavelength].weights;
             let index = wavelengths[wavelength].index;
             let reflectance = fresnel_dielectric(cosine, index);
-            separate.surface += wavelengths[wavelength].weights * (reflectance * reflected);
+            separate.surface += weights * (reflectance * reflected);
+            // To white light.
+            separate.reflectance += weights * vec3f(reflectance);
             if (transmits) {
-                separate.inside += wavelengths[wavelength].weights * ((1.0f - reflectance) * gem_trace(input, direction, index));
+                separate.inside += weights * ((1.0f - reflectance) * gem_trace(input, direction, index));
             }
         }
         separate.inside *= material.base_color;
@@ -284,21 +291,20 @@ fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
             inside = gem_trace_tracked(input, direction);
         }
     }
-    return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * inside);
+    return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * inside, reflectance);
 }
 
 // What a deferred renderer keeps of the stone (the paper's section 4.3.4); depth is the depth buffer's.
 struct GemGeometryBuffer {
-    // What comes from inside; the renderer adds it as it adds light that a surface emits.
+    // What comes from inside; the renderer adds it as it adds light that a surface emits. Alpha is 1 where a stone is.
     @location(0) emission: vec4f,
-    // The facet's normal, and the reflectance of the surface for the eye.
-    @location(1) normal_reflectance: vec4f,
+    // The facet's normal.
+    @location(1) normal: vec4f,
+    // Reflectance of the surface for the eye.
+    @location(2) reflectance: vec4f,
 }
 
 fn gem_geometry_buffer(input: GemVertex, transmits: bool) -> GemGeometryBuffer {
-    let direction = normalize(input.position - view.eye);
-    let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
-    let reflectance = fresnel_dielectric(cosine, material.index);
     let radiance = gem_radiance(input, transmits);
-    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(input.face_normal, reflectance));
+    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(input.face_normal, 0.0f), vec4f(radiance.reflectance, 1.0f));
 }
