@@ -36,7 +36,7 @@ pub struct Shot {
 }
 
 /// Every committed picture.
-pub const SHOTS: [Shot; 20] = [
+pub const SHOTS: [Shot; 24] = [
     Shot {
         paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
             picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
@@ -86,6 +86,14 @@ pub const SHOTS: [Shot; 20] = [
     face_up("table_fan", "Face-up by proxy, the table as a fan", "brilliant_fan", "proxy-1"),
     face_up("table_strip", "Face-up by proxy, the table as a strip", "brilliant_strip", "proxy-1"),
     face_up("table_sliver", "Face-up by proxy, the table in slivers", "brilliant_sliver", "proxy-1"),
+    face_up("normals_area", "Face-up by proxy, normals averaged by area", "brilliant_area", "proxy-1"),
+    face_up("normals_plain", "Face-up by proxy, normals averaged plainly", "brilliant_plain", "proxy-1"),
+    shot("brilliant_separate", "Round brilliant by proxy, three separate wavelengths", "brilliant", "proxy-4+3"),
+    Shot {
+        paragraph: "Each wavelength by a ray of its own: where they meet different facets they part, and edges inside have colours. Trackers \
+            keep them together.",
+        ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
+    },
 ];
 
 const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {

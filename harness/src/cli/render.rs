@@ -2,6 +2,7 @@
 
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
+use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{self, Environment, GRAMMAR, Geometry, Rung, Settings, Spectrum};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -131,5 +132,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     bar.finish_and_clear();
     file::write(&picture, &out)?;
     output::line(&out.display().to_string())?;
+    if let Some(Lost { max, mean }) = picture.lost {
+        output::line(&format!("not followed: {max:.1e} of a ray's energy at most, {mean:.1e} in the mean"))?;
+    }
     Ok(Outcome::Passed)
 }

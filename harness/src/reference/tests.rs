@@ -75,6 +75,25 @@ fn white_furnace() {
     }
 }
 
+/// So it does with the settings that `cook render` has: 31 wavelengths and a bound of 1e-4.
+#[test]
+fn white_furnace_as_rendered() {
+    let environment = ones();
+    for name in ["brilliant", "sapphire", "prism"] {
+        let mut scene = Scene::named(name).unwrap();
+        scene.objects[0].material.attenuation_color = glam::Vec3::ONE;
+        let settings = Settings { environment: &environment, samples: 1, ..Settings::of_size(16, 16) };
+        let rendering = rendered(&scene, &settings);
+        assert!(rendering.lost.max < 1e-4, "{name}: {:?}", rendering.lost);
+        let covered = rendering.linear.iter().filter(|pixel| pixel[3] > 0.0);
+        for [red, green, blue, alpha] in covered.clone() {
+            let channels = [red, green, blue].map(|channel| f64::from(channel - alpha).abs());
+            assert!(channels.iter().all(|missing| *missing <= gain(31) * 1e-4), "{name}: {channels:?}");
+        }
+        assert!(covered.count() > 30);
+    }
+}
+
 /// Two stones, one in front of the other: what leaves one and enters the other is followed too.
 #[test]
 fn white_furnace_of_several_bodies() {

@@ -13,7 +13,7 @@ mod stone;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
-use crate::reference;
+use crate::reference::{self, Lost, Rendering};
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
 use deferred::DeferredPass;
@@ -101,6 +101,8 @@ pub struct Picture {
     pub linear: Vec<[f32; 4]>,
     /// sRGB, opaque.
     pub encoded: Vec<[u8; 4]>,
+    /// What the reference did not follow; none of another rung.
+    pub lost: Option<Lost>,
 }
 
 /// Why there is no picture.
@@ -131,6 +133,19 @@ pub enum RenderError {
     NotConvex {
         /// Its name.
         object: String,
+    },
+    /// A rung whose loops a driver would end before they are done.
+    #[error(
+        "rung `{rung}` may take {steps} turns of its loops for one pixel, and lavapipe ends them silently after {limit}; \
+         take fewer hits or wavelengths, or another adapter"
+    )]
+    TooManySteps {
+        /// Which.
+        rung: Rung,
+        /// How many.
+        steps: u64,
+        /// What the driver allows.
+        limit: u64,
     },
     /// The reference refuses.
     #[error(transparent)]
@@ -174,9 +189,11 @@ fn render_from(
         return Err(RenderError::Size { width, height, largest });
     }
     let pixels = width as usize * height as usize;
-    let mut picture = Picture { width, height, linear: vec![[0.0; 4]; pixels], encoded: vec![[0; 4]; pixels] };
+    let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
+    let mut picture = Picture { width, height, linear, encoded, lost: None };
     if settings.rung == Rung::Reference {
-        picture.linear = reference_radiance(scene, settings, progress)?;
+        let Rendering { linear, lost, .. } = follow(scene, settings, progress)?;
+        (picture.linear, picture.lost) = (linear, Some(lost));
         encode(gpu, settings, &mut picture)?;
         return Ok(picture);
     }
@@ -213,11 +230,11 @@ fn render_from(
 }
 
 /// What the reference sees of `scene`, by the settings' size, samples and environment.
-fn reference_radiance(
+fn follow(
     scene: &Scene,
     settings: &Settings,
     progress: &mut (dyn FnMut(u64, u64) + Send),
-) -> Result<Vec<[f32; 4]>, RenderError> {
+) -> Result<Rendering, RenderError> {
     let of_reference = reference::Settings {
         samples: settings.samples,
         environment: &settings.environment,
@@ -229,7 +246,7 @@ fn reference_radiance(
             progress(done, total);
         }
     };
-    Ok(reference::render(scene, &of_reference, &tell)?.linear)
+    Ok(reference::render(scene, &of_reference, &tell)?)
 }
 
 /// Fills in `encoded` from `linear`, as the display recipe shows it.

@@ -1,7 +1,7 @@
 //! One object on the device: its material, its mesh, and what its rung's geometry needs besides.
 
 use super::device::{bind_group, buffer, uniform};
-use super::{Geometry, RenderError, Settings, Spectrum};
+use super::{Geometry, RenderError, Rung, Settings, Spectrum};
 use crate::gpu::Gpu;
 use crate::reference::spectrum;
 use crate::scene::{Bvh, Convex, Material, Object};
@@ -25,7 +25,8 @@ impl Stone {
         settings: &Settings,
     ) -> Result<Self, RenderError> {
         let mesh = &object.mesh;
-        let Geometries { indices, own } = Geometries::of(object, settings)?;
+        let Geometries { indices, own, steps } = Geometries::of(object, settings)?;
+        check_steps(gpu, settings.rung, steps)?;
         let shared = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices)];
         let limits = gpu.device.limits();
         let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -73,6 +74,22 @@ struct Geometries<'a> {
     indices: Cow<'a, [u32]>,
     /// The buffers of group 2.
     own: Vec<Cow<'a, [u8]>>,
+    /// Turns of loops that finding one hit takes.
+    steps: u64,
+}
+
+/// lavapipe ends loops when those of one invocation have made this many turns together, and says nothing (Mesa's
+/// `LP_MAX_TGSI_LOOP_ITERATIONS`).
+const LAVAPIPE_STEPS: u64 = 65_535;
+
+/// Refuses a rung that lavapipe would show wrongly.
+fn check_steps(gpu: &Gpu, rung: Rung, steps: u64) -> Result<(), RenderError> {
+    let rays = if let Spectrum::Separate(count) = rung.spectrum() { u64::from(count) } else { 1 };
+    let steps = rays * (1 + u64::from(rung.hits()) * (1 + steps));
+    if gpu.is_lavapipe() && steps > LAVAPIPE_STEPS {
+        return Err(RenderError::TooManySteps { rung, steps, limit: LAVAPIPE_STEPS });
+    }
+    Ok(())
 }
 
 impl<'a> Geometries<'a> {
@@ -81,19 +98,23 @@ impl<'a> Geometries<'a> {
         let bytes = |parts: &[&[u8]]| parts.iter().map(|part| Cow::Owned(part.to_vec())).collect();
         let indices = Cow::Borrowed(&mesh.indices[..]);
         Ok(match settings.rung.geometry() {
-            Geometry::Proxy => Self { indices, own: vec![bytemuck::cast_slice(&mesh.normals).into()] },
+            Geometry::Proxy => Self { indices, own: vec![bytemuck::cast_slice(&mesh.normals).into()], steps: 0 },
             Geometry::Convex => {
                 let not_convex = || RenderError::NotConvex { object: object.name.clone() };
                 let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
                 let own = bytes(&[bytemuck::cast_slice(&planes), bytemuck::cast_slice(&convex.face_of_triangle)]);
-                Self { indices, own }
+                Self { indices, own, steps: convex.planes.len() as u64 }
             }
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(mesh);
                 let own = bytes(&[bytemuck::cast_slice(&bvh.nodes)]);
                 // Triangles are numbered as the leaves hold them, by the recipe too.
-                Self { indices: Cow::Owned(bvh.indices), own }
+                let triangles = mesh.triangle_count() as u64;
+                // A ray's way through a hierarchy has no useful bound; few take as many as 16 turns for each of its levels.
+                let levels = u64::from(triangles.ilog2()) + 1;
+                let steps = if settings.rung.geometry() == Geometry::Bvh { 16 * levels } else { triangles };
+                Self { indices: Cow::Owned(bvh.indices), own, steps }
             }
         })
     }

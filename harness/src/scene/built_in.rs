@@ -21,7 +21,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 13] = [
+pub const BUILT_IN: [BuiltIn; 15] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -95,6 +95,15 @@ pub const BUILT_IN: [BuiltIn; 13] = [
             same surface with the same shared normals. The paper names the defect: an acute triangle makes the inside \
             acute too.",
     },
+    BuiltIn {
+        name: "brilliant_area",
+        description: "The diamond with its shared normals averaged by the facets' areas instead of their angles. The surface is the \
+            same; the proxy's depth is not.",
+    },
+    BuiltIn {
+        name: "brilliant_plain",
+        description: "The diamond with the plain average of the facets' normals at each vertex, as many exporters write it.",
+    },
 ];
 
 /// The names of all built-in scenes, as a list for a message.
@@ -106,16 +115,19 @@ pub fn names() -> String {
 /// A short portrait lens: about 27° from edge to edge.
 const VERTICAL_FOV: f32 = 0.47;
 
+/// Where brilliants are seen from, see [`scene`].
+const BRILLIANT_ANGLES: (f32, f32) = (27.0, 11.0);
+
 /// The bunny of the Stanford 3D Scanning Repository, decimated and closed.
 const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 
 /// The scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     match name {
-        "brilliant" => brilliant(name, materials::diamond(), Triangulation::Centroid),
-        "sapphire" => brilliant(name, materials::sapphire(), Triangulation::Centroid),
-        "ruby" => brilliant(name, materials::ruby(), Triangulation::Centroid),
-        "quartz" => brilliant(name, materials::quartz(), Triangulation::Centroid),
+        "brilliant" => brilliant(name, materials::diamond()),
+        "sapphire" => brilliant(name, materials::sapphire()),
+        "ruby" => brilliant(name, materials::ruby()),
+        "quartz" => brilliant(name, materials::quartz()),
         "octahedron" => Ok(stone_scene(name, &octahedron()?, materials::diamond(), (65.0, 25.0))),
         "step_cut" => {
             let stone = step_cut(&StepCutParameters::EMERALD)?;
@@ -129,17 +141,24 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         // From a little below, as one looks up at it, so that the inner rings show below the outer.
         "chandelier" => Ok(scene(name, prisms::chandelier()?, materials::flint_glass(), (105.0, 9.0))),
         "bunny_stone" => bunny(name),
-        "brilliant_fan" => brilliant(name, materials::diamond(), Triangulation::Fan),
-        "brilliant_strip" => brilliant(name, materials::diamond(), Triangulation::Strip),
-        "brilliant_sliver" => brilliant(name, materials::diamond(), Triangulation::Sliver),
+        "brilliant_fan" => diamond(name, Averaging::default(), Triangulation::Fan),
+        "brilliant_strip" => diamond(name, Averaging::default(), Triangulation::Strip),
+        "brilliant_sliver" => diamond(name, Averaging::default(), Triangulation::Sliver),
+        "brilliant_area" => diamond(name, Averaging::Area, Triangulation::Centroid),
+        "brilliant_plain" => diamond(name, Averaging::Plain, Triangulation::Centroid),
         _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }
 }
 
-fn brilliant(name: &str, material: Material, triangulation: Triangulation) -> Result<Scene, SceneError> {
+fn brilliant(name: &str, material: Material) -> Result<Scene, SceneError> {
     let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
-    let mesh = stone.to_mesh_with(Averaging::default(), triangulation);
-    Ok(scene(name, mesh, material, (27.0, 11.0)))
+    Ok(stone_scene(name, &stone, material, BRILLIANT_ANGLES))
+}
+
+/// The diamond brilliant from another mesh of the same surface.
+fn diamond(name: &str, averaging: Averaging, triangulation: Triangulation) -> Result<Scene, SceneError> {
+    let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
+    Ok(scene(name, stone.to_mesh_with(averaging, triangulation), materials::diamond(), BRILLIANT_ANGLES))
 }
 
 fn stone_scene(name: &str, stone: &Polyhedron, material: Material, angles: (f32, f32)) -> Scene {

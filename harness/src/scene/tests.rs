@@ -237,6 +237,18 @@ fn triangulations_change_the_table_alone() {
 }
 
 #[test]
+fn averagings_change_the_normals_alone() {
+    let mesh = |name: &str| Scene::named(name).unwrap().objects.remove(0).mesh;
+    let usual = mesh("brilliant");
+    for name in ["brilliant_area", "brilliant_plain"] {
+        let other = mesh(name);
+        assert_eq!((&other.positions, &other.indices), (&usual.positions, &usual.indices));
+        assert!(other.normals != usual.normals, "{name}");
+        assert_eq!(Scene::named(name).unwrap().camera, Scene::named("brilliant").unwrap().camera);
+    }
+}
+
+#[test]
 fn built_in_cameras_frame_their_stones_tightly() {
     for built_in in BUILT_IN {
         let scene = Scene::named(built_in.name).unwrap();

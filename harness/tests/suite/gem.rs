@@ -115,3 +115,19 @@ fn a_ray_that_a_tile_turns_from_the_next_plane_meets_nothing() {
         picture(&scene, "proxy-64+tracker").linear.iter().flatten().all(|value| value.is_finite() && *value >= 0.0)
     );
 }
+
+/// lavapipe ends the loops of an invocation after 65,535 turns together: the picture would lack the last wavelengths.
+#[test]
+fn a_rung_whose_loops_the_driver_would_end_is_refused() {
+    let gpu = super::gpu();
+    if !gpu.is_lavapipe() {
+        return;
+    }
+    for (scene, rung) in [("brilliant", "convex-64+31"), ("bunny_stone", "triangles-8+3"), ("bunny_stone", "bvh-64+31")]
+    {
+        let settings = Settings { rung: rung.parse().expect(rung), ..Settings::of_size(8, 8) };
+        let error =
+            render::render(gpu, &Scene::named(scene).expect("built in"), &settings).expect_err(rung).to_string();
+        assert!(error.contains(rung) && error.contains("take fewer hits"), "{error}");
+    }
+}

@@ -114,8 +114,11 @@ fn check_index(ior: f32) -> Result<(), String> {
                     refractive index, at least 1"
             .to_owned());
     }
-    if !(ior.is_finite() && ior >= 1.0) {
-        return Err(format!("its ior is {ior}, but a refractive index must be finite and at least 1"));
+    if !(1.0..=Material::LARGEST_INDEX).contains(&ior) {
+        return Err(format!(
+            "its ior is {ior}, but a stone's refractive index lies between 1 and {}",
+            Material::LARGEST_INDEX
+        ));
     }
     Ok(())
 }

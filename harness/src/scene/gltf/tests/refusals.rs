@@ -104,7 +104,13 @@ fn nodes_that_are_no_tree() {
 
 #[test]
 fn materials_and_cameras_out_of_range() {
-    for (ior, says) in [(0.0, "its ior is 0,"), (0.9, "at least 1"), (-1.0, "at least 1"), (1e39, "finite")] {
+    for (ior, says) in [
+        (0.0, "its ior is 0,"),
+        (0.9, "between 1 and 4"),
+        (-1.0, "between 1 and 4"),
+        (4.1, "between 1 and 4"),
+        (1e39, "between 1 and 4"),
+    ] {
         let message = message(|d| {
             d["meshes"][0]["primitives"][0]["material"] = json!(0);
             d["materials"][0]["extensions"] = json!({"KHR_materials_ior": {"ior": ior}});
