@@ -57,6 +57,15 @@ pub(super) struct Arguments {
     /// Radiance is multiplied by this before the tone curve.
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
+    /// Samples along each side of a pixel.
+    #[arg(long, default_value_t = render::SAMPLES, value_parser = clap::value_parser!(u32).range(1..=4))]
+    samples: u32,
+    /// Wavelengths of the reference; 31 where left out.
+    #[arg(long)]
+    wavelengths: Option<usize>,
+    /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
+    #[arg(long, value_name = "SHARE")]
+    energy_bound: Option<f64>,
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -84,6 +93,8 @@ fn refuse_what_is_ignored(arguments: &Arguments) -> Result<(), Failure> {
     let reference = rung == Rung::Reference;
     let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
     let ignored = [
+        ("--wavelengths", !reference && arguments.wavelengths.is_some()),
+        ("--energy-bound", !reference && arguments.energy_bound.is_some()),
         ("--without", reference && !arguments.without.is_empty()),
         ("--rest dropped", reference && arguments.rest == "dropped"),
         ("--distance-limit", reference && arguments.distance_limit.is_some()),
@@ -111,6 +122,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         Some(path) => Environment::Map(EnvironmentMap::load(path)?),
     };
     let (width, height) = arguments.size;
+    let usual = Settings::of_size(width, height);
     let settings = Settings {
         rung: arguments.rung,
         paper_centre: arguments.centre == "paper",
@@ -121,7 +133,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         deferred: arguments.deferred,
         environment,
         exposure: arguments.exposure,
-        ..Settings::of_size(width, height)
+        samples: arguments.samples,
+        wavelengths: arguments.wavelengths.unwrap_or(usual.wavelengths),
+        energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
+        ..usual
     };
     let source = cookbook::recipe_source(arguments.rung.recipe());
     let bar = progress::bar(0, "rendering");

@@ -68,6 +68,10 @@ pub struct Settings {
     pub environment: Environment,
     /// Radiance is multiplied by this before the tone curve.
     pub exposure: f32,
+    /// Wavelengths that the reference follows, from 400 to 700 nm.
+    pub wavelengths: usize,
+    /// The share of a camera ray's energy that the reference need not follow.
+    pub energy_bound: f64,
 }
 
 impl Settings {
@@ -86,6 +90,8 @@ impl Settings {
             deferred: false,
             environment: Environment::Studio,
             exposure: 1.0,
+            wavelengths: 31,
+            energy_bound: 1e-4,
         }
     }
 }
@@ -237,6 +243,8 @@ fn follow(
 ) -> Result<Rendering, RenderError> {
     let of_reference = reference::Settings {
         samples: settings.samples,
+        wavelengths: settings.wavelengths,
+        energy_bound: settings.energy_bound,
         environment: &settings.environment,
         ..reference::Settings::of_size(settings.width, settings.height)
     };

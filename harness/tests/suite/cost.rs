@@ -52,10 +52,13 @@ fn a_report_is_written_with_plots_when_timed() {
 
 #[test]
 fn every_view_has_its_committed_reference() {
+    let page = views::VIEWS[0].reference_file().with_file_name("README.md");
+    let page = std::fs::read_to_string(page).expect("the references' page");
     for view in views::VIEWS.into_iter().chain(views::SHOWN) {
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.5).count();
         assert!(covered > 1000, "{}: {covered}", view.name);
+        assert!(page.contains(&format!("    {}\n", view.command())), "{}", view.command());
     }
 }
 

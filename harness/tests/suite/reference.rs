@@ -72,8 +72,7 @@ fn the_committed_references_are_remade() {
         let scene = view.open().expect("built in");
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let window = covered(&picture, 8, 4);
-        let settings =
-            reference::Settings { window: Some(window), ..reference::Settings::of_size(picture.width, picture.height) };
+        let settings = reference::Settings { window: Some(window), ..view.reference_settings() };
         let crop = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
         for (row, line) in (window.top..).zip(crop.linear.chunks_exact(window.width as usize)) {
             let start = (row * picture.width + window.left) as usize;
