@@ -13,6 +13,7 @@ pub mod mutation;
 pub mod nearest;
 pub mod pixel;
 pub mod property;
+pub mod random_walk;
 pub mod reference;
 pub mod render;
 pub mod scene;

@@ -19,12 +19,12 @@ pub struct View {
     pub scene: &'static str,
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where there are none.
     pub from: Option<(f32, f32)>,
-    /// Whether its reference has fewer samples and wavelengths and a looser bound, [`COARSE`].
+    /// Whether its reference has fewer samples and a looser bound, [`COARSE`].
     pub coarse: bool,
 }
 
-/// Samples a side, wavelengths and energy bound of a coarse reference.
-pub const COARSE: (u32, usize, f64) = (2, 7, 1e-3);
+/// Samples a side and energy bound of a coarse reference.
+pub const COARSE: (u32, f64) = (2, 1e-3);
 
 const fn own(scene: &'static str) -> View {
     View { name: scene, scene, from: None, coarse: false }
@@ -71,20 +71,16 @@ impl View {
     pub fn command(&self) -> String {
         let file = format!("snapshots/gem/reference/{}.exr", self.name);
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
-        let (samples, wavelengths, bound) = COARSE;
-        let quality = if self.coarse {
-            format!(" --samples {samples} --wavelengths {wavelengths} --energy-bound {bound}")
-        } else {
-            String::new()
-        };
+        let (samples, bound) = COARSE;
+        let quality = if self.coarse { format!(" --samples {samples} --energy-bound {bound}") } else { String::new() };
         format!("./cook render {}{from} --rung reference --size {SIDE}x{SIDE}{quality} --out {file}", self.scene)
     }
 
     /// How its reference is made.
     pub fn reference_settings(&self) -> reference::Settings<'static> {
         let usual = reference::Settings::of_size(SIDE, SIDE);
-        let (samples, wavelengths, energy_bound) = COARSE;
-        if self.coarse { reference::Settings { samples, wavelengths, energy_bound, ..usual } } else { usual }
+        let (samples, energy_bound) = COARSE;
+        if self.coarse { reference::Settings { samples, energy_bound, ..usual } } else { usual }
     }
 
     /// Its committed reference, linear and as it is seen.

@@ -1,0 +1,214 @@
+//! Random walks of light through scattering matter, on the CPU: what the translucent techniques are compared with.
+//!
+//! Matter here is homogeneous and scatters to all sides alike, and its surface does not bend light. Lengths are in mean free paths.
+//! A walk is analogue: at each scattering it ends with the probability that light is absorbed, so that counts of walks are
+//! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
+
+mod sphere;
+
+pub use sphere::{BINS, Profile, profile};
+
+use glam::DVec3;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt as _, SeedableRng as _};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Walks that share a generator.
+const BATCH: u64 = 1 << 14;
+
+/// A convex body of scattering matter.
+pub trait Body: Sync {
+    /// The way along a unit direction from a point inside, or on the surface, to the surface; infinite where there is none.
+    fn exit(&self, position: DVec3, direction: DVec3) -> f64;
+}
+
+/// Everything below the plane z = 0.
+pub struct HalfSpace;
+
+impl Body for HalfSpace {
+    fn exit(&self, position: DVec3, direction: DVec3) -> f64 {
+        if direction.z > 0.0 { (-position.z / direction.z).max(0.0) } else { f64::INFINITY }
+    }
+}
+
+/// A ball about the origin.
+pub struct Ball {
+    /// Its radius.
+    pub radius: f64,
+}
+
+impl Body for Ball {
+    fn exit(&self, position: DVec3, direction: DVec3) -> f64 {
+        let along = position.dot(direction);
+        // Distance of the chord from the middle, by the cross product: radius^2 - |position|^2 alone would lose the digits at the surface.
+        let beside = position.cross(direction).length_squared();
+        ((self.radius * self.radius - beside).max(0.0).sqrt() - along).max(0.0)
+    }
+}
+
+/// How a walk left.
+#[derive(Clone, Copy, Debug)]
+pub struct Exit {
+    /// On the surface.
+    pub position: DVec3,
+    /// Unit.
+    pub direction: DVec3,
+    /// How often it was scattered; 0 for light that went straight through.
+    pub scatterings: u32,
+    /// The length of its whole way.
+    pub travelled: f64,
+}
+
+/// A generator of a batch.
+fn generator(seed: u64, batch: u64) -> Xoshiro256PlusPlus {
+    // Neighbouring seeds give unlike states: the state is a hash of the seed.
+    Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ batch)
+}
+
+/// A direction from all alike.
+fn isotropic(random: &mut Xoshiro256PlusPlus) -> DVec3 {
+    let z = 2.0 * random.random::<f64>() - 1.0;
+    let (sine, cosine) = (TAU * random.random::<f64>()).sin_cos();
+    let radius = ((1.0 - z) * (1.0 + z)).sqrt();
+    DVec3::new(radius * cosine, radius * sine, z)
+}
+
+/// Walks from `position`, on the surface or inside, along `direction`; nothing where the walk is absorbed.
+fn walk(
+    body: &impl Body,
+    mut position: DVec3,
+    mut direction: DVec3,
+    albedo: f64,
+    random: &mut Xoshiro256PlusPlus,
+) -> Option<Exit> {
+    let (mut scatterings, mut travelled) = (0, 0.0);
+    loop {
+        // 1 - [0, 1) is never 0.
+        let free = -(1.0 - random.random::<f64>()).ln();
+        let exit = body.exit(position, direction);
+        if free >= exit {
+            let position = position + exit * direction;
+            return Some(Exit { position, direction, scatterings, travelled: travelled + exit });
+        }
+        position += free * direction;
+        travelled += free;
+        if random.random::<f64>() >= albedo {
+            return None;
+        }
+        scatterings += 1;
+        direction = isotropic(random);
+    }
+}
+
+/// Folds `walks` walks: `enter` gives where and how each starts, `add` takes how each ended. `progress` is told of batches done
+/// and all.
+pub fn walks<B: Body, T: Send + Sync>(
+    body: &B,
+    albedo: f64,
+    walks: u64,
+    seed: u64,
+    enter: impl Fn(&mut Xoshiro256PlusPlus) -> (DVec3, DVec3) + Sync,
+    new: impl Fn() -> T + Sync,
+    add: impl Fn(&mut T, Option<Exit>) + Sync,
+    join: impl Fn(T, T) -> T + Sync + Send,
+) -> T {
+    let batches = walks.div_ceil(BATCH);
+    // Batches are joined in their order, so that sums of floats are the same on any number of threads.
+    let parts: Vec<T> = (0..batches)
+        .into_par_iter()
+        .map(|batch| {
+            let mut random = generator(seed, batch);
+            let mut total = new();
+            for _ in 0..BATCH.min(walks - batch * BATCH) {
+                let (position, direction) = enter(&mut random);
+                add(&mut total, walk(body, position, direction, albedo, &mut random));
+            }
+            total
+        })
+        .collect();
+    parts.into_iter().reduce(join).unwrap_or_else(new)
+}
+
+/// Where a parallel beam along -z that covers the unit disc falls, and a direction from below that is uniform by the cosine: the two
+/// ways to light a body.
+fn in_disc(random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
+    let radius = random.random::<f64>().sqrt();
+    let (sine, cosine) = (TAU * random.random::<f64>()).sin_cos();
+    (radius * cosine, radius * sine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The share of walks that leave a half space, and its standard error.
+    fn reflectance(albedo: f64, count: u64, enter: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (f64, f64) {
+        let out = walks(
+            &HalfSpace,
+            albedo,
+            count,
+            7,
+            |random| (DVec3::ZERO, enter(random)),
+            || 0u64,
+            |out, exit| *out += u64::from(exit.is_some()),
+            |a, b| a + b,
+        );
+        let share = out as f64 / count as f64;
+        (share, (share * (1.0 - share) / count as f64).sqrt())
+    }
+
+    /// Chandrasekhar, "Radiative Transfer": 1 - H(1) sqrt(1 - albedo) for light at normal incidence, and its mean over diffuse light.
+    #[test]
+    fn half_spaces_reflect_as_chandrasekhar_has_it() {
+        for (albedo, normal, diffuse) in
+            [(0.5, 0.115226, 0.146544), (0.9, 0.414947, 0.478024), (0.99, 0.752721, 0.794564)]
+        {
+            let down = |_: &mut Xoshiro256PlusPlus| DVec3::NEG_Z;
+            let cosine = |random: &mut Xoshiro256PlusPlus| {
+                let (x, y) = in_disc(random);
+                DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
+            };
+            for ((found, error), expected) in
+                [(reflectance(albedo, 400_000, down), normal), (reflectance(albedo, 400_000, cosine), diffuse)]
+            {
+                println!("albedo {albedo}: {found:.5} ± {error:.5}, expected {expected}");
+                assert!(
+                    (found - expected).abs() <= 4.0 * error,
+                    "albedo {albedo}: {found} ± {error}, expected {expected}"
+                );
+            }
+        }
+    }
+
+    /// In a body that absorbs nothing and is lit diffusely from all sides the mean way is 4 V / S, however much it scatters
+    /// (Blanco and Fournier, "An invariance property of diffusive random walks", 2003): 4/3 of a ball's radius.
+    #[test]
+    fn the_mean_way_through_a_ball_does_not_depend_on_scattering() {
+        for radius in [0.5, 2.0, 10.0] {
+            let (count, body) = (200_000u64, Ball { radius });
+            let enter = |random: &mut Xoshiro256PlusPlus| {
+                let (x, y) = in_disc(random);
+                (DVec3::new(0.0, 0.0, radius), DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt()))
+            };
+            let add = |sums: &mut [f64; 2], exit: Option<Exit>| {
+                let way = exit.expect("nothing is absorbed").travelled;
+                sums[0] += way;
+                sums[1] += way * way;
+            };
+            let [sum, squares] =
+                walks(&body, 1.0, count, 3, enter, || [0.0; 2], add, |a, b| [a[0] + b[0], a[1] + b[1]]);
+            let mean = sum / count as f64;
+            let error = ((squares / count as f64 - mean * mean) / count as f64).sqrt();
+            println!("radius {radius}: {mean:.4} ± {error:.4}");
+            assert!((mean - 4.0 / 3.0 * radius).abs() <= 4.0 * error, "{radius}: {mean} ± {error}");
+        }
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_walks() {
+        let run = |seed| profile(3.0, 0.9, 50_000, seed).exitance;
+        assert_eq!(run(1), run(1));
+        assert_ne!(run(1), run(2));
+    }
+}

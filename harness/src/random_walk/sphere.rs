@@ -1,0 +1,93 @@
+//! The translucent sphere in parallel light (Kubo et al.): what leaves it, by the angle from the light.
+
+use super::{Ball, Exit, in_disc, walks};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Intervals of the angle, from 0 to pi.
+pub const BINS: usize = 36;
+
+/// What leaves a sphere where its normal makes an angle with the direction to the light.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// In mean free paths.
+    pub radius: f64,
+    /// Of one scattering.
+    pub albedo: f64,
+    /// Radiant exitance by interval of the angle, over the irradiance of a surface that faces the light. Scattered light alone: what went
+    /// straight through is seen only by who looks into the light.
+    pub exitance: [f64; BINS],
+    /// The standard error of each.
+    pub standard_error: [f64; BINS],
+}
+
+impl Profile {
+    /// The bounds of an interval, as cosines: the greater first.
+    pub fn cosines(bin: usize) -> [f64; 2] {
+        [bin, bin + 1].map(|edge| (PI * edge as f64 / BINS as f64).cos())
+    }
+}
+
+/// Follows `count` walks through a sphere of `radius` mean free paths, in light from +z.
+pub fn profile(radius: f64, albedo: f64, count: u64, seed: u64) -> Profile {
+    let enter = |random: &mut _| {
+        let (x, y) = in_disc(random);
+        (radius * DVec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt()), DVec3::NEG_Z)
+    };
+    let add = |counts: &mut [u64; BINS], exit: Option<Exit>| {
+        let Some(exit) = exit.filter(|exit| exit.scatterings > 0) else { return };
+        // The angle by both coordinates: the cosine alone loses digits at the poles.
+        let angle = exit.position.truncate().length().atan2(exit.position.z);
+        counts[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += 1;
+    };
+    let join = |a: [u64; BINS], b: [u64; BINS]| std::array::from_fn(|bin| a[bin] + b[bin]);
+    let counts = walks(&Ball { radius }, albedo, count, seed, enter, || [0; BINS], add, join);
+    // The beam's power is pi r^2 E, an interval's area 2 pi r^2 (cos - cos).
+    let scale = |bin: usize| {
+        let [greater, less] = Profile::cosines(bin);
+        1.0 / (2.0 * (greater - less))
+    };
+    let share = |bin: usize| counts[bin] as f64 / count as f64;
+    Profile {
+        radius,
+        albedo,
+        exitance: std::array::from_fn(|bin| share(bin) * scale(bin)),
+        standard_error: std::array::from_fn(|bin| (share(bin) * (1.0 - share(bin)) / count as f64).sqrt() * scale(bin)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere that absorbs nothing gives back all that it scatters: what goes straight through is known.
+    #[test]
+    fn all_that_is_scattered_comes_out() {
+        for radius in [0.5, 2.0, 10.0] {
+            let count = 200_000;
+            let profile = profile(radius, 1.0, count, 5);
+            let area = |bin: usize| {
+                let [greater, less] = Profile::cosines(bin);
+                2.0 * (greater - less)
+            };
+            let out: f64 = (0..BINS).map(|bin| profile.exitance[bin] * area(bin)).sum();
+            // The mean of exp(-2 r c) over the disc, with c dc its measure.
+            let way = 2.0 * radius;
+            let straight = 2.0 * (1.0 - (1.0 + way) * (-way).exp()) / (way * way);
+            let error = (straight * (1.0 - straight) / count as f64).sqrt();
+            assert!((out - (1.0 - straight)).abs() <= 4.0 * error, "{radius}: {out}, {}", 1.0 - straight);
+        }
+    }
+
+    /// A dense sphere is lit as Lambert has it but for the terminator: bright where it faces the light, dark behind.
+    #[test]
+    fn light_creeps_further_round_a_smaller_sphere() {
+        let behind = |radius: f64| {
+            let profile = profile(radius, 0.99, 200_000, 9);
+            profile.exitance[BINS / 2..].iter().sum::<f64>() / profile.exitance.iter().sum::<f64>()
+        };
+        let shares = [2.0, 5.0, 20.0, 50.0].map(behind);
+        println!("{shares:?}");
+        assert!(shares.windows(2).all(|pair| pair[0] > pair[1]), "{shares:?}");
+    }
+}
