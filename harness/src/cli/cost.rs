@@ -38,6 +38,10 @@ pub(super) struct Arguments {
     /// Pages, comma-separated, whose generated tables are made anew.
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     fill: Vec<PathBuf>,
+    /// Where the time of the cheapest rungs goes instead: frames from which one thing after another is taken away; with --out,
+    /// gem_profile.txt.
+    #[arg(long, conflicts_with_all = ["rungs", "views", "from", "json", "fill"])]
+    profile: bool,
 }
 
 fn parse_rung(text: &str) -> Result<Rung, String> {
@@ -90,13 +94,32 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         std::fs::create_dir_all(out).map_err(failed)?;
         file::check_writable(&out.join("gem.txt"))?;
     }
+    if arguments.profile {
+        let text = cost::profile(context.gpu()?, options.rounds.max(1), options.frame)?;
+        if let Some(out) = &arguments.out {
+            file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
+        }
+        output::line(&text)?;
+        return Ok(Outcome::Passed);
+    }
     let pages: Vec<(&PathBuf, String)> =
         arguments.fill.iter().map(|path| Ok((path, read_text(path)?))).collect::<Result<_, Failure>>()?;
+    for (path, page) in &pages {
+        page::check(page).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
+        file::check_writable(path)?;
+    }
     let mut report = match &arguments.from {
         Some(path) => read(path)?,
         None => measure(context, &options)?,
     };
     report.mark_dominated();
+    let filled: Vec<(&PathBuf, String)> = pages
+        .iter()
+        .map(|(path, page)| match page::fill(page, &report) {
+            Ok(filled) => Ok((*path, filled)),
+            Err(error) => Err(Failure(format!("{}: {error}", path.display()))),
+        })
+        .collect::<Result<_, _>>()?;
     let text = report.text();
     if let Some(out) = &arguments.out {
         let write = |name: &str, contents: &str| -> Result<(), Failure> {
@@ -110,9 +133,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             }
         }
     }
-    for (path, page) in pages {
-        let filled = page::fill(&page, &report).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
-        file::replace(path, filled.as_bytes())?;
+    for (path, page) in filled {
+        file::replace(path, page.as_bytes())?;
     }
     if arguments.json {
         output::line(&serde_json::to_string_pretty(&report.rows())?)?;

@@ -64,7 +64,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     wavelengths: Option<usize>,
     /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     energy_bound: Option<f64>,
 }
 
@@ -92,12 +92,14 @@ fn refuse_what_is_ignored(arguments: &Arguments) -> Result<(), Failure> {
     let rung = arguments.rung;
     let reference = rung == Rung::Reference;
     let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
+    // Nothing of the recipes' way inside.
+    let outside = reference || rung == Rung::Surface;
     let ignored = [
         ("--wavelengths", !reference && arguments.wavelengths.is_some()),
         ("--energy-bound", !reference && arguments.energy_bound.is_some()),
-        ("--without", reference && !arguments.without.is_empty()),
-        ("--rest dropped", reference && arguments.rest == "dropped"),
-        ("--distance-limit", reference && arguments.distance_limit.is_some()),
+        ("--without", outside && !arguments.without.is_empty()),
+        ("--rest dropped", outside && arguments.rest == "dropped"),
+        ("--distance-limit", outside && arguments.distance_limit.is_some()),
         ("--deferred", reference && arguments.deferred),
         ("--centre paper", !proxy && arguments.centre == "paper"),
         ("--strength", rung.spectrum() != Spectrum::Paper && arguments.strength != 1.0),

@@ -7,13 +7,18 @@ use std::process::Command;
 
 /// The whole test suite, or a part: the same build that `cook` itself runs from.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases")]
+#[command(
+    after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show"
+)]
 pub(super) struct Arguments {
     /// Run the tests whose names hold this.
     filter: Option<String>,
     /// Leave out the mutation tests, which take minutes.
     #[arg(long)]
     quick: bool,
+    /// Show what the tests measure, too.
+    #[arg(long)]
+    show: bool,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -32,8 +37,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         command.arg("test").args(*part).arg("--manifest-path");
         command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
-        if let Some(filter) = &arguments.filter {
-            command.arg("--").arg(filter);
+        command.arg("--").args(&arguments.filter);
+        if arguments.show {
+            command.arg("--nocapture");
         }
         let status = command.status();
         let status = status.map_err(|error| Failure(format!("cargo cannot be run: {error}; is it on the PATH?")))?;

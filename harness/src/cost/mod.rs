@@ -6,6 +6,7 @@ mod error;
 mod gem;
 pub mod page;
 pub mod plot;
+mod profile;
 mod reflection;
 mod table;
 mod timing;
@@ -15,6 +16,7 @@ pub use choices::Choice;
 pub use dispersion::Colours;
 pub use error::{Errors, MEASURES};
 pub use gem::{Options, RUNGS, run};
+pub use profile::profile;
 pub use reflection::Reflection;
 pub use timing::{Timed, Timing};
 

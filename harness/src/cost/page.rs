@@ -1,6 +1,7 @@
 //! A report's tables in the pages of `docs/`, between marks, so that no figure is copied by hand.
 
-use super::{Choice, Colours, Report, RungReport};
+use super::views::VIEWS;
+use super::{Choice, Colours, RUNGS, Report, RungReport};
 use std::fmt::Write as _;
 
 /// What a page holds before a generated table, NAME being a table's name, ...
@@ -8,26 +9,54 @@ const BEGIN: &str = "<!-- generated: ";
 /// ... and after it.
 const END: &str = "<!-- end -->";
 
-/// `page` with each of its marked tables made anew from `report`.
+/// A table of a report.
+type Table = fn(&Report) -> String;
+
+const TABLES: [(&str, Table); 6] = [
+    ("ladder", ladder),
+    ("goals", goals),
+    ("paper", paper),
+    ("colours", colours),
+    ("ends", ends),
+    ("reflections", reflections),
+];
+
+/// Whether a page's marks are sound.
 ///
 /// # Errors
 ///
 /// A mark without an end, or with a name that no table has.
+pub fn check(page: &str) -> Result<(), String> {
+    with_tables(page, |_| String::new()).map(|_| ())
+}
+
+/// `page` with each of its marked tables made anew from `report`.
+///
+/// # Errors
+///
+/// As [`check`]; or a report that does not hold the whole ladder, which would leave a page with holes.
 pub fn fill(page: &str, report: &Report) -> Result<String, String> {
+    let missing = RUNGS.iter().find(|name| of(report, name).is_none_or(|rung| rung.timing.is_none()));
+    if let Some(name) = missing {
+        return Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"));
+    }
+    if report.views.len() < VIEWS.len() {
+        return Err("the report does not hold all views; only the whole ladder fills a page".to_owned());
+    }
+    with_tables(page, |table| table(report))
+}
+
+fn with_tables(page: &str, make: impl Fn(Table) -> String) -> Result<String, String> {
     let mut filled = String::new();
     let mut rest = page;
     while let Some((before, marked)) = rest.split_once(BEGIN) {
         let (name, after) = marked.split_once(" -->").ok_or(format!("`{BEGIN}` without `-->`"))?;
         let (_, after) = after.split_once(END).ok_or(format!("`{BEGIN}{name} -->` without `{END}`"))?;
-        let table = match name {
-            "ladder" => ladder(report),
-            "goals" => goals(report),
-            "paper" => paper(report),
-            "colours" => colours(&report.colours),
-            "ends" => ends(&report.choices),
-            "reflections" => reflections(report),
-            _ => return Err(format!("no table `{name}`; there are ladder, goals, paper, colours, ends, reflections")),
+        let Some((_, table)) = TABLES.iter().find(|(table, _)| *table == name) else {
+            let names = TABLES.map(|(name, _)| name).join(", ");
+            return Err(format!("no table `{name}`; there are {names}"));
         };
+        let table = make(*table);
         let _ = write!(filled, "{before}{BEGIN}{name} -->\n{table}{END}");
         rest = after;
     }
@@ -107,16 +136,19 @@ fn goals(report: &Report) -> String {
     );
     judge("proxy faster than the BVH", times("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
     for rung in ["proxy-1", "convex-8"] {
+        // The paper's is one shader at two strengths: the faster of them is its time.
+        let tracker = format!("{rung}+tracker");
+        let twins = [format!("{rung}+paper"), format!("{rung}+paper-fitted")].map(|paper| times(&tracker, &paper));
         judge(
             &format!("exact tracker's time within 10 % of the paper's tracker's, `{rung}`"),
-            times(&format!("{rung}+tracker"), &format!("{rung}+paper")),
+            twins[0].zip(twins[1]).map(|(a, b)| a.max(b)),
             &|value| value <= 1.1,
             &|value| format!("{:+.1} %", 100.0 * (value - 1.0)),
         );
     }
     let least = report.colours.iter().map(gain).reduce(f64::min);
     judge(
-        "its colours at least 5 times as close as the paper's at its best strength, in the view where they gain least",
+        "its colours at least 5 times as close to separate wavelengths' as the paper's at its best strength, in the view where they gain least",
         least,
         &|value| value >= 5.0,
         &factor,
@@ -184,7 +216,7 @@ fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> Str
     format!("{} to {}", show(least), show(most))
 }
 
-fn colours(colours: &[Colours]) -> String {
+fn colours(Report { colours, .. }: &Report) -> String {
     let columns = [
         "geometry",
         "pixels that keep together",
@@ -216,7 +248,7 @@ fn colours(colours: &[Colours]) -> String {
     table
 }
 
-fn ends(choices: &[Choice]) -> String {
+fn ends(Report { choices, .. }: &Report) -> String {
     let mut table = header(&["rung", "end", "FLIP", "RMSE", "energy"]);
     let mut seen: Vec<(&str, &str)> = Vec::new();
     for choice in choices {
@@ -258,17 +290,25 @@ mod tests {
     #[test]
     fn what_is_marked_is_made_anew_and_the_rest_stays() {
         let page = "before\n<!-- generated: reflections -->\nold\n<!-- end -->\nafter\n";
-        let filled = fill(page, &report()).expect("filled");
+        let fill = |page: &str| with_tables(page, |table| table(&report())).expect("filled");
+        let filled = fill(page);
         assert!(filled.starts_with("before\n<!-- generated: reflections -->\n| mesh |"), "{filled}");
         assert!(filled.contains("| exact | 100.0 % | 50.0 % |\n<!-- end -->\nafter\n") && !filled.contains("old"));
-        assert_eq!(fill(&filled, &report()).expect("filled"), filled);
-        assert_eq!(fill("no marks", &report()).expect("filled"), "no marks");
+        assert_eq!(fill(&filled), filled);
+        assert_eq!(fill("no marks"), "no marks");
     }
 
     #[test]
     fn marks_that_are_wrong_are_refused() {
         for page in ["<!-- generated: ladder -->", "<!-- generated: other -->\n<!-- end -->", "<!-- generated: "] {
-            assert!(fill(page, &report()).is_err(), "{page}");
+            assert!(check(page).is_err(), "{page}");
         }
+        assert_eq!(check("<!-- generated: ladder --><!-- end -->"), Ok(()));
+    }
+
+    #[test]
+    fn a_part_of_the_ladder_fills_no_page() {
+        let error = fill("<!-- generated: ladder --><!-- end -->", &report()).expect_err("nothing was timed");
+        assert!(error.contains("surface"), "{error}");
     }
 }

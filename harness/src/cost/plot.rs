@@ -21,7 +21,7 @@ struct Point<'a> {
     rung: Option<Rung>,
     ms: f64,
     error: f64,
-    /// No other point is both faster and better.
+    /// No other point is both faster and no worse, a thousandth aside as in [`Report::mark_dominated`].
     front: bool,
 }
 
@@ -34,7 +34,7 @@ fn points(report: &Report, measure: usize) -> Vec<Point<'_>> {
             rung: rung.rung.trim_end_matches("-fitted").parse().ok(),
             ms,
             error,
-            front: !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= error),
+            front: !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= 1.001 * error),
         })
         .collect()
 }

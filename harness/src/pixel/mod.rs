@@ -151,11 +151,11 @@ impl<'a> Shading<'a> {
         self.settings.distance_limit.is_some() && travelled > self.material.distance_limit
     }
 
-    /// Follows a ray to its next facet. A ray that has ended meets no more; the recipe goes on and takes no notice.
+    /// Follows a ray to its next facet. Its callers stop where it ends; the recipe's loops go on, and change nothing more of such a ray.
     fn next(&self, ray: &mut Ray, place: &mut Place<'_>) -> Hit {
         let hit = place.hit(ray.position, ray.direction);
         ray.travelled += hit.distance;
-        ray.followed = ray.followed && hit.facet.is_some() && !self.ends(ray.travelled);
+        ray.followed = hit.facet.is_some() && !self.ends(ray.travelled);
         if ray.followed {
             ray.throughput *= self.transmittance(hit.distance);
         } else {

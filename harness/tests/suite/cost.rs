@@ -2,6 +2,8 @@
 
 use crate::program::{folder, succeeds};
 use lapidary_harness::cost::{MEASURES, page, views};
+use lapidary_harness::render::{Frame, Settings};
+use lapidary_harness::scene::Scene;
 use serde_json::Value;
 
 #[test]
@@ -60,6 +62,26 @@ fn every_view_has_its_committed_reference() {
         assert!(covered > 1000, "{}: {covered}", view.name);
         assert!(page.contains(&format!("    {}\n", view.command())), "{}", view.command());
     }
+}
+
+/// The chain and the chandelier are hundreds of bodies and one draw call.
+#[test]
+fn many_prisms_are_one_draw_call() {
+    for name in ["prism_chain", "chandelier"] {
+        let settings = Settings { rung: "proxy-2+tracker".parse().expect("a rung"), ..Settings::of_size(64, 64) };
+        let frame = Frame::new(super::gpu(), &Scene::named(name).expect("built in"), &settings).expect("a frame");
+        assert_eq!(frame.draw_calls(), 1, "{name}");
+    }
+}
+
+#[test]
+fn a_profile_cuts_every_frame() {
+    let folder = folder();
+    let text = succeeds(folder.path(), &["cost", "gem", "--profile", "--rounds", "1", "--out", "."]).stdout;
+    assert!(folder.path().join("gem_profile.txt").exists());
+    let times =
+        text.split_whitespace().filter(|word| word.parse::<f64>().is_ok_and(|ms| ms > 0.0) && word.contains('.'));
+    assert_eq!(times.count(), 7, "{text}");
 }
 
 /// The record of the repository, and the pages that show it.

@@ -70,6 +70,10 @@ fn the_picture_is_the_mirrors() {
 fn so_it_is_with_every_choice() {
     let limited = Settings { distance_limit: Some(2.5), ..of_rung("convex-8") };
     check("brilliant", "limited", &compare("brilliant", limited), 0.01);
+    for rung in ["proxy-8+paper", "convex-8+paper", "convex-8+tracker"] {
+        let limited = Settings { distance_limit: Some(1.2), dispersion_strength: 0.02, ..of_rung(rung) };
+        check("brilliant", "limited, colours", &compare("brilliant", limited), 0.20);
+    }
     let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
     check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.20);
     let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
@@ -96,7 +100,7 @@ const fn fault(scene_rung: [&'static str; 2], what: &'static str, right: &'stati
     Fault { scene, rung, what, right, wrong }
 }
 
-const FAULTS: [Fault; 14] = [
+const FAULTS: [Fault; 15] = [
     fault(
         ["brilliant", "proxy-1"],
         "another index",
@@ -146,6 +150,7 @@ const FAULTS: [Fault; 14] = [
         "gem_transmittance(hit.distance)",
         "gem_transmittance(1.0f)",
     ),
+    fault(["brilliant", "proxy-4+paper"], "a ray that has ended goes on", "if ((*ray).followed) {", "if (true) {"),
 ];
 
 /// A comparison that a wrong shader passes checks nothing.
@@ -153,7 +158,8 @@ const FAULTS: [Fault; 14] = [
 fn a_wrong_picture_is_seen() {
     for Fault { scene, rung, what, right, wrong } in FAULTS {
         let scene = Scene::named(scene).expect("built in");
-        let settings = Settings { samples: 1, ..of_rung(rung) };
+        let distance_limit = what.contains("has ended").then_some(1.2);
+        let settings = Settings { samples: 1, distance_limit, ..of_rung(rung) };
         let source = lapidary_harness::cookbook::recipe_source(settings.rung.recipe());
         assert!(source.contains(right), "{rung}: {what}");
         let planted = source.replace(right, wrong);

@@ -119,8 +119,10 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
 // Follows a ray to the next facet. The loops below have no `break`: a compiler may unroll them, and rays seldom end before the last bounce.
 fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHit {
     let hit = gem_hit(place, (*ray).position, (*ray).direction);
-    (*ray).travelled += hit.distance;
-    (*ray).followed = (*ray).followed && hit.hit && !gem_ends((*ray).travelled);
+    if ((*ray).followed) {
+        (*ray).travelled += hit.distance;
+        (*ray).followed = hit.hit && !gem_ends((*ray).travelled);
+    }
     if ((*ray).followed) {
         (*ray).throughput *= gem_transmittance(hit.distance);
     }

@@ -1,0 +1,72 @@
+//! Where a frame's time goes: frames of one stone from whose recipe one thing after another is taken away.
+
+use super::{CostError, views};
+use crate::cookbook;
+use crate::gpu::Gpu;
+use crate::render::{Frame, Rung, Settings};
+use crate::scene::Scene;
+use std::fmt::Write as _;
+
+/// What is taken away: the text that goes, and what stands in its place. Every binding stays in use.
+const CUTS: [(&str, &str, &str); 3] = [
+    ("all of it", "", ""),
+    (
+        "an operation in place of each lookup of the studio",
+        "    return environment_studio(direction);\n",
+        "    return 0.5f * direction + 0.5f;\n",
+    ),
+    (
+        "rasterising alone",
+        "    return vec4f(radiance.surface + radiance.inside, 1.0f);\n}\n\n// For a deferred",
+        "    var used = vec3f(0.0f);\n    if (input.position.x > 1e30f) {\n        \
+         used = material.base_color + wavelengths[0].index + textureLoad(environment_map, vec2u(0u), 0).rgb;\n    }\n    \
+         return vec4f(used + input.face_normal + input.position + input.plane_origin + input.edge_first + input.edge_second, \
+         1.0f);\n}\n\n// For a deferred",
+    ),
+];
+
+/// The rungs whose frames are cut.
+const RUNGS: [&str; 3] = ["proxy-0", "proxy-1", "convex-1"];
+
+/// Times the frames, interleaved, the least of `rounds`, as a table for people.
+pub fn profile(gpu: &Gpu, rounds: u32, [width, height]: [u32; 2]) -> Result<String, CostError> {
+    let scene = views::filled(&Scene::named("brilliant")?);
+    let mut frames = Vec::new();
+    for (row, (_, right, cut)) in CUTS.iter().enumerate() {
+        for (column, name) in RUNGS.iter().enumerate() {
+            let Ok(rung) = name.parse::<Rung>() else { continue };
+            let source = cookbook::recipe_source(rung.recipe());
+            // The last cut is of what the proxy's vertices hand on.
+            if !source.contains(right) || (row == 2 && *name != "proxy-1") {
+                continue;
+            }
+            let settings = Settings { rung, samples: 1, ..Settings::of_size(width, height) };
+            let frame = Frame::of_source(
+                gpu,
+                &scene,
+                &settings,
+                &if right.is_empty() { source } else { source.replace(right, cut) },
+            )?;
+            // The first frame compiles.
+            frame.run()?;
+            frames.push((row, column, frame, f64::INFINITY));
+        }
+    }
+    for _ in 0..rounds {
+        for (.., frame, least) in &mut frames {
+            *least = least.min(frame.run()?.total.as_secs_f64() * 1e3);
+        }
+    }
+    let mut text = format!("{}, {width}x{height}, least of {rounds} interleaved rounds, ms\n{:52}", gpu.describe(), "");
+    for name in RUNGS {
+        let _ = write!(text, "{name:>10}");
+    }
+    for (row, (what, ..)) in CUTS.iter().enumerate() {
+        let _ = write!(text, "\n{what:52}");
+        for column in 0..RUNGS.len() {
+            let found = frames.iter().find(|frame| (frame.0, frame.1) == (row, column));
+            let _ = write!(text, "{:>10}", found.map_or(String::new(), |frame| format!("{:.1}", frame.3)));
+        }
+    }
+    Ok(text)
+}
