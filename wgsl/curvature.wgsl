@@ -178,7 +178,8 @@ fn curvature_towards(
     return squared / bounded * dot(across, across) * along + zenith / total * mean;
 }
 
-// The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y. Kept to show where it fails.
+// The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept
+// to show where it fails.
 // Returns: (alpha^2 e + 2 alpha beta f + beta^2 g) / (alpha^2 E + 2 alpha beta F + beta^2 G).
 // Units: one over the position's.
 // Domain: as curvature_mean_textbook, with a light at 0.1 or more from the normal.
@@ -196,9 +197,8 @@ fn curvature_towards_textbook(
     let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
     let light_x = dot(light, position_x);
     let light_y = dot(light, position_y);
-    let determinant = first.x * first.z - first.y * first.y;
-    let alpha = (first.z * light_x - first.y * light_y) / determinant;
-    let beta = (first.x * light_y - first.y * light_x) / determinant;
+    let alpha = first.z * light_x - first.y * light_y;
+    let beta = first.x * light_y - first.y * light_x;
     let weight = vec3f(alpha * alpha, 2.0f * alpha * beta, beta * beta);
     return dot(weight, second) / dot(weight, first);
 }

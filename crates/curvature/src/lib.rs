@@ -127,9 +127,8 @@ pub fn towards_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, norm
     let second = Vec3::new(position_x.dot(normal_x), mixed, position_y.dot(normal_y));
     let light_x = light.dot(position_x);
     let light_y = light.dot(position_y);
-    let determinant = first.x * first.z - first.y * first.y;
-    let alpha = (first.z * light_x - first.y * light_y) / determinant;
-    let beta = (first.x * light_y - first.y * light_x) / determinant;
+    let alpha = first.z * light_x - first.y * light_y;
+    let beta = first.x * light_y - first.y * light_x;
     let weight = Vec3::new(alpha * alpha, 2.0 * alpha * beta, beta * beta);
     weight.dot(second) / weight.dot(first)
 }
