@@ -430,7 +430,7 @@ fn towards_formulas() -> Vec<Formula> {
                 "a cylinder nearly edge-on",
                 lit_by(aslant([0.0, 1.0]), ACROSS.normalize()),
                 (&[1.0], 5e-4),
-                (TEXTBOOK, 0.2),
+                (TEXTBOOK, 0.1),
             )
             .hard_case(
                 "a triangle seen along its plane",
