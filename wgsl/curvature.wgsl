@@ -99,7 +99,7 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
 // Returns: the Gaussian curvature, 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below CURVATURE_EDGE_ON it fades to 0 as the square of
 //   curvature_mean does; 0 where a position derivative is 0.
 // Units: one over the position's, squared.
-// Domain: as curvature_mean, and normal derivatives at right angles to the normal up to an error as large as themselves.
+// Domain: as curvature_mean, and normal derivatives at right angles to the surface's normal up to 0.4 of their length.
 // Outside: finite for |normal_x|, |normal_y| <= 2.
 // Accuracy: lavapipe 5 ulp + 1e-31 abs + 4 backward; portable 12 ulp + 1e-31 abs + 8 backward
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
