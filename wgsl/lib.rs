@@ -59,6 +59,7 @@ pub const MODULES: &[Module] = modules![
     "bvh_trace",
     "closest_point",
     "convex_trace",
+    "curvature",
     "dispersion",
     "environment",
     "fresnel",

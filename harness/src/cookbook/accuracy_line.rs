@@ -140,7 +140,10 @@ impl fmt::Display for FieldBound {
         let mut terms: Vec<String> = terms
             .iter()
             .filter(|(number, _)| *number != 0.0)
-            .map(|(number, unit)| format!("{number} {unit}"))
+            // Tiny ones by their exponent, to be read at all.
+            .map(
+                |(number, unit)| if *number < 1e-9 { format!("{number:e} {unit}") } else { format!("{number} {unit}") },
+            )
             .collect();
         if terms.is_empty() {
             terms.push("0 ulp".to_owned());

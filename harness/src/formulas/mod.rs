@@ -5,6 +5,7 @@ mod absorption;
 mod bvh_trace;
 mod closest_point;
 mod convex_trace;
+mod curvature;
 mod dispersion;
 mod environment;
 mod fresnel;
@@ -24,6 +25,7 @@ pub fn all() -> &'static [Formula] {
             bvh_trace::formulas(),
             closest_point::formulas(),
             convex_trace::formulas(),
+            curvature::formulas(),
             dispersion::formulas(),
             environment::formulas(),
             fresnel::formulas(),

@@ -14,6 +14,12 @@ const MOST_CORNERS: [u64; 2] = [256, 1024];
 /// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
 const BISECTIONS: usize = 30;
 
+/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁴ of the box's width, an extremum to the square of that.
+const SECTIONS: usize = 20;
+
+/// Rounds over all inputs on the way to an extremum inside the box.
+const ROUNDS: usize = 6;
+
 /// An oracle on numbers.
 pub type OracleFn<'a> = &'a dyn Fn(&[f64], &mut Vec<f64>);
 
@@ -109,6 +115,9 @@ impl Tolerance {
                 let mut search = Search::new(self, gpu, mirror, oracle);
                 let judge = |spread: &Spread| self.ratio(gpu, mirror, exact, Some(spread));
                 search.run(effort, &centre, &steps, |spread| judge(spread) <= 1.0);
+                if effort == Effort::Boundaries && judge(&search.spread) > 1.0 {
+                    search.extrema(&centre, &steps, [gpu, mirror], |spread| judge(spread) <= 1.0);
+                }
                 if search.met == [true; 2] {
                     ratio = ratio.min(judge(&search.spread));
                 }
@@ -190,7 +199,7 @@ enum Effort {
     /// The corners of the box and the middles of its faces.
     Corners,
     /// More corners, and on the way from each to the next every place where a discrete result changes: the rounded result may well lie
-    /// right there.
+    /// right there. Then the extrema inside the box.
     Boundaries,
 }
 
@@ -268,6 +277,64 @@ impl<'a> Search<'a> {
         let found = self.visit(&point);
         self.boundaries(from, to, near, (middle, &found), halvings - 1);
         self.boundaries(from, to, (middle, &found), far, halvings - 1);
+    }
+
+    /// Extends the range towards each result that lies beside it, by less than its width: a function that does not go on rising, such
+    /// as a square, has its extremum inside the box and not at a corner.
+    fn extrema(&mut self, centre: &[f64], steps: &[f64], results: [&[u32]; 2], enough: impl Fn(&Spread) -> bool) {
+        for words in results {
+            for (index, word) in words.iter().enumerate() {
+                // Of a discrete result the bits are no number to approach; as one they lie far from the range.
+                let value = f64::from(f32::from_bits(*word));
+                let (low, high) = (self.spread.low[index], self.spread.high[index]);
+                if value < low && low - value < high - low {
+                    self.descend(centre, steps, (index, 1.0), &enough);
+                } else if value > high && value - high < high - low {
+                    self.descend(centre, steps, (index, -1.0), &enough);
+                }
+            }
+        }
+    }
+
+    /// Lowers `sign` times result `index` by golden-section searches along one input after another.
+    fn descend(
+        &mut self,
+        centre: &[f64],
+        steps: &[f64],
+        (index, sign): (usize, f64),
+        enough: &impl Fn(&Spread) -> bool,
+    ) {
+        const GOLDEN: f64 = 0.618_033_988_749_894_8;
+        let mut point = centre.to_vec();
+        for _ in 0..ROUNDS {
+            for moving in (0..steps.len()).filter(|moving| steps[*moving] > 0.0) {
+                let mut at = |search: &mut Self, place: f64| {
+                    point[moving] = place;
+                    search.visit(&point);
+                    let value = sign * search.result[index];
+                    if value.is_nan() { f64::INFINITY } else { value }
+                };
+                let (mut low, mut high) = (centre[moving] - steps[moving], centre[moving] + steps[moving]);
+                let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+                let mut values = inner.map(|place| at(self, place));
+                for _ in 0..SECTIONS {
+                    if values[0] <= values[1] {
+                        high = inner[1];
+                        inner = [high - GOLDEN * (high - low), inner[0]];
+                        values = [at(self, inner[0]), values[0]];
+                    } else {
+                        low = inner[0];
+                        inner = [inner[1], low + GOLDEN * (high - low)];
+                        values = [values[1], at(self, inner[1])];
+                    }
+                }
+                let nearest = if values[0] <= values[1] { inner[0] } else { inner[1] };
+                at(self, nearest);
+                if enough(&self.spread) {
+                    return;
+                }
+            }
+        }
     }
 
     /// Searches the corners of the box of `steps` about `centre` and the middles of its faces, until `enough`.

@@ -226,6 +226,22 @@ fn backward_error_accepts_what_the_input_explains_and_no_more() {
 }
 
 #[test]
+fn backward_error_reaches_an_extremum_inside_the_box() {
+    // (x - y)²: no corner of the box gives the 0 that lies in it.
+    let oracle = |numbers: &[f64], result: &mut Vec<f64>| result.push((numbers[0] - numbers[1]).powi(2));
+    let inputs = [1.0 + ULP, 1.0];
+    let exact = f64::from(ULP).powi(2);
+    // The search ends near the extremum.
+    let tolerance = tolerance(&[FLOAT, FLOAT], &FLOAT, Bound { backward: 4.0, absolute: 1e-3 * exact, ..NONE });
+    let accepts = |value: f64| {
+        let word = (value as f32).to_bits();
+        tolerance.judge(&inputs.map(f32::to_bits), &[word], &[word], &[exact], &oracle).holds()
+    };
+    assert!(accepts(exact) && accepts(0.0) && accepts(81.0 * exact));
+    assert!(!accepts(-0.01 * exact) && !accepts(82.0 * exact));
+}
+
+#[test]
 fn backward_error_explains_nothing_where_the_input_does_not_matter() {
     let oracle = |_: &[f64], result: &mut Vec<f64>| result.push(1.0);
     let tolerance = tolerance(&[FLOAT], &FLOAT, Bound { backward: 1000.0, ..NONE });

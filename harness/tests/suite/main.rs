@@ -7,6 +7,7 @@ mod cli;
 mod comparator;
 mod contract;
 mod cost;
+mod curvature;
 mod deferred;
 mod dispatch;
 mod formulas;

@@ -1,0 +1,139 @@
+//! Mirror of `wgsl/curvature.wgsl`: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its
+//! position and normal. do Carmo, "Differential Geometry of Curves and Surfaces", sections 3-2, 3-3, 3-5.
+//!
+//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. `position_x`
+//! stands for the derivative of the position along the screen's x axis, and so on.
+
+pub mod oracle;
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+
+/// Largest components of position derivatives below this count as degenerate, 2⁻⁵⁰.
+pub const CURVATURE_SMALLEST: f32 = 8.881784197001252e-16;
+
+/// Squared sine of the angle between the position derivatives at which the pixel counts as seen edge-on, 2⁻²⁰.
+pub const CURVATURE_EDGE_ON: f32 = 9.5367431640625e-7;
+
+/// Squared sine of the light's angle to the normal below which it has no direction along the surface, 2⁻²⁰.
+pub const CURVATURE_ZENITH: f32 = 9.5367431640625e-7;
+
+/// The power of two that brings the largest component of a derivative to [1, 2).
+pub fn scale(derivative: Vec3) -> f32 {
+    let magnitude = derivative.abs();
+    let size = magnitude.x.max(magnitude.y).max(magnitude.z.max(CURVATURE_SMALLEST));
+    f32::from_bits(0x7f00_0000 - (size.to_bits() & 0x7f80_0000))
+}
+
+/// Derivative of the unit normal from the derivative of one that is not normalised.
+pub fn normal_derivative(normal: Vec3, derivative: Vec3) -> Vec3 {
+    let scale = scale(normal);
+    let scaled = scale * normal;
+    let squared = scaled.dot(scaled).max(1.0);
+    scaled.cross(scale * derivative).cross(scaled) / (squared * squared.sqrt())
+}
+
+/// What `dpdx(normalize(normal))` computes: the difference of two neighbours' unit normals.
+pub fn normal_derivative_naive(normal: Vec3, derivative: Vec3) -> Vec3 {
+    (normal + derivative).normalize() - normal.normalize()
+}
+
+/// Mean curvature, half the sum of the principal ones.
+pub fn mean(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    let scale_x = scale(position_x);
+    let scale_y = scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let area = p_x.cross(p_y);
+    let growth = n_x.cross(p_y) + p_x.cross(n_y);
+    let least = CURVATURE_EDGE_ON * p_x.dot(p_x).max(1.0) * p_y.dot(p_y).max(1.0);
+    0.5 * area.dot(growth) / area.dot(area).max(least)
+}
+
+/// The mean curvature as the textbook writes it, by the two fundamental forms.
+pub fn mean_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    let first = Vec3::new(position_x.dot(position_x), position_x.dot(position_y), position_y.dot(position_y));
+    let mixed = 0.5 * (position_x.dot(normal_y) + position_y.dot(normal_x));
+    let second = Vec3::new(position_x.dot(normal_x), mixed, position_y.dot(normal_y));
+    let determinant = first.x * first.z - first.y * first.y;
+    0.5 * (second.x * first.z - 2.0 * second.y * first.y + second.z * first.x) / determinant
+}
+
+/// Gaussian curvature, the product of the principal ones.
+pub fn gaussian(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    let scale_x = scale(position_x);
+    let scale_y = scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let area = p_x.cross(p_y);
+    let twist = 0.5 * (p_x.dot(n_y) - p_y.dot(n_x));
+    let squared = area.dot(area);
+    let bounded = squared.max(CURVATURE_EDGE_ON * p_x.dot(p_x).max(1.0) * p_y.dot(p_y).max(1.0));
+    (area.dot(n_x.cross(n_y)) - twist * twist) / bounded * (squared / bounded)
+}
+
+/// The Gaussian curvature as the textbook writes it.
+pub fn gaussian_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    let first = Vec3::new(position_x.dot(position_x), position_x.dot(position_y), position_y.dot(position_y));
+    let mixed = 0.5 * (position_x.dot(normal_y) + position_y.dot(normal_x));
+    let second = Vec3::new(position_x.dot(normal_x), mixed, position_y.dot(normal_y));
+    (second.x * second.z - second.y * second.y) / (first.x * first.z - first.y * first.y)
+}
+
+/// Normal curvature along the part of `light` that runs along the surface; the mean curvature for a light at the zenith.
+pub fn towards(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3, light: Vec3) -> f32 {
+    let scale_x = scale(position_x);
+    let scale_y = scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let squared_x = p_x.dot(p_x).max(1.0);
+    let crossed = p_x.cross(p_y);
+    // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
+    let area = crossed - crossed.dot(p_x) / squared_x * p_x;
+    let growth = n_x.cross(p_y) + p_x.cross(n_y);
+    let squared = area.dot(area);
+    let bounded = squared.max(CURVATURE_EDGE_ON * squared_x * p_y.dot(p_y).max(1.0));
+
+    let aside = area.cross(light);
+    let zenith = CURVATURE_ZENITH * bounded;
+    let total = aside.dot(aside) + zenith;
+    let across = aside / total.sqrt();
+    // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of
+    // the area. As a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
+    let direction = across.cross(area);
+    let alpha = p_y.dot(across);
+    let beta = -p_x.dot(across);
+    let tangent = alpha * p_x + beta * p_y;
+    let change = alpha * n_x + beta * n_y;
+    // Half the cross product's own square bounds the quotient where the sum is all rounding. 2⁻¹⁰⁰ stands for 0: the square is
+    // that small at sines below 2⁻⁵⁰ only, where the weight below is as small.
+    let least = (0.5 * direction.dot(direction)).max(7.888609052210118e-31);
+    let along = direction.dot(change) / direction.dot(tangent).max(least);
+    let mean = 0.5 * area.dot(growth) / bounded;
+    squared / bounded * across.dot(across) * along + zenith / total * mean
+}
+
+/// The normal curvature along the light by the normal equations of its part along the surface.
+pub fn towards_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3, light: Vec3) -> f32 {
+    let first = Vec3::new(position_x.dot(position_x), position_x.dot(position_y), position_y.dot(position_y));
+    let mixed = 0.5 * (position_x.dot(normal_y) + position_y.dot(normal_x));
+    let second = Vec3::new(position_x.dot(normal_x), mixed, position_y.dot(normal_y));
+    let light_x = light.dot(position_x);
+    let light_y = light.dot(position_y);
+    let alpha = first.z * light_x - first.y * light_y;
+    let beta = first.x * light_y - first.y * light_x;
+    let weight = Vec3::new(alpha * alpha, 2.0 * alpha * beta, beta * beta);
+    weight.dot(second) / weight.dot(first)
+}
+
+/// The usual rung, |dN| / |dP|: `length(fwidth(normal)) / length(fwidth(position))`.
+pub fn naive(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    (normal_x.abs() + normal_y.abs()).length() / (position_x.abs() + position_y.abs()).length()
+}

@@ -1,0 +1,124 @@
+//! The truth in f64: the shape operator in an orthonormal frame of the tangent plane, its eigenvalues by a Jacobi rotation, and
+//! Euler's formula for the curvature in a direction. The mirror forms neither a frame nor an eigenvalue.
+
+use glam::{DVec2, DVec3};
+
+// The module's constants, written out again: a slip in theirs must not carry over to the truth.
+const SMALLEST: f64 = 1.0 / (1u64 << 50) as f64;
+const SINE: f64 = 1.0 / 1024.0;
+
+/// A power of two by its logarithm.
+pub fn scale(derivative: DVec3) -> f64 {
+    let size = derivative.to_array().into_iter().map(f64::abs).fold(SMALLEST, f64::max);
+    (-size.log2().floor()).exp2()
+}
+
+/// The derivative at 0 of the direction of `normal + t derivative`: what the projection on the plane across the normal leaves. Normals
+/// shorter than the least fade as the cube of their length.
+pub fn normal_derivative(normal: DVec3, derivative: DVec3) -> DVec3 {
+    if normal == DVec3::ZERO {
+        return DVec3::ZERO;
+    }
+    let unit = normal.normalize();
+    let across = derivative - derivative.dot(unit) * unit;
+    // Once more, for what the first projection's rounding left along the normal.
+    let fade = (normal.length() / SMALLEST).min(1.0).powi(3);
+    fade * (across - across.dot(unit) * unit) / normal.length()
+}
+
+/// The chord between two unit vectors: 2 sin(angle / 2) long, at right angles to their sum.
+pub fn normal_derivative_naive(normal: DVec3, derivative: DVec3) -> DVec3 {
+    let [from, to] = [normal, normal + derivative].map(|vector| vector / vector.length());
+    let middle = (from + to).normalize();
+    let angle = from.cross(to).length().atan2(from.dot(to));
+    let direction = (derivative - derivative.dot(middle) * middle).normalize_or_zero();
+    2.0 * (0.5 * angle).sin() * direction
+}
+
+/// A surface at a pixel: principal curvatures, frame of the tangent plane, and how much of the result is left edge-on.
+struct Surface {
+    principal: [f64; 2],
+    /// Of the first principal curvature, from `first` towards `second`.
+    angle: f64,
+    first: DVec3,
+    second: DVec3,
+    fade: f64,
+}
+
+/// None where the derivatives do not span a plane.
+fn surface(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> Option<Surface> {
+    // Exact to the last bit of f64 for parallel vectors of f32: their products have 48 digits.
+    let area = position_x.cross(position_y);
+    if area == DVec3::ZERO {
+        return None;
+    }
+    let (width, height) = (position_x.length(), position_y.length());
+    let first = position_x / width;
+    let second = area.cross(position_x).normalize();
+    // position_y = lean * first + rise * second.
+    let (lean, rise) = (position_y.dot(first), area.length() / width);
+    let along_first = normal_x / width;
+    let along_second = (normal_y - lean * along_first) / rise;
+    let (aa, bb) = (first.dot(along_first), second.dot(along_second));
+    let ab = 0.5 * (first.dot(along_second) + second.dot(along_first));
+    // Jacobi: the tangent of the angle that takes the mixed entry to 0.
+    let tangent = if ab == 0.0 {
+        0.0
+    } else {
+        let ratio = (bb - aa) / (2.0 * ab);
+        1f64.copysign(ratio) / (ratio.abs() + ratio.hypot(1.0))
+    };
+    let tiny = |length: f64| (SMALLEST / length).max(1.0).powi(2);
+    let squared_sine = (area.length() / (width * height)).powi(2);
+    let fade = squared_sine / squared_sine.max(SINE * SINE * tiny(width) * tiny(height));
+    Some(Surface { principal: [aa - tangent * ab, bb + tangent * ab], angle: -tangent.atan(), first, second, fade })
+}
+
+/// Half the sum of the eigenvalues.
+pub fn mean(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> f64 {
+    surface(position_x, position_y, normal_x, normal_y)
+        .map_or(0.0, |surface| surface.fade * 0.5 * (surface.principal[0] + surface.principal[1]))
+}
+
+/// Shared with [`mean`]: the same function, computed badly.
+pub fn mean_textbook(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> f64 {
+    mean(position_x, position_y, normal_x, normal_y)
+}
+
+/// Product of the eigenvalues.
+pub fn gaussian(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> f64 {
+    surface(position_x, position_y, normal_x, normal_y)
+        .map_or(0.0, |surface| surface.fade.powi(2) * surface.principal[0] * surface.principal[1])
+}
+
+/// Shared with [`gaussian`].
+pub fn gaussian_textbook(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> f64 {
+    gaussian(position_x, position_y, normal_x, normal_y)
+}
+
+/// Euler's formula κ₁ cos² φ + κ₂ sin² φ, with φ the light's azimuth from the first principal direction; near the zenith mixed with the mean.
+pub fn towards(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3, light: DVec3) -> f64 {
+    let Some(surface) = surface(position_x, position_y, normal_x, normal_y) else { return 0.0 };
+    let flat = DVec2::new(light.dot(surface.first), light.dot(surface.second));
+    let azimuth = flat.y.atan2(flat.x) - surface.angle;
+    let [one, two] = surface.principal;
+    let normal_curvature = one * azimuth.cos().powi(2) + two * azimuth.sin().powi(2);
+    let sure = surface.fade * flat.length_squared();
+    surface.fade * (sure * normal_curvature + SINE * SINE * 0.5 * (one + two)) / (sure + SINE * SINE)
+}
+
+/// Euler's formula alone: it differs from [`towards`] near the zenith and edge-on.
+pub fn towards_textbook(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3, light: DVec3) -> f64 {
+    let Some(surface) = surface(position_x, position_y, normal_x, normal_y) else { return 0.0 };
+    let azimuth = light.dot(surface.second).atan2(light.dot(surface.first)) - surface.angle;
+    surface.principal[0] * azimuth.cos().powi(2) + surface.principal[1] * azimuth.sin().powi(2)
+}
+
+/// |dN| / |dP|: for each axis, the larger of the sum's and the difference's magnitude is the sum of the magnitudes.
+pub fn naive(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> f64 {
+    let size = |x: DVec3, y: DVec3| {
+        let widths = (x + y).abs().max((x - y).abs());
+        widths.x.hypot(widths.y).hypot(widths.z)
+    };
+    size(normal_x, normal_y) / size(position_x, position_y)
+}

@@ -1,0 +1,215 @@
+// curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
+//   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
+//
+// `position_x` stands for dpdx(position), `normal_y` for dpdy(normal), and so on; the fragment shader takes them before any branch. Positions
+// and normals are those of one space, best relative to the eye, where positions keep most digits. Under a non-uniform scale that is
+// world or view space: normals transformed by the inverse transpose, then renormalised. Curvature is positive where the
+// surface bends away from its normal, as a sphere's does from its outward one.
+
+// Largest components of position derivatives below this, 2^-50, count as degenerate: the curvature fades to 0 with them. Below,
+// a change of the normal between two pixels, at most 2, would give a curvature whose square f32 does not hold.
+const CURVATURE_SMALLEST: f32 = 8.881784197001252e-16f;
+
+// Squared sine of the angle between the position derivatives at which the pixel counts as seen edge-on, (2^-10)^2. Positions are rounded
+// by 2^-24 of their distance and a pixel is some 2^-10 of it, so the derivatives are off by 2^-14 of their length: at this sine
+// by 1/16 of what they span, and below it they soon span nothing but rounding.
+const CURVATURE_EDGE_ON: f32 = 9.5367431640625e-7f;
+
+// Squared sine of the light's angle to the normal below which the light has no direction along the surface, (2^-10)^2.
+const CURVATURE_ZENITH: f32 = 9.5367431640625e-7f;
+
+// The power of two that brings the largest component of a derivative to [1, 2). Scaling the derivatives of position and normal along one
+// screen axis alike is a change of the pixel's width: it leaves the curvature as it is, and rounds nothing.
+// Returns: 2^-k for a largest component in [2^k, 2^(k+1)); at most 1 / CURVATURE_SMALLEST.
+// Units: the inverse of the derivative's.
+// Domain: largest component 0 or in [1e-38, 1e38].
+// Outside: 0 from 2^127 on, which makes the pixel degenerate.
+// Accuracy: lavapipe 0 ulp; portable 0 ulp
+fn curvature_scale(derivative: vec3f) -> f32 {
+    let magnitude = abs(derivative);
+    let size = max(max(magnitude.x, magnitude.y), max(magnitude.z, CURVATURE_SMALLEST));
+    return bitcast<f32>(0x7f000000u - (bitcast<u32>(size) & 0x7f800000u));
+}
+
+// Derivative of the unit normal from the derivative of one that is not: of a normal interpolated over a triangle, or transformed, and
+// not yet normalised. Differencing normals after normalisation loses the digits that two neighbours share; this does not.
+// Returns: (I - n n^T) derivative / |normal| with n = normal / |normal|; 0 for the zero vector.
+// Units: one over the screen's; independent of the normal's length.
+// Domain: |normal| in [1e-15, 1e15], |derivative| at most 2^20 |normal|.
+// Outside: fades to 0 for shorter normals; finite while |derivative| < 1e10.
+// Accuracy: lavapipe 4 ulp + 3 backward; portable 12 ulp + 6 backward
+fn curvature_normal_derivative(normal: vec3f, derivative: vec3f) -> vec3f {
+    let scale = curvature_scale(normal);
+    let scaled = scale * normal;
+    let squared = max(dot(scaled, scaled), 1.0f);
+    return cross(cross(scaled, scale * derivative), scaled) / (squared * sqrt(squared));
+}
+
+// What dpdx(normalize(normal)) computes: the difference of two neighbours' unit normals.
+// Returns: n(x + 1) - n(x).
+// Units: one over the screen's.
+// Domain: |normal| in [1e-3, 1e3], neighbours at an angle of 0.1 or more.
+// Outside: loses digits as 2^-24 / angle; 0 / 0 for the zero vector.
+// Accuracy: naive
+fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f {
+    return normalize(normal + derivative) - normalize(normal);
+}
+
+// Mean curvature, half the sum of the principal ones: with first form E, F, G and second e, f, g it is (eG - 2fF + gE) / (2 (EG - F^2)). Here
+// both are written with a = p_x x p_y: EG - F^2 = |a|^2 and eG - 2fF + gE = a . (n_x x p_y + p_x x n_y), the rate at which a patch grows on
+// the parallel surface p + t n. Neither cancels where the pixel is seen edge-on, and a part of n_x along the normal drops out.
+// Returns: the mean curvature, 1 / R on a sphere, 1 / 2R on a cylinder. Below CURVATURE_EDGE_ON it fades to 0 as the squared sine does, so that it is
+//   at most 2^9 (|n_x| / |p_x| + |n_y| / |p_y|); 0 where a position derivative is 0.
+// Units: one over the position's.
+// Domain: position derivatives 0 or with a largest component in [1e-22, 1e22]; normal derivatives of unit normals.
+// Outside: finite for |normal_x|, |normal_y| <= 2.
+// Accuracy: lavapipe 4 ulp + 1e-31 abs + 4 backward; portable 10 ulp + 1e-31 abs + 8 backward
+fn curvature_mean(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
+    let scale_x = curvature_scale(position_x);
+    let scale_y = curvature_scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let area = cross(p_x, p_y);
+    let growth = cross(n_x, p_y) + cross(p_x, n_y);
+    let least = CURVATURE_EDGE_ON * max(dot(p_x, p_x), 1.0f) * max(dot(p_y, p_y), 1.0f);
+    return 0.5f * dot(area, growth) / max(dot(area, area), least);
+}
+
+// The mean curvature as the textbook writes it. Kept to show where it fails.
+// Returns: (eG - 2fF + gE) / (2 (EG - F^2)).
+// Units: one over the position's.
+// Domain: position derivatives of length 1e-4 to 1e4, at an angle with a sine of 0.3 or more.
+// Outside: EG - F^2 is rounding noise at sines below 2^-11; 0 / 0 where it is 0 or underflows, infinity over infinity above 1e9.
+// Accuracy: naive
+fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
+    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
+    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
+    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
+    let determinant = first.x * first.z - first.y * first.y;
+    return 0.5f * (second.x * first.z - 2.0f * second.y * first.y + second.z * first.x) / determinant;
+}
+
+// Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y the numerator is
+// a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
+// asymmetry. With it the result is never above the square of curvature_mean, so that principal curvatures H +- sqrt(H^2 - K) exist.
+// Returns: the Gaussian curvature, 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below CURVATURE_EDGE_ON it fades to 0 as the square of
+//   curvature_mean does; 0 where a position derivative is 0.
+// Units: one over the position's, squared.
+// Domain: as curvature_mean, and normal derivatives at right angles to the surface's normal up to 0.4 of their length.
+// Outside: finite for |normal_x|, |normal_y| <= 2.
+// Accuracy: lavapipe 5 ulp + 1e-31 abs + 4 backward; portable 12 ulp + 1e-31 abs + 8 backward
+fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
+    let scale_x = curvature_scale(position_x);
+    let scale_y = curvature_scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let area = cross(p_x, p_y);
+    let twist = 0.5f * (dot(p_x, n_y) - dot(p_y, n_x));
+    let squared = dot(area, area);
+    let bounded = max(squared, CURVATURE_EDGE_ON * max(dot(p_x, p_x), 1.0f) * max(dot(p_y, p_y), 1.0f));
+    return (dot(area, cross(n_x, n_y)) - twist * twist) / bounded * (squared / bounded);
+}
+
+// The Gaussian curvature as the textbook writes it. Kept to show where it fails.
+// Returns: (eg - f^2) / (EG - F^2).
+// Units: one over the position's, squared.
+// Domain: as curvature_mean_textbook.
+// Outside: as curvature_mean_textbook.
+// Accuracy: naive
+fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
+    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
+    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
+    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
+    return (second.x * second.z - second.y * second.y) / (first.x * first.z - first.y * first.y);
+}
+
+// Normal curvature along the light: that of the curve on the surface which runs towards the light's foot, II(t, t) / I(t, t) with t the
+// part of `light` along the surface. With a = p_x x p_y and c = a x light, |a|^2 t = (p_y . c) p_x - (p_x . c) p_y, and the normal changes
+// along it by (p_y . c) n_x - (p_x . c) n_y. As the light rises to the zenith, t loses its direction and the result goes to the
+// mean over all directions, which is the mean curvature.
+// Returns: between the principal curvatures; curvature_mean for a light along the normal. Fades to 0 edge-on as curvature_mean does.
+// Units: one over the position's.
+// Domain: as curvature_gaussian; |light| = 1.
+// Outside: finite for |normal_x|, |normal_y| <= 2 and |light| <= 2.
+// Accuracy: lavapipe 6 ulp + 1e-31 abs + 6 backward; portable 16 ulp + 1e-31 abs + 12 backward
+fn curvature_towards(
+    position_x: vec3f,
+    position_y: vec3f,
+    normal_x: vec3f,
+    normal_y: vec3f,
+    light: vec3f,
+) -> f32 {
+    let scale_x = curvature_scale(position_x);
+    let scale_y = curvature_scale(position_y);
+    let p_x = scale_x * position_x;
+    let p_y = scale_y * position_y;
+    let n_x = scale_x * normal_x;
+    let n_y = scale_y * normal_y;
+    let squared_x = max(dot(p_x, p_x), 1.0f);
+    let crossed = cross(p_x, p_y);
+    // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
+    let area = crossed - dot(crossed, p_x) / squared_x * p_x;
+    let growth = cross(n_x, p_y) + cross(p_x, n_y);
+    let squared = dot(area, area);
+    let bounded = max(squared, CURVATURE_EDGE_ON * squared_x * max(dot(p_y, p_y), 1.0f));
+
+    let aside = cross(area, light);
+    let zenith = CURVATURE_ZENITH * bounded;
+    let total = dot(aside, aside) + zenith;
+    let across = aside / sqrt(total);
+    // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of the area. As
+    // a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
+    let direction = cross(across, area);
+    let alpha = dot(p_y, across);
+    let beta = -dot(p_x, across);
+    let tangent = alpha * p_x + beta * p_y;
+    let change = alpha * n_x + beta * n_y;
+    // Half the cross product's own square bounds the quotient where the sum is all rounding. 2^-100 stands for 0: the square is that small at
+    // sines below 2^-50 only, where the weight below is as small.
+    let least = max(0.5f * dot(direction, direction), 7.888609052210118e-31f);
+    let along = dot(direction, change) / max(dot(direction, tangent), least);
+    let mean = 0.5f * dot(area, growth) / bounded;
+    return squared / bounded * dot(across, across) * along + zenith / total * mean;
+}
+
+// The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept
+// to show where it fails.
+// Returns: (alpha^2 e + 2 alpha beta f + beta^2 g) / (alpha^2 E + 2 alpha beta F + beta^2 G).
+// Units: one over the position's.
+// Domain: as curvature_mean_textbook, with a light at 0.1 or more from the normal.
+// Outside: 0 / 0 for a light along the normal; otherwise as curvature_mean_textbook.
+// Accuracy: naive
+fn curvature_towards_textbook(
+    position_x: vec3f,
+    position_y: vec3f,
+    normal_x: vec3f,
+    normal_y: vec3f,
+    light: vec3f,
+) -> f32 {
+    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
+    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
+    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
+    let light_x = dot(light, position_x);
+    let light_y = dot(light, position_y);
+    let alpha = first.z * light_x - first.y * light_y;
+    let beta = first.x * light_y - first.y * light_x;
+    let weight = vec3f(alpha * alpha, 2.0f * alpha * beta, beta * beta);
+    return dot(weight, second) / dot(weight, first);
+}
+
+// The usual rung, |dN| / |dP|: length(fwidth(normal)) / length(fwidth(position)). It is right on a sphere. Elsewhere it depends on the view, on
+// the screen's axes and, through fwidth, even on how the world's axes lie; it has no sign, and on a saddle it never vanishes.
+// Returns: some mean of the principal curvatures' magnitudes.
+// Units: one over the position's.
+// Domain: position derivatives of length 1e-4 to 1e4.
+// Outside: 0 / 0 where both position derivatives are 0.
+// Accuracy: naive
+fn curvature_naive(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
+    return length(abs(normal_x) + abs(normal_y)) / length(abs(position_x) + abs(position_y));
+}
