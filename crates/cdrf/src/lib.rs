@@ -252,20 +252,17 @@ pub fn table_coordinates(cosine: f32, sigma: f32) -> Vec2 {
     Vec2::new(0.5 + 0.5 * cosine.clamp(-1.0, 1.0), s / (1.0 + s))
 }
 
-/// The inverse: cosine and sigma of a place of the table.
-pub fn table_parameters(coordinates: Vec2) -> Vec2 {
-    let at = coordinates.clamp(Vec2::ZERO, Vec2::ONE);
-    Vec2::new(2.0 * at.x - 1.0, at.y / (1.0 - at.y).max(0.000001))
-}
-
 /// Value of a texel of the table; `tint` holds each channel's sigma0 as a share of the largest.
 pub fn table_texel(texel: UVec2, size: UVec2, tint: Vec3) -> Vec3 {
     let last = size.max(UVec2::splat(2)) - 1;
-    let parameters = table_parameters(texel.as_vec2() / last.as_vec2());
+    let place = texel.min(last).as_vec2();
+    let end = last.as_vec2();
+    let cosine = (2.0 * place.x - end.x) / end.x;
+    let sigma = place.y / (end.y - place.y).max(0.000001);
     Vec3::new(
-        accurate(parameters.x, tint.x * parameters.y),
-        accurate(parameters.x, tint.y * parameters.y),
-        accurate(parameters.x, tint.z * parameters.y),
+        accurate(cosine, tint.x * sigma),
+        accurate(cosine, tint.y * sigma),
+        accurate(cosine, tint.z * sigma),
     )
 }
 

@@ -183,9 +183,11 @@ pub fn rgb(cosine: f64, sigma0: DVec3, curvature: f64) -> DVec3 {
     DVec3::from_array(sigma0.to_array().map(|sigma0| accurate(cosine, sigma(sigma0, curvature))))
 }
 
-/// The standard library's, after whole turns are taken off.
+/// The standard library's, after whole turns are taken off; past a quarter turn by the angle that is left to the half, so that
+/// half turns are exact.
 pub fn sine(turns: f64) -> f64 {
-    (TAU * (turns - turns.round())).sin()
+    let turns = turns - turns.round();
+    if turns.abs() > 0.25 { (TAU * (0.5 - turns.abs())).sin().copysign(turns) } else { (TAU * turns).sin() }
 }
 
 /// ∫ c P_l(c) dc over [0, 1] times (2l + 1) / 2, for even l ≥ 2: by Legendre's equation -P_l(0) / ((l - 1)(l + 2)), with P_l(0) the
@@ -246,26 +248,19 @@ pub fn spherical_edge(cosine: f64, sigma: f64) -> f64 {
     spherical(cosine, sigma)
 }
 
-/// cos²(θ/2), and 1 - 1 / (1 + σ).
+/// The cosine's distance from -1, and 1 - 1 / (1 + σ).
 pub fn table_coordinates(cosine: f64, sigma: f64) -> DVec2 {
-    let half_angle = 0.5 * cosine.clamp(-1.0, 1.0).acos();
     let sigma = sigma.max(0.0);
     let row = if sigma < 1.0 { sigma / (1.0 + sigma) } else { 1.0 - 1.0 / (1.0 + sigma) };
-    DVec2::new(half_angle.cos().powi(2), row)
+    DVec2::new((cosine.clamp(-1.0, 1.0) - -1.0) / 2.0, row)
 }
 
-/// Of the odds v : (1 - v), which end at a million to one.
-pub fn table_parameters(coordinates: DVec2) -> DVec2 {
-    let (u, v) = (coordinates.x.clamp(0.0, 1.0), coordinates.y.clamp(0.0, 1.0));
-    let rest = (1.0 - v).max(f64::from(1e-6f32));
-    DVec2::new(u - (1.0 - u), v / rest)
-}
-
-/// The convolution at the texel's parameters.
+/// The convolution where the texel stands: its column counts cosines up from -1, its row the odds of sigma to 1.
 pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
     let last = (size.max(UVec2::splat(2)) - 1).as_dvec2();
-    let parameters = table_parameters(texel.as_dvec2() / last);
-    DVec3::from_array(tint.to_array().map(|tint| accurate(parameters.x, tint * parameters.y)))
+    let at = texel.as_dvec2().min(last) / last;
+    let sigma = if at.y < 1.0 { (1.0 - at.y).recip() - 1.0 } else { 1e9 };
+    DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * at.x - 1.0, tint * sigma)))
 }
 
 /// Between half a texel from one edge and half a texel from the other.

@@ -278,8 +278,8 @@ fn accurate() -> Vec<Formula> {
                 },
             )
             .hard_case("no blur at the terminator", (0.0, 0.0), (&[0.0], 0.0), (SERIES, 0.03))
-            .hard_case("no blur, facing away", (-1.0, 0.0), (&[0.0], 0.0), (SERIES, 0.01))
-            .hard_case("no blur, facing the light", (1.0, 0.0), (&[1.0], 0.0), (SERIES, 0.01))
+            .hard_case("no blur, facing away", (-1.0, 0.0), (&[0.0], 0.0), (SERIES, 3e-3))
+            .hard_case("no blur, facing the light", (1.0, 0.0), (&[1.0], 0.0), (SERIES, 3e-3))
             .hard_case("a subnormal sigma", (0.0, SUBNORMAL), (&[0.0], 1e-38), (SERIES, 0.03))
             .hard_case("sigma 1e-6 at the terminator", (0.0, 1e-6), (&[terminator(1e-6)], 1e-12), (SERIES, 0.03))
             .hard_case(
@@ -369,13 +369,6 @@ fn tables() -> Vec<Formula> {
         .invariant("the terminator in the middle", |(c, _), at: Vec2| {
             if c == 0.0 { near("column", at.x.into(), 0.5, 0.0) } else { Ok(()) }
         })
-        .build(),
-        formula(M, "cdrf_table_parameters", mirror::table_parameters, oracle::table_parameters, |draws| {
-            (coordinates(draws),)
-        })
-        .edge("the last row", |(at,)| at.y == 1.0)
-        .edge("the terminator", |(at,)| at.x == 0.5)
-        .edge("out of range", |(at,)| at.x < 0.0)
         .build(),
         formula(M, "cdrf_table_texel", mirror::table_texel, oracle::table_texel, |draws| {
             let size = size(draws).max(UVec2::splat(2));
