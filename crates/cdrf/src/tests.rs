@@ -105,7 +105,7 @@ fn series_needs_the_terms_that_the_page_says() {
 
 /// WGSL's asin is off by 6.8e-5, or by what 4096 ulp of an arctangent are, 4.9e-4.
 #[test]
-fn an_error_of_the_angle_enters_by_half_the_variance() {
+fn an_error_of_the_angle_enters_by_an_eighth_of_the_variance() {
     let moved = |sigma: f64, slip: f64| {
         most(|c| (edge_in_f64(c, sigma, 3, slip) - edge_in_f64(c, sigma, 3, 0.0)).abs())
     };

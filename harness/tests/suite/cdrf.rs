@@ -98,17 +98,23 @@ fn lookup_by_hand_is_the_samplers() {
     }
 }
 
-/// The claims about widths and texel centres, with the figures of docs/cdrf.md.
+/// The claims of docs/cdrf.md about widths and texel centres.
 #[test]
-fn an_odd_width_wins() {
-    let error = |table: &Table| errors(|c, s| table.lookup(c, s).x).0;
-    let (even, odd) = (baked(256, 256, Format::Rgba16Float), baked(257, 256, Format::Rgba16Float));
-    let narrow = baked(65, 256, Format::Rgba16Float);
-    let figures = [&even, &odd, &narrow].map(error);
-    println!("256 {:e}, 257 {:e}, 65 {:e}", figures[0], figures[1], figures[2]);
-    let naive = [&even, &odd].map(|table| errors(|c, s| table.sampled_naive(c, s).x));
-    let right = [&even, &odd].map(|table| errors(|c, s| table.sampled(c, s).x));
-    println!("half texel left out: {naive:?}, in place {right:?}");
+fn an_odd_width_wins_and_the_half_texel_counts() {
+    let worst = |table: &Table| errors(|c, s| table.sampled(c, s).x).0;
+    let worst_naive = |table: &Table| errors(|c, s| table.sampled_naive(c, s).x).0;
+    let paper = baked(256, 256, Format::Rgba8);
+    let even = baked(256, 256, Format::Rgba16Float);
+    let odd = baked(257, 257, Format::Rgba16Float);
+    let narrow = baked(65, 65, Format::Rgba16Float);
+    let ratio = worst(&even) / worst(&odd);
+    assert!((3.7..4.2).contains(&ratio), "256 wide is {ratio} times as bad as 257");
+    let ratio = worst(&narrow) / worst(&even);
+    assert!((0.95..1.05).contains(&ratio), "65 wide is {ratio} times as bad as 256");
+    for (table, stated) in [(&paper, 3.0), (&even, 2.3), (&odd, 9.0)] {
+        let ratio = worst_naive(table) / worst(table);
+        assert!((ratio - stated).abs() < 0.1 * stated, "{ratio} times as bad without the half texel, not {stated}");
+    }
 }
 
 /// The table of docs/cdrf.md.
@@ -120,6 +126,7 @@ fn rungs_are_as_the_page_says() {
     add("`cdrf_wrap`", errors(mirror::wrap));
     for (name, width, height, format) in [
         ("table 256 × 256, RGBA8 (the paper's)", 256, 256, Format::Rgba8),
+        ("table 257 × 257, RGBA8", 257, 257, Format::Rgba8),
         ("table 65 × 65, RGBA16F", 65, 65, Format::Rgba16Float),
         ("table 256 × 256, RGBA16F", 256, 256, Format::Rgba16Float),
         ("table 257 × 257, RGBA16F", 257, 257, Format::Rgba16Float),
