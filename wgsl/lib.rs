@@ -69,7 +69,8 @@ pub const MODULES: &[Module] = modules![
 ];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
+pub const RECIPES: &[Recipe] =
+    recipes!["cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
 
 /// Every part, in the order of their names.
 pub const PARTS: &[Part] = parts!["gem_shading", "mesh", "surroundings", "trace_nearest"];

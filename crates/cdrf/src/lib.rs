@@ -51,14 +51,22 @@ pub fn arcsine(sine: f32) -> f32 {
     if sine < 0.0 { -angle } else { angle }
 }
 
+/// Distance from the terminator in standard deviations.
+pub fn deviations(x: f32, sigma: f32) -> f32 {
+    (x / sigma.max(CDRF_SMALLEST)).clamp(-12.0, 12.0)
+}
+
+/// Density of the standard normal distribution.
+pub fn normal_density(u: f32) -> f32 {
+    0.3989423 * (-0.5 * u * u).exp()
+}
+
 /// Standard normal distribution: the share of a Gaussian below `u` standard deviations.
 pub fn normal_share(u: f32) -> f32 {
     let a = u.abs().min(12.0);
     let t = 1.0 / (1.0 + 0.2316419 * a);
-    let tail = 0.3989423
-        * (-0.5 * a * a).exp()
-        * t
-        * (0.31938153 + t * (-0.35656378 + t * (1.7814779 + t * (-1.8212560 + t * 1.3302744))));
+    let tail =
+        normal_density(a) * t * (0.31938153 + t * (-0.35656378 + t * (1.7814779 + t * (-1.8212560 + t * 1.3302744))));
     if u < 0.0 { tail } else { 1.0 - tail }
 }
 
@@ -71,7 +79,7 @@ pub fn lambert(cosine: f32) -> f32 {
 pub fn wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = (0.5 * sigma).clamp(0.0, 1.0);
     let scale = 1.0 / (1.0 + wrap);
-    (cosine.clamp(-1.0, 1.0) + wrap).max(0.0) * scale * scale
+    (cosine.min(1.0) + wrap).max(0.0) * scale * scale
 }
 
 /// Fourier series of the convolution, cut off after `terms`.
@@ -104,26 +112,20 @@ pub fn edge(cosine: f32, sigma: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let x = arcsine(c);
-    let u = (x / s.max(CDRF_SMALLEST)).clamp(-12.0, 12.0);
+    let u = deviations(x, s);
     let v = s * s;
     let q = x * x;
     let sixth = q * q * q + v * (20.0 * q * q + v * (87.0 * q + 48.0 * v));
     let fourth = q * q + v * (9.0 * q + 8.0 * v);
     let carried = 1.0 - (q + 2.0 * v) / 6.0 + fourth / 120.0 - sixth / 5040.0;
     let decay = 1.0 - v * (0.5 - v * (0.125 - v * (0.020833334 - v * 0.0026041667)));
-    let density = 0.3989423 * (-0.5 * u * u).exp();
-    (decay * c * normal_share(u) + s * density * carried).clamp(0.0, 1.0)
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
 }
 
-/// The same from the angle, which acos gives; a naive form.
+/// The same to first order, with the quotient as it stands; a naive form.
 pub fn edge_naive(cosine: f32, sigma: f32) -> f32 {
-    let x = 1.5707964 - cosine.acos();
-    let u = x / sigma;
-    let v = sigma * sigma;
-    let q = x * x;
-    let carried = 1.0 - (q + 2.0 * v) / 6.0 + (q * q + v * (9.0 * q + 8.0 * v)) / 120.0;
-    let density = 0.3989423 * (-0.5 * u * u).exp();
-    (-0.5 * v).exp() * x.sin() * normal_share(u) + sigma * density * carried
+    let u = cosine / sigma;
+    cosine * normal_share(u) + sigma * normal_density(u)
 }
 
 /// The convolution, accurate.
@@ -131,7 +133,7 @@ pub fn accurate(cosine: f32, sigma: f32) -> f32 {
     if sigma < CDRF_SWITCH {
         return edge(cosine, sigma);
     }
-    series(cosine, sigma, 7).clamp(0.0, 1.0)
+    series(cosine, sigma, 7).max(0.0)
 }
 
 /// Four terms of the series for every sigma; a naive form.
@@ -144,22 +146,27 @@ pub fn accurate_naive(cosine: f32, sigma: f32) -> f32 {
     edge(cosine, sigma)
 }
 
+/// From the angle, as the formula is written; a naive form.
+pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
+    accurate(cosine.acos().cos(), sigma)
+}
+
 /// The convolution, cheap.
 pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     if sigma >= CDRF_CHEAP_SWITCH {
-        return series(cosine, sigma, 4).clamp(0.0, 1.0);
+        return series(cosine, sigma, 4).max(0.0);
     }
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.max(0.0);
     let x = c.asin();
-    let u = (x / s.max(CDRF_SMALLEST)).clamp(-12.0, 12.0);
+    let u = deviations(x, s);
     let v = s * s;
-    let density = 0.3989423 * (-0.5 * u * u).exp();
+    let density = normal_density(u);
     let t = 1.0 / (1.0 + 0.33267 * u.abs());
     let tail = density * t * (0.4361836 + t * (-0.1201676 + t * 0.937298));
     let share = if u < 0.0 { tail } else { 1.0 - tail };
     let decay = 1.0 - v * (0.5 - v * 0.125);
-    (decay * c * share + s * density * (1.0 - (x * x + 2.0 * v) / 6.0)).clamp(0.0, 1.0)
+    (decay * c * share + s * density * (1.0 - (x * x + 2.0 * v) / 6.0)).max(0.0)
 }
 
 /// The accurate convolution for a material whose channels scatter differently far.
@@ -190,8 +197,8 @@ pub fn quadrature(cosine: f32, sigma: f32) -> f32 {
         let low = (end - 3.1415927 / s).max(-6.0);
         let high = end.min(6.0);
         if low < high {
-            let width = (high - low) / 24.0;
-            for panel in 0..24u32 {
+            let width = (high - low) / 16.0;
+            for panel in 0..16u32 {
                 let middle = low + width * (panel as f32 + 0.5);
                 for point in -1..=1i32 {
                     let t = middle + width * 0.38729835 * point as f32;
@@ -209,12 +216,11 @@ pub fn spherical_edge(cosine: f32, sigma: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let x = arcsine(c);
-    let u = (x / s.max(CDRF_SMALLEST)).clamp(-12.0, 12.0);
+    let u = deviations(x, s);
     let v = s * s;
     let decay = 1.0 - v * (1.0 - 0.5 * v);
-    let density = 0.3989423 * (-0.5 * u * u).exp();
     let carried = 1.0 - x * x / 6.0 - 0.5833333 * v;
-    (decay * c * normal_share(u) + s * density * carried).clamp(0.0, 1.0)
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
 }
 
 /// The energy-conserving choice: the clamped cosine diffused over the sphere of directions.
@@ -243,7 +249,7 @@ pub fn spherical(cosine: f32, sigma: f32) -> f32 {
         previous = even;
         moment *= (1.0 - degree) / (degree + 4.0);
     }
-    sum.clamp(0.0, 1.0)
+    sum.max(0.0)
 }
 
 /// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.
@@ -259,11 +265,7 @@ pub fn table_texel(texel: UVec2, size: UVec2, tint: Vec3) -> Vec3 {
     let end = last.as_vec2();
     let cosine = (2.0 * place.x - end.x) / end.x;
     let sigma = place.y / (end.y - place.y).max(0.000001);
-    Vec3::new(
-        accurate(cosine, tint.x * sigma),
-        accurate(cosine, tint.y * sigma),
-        accurate(cosine, tint.z * sigma),
-    )
+    Vec3::new(accurate(cosine, tint.x * sigma), accurate(cosine, tint.y * sigma), accurate(cosine, tint.z * sigma))
 }
 
 /// The whole table, row by row: the kernel of `wgsl/recipes/cdrf_table.wgsl`.

@@ -78,13 +78,18 @@ pub fn edge(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// Shared: the same function, computed badly.
+/// A straight line from the terminator on, convolved.
 pub fn edge_naive(cosine: f64, sigma: f64) -> f64 {
-    accurate(cosine, sigma)
+    integral(-REACH, (cosine / sigma).min(REACH), 0.5, |t| (cosine - sigma * t) * density(t))
 }
 
-/// Shared: the same function, in the range where it holds.
+/// The series, cut off.
 pub fn series_naive(cosine: f64, sigma: f64) -> f64 {
+    series(cosine, sigma, 4)
+}
+
+/// Shared: the same function, computed badly.
+pub fn angle_naive(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
@@ -96,6 +101,20 @@ pub fn accurate_naive(cosine: f64, sigma: f64) -> f64 {
 /// Shared: the same function, by quadrature as well, with other nodes and in f64.
 pub fn quadrature(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
+}
+
+/// The quotient, by its magnitude and its sign.
+pub fn deviations(x: f64, sigma: f64) -> f64 {
+    if x == 0.0 {
+        return 0.0;
+    }
+    let sigma = sigma.max(f64::from(f32::MIN_POSITIVE));
+    (x.abs() / sigma).min(12.0).copysign(x)
+}
+
+/// The definition.
+pub fn normal_density(u: f64) -> f64 {
+    density(u)
 }
 
 /// NaN is 0, magnitudes end at the f32 1e18.

@@ -78,14 +78,9 @@ fn edge_in_f64(c: f64, sigma: f64, corrections: u32, slip: f64) -> f64 {
 fn corrections_are_as_good_as_the_page_says() {
     let error =
         |sigma, corrections| most(|c| (edge_in_f64(c, sigma, corrections, 0.0) - oracle::accurate(c, sigma)).abs());
-    for (sigma, corrections, stated) in [
-        (0.2, 2, 1.2e-7),
-        (0.25, 2, 5.6e-7),
-        (0.3, 2, 2.0e-6),
-        (0.3, 3, 3.6e-8),
-        (0.35, 1, 1.9e-4),
-        (0.35, 3, 2.6e-7),
-    ] {
+    for (sigma, corrections, stated) in
+        [(0.2, 2, 1.2e-7), (0.25, 2, 5.6e-7), (0.3, 2, 2.0e-6), (0.3, 3, 3.6e-8), (0.35, 1, 1.9e-4), (0.35, 3, 2.6e-7)]
+    {
         let found = error(sigma, corrections);
         assert!((found - stated).abs() < 0.05 * stated, "{sigma} with {corrections}: {found:e}");
     }
@@ -106,9 +101,8 @@ fn series_needs_the_terms_that_the_page_says() {
 /// WGSL's asin is off by 6.8e-5, or by what 4096 ulp of an arctangent are, 4.9e-4.
 #[test]
 fn an_error_of_the_angle_enters_by_an_eighth_of_the_variance() {
-    let moved = |sigma: f64, slip: f64| {
-        most(|c| (edge_in_f64(c, sigma, 3, slip) - edge_in_f64(c, sigma, 3, 0.0)).abs())
-    };
+    let moved =
+        |sigma: f64, slip: f64| most(|c| (edge_in_f64(c, sigma, 3, slip) - edge_in_f64(c, sigma, 3, 0.0)).abs());
     assert!((6e-7..8e-7).contains(&moved(0.3, 6.8e-5)), "{:e}", moved(0.3, 6.8e-5));
     assert!((4e-6..6e-6).contains(&moved(0.3, 4.9e-4)), "{:e}", moved(0.3, 4.9e-4));
     // Where sigma is smaller than the slip, a point that is lit counts as dark: there it enters whole. At a sharp terminator the
@@ -183,7 +177,15 @@ fn oracle_of_the_sphere_is_one_function() {
     let wide = 0.9f64;
     let legendre = |c: f64| {
         let c2 = c * c;
-        [1.0, c, 1.5 * c2 - 0.5, 0.0, (35.0 * c2 * c2 - 30.0 * c2 + 3.0) / 8.0, 0.0, (231.0 * c2 * c2 * c2 - 315.0 * c2 * c2 + 105.0 * c2 - 5.0) / 16.0]
+        [
+            1.0,
+            c,
+            1.5 * c2 - 0.5,
+            0.0,
+            (35.0 * c2 * c2 - 30.0 * c2 + 3.0) / 8.0,
+            0.0,
+            (231.0 * c2 * c2 * c2 - 315.0 * c2 * c2 + 105.0 * c2 - 5.0) / 16.0,
+        ]
     };
     let a = [0.25, 0.5, 5.0 / 16.0, 0.0, -3.0 / 32.0, 0.0, 13.0 / 256.0];
     let apart = most(|c| {
