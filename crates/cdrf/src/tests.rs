@@ -209,3 +209,36 @@ fn no_bad_number_comes_out() {
         }
     }
 }
+
+#[test]
+fn pieces_of_the_spherical_form_are_as_good_as_the_page_says() {
+    let sigma = f64::from(CDRF_SPHERICAL_SWITCH);
+    let local = |c: f64| {
+        let (x, v) = (c.asin(), sigma * sigma);
+        let u = x / sigma;
+        let carried = 1.0 - x * x / 6.0 - 7.0 * v / 12.0;
+        (-v).exp() * c * oracle::normal_share(u) + sigma * (-0.5 * u * u).exp() / (2.0 * PI).sqrt() * carried
+    };
+    let error = most(|c| (local(c) - oracle::spherical(c, sigma)).abs());
+    assert!((1.1e-6..1.2e-6).contains(&error), "{error:e}");
+    // The next even degree is what is left out, and its coefficient falls as l^(-3/2).
+    let left_out = |degree: u32| most(|c| (truncated(c, sigma, degree) - oracle::spherical(c, sigma)).abs());
+    assert!((1.3e-6..1.5e-6).contains(&left_out(36)), "{:e}", left_out(36));
+    assert!(left_out(44) < 4e-8, "{:e}", left_out(44));
+}
+
+/// The series up to `last`, by Bonnet's recurrence in f64.
+fn truncated(c: f64, sigma: f64, last: u32) -> f64 {
+    let damped = |l: u32| (-0.5 * f64::from(l * (l + 1)) * sigma * sigma).exp();
+    let (mut previous, mut current, mut moment) = (1.0, c, 0.125);
+    let mut sum = 0.25 + 0.5 * damped(1) * c;
+    for l in 2..=last {
+        let degree = f64::from(l);
+        (previous, current) = (current, ((2.0 * degree - 1.0) * c * current - (degree - 1.0) * previous) / degree);
+        if l % 2 == 0 {
+            sum += (degree + 0.5) * moment * damped(l) * current;
+            moment *= (1.0 - degree) / (degree + 4.0);
+        }
+    }
+    sum
+}
