@@ -16,6 +16,11 @@ pub const CDRF_WIDEST: f32 = 8.0;
 /// Divisors are at least this.
 pub const CDRF_SMALLEST: f32 = 1.1754943508222875e-38;
 
+/// WGSL's `sign`: 0 for 0.
+fn sign(value: f32) -> f32 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
 /// A number from anywhere, made safe to calculate with: NaN is 0, magnitudes end at 1e18.
 pub fn finite(value: f32) -> f32 {
     let bits = value.to_bits();
@@ -48,7 +53,7 @@ pub fn arcsine(sine: f32) -> f32 {
             + square * (0.074953003 + square * (0.045470026 + square * (0.024181311 + square * 0.042163199))));
     let small = root + root * rest;
     let angle = if outer { 1.5707964 - 2.0 * small } else { small };
-    if sine < 0.0 { -angle } else { angle }
+    sign(sine) * angle
 }
 
 /// Distance from the terminator in standard deviations.
@@ -67,7 +72,7 @@ pub fn normal_share(u: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.2316419 * a);
     let tail =
         normal_density(a) * t * (0.31938153 + t * (-0.35656378 + t * (1.7814779 + t * (-1.8212560 + t * 1.3302744))));
-    if u < 0.0 { tail } else { 1.0 - tail }
+    0.5 + sign(u) * (0.5 - tail)
 }
 
 /// Lambert's law: no scattering at all.
@@ -78,8 +83,8 @@ pub fn lambert(cosine: f32) -> f32 {
 /// Wrap lighting, scaled so that a sphere receives as much as it did.
 pub fn wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = (0.5 * sigma).clamp(0.0, 1.0);
-    let scale = 1.0 / (1.0 + wrap);
-    (cosine.min(1.0) + wrap).max(0.0) * scale * scale
+    let spread = 1.0 + wrap;
+    (cosine.min(1.0) + wrap).max(0.0) / (spread * spread)
 }
 
 /// Fourier series of the convolution, cut off after `terms`.
@@ -118,7 +123,7 @@ pub fn edge(cosine: f32, sigma: f32) -> f32 {
     let sixth = q * q * q + v * (20.0 * q * q + v * (87.0 * q + 48.0 * v));
     let fourth = q * q + v * (9.0 * q + 8.0 * v);
     let carried = 1.0 - (q + 2.0 * v) / 6.0 + fourth / 120.0 - sixth / 5040.0;
-    let decay = 1.0 - v * (0.5 - v * (0.125 - v * (0.020833334 - v * 0.0026041667)));
+    let decay = 1.0 - v * (0.5 - v * (0.125 - v * 0.02064));
     (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
 }
 
@@ -164,7 +169,7 @@ pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     let density = normal_density(u);
     let t = 1.0 / (1.0 + 0.33267 * u.abs());
     let tail = density * t * (0.4361836 + t * (-0.1201676 + t * 0.937298));
-    let share = if u < 0.0 { tail } else { 1.0 - tail };
+    let share = 0.5 + sign(u) * (0.5 - tail);
     let decay = 1.0 - v * (0.5 - v * 0.125);
     (decay * c * share + s * density * (1.0 - (x * x + 2.0 * v) / 6.0)).max(0.0)
 }

@@ -4,9 +4,10 @@
 
 use glam::{DVec2, DVec3, UVec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::OnceLock;
 
-/// Half the width of a Gaussian in standard deviations: what lies beyond is 2e-21 of it.
-const REACH: f64 = 9.5;
+/// Half the width of a Gaussian in standard deviations: what lies beyond is 3e-12 of it.
+const REACH: f64 = 7.0;
 
 /// Gauss's five points on [-1, 1] and their weights.
 const GAUSS: [(f64, f64); 5] = [
@@ -43,9 +44,12 @@ pub fn accurate(cosine: f64, sigma: f64) -> f64 {
         return cosine.max(0.0);
     }
     let x = cosine.asin();
+    if (x.abs() / sigma).min((PI - x.abs()) / sigma) > REACH {
+        // The Gaussian meets no terminator: all dark, or a plain cosine, whose amplitude it damps.
+        return cosine.max(0.0) * (-0.5 * sigma * sigma).exp();
+    }
     if sigma < 1.0 {
-        // Over standard deviations t: sin(x - σt) > 0 for t between (x - π)/σ and x/σ, and every period on. A period further out
-        // lie more than 9.5 standard deviations.
+        // Over standard deviations t: sin(x - σt) > 0 for t between (x - π)/σ and x/σ, and every period on.
         (-2..=2)
             .map(|turn| {
                 let shift = TAU * f64::from(turn);
@@ -55,14 +59,15 @@ pub fn accurate(cosine: f64, sigma: f64) -> f64 {
             .sum()
     } else {
         // Over the lit half turn: the wrapped Gaussian as Jacobi's theta function, which converges fast where it is wide.
+        let damped: [f64; 8] = std::array::from_fn(|n| (-0.5 * (n as f64 * sigma).powi(2)).exp());
         let wrapped = |d: f64| {
-            let terms = (1..=9).map(|n| {
-                let n = f64::from(n);
-                (-0.5 * n * n * sigma * sigma).exp() * (n * d).cos()
-            });
-            (0.5 + terms.sum::<f64>()) / PI
+            let cosine = d.cos();
+            // cos(n d) by Clenshaw's recurrence.
+            let (next, after) =
+                damped.iter().skip(1).rev().fold((0.0, 0.0), |(b, c), term| (term + 2.0 * cosine * b - c, b));
+            (0.5 + cosine * next - after) / PI
         };
-        integral(-FRAC_PI_2, FRAC_PI_2, 0.5, |phi| phi.cos() * wrapped(FRAC_PI_2 - x - phi))
+        integral(-FRAC_PI_2, FRAC_PI_2, 0.6, |phi| phi.cos() * wrapped(FRAC_PI_2 - x - phi))
     }
 }
 
@@ -217,6 +222,12 @@ fn coefficient(l: u32) -> f64 {
     -(l + 0.5) * at_zero / ((l - 1.0) * (l + 2.0))
 }
 
+/// The coefficients of all even degrees that are ever needed.
+fn coefficients() -> &'static [f64] {
+    static COEFFICIENTS: OnceLock<Vec<f64>> = OnceLock::new();
+    COEFFICIENTS.get_or_init(|| (0..40).map(|half| if half == 0 { 0.25 } else { coefficient(2 * half) }).collect())
+}
+
 /// The clamped cosine diffused over the sphere. From 0.1 on by Laplace's integral P_l(cos θ) = mean over ψ of
 /// (cos θ + i sin θ cos ψ)^l; from 1e-3 to there by the series with Bonnet's recurrence, since the shader has a closed form there; below,
 /// where sphere and circle differ by e^(-σ²/2) alone, to 1e-9, from the convolution on the circle.
@@ -226,10 +237,11 @@ pub fn spherical(cosine: f64, sigma: f64) -> f64 {
         return accurate(cosine, sigma) * (-0.5 * sigma.max(0.0).powi(2)).exp();
     }
     let damped = |l: u32| (-0.5 * f64::from(l * (l + 1)) * sigma * sigma).exp();
-    let last = (7.0 / sigma).ceil().max(2.0) as u32;
+    let last = (6.0 / sigma).ceil().max(2.0) as u32;
     let first = 0.25 + 0.5 * damped(1) * cosine;
     if sigma >= 0.1 {
-        let coefficients: Vec<f64> = (1..=last / 2 + 1).map(|half| coefficient(2 * half) * damped(2 * half)).collect();
+        let used = 1..=last / 2 + 1;
+        let coefficients: Vec<f64> = used.map(|half| coefficients()[half as usize] * damped(2 * half)).collect();
         let nodes = last / 2 + 2;
         let sine_squared = (1.0 - cosine) * (1.0 + cosine);
         let sum: f64 = (0..nodes)
@@ -250,13 +262,17 @@ pub fn spherical(cosine: f64, sigma: f64) -> f64 {
         return first + sum / f64::from(nodes);
     }
     let (mut previous, mut current, mut at_zero, mut sum) = (1.0, cosine, 1.0, first);
+    let step = (-sigma * sigma).exp();
+    let (mut weight, mut ratio) = (step, step);
     for l in 2..=last {
         let degree = f64::from(l);
+        ratio *= step;
+        weight *= ratio;
         let next = ((2.0 * degree - 1.0) * cosine * current - (degree - 1.0) * previous) / degree;
         (previous, current) = (current, next);
         if l % 2 == 0 {
             at_zero *= (1.0 - degree) / degree;
-            sum -= (degree + 0.5) * at_zero / ((degree - 1.0) * (degree + 2.0)) * damped(l) * next;
+            sum -= (degree + 0.5) * at_zero / ((degree - 1.0) * (degree + 2.0)) * weight * next;
         }
     }
     sum
@@ -329,5 +345,5 @@ pub fn blend(weight: DVec2, lower_left: DVec3, lower_right: DVec3, upper_left: D
 
 /// The normal distribution of `u` by the definition, for the test of [`normal_share`].
 pub fn normal_share_by_quadrature(u: f64) -> f64 {
-    integral(-REACH - 1.0, u, 0.25, density)
+    integral(-10.0, u, 0.25, density)
 }
