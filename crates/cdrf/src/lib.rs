@@ -199,7 +199,7 @@ pub fn quadrature(cosine: f32, sigma: f32) -> f32 {
     let mut sum = 0.0;
     for lobe in -reach..=reach {
         let end = (x + 6.2831855 * lobe as f32) / s;
-        let low = (end - 3.1415927 / s).max(-6.0);
+        let low = (end - std::f32::consts::PI / s).max(-6.0);
         let high = end.min(6.0);
         if low < high {
             let width = (high - low) / 16.0;
