@@ -140,6 +140,7 @@ fn widths() -> Vec<Formula> {
         formula(M, "cdrf_sigma", mirror::sigma, oracle::sigma, |draws| (any(draws), any(draws)))
             .edge("either a NaN", |(s, k)| s.is_nan() || k.is_nan())
             .edge("zero times infinity", |(s, k)| s == 0.0 && k.is_infinite())
+            .edge("no curvature", |(s, k)| s > 0.0 && k == 0.0)
             .edge("negative curvature", |(s, k)| s > 0.0 && k < 0.0)
             .edge("negative sigma0", |(s, k)| s < 0.0 && k > 0.0)
             .invariant("finite and not negative", |_, sigma: f32| {
@@ -319,6 +320,9 @@ fn accurate() -> Vec<Formula> {
             .hard_case("no blur, facing the light", (1.0, 0.0), (&[1.0], 0.0), (SERIES, 3e-3))
             .hard_case("a subnormal sigma", (0.0, SUBNORMAL), (&[0.0], 1e-38), (SERIES, 0.03))
             .hard_case("sigma 1e-6 at the terminator", (0.0, 1e-6), (&[terminator(1e-6)], 1e-12), (SERIES, 0.03))
+            // cos of 90 degrees, which no f32 is exactly, and of one step less.
+            .hard_case("the f32 nearest to 90 degrees", (-4.371_139e-8, 1e-6), (&[3.774_677e-7], 1e-12), (SERIES, 0.03))
+            .hard_case("one step less than 90 degrees", (7.549_790e-8, 1e-6), (&[4.378_277e-7], 1e-12), (SERIES, 0.03))
             .hard_case(
                 "sigma 1e-6, one step past the terminator",
                 (0.0f32.next_down(), 1e-6),
