@@ -9,7 +9,7 @@
 
 // From this sigma on the Fourier series is summed, below it the form at one edge: where both are within 6e-8 of the truth.
 const CDRF_SWITCH: f32 = 0.3f;
-// The same for the cheap form, whose two pieces are within 1.9e-4 and 1.5e-5 there.
+// The same for the cheap form, whose two pieces are within 2e-4 and 1.5e-5 there.
 const CDRF_CHEAP_SWITCH: f32 = 0.35f;
 // The same for the spherical form: its pieces are within 1.2e-6 and 4e-8 there.
 const CDRF_SPHERICAL_SWITCH: f32 = 0.1f;
