@@ -57,6 +57,7 @@ macro_rules! parts {
 pub const MODULES: &[Module] = modules![
     "absorption",
     "bvh_trace",
+    "cdrf",
     "closest_point",
     "convex_trace",
     "curvature",
@@ -69,7 +70,8 @@ pub const MODULES: &[Module] = modules![
 ];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] = recipes!["display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
+pub const RECIPES: &[Recipe] =
+    recipes!["cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
 
 /// Every part, in the order of their names.
 pub const PARTS: &[Part] = parts!["gem_shading", "mesh", "surroundings", "trace_nearest"];

@@ -1,6 +1,7 @@
 //! The harness of the Lapidary cookbook: it runs every WGSL function on a GPU, tests it against its Rust mirror and
 //! its f64 oracle, renders the recipes and builds the gallery. `cook` is its command line.
 
+pub mod cdrf;
 pub mod check;
 pub mod cookbook;
 pub mod cost;

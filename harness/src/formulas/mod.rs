@@ -3,6 +3,7 @@
 
 mod absorption;
 mod bvh_trace;
+mod cdrf;
 mod closest_point;
 mod convex_trace;
 mod curvature;
@@ -23,6 +24,7 @@ pub fn all() -> &'static [Formula] {
         [
             absorption::formulas(),
             bvh_trace::formulas(),
+            cdrf::formulas(),
             closest_point::formulas(),
             convex_trace::formulas(),
             curvature::formulas(),

@@ -3,6 +3,7 @@
 mod adapter;
 mod bad_input;
 mod bvh;
+mod cdrf;
 mod cli;
 mod comparator;
 mod contract;

@@ -1,0 +1,319 @@
+//! Rust mirror of `wgsl/cdrf.wgsl`, line by line: curvature-dependent reflectance. Units, domain and accuracy stand above
+//! the WGSL functions.
+
+pub mod oracle;
+
+use glam::{UVec2, Vec2, Vec3};
+
+/// From this sigma on the Fourier series is summed, below it the form at one edge.
+pub const CDRF_SWITCH: f32 = 0.3;
+/// The same for the cheap form.
+pub const CDRF_CHEAP_SWITCH: f32 = 0.35;
+/// The same for the spherical form.
+pub const CDRF_SPHERICAL_SWITCH: f32 = 0.1;
+/// Wider Gaussians count as this one.
+pub const CDRF_WIDEST: f32 = 8.0;
+/// Divisors are at least this.
+pub const CDRF_SMALLEST: f32 = 1.1754943508222875e-38;
+
+/// WGSL's `sign`: 0 for 0.
+fn sign(value: f32) -> f32 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+/// A number from anywhere, made safe to calculate with: NaN is 0, magnitudes end at 1e18.
+pub fn finite(value: f32) -> f32 {
+    let bits = value.to_bits();
+    let magnitude = bits & 0x7fff_ffff;
+    if magnitude > 0x7f80_0000 {
+        return 0.0;
+    }
+    f32::from_bits((bits & 0x8000_0000) | magnitude.min(0x5d5e_0b6b))
+}
+
+/// Width of the Gaussian, in radians, from the material's scattering and the surface's curvature.
+pub fn sigma(sigma0: f32, curvature: f32) -> f32 {
+    finite(sigma0).max(0.0) * finite(curvature).abs()
+}
+
+/// The product as it stands in the paper, a naive form.
+pub fn sigma_naive(sigma0: f32, curvature: f32) -> f32 {
+    sigma0 * curvature
+}
+
+/// Angle in radians whose sine is given.
+pub fn arcsine(sine: f32) -> f32 {
+    let a = sine.abs().min(1.0);
+    let outer = a > 0.5;
+    let half = 0.5 * (1.0 - a);
+    let square = if outer { half } else { a * a };
+    let root = if outer { half.sqrt() } else { a };
+    let rest = square
+        * (0.16666752
+            + square * (0.074953003 + square * (0.045470026 + square * (0.024181311 + square * 0.042163199))));
+    let small = root + root * rest;
+    let angle = if outer { 1.5707964 - 2.0 * small } else { small };
+    sign(sine) * angle
+}
+
+/// Distance from the terminator in standard deviations.
+pub fn deviations(x: f32, sigma: f32) -> f32 {
+    (x / sigma.max(CDRF_SMALLEST)).clamp(-12.0, 12.0)
+}
+
+/// Density of the standard normal distribution.
+pub fn normal_density(u: f32) -> f32 {
+    0.3989423 * (-0.5 * u * u).exp()
+}
+
+/// Standard normal distribution: the share of a Gaussian below `u` standard deviations.
+pub fn normal_share(u: f32) -> f32 {
+    let a = u.abs().min(12.0);
+    let t = 1.0 / (1.0 + 0.2316419 * a);
+    let tail =
+        normal_density(a) * t * (0.31938153 + t * (-0.35656378 + t * (1.7814779 + t * (-1.8212560 + t * 1.3302744))));
+    0.5 + sign(u) * (0.5 - tail)
+}
+
+/// Lambert's law: no scattering at all.
+pub fn lambert(cosine: f32) -> f32 {
+    cosine.clamp(0.0, 1.0)
+}
+
+/// Wrap lighting, scaled so that a sphere receives as much as it did.
+pub fn wrap(cosine: f32, sigma: f32) -> f32 {
+    let wrap = (0.5 * sigma).clamp(0.0, 1.0);
+    let spread = 1.0 + wrap;
+    (cosine.min(1.0) + wrap).max(0.0) / (spread * spread)
+}
+
+/// Fourier series of the convolution, cut off after `terms`.
+pub fn series(cosine: f32, sigma: f32, terms: u32) -> f32 {
+    let c = cosine.clamp(-1.0, 1.0);
+    let s = sigma.clamp(0.0, CDRF_WIDEST);
+    let variance = s * s;
+    let decay = (-2.0 * variance).exp();
+    let decay_squared = decay * decay;
+    let mut weight = decay;
+    let mut ratio = decay_squared * decay;
+    let twice_y = 2.0 - 4.0 * c * c;
+    let mut previous = 1.0;
+    let mut current = 0.5 * twice_y;
+    let mut sum = 0.0;
+    for n in 1..=terms {
+        let order = 2.0 * n as f32;
+        sum += weight * current / (order * order - 1.0);
+        weight *= ratio;
+        ratio *= decay_squared;
+        let next = twice_y * current - previous;
+        previous = current;
+        current = next;
+    }
+    0.31830987 + 0.5 * (-0.5 * variance).exp() * c - 0.63661975 * sum
+}
+
+/// The convolution next to one terminator, for sigma up to 0.3.
+pub fn edge(cosine: f32, sigma: f32) -> f32 {
+    let c = cosine.clamp(-1.0, 1.0);
+    let s = sigma.clamp(0.0, CDRF_WIDEST);
+    let x = arcsine(c);
+    let u = deviations(x, s);
+    let v = s * s;
+    let q = x * x;
+    let sixth = q * q * q + v * (20.0 * q * q + v * (87.0 * q + 48.0 * v));
+    let fourth = q * q + v * (9.0 * q + 8.0 * v);
+    let carried = 1.0 - (q + 2.0 * v) / 6.0 + fourth / 120.0 - sixth / 5040.0;
+    let decay = 1.0 - v * (0.5 - v * (0.125 - v * 0.02064));
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
+}
+
+/// The same to first order, with the quotient as it stands; a naive form.
+pub fn edge_naive(cosine: f32, sigma: f32) -> f32 {
+    let u = cosine / sigma;
+    cosine * normal_share(u) + sigma * normal_density(u)
+}
+
+/// The convolution, accurate.
+pub fn accurate(cosine: f32, sigma: f32) -> f32 {
+    if sigma < CDRF_SWITCH {
+        return edge(cosine, sigma);
+    }
+    series(cosine, sigma, 7).max(0.0)
+}
+
+/// Four terms of the series for every sigma; a naive form.
+pub fn series_naive(cosine: f32, sigma: f32) -> f32 {
+    series(cosine, sigma, 4)
+}
+
+/// The single edge for every sigma, not wrapped round; a naive form.
+pub fn accurate_naive(cosine: f32, sigma: f32) -> f32 {
+    edge(cosine, sigma)
+}
+
+/// From the angle, as the formula is written; a naive form.
+pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
+    accurate(cosine.acos().cos(), sigma)
+}
+
+/// The convolution, cheap.
+pub fn cheap(cosine: f32, sigma: f32) -> f32 {
+    if sigma >= CDRF_CHEAP_SWITCH {
+        return series(cosine, sigma, 4).max(0.0);
+    }
+    let c = cosine.clamp(-1.0, 1.0);
+    let s = sigma.max(0.0);
+    let x = c.asin();
+    let u = deviations(x, s);
+    let v = s * s;
+    let density = normal_density(u);
+    let t = 1.0 / (1.0 + 0.33267 * u.abs());
+    let tail = density * t * (0.4361836 + t * (-0.1201676 + t * 0.937298));
+    let share = 0.5 + sign(u) * (0.5 - tail);
+    let decay = 1.0 - v * (0.5 - v * 0.125);
+    (decay * c * share + s * density * (1.0 - (x * x + 2.0 * v) / 6.0)).max(0.0)
+}
+
+/// The accurate convolution for a material whose channels scatter differently far.
+pub fn rgb(cosine: f32, sigma0: Vec3, curvature: f32) -> Vec3 {
+    Vec3::new(
+        accurate(cosine, sigma(sigma0.x, curvature)),
+        accurate(cosine, sigma(sigma0.y, curvature)),
+        accurate(cosine, sigma(sigma0.z, curvature)),
+    )
+}
+
+/// Sine of an angle in turns, of any size.
+pub fn sine(turns: f32) -> f32 {
+    let wrapped = turns - turns.round_ties_even();
+    let folded = wrapped.max(-0.5 - wrapped).min(0.5 - wrapped);
+    let s = folded * folded;
+    folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
+}
+
+/// The convolution by numerical quadrature.
+pub fn quadrature(cosine: f32, sigma: f32) -> f32 {
+    let s = sigma.clamp(7.5231638e-37, CDRF_WIDEST);
+    let x = arcsine(cosine);
+    let reach = s.ceil() as i32;
+    let mut sum = 0.0;
+    for lobe in -reach..=reach {
+        let end = (x + 6.2831855 * lobe as f32) / s;
+        let low = (end - std::f32::consts::PI / s).max(-6.0);
+        let high = end.min(6.0);
+        if low < high {
+            let width = (high - low) / 16.0;
+            for panel in 0..16u32 {
+                let middle = low + width * (panel as f32 + 0.5);
+                for point in -1..=1i32 {
+                    let t = middle + width * 0.38729835 * point as f32;
+                    let weight = if point == 0 { 0.44444445 } else { 0.2777778 };
+                    sum += weight * width * (-0.5 * t * t).exp() * sine((x - s * t) * 0.15915494);
+                }
+            }
+        }
+    }
+    0.3989423 * sum
+}
+
+/// The spherical form's local piece, for sigma up to 0.1.
+pub fn spherical_edge(cosine: f32, sigma: f32) -> f32 {
+    let c = cosine.clamp(-1.0, 1.0);
+    let s = sigma.clamp(0.0, CDRF_WIDEST);
+    let x = arcsine(c);
+    let u = deviations(x, s);
+    let v = s * s;
+    let decay = 1.0 - v * (1.0 - 0.5 * v);
+    let carried = 1.0 - x * x / 6.0 - 0.5833333 * v;
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
+}
+
+/// The energy-conserving choice: the clamped cosine diffused over the sphere of directions.
+pub fn spherical(cosine: f32, sigma: f32) -> f32 {
+    if sigma < CDRF_SPHERICAL_SWITCH {
+        return spherical_edge(cosine, sigma);
+    }
+    let c = cosine.clamp(-1.0, 1.0);
+    let s = sigma.min(CDRF_WIDEST);
+    let decay = (-s * s).exp();
+    let mut weight = decay;
+    let mut ratio = decay * decay;
+    let mut previous = 1.0;
+    let mut current = c;
+    let mut sum = 0.25 + 0.5 * weight * c;
+    let mut moment = 0.125;
+    for l in (2..=44u32).step_by(2) {
+        let degree = l as f32;
+        let even = ((2.0 * degree - 1.0) * c * current - (degree - 1.0) * previous) / degree;
+        weight *= ratio;
+        ratio *= decay;
+        sum += (degree + 0.5) * moment * weight * even;
+        weight *= ratio;
+        ratio *= decay;
+        current = ((2.0 * degree + 1.0) * c * even - degree * current) / (degree + 1.0);
+        previous = even;
+        moment *= (1.0 - degree) / (degree + 4.0);
+    }
+    sum.max(0.0)
+}
+
+/// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.
+pub fn table_coordinates(cosine: f32, sigma: f32) -> Vec2 {
+    let s = sigma.max(0.0);
+    Vec2::new(0.5 + 0.5 * cosine.clamp(-1.0, 1.0), s / (1.0 + s))
+}
+
+/// Value of a texel of the table; `tint` holds each channel's sigma0 as a share of the largest.
+pub fn table_texel(texel: UVec2, size: UVec2, tint: Vec3) -> Vec3 {
+    let last = size.max(UVec2::splat(2)) - 1;
+    let place = texel.min(last).as_vec2();
+    let end = last.as_vec2();
+    let cosine = (2.0 * place.x - end.x) / end.x;
+    let sigma = place.y / (end.y - place.y).max(0.000001);
+    Vec3::new(accurate(cosine, tint.x * sigma), accurate(cosine, tint.y * sigma), accurate(cosine, tint.z * sigma))
+}
+
+/// The whole table, row by row: the kernel of `wgsl/recipes/cdrf_table.wgsl`.
+pub fn table(size: UVec2, tint: Vec3) -> Vec<Vec3> {
+    let rows = 0..size.y;
+    rows.flat_map(|row| (0..size.x).map(move |column| table_texel(UVec2::new(column, row), size, tint))).collect()
+}
+
+/// The sampler's coordinates of a place of the table.
+pub fn texture_coordinates(coordinates: Vec2, size: UVec2) -> Vec2 {
+    let whole = size.as_vec2();
+    (coordinates * (whole - 1.0) + 0.5) / whole
+}
+
+/// The same without the half texel, a naive form.
+pub fn texture_coordinates_naive(coordinates: Vec2) -> Vec2 {
+    coordinates
+}
+
+/// The four texels around a place of the table and how to blend them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CdrfTexels {
+    /// Column and row of the texel at the lower coordinates.
+    pub lower: UVec2,
+    /// Column and row of the texel at the higher coordinates.
+    pub upper: UVec2,
+    /// Share of `upper` in each direction.
+    pub weight: Vec2,
+}
+
+/// Texels and weights of a bilinear lookup.
+pub fn texels(coordinates: Vec2, size: UVec2) -> CdrfTexels {
+    let at = coordinates.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0);
+    let lower = at.as_uvec2();
+    CdrfTexels { lower, upper: (lower + 1).min(size - 1), weight: at - at.floor() }
+}
+
+/// Blends four texels.
+pub fn blend(weight: Vec2, lower_left: Vec3, lower_right: Vec3, upper_left: Vec3, upper_right: Vec3) -> Vec3 {
+    let lower = lower_left * (1.0 - weight.x) + lower_right * weight.x;
+    let upper = upper_left * (1.0 - weight.x) + upper_right * weight.x;
+    lower * (1.0 - weight.y) + upper * weight.y
+}
+
+#[cfg(test)]
+mod tests;

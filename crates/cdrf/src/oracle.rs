@@ -1,0 +1,349 @@
+//! The truth in f64. The convolution is its definition: an integral over the Gaussian, lit half turn by lit half turn, by
+//! Gauss's quadrature; where the Gaussian is wider than a radian, over the wrapped Gaussian instead. Neither closed form nor
+//! Fourier series of the shader's is used. The spherical form sums Laplace's integral for the Legendre polynomials.
+
+use glam::{DVec2, DVec3, UVec2};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::OnceLock;
+
+/// Half the width of a Gaussian in standard deviations: what lies beyond is 3e-12 of it.
+const REACH: f64 = 7.0;
+
+/// Gauss's five points on [-1, 1] and their weights.
+const GAUSS: [(f64, f64); 5] = [
+    (-0.906179845938664, 0.23692688505618908),
+    (-0.5384693101056831, 0.47862867049936647),
+    (0.0, 128.0 / 225.0),
+    (0.5384693101056831, 0.47862867049936647),
+    (0.906179845938664, 0.23692688505618908),
+];
+
+/// Integral of `f` over [low, high], in panels of at most `panel`.
+fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
+    if low >= high {
+        return 0.0;
+    }
+    let count = ((high - low) / panel).ceil();
+    let half = 0.5 * (high - low) / count;
+    (0..count as u32)
+        .map(|index| {
+            let middle = low + half * (2.0 * f64::from(index) + 1.0);
+            half * GAUSS.iter().map(|(at, weight)| weight * f(middle + half * at)).sum::<f64>()
+        })
+        .sum()
+}
+
+fn density(t: f64) -> f64 {
+    (-0.5 * t * t).exp() / TAU.sqrt()
+}
+
+/// The convolution of max(cos θ, 0), read as periodic, with a Gaussian. With x = π/2 - θ it is that of max(sin x, 0).
+pub fn accurate(cosine: f64, sigma: f64) -> f64 {
+    let cosine = cosine.clamp(-1.0, 1.0);
+    if sigma <= 0.0 {
+        return cosine.max(0.0);
+    }
+    let x = cosine.asin();
+    if (x.abs() / sigma).min((PI - x.abs()) / sigma) > REACH {
+        // The Gaussian meets no terminator: all dark, or a plain cosine, whose amplitude it damps.
+        return cosine.max(0.0) * (-0.5 * sigma * sigma).exp();
+    }
+    if sigma < 1.0 {
+        // Over standard deviations t: sin(x - σt) > 0 for t between (x - π)/σ and x/σ, and every period on.
+        (-2..=2)
+            .map(|turn| {
+                let shift = TAU * f64::from(turn);
+                let (low, high) = ((x + shift - PI) / sigma, (x + shift) / sigma);
+                integral(low.max(-REACH), high.min(REACH), 1.0, |t| (x + shift - sigma * t).sin() * density(t))
+            })
+            .sum()
+    } else {
+        // Over the lit half turn: the wrapped Gaussian as Jacobi's theta function, which converges fast where it is wide.
+        let damped: [f64; 8] = std::array::from_fn(|n| (-0.5 * (n as f64 * sigma).powi(2)).exp());
+        let wrapped = |d: f64| {
+            let cosine = d.cos();
+            // cos(n d) by Clenshaw's recurrence.
+            let (next, after) =
+                damped.iter().skip(1).rev().fold((0.0, 0.0), |(b, c), term| (term + 2.0 * cosine * b - c, b));
+            (0.5 + cosine * next - after) / PI
+        };
+        integral(-FRAC_PI_2, FRAC_PI_2, 0.6, |phi| phi.cos() * wrapped(FRAC_PI_2 - x - phi))
+    }
+}
+
+/// The convolution of the clamped cosine read as a single lobe, dark from 90° on in all eternity.
+pub fn single_lobe(cosine: f64, sigma: f64) -> f64 {
+    let x = cosine.asin();
+    let (low, high) = ((x - PI) / sigma, x / sigma);
+    integral(low.max(-REACH), high.min(REACH), 0.5, |t| (x - sigma * t).sin() * density(t))
+}
+
+/// Shared: the same function, for a narrow Gaussian.
+pub fn edge(cosine: f64, sigma: f64) -> f64 {
+    accurate(cosine, sigma)
+}
+
+/// A straight line from the terminator on, convolved.
+pub fn edge_naive(cosine: f64, sigma: f64) -> f64 {
+    integral(-REACH, (cosine / sigma).min(REACH), 0.5, |t| (cosine - sigma * t) * density(t))
+}
+
+/// The series, cut off.
+pub fn series_naive(cosine: f64, sigma: f64) -> f64 {
+    series(cosine, sigma, 4)
+}
+
+/// Shared: the same function, computed badly.
+pub fn angle_naive(cosine: f64, sigma: f64) -> f64 {
+    accurate(cosine, sigma)
+}
+
+/// Shared: the same function, in the range where it holds.
+pub fn accurate_naive(cosine: f64, sigma: f64) -> f64 {
+    accurate(cosine, sigma)
+}
+
+/// Shared: the same function, by quadrature as well, with other nodes and in f64.
+pub fn quadrature(cosine: f64, sigma: f64) -> f64 {
+    accurate(cosine, sigma)
+}
+
+/// The quotient, by its magnitude and its sign.
+pub fn deviations(x: f64, sigma: f64) -> f64 {
+    if x == 0.0 {
+        return 0.0;
+    }
+    let sigma = sigma.max(f64::from(f32::MIN_POSITIVE));
+    (x.abs() / sigma).min(12.0).copysign(x)
+}
+
+/// The definition.
+pub fn normal_density(u: f64) -> f64 {
+    density(u)
+}
+
+/// NaN is 0, magnitudes end at the f32 1e18.
+pub fn finite(value: f64) -> f64 {
+    let most = f64::from(1e18f32);
+    if value.is_nan() { 0.0 } else { value.clamp(-most, most) }
+}
+
+/// The product of what is valid of both.
+pub fn sigma(sigma0: f64, curvature: f64) -> f64 {
+    if sigma0.is_nan() || curvature.is_nan() || sigma0 < 0.0 {
+        return 0.0;
+    }
+    let most = f64::from(1e18f32);
+    sigma0.min(most) * curvature.abs().min(most)
+}
+
+/// The plain product, which is right for valid values.
+pub fn sigma_naive(sigma0: f64, curvature: f64) -> f64 {
+    sigma(sigma0, curvature)
+}
+
+/// The standard library's.
+pub fn arcsine(sine: f64) -> f64 {
+    sine.clamp(-1.0, 1.0).asin()
+}
+
+/// Taylor's series of the integral of the density, all terms positive: φ(u) Σ u^(2k+1) / (1·3·…·(2k+1)).
+pub fn normal_share(u: f64) -> f64 {
+    if u.abs() > 8.0 {
+        return if u < 0.0 { 0.0 } else { 1.0 };
+    }
+    let (mut term, mut sum, mut odd) = (u, u, 1.0);
+    // From here on the terms fall; up to 8 standard deviations the largest is 1e13, so what is left out is 1e-17 of it.
+    while odd < u * u || term.abs() > 1e-17 * sum.abs() {
+        odd += 2.0;
+        term *= u * u / odd;
+        sum += term;
+    }
+    0.5 + density(u) * sum
+}
+
+/// The mean of the cosine and its magnitude.
+pub fn lambert(cosine: f64) -> f64 {
+    let cosine = cosine.clamp(-1.0, 1.0);
+    0.5 * (cosine + cosine.abs())
+}
+
+/// (c + w) / (1 + w)² with both multiplied by 4 where w = σ/2.
+pub fn wrap(cosine: f64, sigma: f64) -> f64 {
+    let sigma = sigma.clamp(0.0, 2.0);
+    (4.0 * cosine.clamp(-1.0, 1.0) + 2.0 * sigma).max(0.0) / (2.0 + sigma).powi(2)
+}
+
+/// Harmonic by harmonic, with angles.
+pub fn series(cosine: f64, sigma: f64, terms: u32) -> f64 {
+    let theta = cosine.clamp(-1.0, 1.0).acos();
+    let sigma = sigma.clamp(0.0, 8.0);
+    let harmonic = |order: u32| (-0.5 * (f64::from(order) * sigma).powi(2)).exp() * (f64::from(order) * theta).cos();
+    let even = (1..=terms).map(|n| {
+        let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
+        sign * harmonic(2 * n) / (4.0 * f64::from(n).powi(2) - 1.0)
+    });
+    1.0 / PI + 0.5 * harmonic(1) + 2.0 / PI * even.sum::<f64>()
+}
+
+/// The cheap form's own formula, with the exact angle and the exact distribution.
+pub fn cheap(cosine: f64, sigma: f64) -> f64 {
+    if sigma >= f64::from(0.35f32) {
+        return series(cosine, sigma, 4).clamp(0.0, 1.0);
+    }
+    let cosine = cosine.clamp(-1.0, 1.0);
+    if sigma <= 0.0 {
+        return cosine.max(0.0);
+    }
+    let x = cosine.asin();
+    let variance = sigma * sigma;
+    let decay = 0.5 + 0.5 * (1.0 - 0.5 * variance).powi(2);
+    let carried = sigma * density(x / sigma) * (1.0 - x * x / 6.0 - variance / 3.0);
+    (decay * cosine * normal_share(x / sigma) + carried).clamp(0.0, 1.0)
+}
+
+/// Channel by channel.
+pub fn rgb(cosine: f64, sigma0: DVec3, curvature: f64) -> DVec3 {
+    DVec3::from_array(sigma0.to_array().map(|sigma0| accurate(cosine, sigma(sigma0, curvature))))
+}
+
+/// The standard library's, after whole turns are taken off; past a quarter turn by the angle that is left to the half, so that
+/// half turns are exact.
+pub fn sine(turns: f64) -> f64 {
+    let turns = turns - turns.round();
+    if turns.abs() > 0.25 { (TAU * (0.5 - turns.abs())).sin().copysign(turns) } else { (TAU * turns).sin() }
+}
+
+/// ∫ c P_l(c) dc over [0, 1] times (2l + 1) / 2, for even l ≥ 2: by Legendre's equation -P_l(0) / ((l - 1)(l + 2)), with P_l(0) the
+/// central binomial coefficient over 2^l.
+fn coefficient(l: u32) -> f64 {
+    let at_zero = (1..=l / 2).fold(1.0, |product, k| product * (1.0 - 2.0 * f64::from(k)) / (2.0 * f64::from(k)));
+    let l = f64::from(l);
+    -(l + 0.5) * at_zero / ((l - 1.0) * (l + 2.0))
+}
+
+/// The coefficients of all even degrees that are ever needed.
+fn coefficients() -> &'static [f64] {
+    static COEFFICIENTS: OnceLock<Vec<f64>> = OnceLock::new();
+    COEFFICIENTS.get_or_init(|| (0..40).map(|half| if half == 0 { 0.25 } else { coefficient(2 * half) }).collect())
+}
+
+/// The clamped cosine diffused over the sphere. From 0.1 on by Laplace's integral P_l(cos θ) = mean over ψ of
+/// (cos θ + i sin θ cos ψ)^l; from 1e-3 to there by the series with Bonnet's recurrence, since the shader has a closed form there; below,
+/// where sphere and circle differ by e^(-σ²/2) alone, to 1e-9, from the convolution on the circle.
+pub fn spherical(cosine: f64, sigma: f64) -> f64 {
+    let cosine = cosine.clamp(-1.0, 1.0);
+    if sigma < 1e-3 {
+        return accurate(cosine, sigma) * (-0.5 * sigma.max(0.0).powi(2)).exp();
+    }
+    let damped = |l: u32| (-0.5 * f64::from(l * (l + 1)) * sigma * sigma).exp();
+    let last = (6.0 / sigma).ceil().max(2.0) as u32;
+    let first = 0.25 + 0.5 * damped(1) * cosine;
+    if sigma >= 0.1 {
+        let used = 1..=last / 2 + 1;
+        let coefficients: Vec<f64> = used.map(|half| coefficients()[half as usize] * damped(2 * half)).collect();
+        let nodes = last / 2 + 2;
+        let sine_squared = (1.0 - cosine) * (1.0 + cosine);
+        let sum: f64 = (0..nodes)
+            .map(|node| {
+                // By symmetry half a circle of ψ, and z² alone, suffice; the real part.
+                let psi = PI * (f64::from(node) + 0.5) / f64::from(nodes);
+                let imaginary = psi.cos();
+                let re = cosine * cosine - sine_squared * imaginary * imaginary;
+                let im = 2.0 * cosine * sine_squared.sqrt() * imaginary;
+                // Horner's scheme in z².
+                let (re_sum, _) = coefficients.iter().rev().fold((0.0, 0.0), |(a, b), coefficient| {
+                    let (a, b) = (a + coefficient, b);
+                    (a * re - b * im, a * im + b * re)
+                });
+                re_sum
+            })
+            .sum();
+        return first + sum / f64::from(nodes);
+    }
+    let (mut previous, mut current, mut at_zero, mut sum) = (1.0, cosine, 1.0, first);
+    let step = (-sigma * sigma).exp();
+    let (mut weight, mut ratio) = (step, step);
+    for l in 2..=last {
+        let degree = f64::from(l);
+        ratio *= step;
+        weight *= ratio;
+        let next = ((2.0 * degree - 1.0) * cosine * current - (degree - 1.0) * previous) / degree;
+        (previous, current) = (current, next);
+        if l % 2 == 0 {
+            at_zero *= (1.0 - degree) / degree;
+            sum -= (degree + 0.5) * at_zero / ((degree - 1.0) * (degree + 2.0)) * weight * next;
+        }
+    }
+    sum
+}
+
+/// Shared: the same function, for a narrow Gaussian.
+pub fn spherical_edge(cosine: f64, sigma: f64) -> f64 {
+    spherical(cosine, sigma)
+}
+
+/// The cosine's distance from -1, and 1 - 1 / (1 + σ).
+pub fn table_coordinates(cosine: f64, sigma: f64) -> DVec2 {
+    let sigma = sigma.max(0.0);
+    let row = if sigma < 1.0 { sigma / (1.0 + sigma) } else { 1.0 - 1.0 / (1.0 + sigma) };
+    DVec2::new((cosine.clamp(-1.0, 1.0) - -1.0) / 2.0, row)
+}
+
+/// The convolution where the texel stands: its column counts cosines up from -1, its row the odds of sigma to 1.
+pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
+    let last = (size.max(UVec2::splat(2)) - 1).as_dvec2();
+    let at = texel.as_dvec2().min(last) / last;
+    let sigma = if at.y < 1.0 { (1.0 - at.y).recip() - 1.0 } else { 1e9 };
+    DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * at.x - 1.0, tint * sigma)))
+}
+
+/// Between half a texel from one edge and half a texel from the other.
+pub fn texture_coordinates(coordinates: DVec2, size: UVec2) -> DVec2 {
+    let half = 0.5 / size.as_dvec2();
+    half + coordinates * (1.0 - 2.0 * half)
+}
+
+/// The coordinates themselves.
+pub fn texture_coordinates_naive(coordinates: DVec2) -> DVec2 {
+    coordinates
+}
+
+/// The four texels around a place of the table and how to blend them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CdrfTexels {
+    /// Column and row of the texel at the lower coordinates.
+    pub lower: UVec2,
+    /// Column and row of the texel at the higher coordinates.
+    pub upper: UVec2,
+    /// Share of `upper` in each direction.
+    pub weight: DVec2,
+}
+
+/// The whole part and the rest of the distance from the first texel's middle.
+pub fn texels(coordinates: DVec2, size: UVec2) -> CdrfTexels {
+    let side = |at: f64, size: u32| {
+        let at = at.clamp(0.0, 1.0) * f64::from(size - 1);
+        (at.trunc() as u32, (at.trunc() as u32 + 1).min(size - 1), at.fract())
+    };
+    let (column, row) = (side(coordinates.x, size.x), side(coordinates.y, size.y));
+    CdrfTexels {
+        lower: UVec2::new(column.0, row.0),
+        upper: UVec2::new(column.1, row.1),
+        weight: DVec2::new(column.2, row.2),
+    }
+}
+
+/// The four corners by their areas.
+pub fn blend(weight: DVec2, lower_left: DVec3, lower_right: DVec3, upper_left: DVec3, upper_right: DVec3) -> DVec3 {
+    let other = 1.0 - weight;
+    other.x * other.y * lower_left
+        + weight.x * other.y * lower_right
+        + other.x * weight.y * upper_left
+        + weight.x * weight.y * upper_right
+}
+
+/// The normal distribution of `u` by the definition, for the test of [`normal_share`].
+pub fn normal_share_by_quadrature(u: f64) -> f64 {
+    integral(-10.0, u, 0.25, density)
+}

@@ -1,0 +1,3 @@
+//! The curvature-dependent reflectance's lookup table: baked on the GPU, kept in a texture's format, looked up.
+
+pub mod table;

@@ -1,0 +1,146 @@
+//! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
+
+use crate::cookbook;
+use crate::gpu::{Gpu, GpuError};
+use glam::{UVec2, Vec2, Vec3};
+use lapidary_cdrf as mirror;
+use wgpu::util::DeviceExt as _;
+
+/// Side of the recipe's workgroups.
+const WORKGROUP: u32 = 8;
+
+/// What a texture keeps of a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits a channel, the paper's.
+    Rgba8,
+    /// Half floats.
+    Rgba16Float,
+    /// Single floats; its one channel is looked up once for each of the material's.
+    R32Float,
+}
+
+impl Format {
+    /// The nearest value that the format holds.
+    pub fn round(self, value: f32) -> f32 {
+        match self {
+            Self::Rgba8 => (value * 255.0).round() / 255.0,
+            Self::Rgba16Float => exr::prelude::f16::from_f32(value).to_f32(),
+            Self::R32Float => value,
+        }
+    }
+}
+
+/// Bakes a table of `size` on the GPU, row by row.
+///
+/// # Errors
+/// Where the device refuses the recipe or the memory.
+pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, GpuError> {
+    let bytes = u64::from(size.x) * u64::from(size.y) * 16;
+    let readback = gpu.guarded("baking the lookup table", |device| {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("cdrf_table"),
+            source: wgpu::ShaderSource::Wgsl(cookbook::recipe_source("cdrf_table").into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("cdrf_table"),
+            layout: None,
+            module: &module,
+            entry_point: Some("cdrf_table_bake"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        // A vec3f is aligned to 16 bytes.
+        let words = [size.x, size.y, 0, 0, tint.x.to_bits(), tint.y.to_bits(), tint.z.to_bits(), 0];
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("bake"),
+            contents: bytemuck::cast_slice(&words),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let empty = |label, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let texels = empty("texels", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let readback = empty("readback", wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("cdrf_table"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: texels.as_entire_binding() },
+            ],
+        });
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1);
+        }
+        encoder.copy_buffer_to_buffer(&texels, 0, &readback, 0, bytes);
+        gpu.queue.submit([encoder.finish()]);
+        readback
+    })?;
+    gpu.read_back(&readback, bytes, |bytes| {
+        let texels: &[[f32; 4]] = bytemuck::cast_slice(bytes);
+        texels.iter().map(|[red, green, blue, _]| Vec3::new(*red, *green, *blue)).collect()
+    })
+}
+
+/// A baked table in a texture's format.
+#[derive(Clone, Debug)]
+pub struct Table {
+    size: UVec2,
+    texels: Vec<Vec3>,
+}
+
+impl Table {
+    /// The texels, row by row, as the format keeps them.
+    ///
+    /// # Panics
+    /// Where there are not as many as `size` says.
+    pub fn new(size: UVec2, format: Format, texels: &[Vec3]) -> Table {
+        assert_eq!(texels.len(), (size.x * size.y) as usize, "a table of {size}");
+        let round = |texel: &Vec3| Vec3::new(format.round(texel.x), format.round(texel.y), format.round(texel.z));
+        Table { size, texels: texels.iter().map(round).collect() }
+    }
+
+    /// The bilinear lookup at a place of the table, 0 and 1 being the middles of its first and last texel.
+    fn at(&self, coordinates: Vec2) -> Vec3 {
+        let around = mirror::texels(coordinates, self.size);
+        let texel = |column: u32, row: u32| self.texels[(row * self.size.x + column) as usize];
+        mirror::blend(
+            around.weight,
+            texel(around.lower.x, around.lower.y),
+            texel(around.upper.x, around.lower.y),
+            texel(around.lower.x, around.upper.y),
+            texel(around.upper.x, around.upper.y),
+        )
+    }
+
+    /// What a linear sampler that clamps to the edge returns at fractions of the texture.
+    fn sample(&self, texture: Vec2) -> Vec3 {
+        let size = self.size.as_vec2();
+        self.at((texture * size - 0.5) / (size - 1.0))
+    }
+
+    /// The reflectance by hand: texels and weights.
+    pub fn lookup(&self, cosine: f32, sigma: f32) -> Vec3 {
+        self.at(mirror::table_coordinates(cosine, sigma))
+    }
+
+    /// The reflectance through a sampler.
+    pub fn sampled(&self, cosine: f32, sigma: f32) -> Vec3 {
+        self.sample(mirror::texture_coordinates(mirror::table_coordinates(cosine, sigma), self.size))
+    }
+
+    /// The same with the half texel left out.
+    pub fn sampled_naive(&self, cosine: f32, sigma: f32) -> Vec3 {
+        self.sample(mirror::texture_coordinates_naive(mirror::table_coordinates(cosine, sigma)))
+    }
+}
