@@ -77,7 +77,8 @@ mod tests {
                 );
             }
             let widths = found.map(|(radius, fit)| radius * fit.sigma);
-            let drift = widths.iter().copied().fold(0.0, f64::max) / widths.iter().copied().fold(f64::INFINITY, f64::min);
+            let drift =
+                widths.iter().copied().fold(0.0, f64::max) / widths.iter().copied().fold(f64::INFINITY, f64::min);
             println!("albedo {albedo}: sigma R drifts {drift:.2} times");
             // The smaller the sphere, the wider: so much is true.
             assert!(found.windows(2).all(|pair| pair[0].1.sigma > pair[1].1.sigma), "{found:?}");

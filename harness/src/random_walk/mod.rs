@@ -4,8 +4,10 @@
 //! A walk is analogue: at each scattering it ends with the probability that light is absorbed, so that counts of walks are
 //! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
 
+mod fit;
 mod sphere;
 
+pub use fit::{Fit, fit};
 pub use sphere::{BINS, Profile, profile};
 
 use glam::DVec3;
@@ -101,26 +103,34 @@ fn walk(
     }
 }
 
-/// Folds `walks` walks: `enter` gives where and how each starts, `add` takes how each ended. `progress` is told of batches done
-/// and all.
-pub fn walks<B: Body, T: Send + Sync>(
-    body: &B,
-    albedo: f64,
-    walks: u64,
-    seed: u64,
+/// How many walks, through what, and which.
+#[derive(Clone, Copy, Debug)]
+pub struct Walks {
+    /// The share of light that a scattering leaves, 0 to 1.
+    pub albedo: f64,
+    /// How many.
+    pub count: u64,
+    /// The same seed gives the same walks.
+    pub seed: u64,
+}
+
+/// Folds walks through `body`: `enter` gives where and how each starts, `add` takes how each ended, nothing where it was absorbed.
+pub fn fold<T: Send>(
+    body: &impl Body,
+    Walks { albedo, count, seed }: Walks,
     enter: impl Fn(&mut Xoshiro256PlusPlus) -> (DVec3, DVec3) + Sync,
     new: impl Fn() -> T + Sync,
     add: impl Fn(&mut T, Option<Exit>) + Sync,
-    join: impl Fn(T, T) -> T + Sync + Send,
+    join: impl Fn(T, T) -> T,
 ) -> T {
-    let batches = walks.div_ceil(BATCH);
+    let batches = count.div_ceil(BATCH);
     // Batches are joined in their order, so that sums of floats are the same on any number of threads.
     let parts: Vec<T> = (0..batches)
         .into_par_iter()
         .map(|batch| {
             let mut random = generator(seed, batch);
             let mut total = new();
-            for _ in 0..BATCH.min(walks - batch * BATCH) {
+            for _ in 0..BATCH.min(count - batch * BATCH) {
                 let (position, direction) = enter(&mut random);
                 add(&mut total, walk(body, position, direction, albedo, &mut random));
             }
@@ -130,8 +140,7 @@ pub fn walks<B: Body, T: Send + Sync>(
     parts.into_iter().reduce(join).unwrap_or_else(new)
 }
 
-/// Where a parallel beam along -z that covers the unit disc falls, and a direction from below that is uniform by the cosine: the two
-/// ways to light a body.
+/// A point of the unit disc, all alike: where a parallel beam falls on a sphere, and, lifted to the hemisphere, a direction of diffuse light.
 fn in_disc(random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
     let radius = random.random::<f64>().sqrt();
     let (sine, cosine) = (TAU * random.random::<f64>()).sin_cos();
@@ -144,11 +153,9 @@ mod tests {
 
     /// The share of walks that leave a half space, and its standard error.
     fn reflectance(albedo: f64, count: u64, enter: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (f64, f64) {
-        let out = walks(
+        let out = fold(
             &HalfSpace,
-            albedo,
-            count,
-            7,
+            Walks { albedo, count, seed: 7 },
             |random| (DVec3::ZERO, enter(random)),
             || 0u64,
             |out, exit| *out += u64::from(exit.is_some()),
@@ -196,8 +203,14 @@ mod tests {
                 sums[0] += way;
                 sums[1] += way * way;
             };
-            let [sum, squares] =
-                walks(&body, 1.0, count, 3, enter, || [0.0; 2], add, |a, b| [a[0] + b[0], a[1] + b[1]]);
+            let [sum, squares] = fold(
+                &body,
+                Walks { albedo: 1.0, count, seed: 3 },
+                enter,
+                || [0.0; 2],
+                add,
+                |a, b| [a[0] + b[0], a[1] + b[1]],
+            );
             let mean = sum / count as f64;
             let error = ((squares / count as f64 - mean * mean) / count as f64).sqrt();
             println!("radius {radius}: {mean:.4} ± {error:.4}");

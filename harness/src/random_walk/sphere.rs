@@ -1,6 +1,6 @@
 //! The translucent sphere in parallel light (Kubo et al.): what leaves it, by the angle from the light.
 
-use super::{Ball, Exit, in_disc, walks};
+use super::{Ball, Exit, Walks, fold, in_disc};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -41,7 +41,7 @@ pub fn profile(radius: f64, albedo: f64, count: u64, seed: u64) -> Profile {
         counts[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += 1;
     };
     let join = |a: [u64; BINS], b: [u64; BINS]| std::array::from_fn(|bin| a[bin] + b[bin]);
-    let counts = walks(&Ball { radius }, albedo, count, seed, enter, || [0; BINS], add, join);
+    let counts = fold(&Ball { radius }, Walks { albedo, count, seed }, enter, || [0; BINS], add, join);
     // The beam's power is pi r^2 E, an interval's area 2 pi r^2 (cos - cos).
     let scale = |bin: usize| {
         let [greater, less] = Profile::cosines(bin);
