@@ -57,6 +57,30 @@ fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f 
     return normalize(normal + derivative) - normalize(normal);
 }
 
+// A pixel's derivatives, brought to a width and a height at which those of the position are about 1 long.
+struct CurvaturePixel {
+    // Of the position along the screen's x axis.
+    p_x: vec3f,
+    // Along its y axis.
+    p_y: vec3f,
+    // Of the normal along its x axis.
+    n_x: vec3f,
+    // Along its y axis.
+    n_y: vec3f,
+}
+
+// The derivatives along each axis, scaled alike by curvature_scale of the position's.
+// Returns: largest components of the position's in [1, 2), less where they are degenerate.
+// Units: none for the position's; one over the position's for the normal's.
+// Domain: position derivatives 0 or with a largest component in [1e-22, 1e22]; normal derivatives of unit normals.
+// Outside: as curvature_scale.
+// Accuracy: lavapipe p_x 0 ulp, p_y 0 ulp, n_x 0 ulp, n_y 0 ulp; portable p_x 0 ulp, p_y 0 ulp, n_x 0 ulp, n_y 0 ulp
+fn curvature_pixel(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> CurvaturePixel {
+    let scale_x = curvature_scale(position_x);
+    let scale_y = curvature_scale(position_y);
+    return CurvaturePixel(scale_x * position_x, scale_y * position_y, scale_x * normal_x, scale_y * normal_y);
+}
+
 // Mean curvature, half the sum of the principal ones: with first form E, F, G and second e, f, g it is (eG - 2fF + gE) / (2 (EG - F^2)). Here
 // both are written with a = p_x x p_y: EG - F^2 = |a|^2 and eG - 2fF + gE = a . (n_x x p_y + p_x x n_y), the rate at which a patch grows on
 // the parallel surface p + t n. Neither cancels where the pixel is seen edge-on, and a part of n_x along the normal drops out.
@@ -67,15 +91,10 @@ fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f 
 // Outside: finite for |normal_x|, |normal_y| <= 2.
 // Accuracy: lavapipe 4 ulp + 1e-31 abs + 4 backward; portable 10 ulp + 1e-31 abs + 8 backward
 fn curvature_mean(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
-    let scale_x = curvature_scale(position_x);
-    let scale_y = curvature_scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let area = cross(p_x, p_y);
-    let growth = cross(n_x, p_y) + cross(p_x, n_y);
-    let least = CURVATURE_EDGE_ON * max(dot(p_x, p_x), 1.0f) * max(dot(p_y, p_y), 1.0f);
+    let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
+    let area = cross(pixel.p_x, pixel.p_y);
+    let growth = cross(pixel.n_x, pixel.p_y) + cross(pixel.p_x, pixel.n_y);
+    let least = CURVATURE_EDGE_ON * max(dot(pixel.p_x, pixel.p_x), 1.0f) * max(dot(pixel.p_y, pixel.p_y), 1.0f);
     return 0.5f * dot(area, growth) / max(dot(area, area), least);
 }
 
@@ -103,17 +122,12 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
 // Outside: finite for |normal_x|, |normal_y| <= 2.
 // Accuracy: lavapipe 5 ulp + 1e-31 abs + 4 backward; portable 12 ulp + 1e-31 abs + 8 backward
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
-    let scale_x = curvature_scale(position_x);
-    let scale_y = curvature_scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let area = cross(p_x, p_y);
-    let twist = 0.5f * (dot(p_x, n_y) - dot(p_y, n_x));
+    let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
+    let area = cross(pixel.p_x, pixel.p_y);
+    let twist = 0.5f * (dot(pixel.p_x, pixel.n_y) - dot(pixel.p_y, pixel.n_x));
     let squared = dot(area, area);
-    let bounded = max(squared, CURVATURE_EDGE_ON * max(dot(p_x, p_x), 1.0f) * max(dot(p_y, p_y), 1.0f));
-    return (dot(area, cross(n_x, n_y)) - twist * twist) / bounded * (squared / bounded);
+    let bounded = max(squared, CURVATURE_EDGE_ON * max(dot(pixel.p_x, pixel.p_x), 1.0f) * max(dot(pixel.p_y, pixel.p_y), 1.0f));
+    return (dot(area, cross(pixel.n_x, pixel.n_y)) - twist * twist) / bounded * (squared / bounded);
 }
 
 // The Gaussian curvature as the textbook writes it. Kept to show where it fails.
@@ -145,19 +159,14 @@ fn curvature_towards(
     normal_y: vec3f,
     light: vec3f,
 ) -> f32 {
-    let scale_x = curvature_scale(position_x);
-    let scale_y = curvature_scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let squared_x = max(dot(p_x, p_x), 1.0f);
-    let crossed = cross(p_x, p_y);
+    let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
+    let squared_x = max(dot(pixel.p_x, pixel.p_x), 1.0f);
+    let crossed = cross(pixel.p_x, pixel.p_y);
     // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
-    let area = crossed - dot(crossed, p_x) / squared_x * p_x;
-    let growth = cross(n_x, p_y) + cross(p_x, n_y);
+    let area = crossed - dot(crossed, pixel.p_x) / squared_x * pixel.p_x;
+    let growth = cross(pixel.n_x, pixel.p_y) + cross(pixel.p_x, pixel.n_y);
     let squared = dot(area, area);
-    let bounded = max(squared, CURVATURE_EDGE_ON * squared_x * max(dot(p_y, p_y), 1.0f));
+    let bounded = max(squared, CURVATURE_EDGE_ON * squared_x * max(dot(pixel.p_y, pixel.p_y), 1.0f));
 
     let aside = cross(area, light);
     let zenith = CURVATURE_ZENITH * bounded;
@@ -166,10 +175,10 @@ fn curvature_towards(
     // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of the area. As
     // a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
     let direction = cross(across, area);
-    let alpha = dot(p_y, across);
-    let beta = -dot(p_x, across);
-    let tangent = alpha * p_x + beta * p_y;
-    let change = alpha * n_x + beta * n_y;
+    let alpha = dot(pixel.p_y, across);
+    let beta = -dot(pixel.p_x, across);
+    let tangent = alpha * pixel.p_x + beta * pixel.p_y;
+    let change = alpha * pixel.n_x + beta * pixel.n_y;
     // Half the cross product's own square bounds the quotient where the sum is all rounding. 2^-100 stands for 0: the square is that small at
     // sines below 2^-50 only, where the weight below is as small.
     let least = max(0.5f * dot(direction, direction), 7.888609052210118e-31f);

@@ -39,17 +39,37 @@ pub fn normal_derivative_naive(normal: Vec3, derivative: Vec3) -> Vec3 {
     (normal + derivative).normalize() - normal.normalize()
 }
 
-/// Mean curvature, half the sum of the principal ones.
-pub fn mean(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+/// A pixel's derivatives, brought to a width and a height at which those of the position are about 1 long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvaturePixel {
+    /// Of the position along the screen's x axis.
+    pub p_x: Vec3,
+    /// Along its y axis.
+    pub p_y: Vec3,
+    /// Of the normal along its x axis.
+    pub n_x: Vec3,
+    /// Along its y axis.
+    pub n_y: Vec3,
+}
+
+/// The derivatives along each axis, scaled alike by [`scale`] of the position's.
+pub fn pixel(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> CurvaturePixel {
     let scale_x = scale(position_x);
     let scale_y = scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let area = p_x.cross(p_y);
-    let growth = n_x.cross(p_y) + p_x.cross(n_y);
-    let least = CURVATURE_EDGE_ON * p_x.dot(p_x).max(1.0) * p_y.dot(p_y).max(1.0);
+    CurvaturePixel {
+        p_x: scale_x * position_x,
+        p_y: scale_y * position_y,
+        n_x: scale_x * normal_x,
+        n_y: scale_y * normal_y,
+    }
+}
+
+/// Mean curvature, half the sum of the principal ones.
+pub fn mean(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
+    let pixel = pixel(position_x, position_y, normal_x, normal_y);
+    let area = pixel.p_x.cross(pixel.p_y);
+    let growth = pixel.n_x.cross(pixel.p_y) + pixel.p_x.cross(pixel.n_y);
+    let least = CURVATURE_EDGE_ON * pixel.p_x.dot(pixel.p_x).max(1.0) * pixel.p_y.dot(pixel.p_y).max(1.0);
     0.5 * area.dot(growth) / area.dot(area).max(least)
 }
 
@@ -64,17 +84,13 @@ pub fn mean_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_
 
 /// Gaussian curvature, the product of the principal ones.
 pub fn gaussian(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
-    let scale_x = scale(position_x);
-    let scale_y = scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let area = p_x.cross(p_y);
-    let twist = 0.5 * (p_x.dot(n_y) - p_y.dot(n_x));
+    let pixel = pixel(position_x, position_y, normal_x, normal_y);
+    let area = pixel.p_x.cross(pixel.p_y);
+    let twist = 0.5 * (pixel.p_x.dot(pixel.n_y) - pixel.p_y.dot(pixel.n_x));
     let squared = area.dot(area);
-    let bounded = squared.max(CURVATURE_EDGE_ON * p_x.dot(p_x).max(1.0) * p_y.dot(p_y).max(1.0));
-    (area.dot(n_x.cross(n_y)) - twist * twist) / bounded * (squared / bounded)
+    let bounded =
+        squared.max(CURVATURE_EDGE_ON * pixel.p_x.dot(pixel.p_x).max(1.0) * pixel.p_y.dot(pixel.p_y).max(1.0));
+    (area.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist) / bounded * (squared / bounded)
 }
 
 /// The Gaussian curvature as the textbook writes it.
@@ -87,19 +103,14 @@ pub fn gaussian_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, nor
 
 /// Normal curvature along the part of `light` that runs along the surface; the mean curvature for a light at the zenith.
 pub fn towards(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3, light: Vec3) -> f32 {
-    let scale_x = scale(position_x);
-    let scale_y = scale(position_y);
-    let p_x = scale_x * position_x;
-    let p_y = scale_y * position_y;
-    let n_x = scale_x * normal_x;
-    let n_y = scale_y * normal_y;
-    let squared_x = p_x.dot(p_x).max(1.0);
-    let crossed = p_x.cross(p_y);
+    let pixel = pixel(position_x, position_y, normal_x, normal_y);
+    let squared_x = pixel.p_x.dot(pixel.p_x).max(1.0);
+    let crossed = pixel.p_x.cross(pixel.p_y);
     // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
-    let area = crossed - crossed.dot(p_x) / squared_x * p_x;
-    let growth = n_x.cross(p_y) + p_x.cross(n_y);
+    let area = crossed - crossed.dot(pixel.p_x) / squared_x * pixel.p_x;
+    let growth = pixel.n_x.cross(pixel.p_y) + pixel.p_x.cross(pixel.n_y);
     let squared = area.dot(area);
-    let bounded = squared.max(CURVATURE_EDGE_ON * squared_x * p_y.dot(p_y).max(1.0));
+    let bounded = squared.max(CURVATURE_EDGE_ON * squared_x * pixel.p_y.dot(pixel.p_y).max(1.0));
 
     let aside = area.cross(light);
     let zenith = CURVATURE_ZENITH * bounded;
@@ -108,10 +119,10 @@ pub fn towards(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec
     // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of
     // the area. As a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
     let direction = across.cross(area);
-    let alpha = p_y.dot(across);
-    let beta = -p_x.dot(across);
-    let tangent = alpha * p_x + beta * p_y;
-    let change = alpha * n_x + beta * n_y;
+    let alpha = pixel.p_y.dot(across);
+    let beta = -pixel.p_x.dot(across);
+    let tangent = alpha * pixel.p_x + beta * pixel.p_y;
+    let change = alpha * pixel.n_x + beta * pixel.n_y;
     // Half the cross product's own square bounds the quotient where the sum is all rounding. 2⁻¹⁰⁰ stands for 0: the square is
     // that small at sines below 2⁻⁵⁰ only, where the weight below is as small.
     let least = (0.5 * direction.dot(direction)).max(7.888609052210118e-31);

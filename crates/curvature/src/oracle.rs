@@ -13,6 +13,25 @@ pub fn scale(derivative: DVec3) -> f64 {
     (-size.log2().floor()).exp2()
 }
 
+/// A pixel's derivatives, scaled along each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvaturePixel {
+    /// Of the position along the screen's x axis.
+    pub p_x: DVec3,
+    /// Along its y axis.
+    pub p_y: DVec3,
+    /// Of the normal along its x axis.
+    pub n_x: DVec3,
+    /// Along its y axis.
+    pub n_y: DVec3,
+}
+
+/// Each axis divided by the power of two in the largest component of its position.
+pub fn pixel(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3) -> CurvaturePixel {
+    let [width, height] = [position_x, position_y].map(|derivative| 1.0 / scale(derivative));
+    CurvaturePixel { p_x: position_x / width, p_y: position_y / height, n_x: normal_x / width, n_y: normal_y / height }
+}
+
 /// The derivative at 0 of the direction of `normal + t derivative`: what the projection on the plane across the normal leaves. Normals
 /// shorter than the least fade as the cube of their length.
 pub fn normal_derivative(normal: DVec3, derivative: DVec3) -> DVec3 {

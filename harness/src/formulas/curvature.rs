@@ -1,10 +1,14 @@
 //! `wgsl/curvature.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
+use crate::dispatch::value::Value;
+use crate::formula::{Builder, Formula, formula};
+use crate::mirror_struct;
 use crate::property::draws::Draws;
 use glam::{DVec3, Vec3};
-use lapidary_curvature::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, oracle};
+use lapidary_curvature::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvaturePixel, oracle};
+
+mirror_struct!(lapidary_curvature, CurvaturePixel { p_x, p_y, n_x, n_y });
 
 const M: &str = "curvature";
 
@@ -222,6 +226,15 @@ fn input_formulas() -> Vec<Formula> {
         .edge("y leads", |(v,)| v.abs().max_element() == v.y.abs())
         .edge("z leads", |(v,)| v.abs().max_element() == v.z.abs())
         .build(),
+        on_pixels(formula(M, "curvature_pixel", mirror::pixel, oracle::pixel, |draws| derivatives(draws).0))
+            .invariant("positions about 1 long, or degenerate", |(x, y, ..), pixel: CurvaturePixel| {
+                let sizes = [(x, pixel.p_x), (y, pixel.p_y)].map(|(from, to)| {
+                    let [from, size] = [from, to].map(|vector| vector.abs().max_element());
+                    from < CURVATURE_SMALLEST && size < 1.0 || (1.0..2.0).contains(&size)
+                });
+                if sizes == [true; 2] { Ok(()) } else { Err(format!("{pixel:?}")) }
+            })
+            .build(),
         formula(
             M,
             "curvature_normal_derivative",
@@ -279,21 +292,26 @@ fn input_formulas() -> Vec<Formula> {
     ]
 }
 
+/// The edges of what a pixel may show, degenerate or not.
+fn on_pixels<R: Value + 'static>(builder: Builder<Derivatives, R>) -> Builder<Derivatives, R> {
+    builder
+        .edge("edge-on", |(x, y, ..)| (1e-9..9e-4).contains(&sine_between(x, y)))
+        .edge("about where edge-on begins", |(x, y, ..)| (9e-4..1.1e-3).contains(&sine_between(x, y)))
+        .edge("parallel", |(x, y, ..)| x != Vec3::ZERO && y != Vec3::ZERO && x.cross(y) == Vec3::ZERO)
+        .edge("no width", |(x, ..)| x == Vec3::ZERO)
+        .edge("no height", |(_, y, ..)| y == Vec3::ZERO)
+        .edge("a facet", |(x, y, n, m)| sine_between(x, y) > 0.1 && n == Vec3::ZERO && m == Vec3::ZERO)
+        .edge("tiny", |(x, ..)| (1e-25..1e-15).contains(&x.length()))
+        .edge("huge", |(x, ..)| x.length() > 1e15)
+}
+
 fn mean_formulas() -> Vec<Formula> {
     let along = Vec3::new(1.0, 0.5, 0.0);
     let nan = f64::INFINITY;
     const TEXTBOOK: &str = "curvature_mean_textbook";
     const NAIVE: &str = "curvature_naive";
     vec![
-        formula(M, "curvature_mean", mirror::mean, oracle::mean, |draws| derivatives(draws).0)
-            .edge("edge-on", |(x, y, ..)| (1e-9..9e-4).contains(&sine_between(x, y)))
-            .edge("about where edge-on begins", |(x, y, ..)| (9e-4..1.1e-3).contains(&sine_between(x, y)))
-            .edge("parallel", |(x, y, ..)| x != Vec3::ZERO && y != Vec3::ZERO && x.cross(y) == Vec3::ZERO)
-            .edge("no width", |(x, ..)| x == Vec3::ZERO)
-            .edge("no height", |(_, y, ..)| y == Vec3::ZERO)
-            .edge("a facet", |(x, y, n, m)| sine_between(x, y) > 0.1 && n == Vec3::ZERO && m == Vec3::ZERO)
-            .edge("tiny", |(x, ..)| (1e-25..1e-15).contains(&x.length()))
-            .edge("huge", |(x, ..)| x.length() > 1e15)
+        on_pixels(formula(M, "curvature_mean", mirror::mean, oracle::mean, |draws| derivatives(draws).0))
             .invariant("bounded", |(x, y, n, m), mean: f32| {
                 let most = 0.5 * steepest((x, y, n, m)) / f64::from(CURVATURE_EDGE_ON).sqrt();
                 near("excess", (f64::from(mean).abs() - most * 1.001).max(0.0), 0.0, 1e-30)
@@ -354,15 +372,7 @@ fn gaussian_formulas() -> Vec<Formula> {
     let nan = f64::INFINITY;
     const TEXTBOOK: &str = "curvature_gaussian_textbook";
     vec![
-        formula(M, "curvature_gaussian", mirror::gaussian, oracle::gaussian, |draws| derivatives(draws).0)
-            .edge("edge-on", |(x, y, ..)| (1e-9..9e-4).contains(&sine_between(x, y)))
-            .edge("about where edge-on begins", |(x, y, ..)| (9e-4..1.1e-3).contains(&sine_between(x, y)))
-            .edge("parallel", |(x, y, ..)| x != Vec3::ZERO && y != Vec3::ZERO && x.cross(y) == Vec3::ZERO)
-            .edge("no width", |(x, ..)| x == Vec3::ZERO)
-            .edge("no height", |(_, y, ..)| y == Vec3::ZERO)
-            .edge("a facet", |(x, y, n, m)| sine_between(x, y) > 0.1 && n == Vec3::ZERO && m == Vec3::ZERO)
-            .edge("tiny", |(x, ..)| (1e-25..1e-15).contains(&x.length()))
-            .edge("huge", |(x, ..)| x.length() > 1e15)
+        on_pixels(formula(M, "curvature_gaussian", mirror::gaussian, oracle::gaussian, |draws| derivatives(draws).0))
             .pair("a normal turned over changes nothing", |(x, y, n, m)| (x, y, -n, -m), {
                 |_, gaussian: f32, turned: f32| near("difference", f64::from(gaussian) - f64::from(turned), 0.0, 0.0)
             })
