@@ -9,6 +9,7 @@ pub mod dispatch;
 pub mod formula;
 pub mod formulas;
 pub mod gallery;
+pub mod golden_section;
 pub mod gpu;
 pub mod mutation;
 pub mod nearest;

@@ -2,6 +2,7 @@
 
 use super::CostError;
 use super::views::View;
+use crate::golden_section::golden_section;
 use crate::gpu::Gpu;
 use crate::pixel::{Shading, Stone, Viewer};
 use crate::render::{self, Picture, Rung, Settings, Spectrum};
@@ -56,7 +57,6 @@ fn difference(one: &Picture, other: &Picture, mask: &[bool]) -> f64 {
 /// Where `error` is least: at 0, or at the best of a grid over all magnitudes and golden sections about it; and how large it is there.
 fn least(mut error: impl FnMut(f32) -> Result<f64, CostError>) -> Result<(f32, f64), CostError> {
     const STEPS: i32 = 14;
-    const GOLDEN: f32 = 0.618_034;
     let step = |k: i32| 2f32.powf(-0.75 * k as f32);
     let mut best = (0.0, error(0.0)?);
     let mut take = |strength: f32, best: &mut (f32, f64)| -> Result<f64, CostError> {
@@ -72,11 +72,8 @@ fn least(mut error: impl FnMut(f32) -> Result<f64, CostError>) -> Result<(f32, f
             nearest = k;
         }
     }
-    let (mut low, mut high) = (step(nearest + 1), step(nearest - 1));
-    for _ in 0..6 {
-        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if take(left, &mut best)? < take(right, &mut best)? { high = right } else { low = left }
-    }
+    let around = [step(nearest + 1), step(nearest - 1)].map(f64::from);
+    golden_section(around, 6, |strength| take(strength as f32, &mut best))?;
     Ok(best)
 }
 

@@ -4,6 +4,8 @@
 use super::draws::mix;
 use crate::cookbook::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
+use crate::golden_section::golden_section;
+use std::convert::Infallible;
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
 const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
@@ -304,7 +306,6 @@ impl<'a> Search<'a> {
         (index, sign): (usize, f64),
         enough: &impl Fn(&Spread) -> bool,
     ) {
-        const GOLDEN: f64 = 0.618_033_988_749_894_8;
         let mut point = centre.to_vec();
         for _ in 0..ROUNDS {
             for moving in (0..steps.len()).filter(|moving| steps[*moving] > 0.0) {
@@ -314,21 +315,8 @@ impl<'a> Search<'a> {
                     let value = sign * search.result[index];
                     if value.is_nan() { f64::INFINITY } else { value }
                 };
-                let (mut low, mut high) = (centre[moving] - steps[moving], centre[moving] + steps[moving]);
-                let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-                let mut values = inner.map(|place| at(self, place));
-                for _ in 0..SECTIONS {
-                    if values[0] <= values[1] {
-                        high = inner[1];
-                        inner = [high - GOLDEN * (high - low), inner[0]];
-                        values = [at(self, inner[0]), values[0]];
-                    } else {
-                        low = inner[0];
-                        inner = [inner[1], low + GOLDEN * (high - low)];
-                        values = [values[1], at(self, inner[1])];
-                    }
-                }
-                let nearest = if values[0] <= values[1] { inner[0] } else { inner[1] };
+                let across = [centre[moving] - steps[moving], centre[moving] + steps[moving]];
+                let Ok(nearest) = golden_section::<Infallible>(across, SECTIONS, |place| Ok(at(self, place)));
                 at(self, nearest);
                 if enough(&self.spread) {
                     return;

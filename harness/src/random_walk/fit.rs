@@ -1,7 +1,9 @@
 //! Is sigma = sigma_0 kappa true? The curvature-dependent reflectance function fitted to what a sphere really shows.
 
 use super::{BINS, Profile};
+use crate::golden_section::golden_section;
 use lapidary_cdrf::oracle as cdrf;
+use std::convert::Infallible;
 use std::f64::consts::PI;
 
 /// The reflectance function that comes nearest to a sphere's profile.
@@ -38,13 +40,9 @@ pub fn fit(profile: &Profile) -> Fit {
     let grid = |k: i32| 0.01 * 1.05f64.powi(k);
     let best = (0..142).min_by(|&a, &b| at(profile, grid(a)).residual.total_cmp(&at(profile, grid(b)).residual));
     let best = best.unwrap_or_default();
-    let (mut low, mut high) = (grid(best - 1), grid(best + 1));
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    for _ in 0..30 {
-        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if at(profile, left).residual < at(profile, right).residual { high = right } else { low = left }
-    }
-    at(profile, 0.5 * (low + high))
+    let Ok(sigma) =
+        golden_section::<Infallible>([grid(best - 1), grid(best + 1)], 30, |sigma| Ok(at(profile, sigma).residual));
+    at(profile, sigma)
 }
 
 #[cfg(test)]
