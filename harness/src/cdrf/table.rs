@@ -1,10 +1,9 @@
 //! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
 
-use crate::cookbook;
-use crate::gpu::{Gpu, GpuError};
+use crate::dispatch::{self, Binding, DispatchError, RecipeRun};
+use crate::gpu::Gpu;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
-use wgpu::util::DeviceExt as _;
 
 /// Side of the recipe's workgroups.
 const WORKGROUP: u32 = 8;
@@ -35,58 +34,18 @@ impl Format {
 ///
 /// # Errors
 /// Where the device refuses the recipe or the memory.
-pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, GpuError> {
+pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, DispatchError> {
+    // A vec3f is aligned to 16 bytes.
+    let words = [size.x, size.y, 0, 0, tint.x.to_bits(), tint.y.to_bits(), tint.z.to_bits(), 0];
     let bytes = u64::from(size.x) * u64::from(size.y) * 16;
-    let readback = gpu.guarded("baking the lookup table", |device| {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("cdrf_table"),
-            source: wgpu::ShaderSource::Wgsl(cookbook::recipe_source("cdrf_table").into()),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("cdrf_table"),
-            layout: None,
-            module: &module,
-            entry_point: Some("cdrf_table_bake"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        // A vec3f is aligned to 16 bytes.
-        let words = [size.x, size.y, 0, 0, tint.x.to_bits(), tint.y.to_bits(), tint.z.to_bits(), 0];
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("bake"),
-            contents: bytemuck::cast_slice(&words),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let empty = |label, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let texels = empty("texels", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let readback = empty("readback", wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("cdrf_table"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: texels.as_entire_binding() },
-            ],
-        });
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1);
-        }
-        encoder.copy_buffer_to_buffer(&texels, 0, &readback, 0, bytes);
-        gpu.queue.submit([encoder.finish()]);
-        readback
-    })?;
-    gpu.read_back(&readback, bytes, |bytes| {
+    let run = RecipeRun {
+        recipe: "cdrf_table",
+        entry: "cdrf_table_bake",
+        constants: &[],
+        bindings: &[&[Binding::Uniform(bytemuck::cast_slice(&words)), Binding::Result(bytes)]],
+        workgroups: [size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1],
+    };
+    dispatch::run_recipe(gpu, &run, |bytes| {
         let texels: &[[f32; 4]] = bytemuck::cast_slice(bytes);
         texels.iter().map(|[red, green, blue, _]| Vec3::new(*red, *green, *blue)).collect()
     })

@@ -57,15 +57,18 @@ fn parse_view(text: &str) -> Result<views::View, String> {
     found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
 }
 
-fn measure(context: &Context, options: &Options) -> Result<Report, Failure> {
+/// Runs what takes minutes behind a progress bar.
+fn behind_a_bar<T>(
+    run: impl FnOnce(&mut dyn FnMut(&'static str, u64, u64)) -> Result<T, CostError>,
+) -> Result<T, Failure> {
     let bar = progress::bar(0, "measuring");
-    let report = cost::run(context.gpu()?, options, &mut |what, done, total| {
+    let done = run(&mut |what, done, total| {
         bar.set_message(what);
         bar.set_length(total);
         bar.set_position(done);
     })?;
     bar.finish_and_clear();
-    Ok(report)
+    Ok(done)
 }
 
 fn read_text(path: &Path) -> Result<String, Failure> {
@@ -95,7 +98,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         file::check_writable(&out.join("gem.txt"))?;
     }
     if arguments.profile {
-        let text = cost::profile(context.gpu()?, options.rounds.max(1), options.frame)?;
+        let gpu = context.gpu()?;
+        let text = behind_a_bar(|progress| {
+            let mut timing = |done, total| progress("timing", done, total);
+            cost::profile(gpu, options.rounds.max(1), options.frame, &mut timing)
+        })?;
         if let Some(out) = &arguments.out {
             file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
         }
@@ -110,7 +117,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     let mut report = match &arguments.from {
         Some(path) => read(path)?,
-        None => measure(context, &options)?,
+        None => {
+            let gpu = context.gpu()?;
+            behind_a_bar(|progress| cost::run(gpu, &options, progress))?
+        }
     };
     report.mark_dominated();
     let filled: Vec<(&PathBuf, String)> = pages

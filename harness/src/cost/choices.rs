@@ -21,12 +21,22 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// FLIP, RMSE and signed energy of a rung's choice, in the mean over the views.
-    pub(super) fn means(choices: &[Choice], (rung, choice): (&str, &str)) -> [f64; 3] {
-        let same: Vec<&Errors> =
-            choices.iter().filter(|c| c.rung == rung && c.choice == choice).map(|c| &c.errors).collect();
-        let mean = |value: fn(&Errors) -> f64| same.iter().map(|e| value(e)).sum::<f64>() / same.len() as f64;
-        [mean(|e| e.flip), mean(|e| e.rmse), mean(|e| e.energy)]
+    /// Rung, choice, and the means over the views of FLIP, RMSE and signed energy, in the order in which they were measured.
+    pub(super) fn means(choices: &[Self]) -> Vec<(&str, &str, [f64; 3])> {
+        let mut keys: Vec<(&str, &str)> = choices.iter().map(|c| (c.rung.as_str(), c.choice.as_str())).collect();
+        let mut seen = Vec::new();
+        keys.retain(|key| {
+            let new = !seen.contains(key);
+            seen.push(*key);
+            new
+        });
+        let of = |(rung, choice): (&str, &str)| {
+            let same: Vec<&Errors> =
+                choices.iter().filter(|c| c.rung == rung && c.choice == choice).map(|c| &c.errors).collect();
+            let mean = |value: fn(&Errors) -> f64| same.iter().map(|e| value(e)).sum::<f64>() / same.len() as f64;
+            [mean(|e| e.flip), mean(|e| e.rmse), mean(|e| e.energy)]
+        };
+        keys.into_iter().map(|key| (key.0, key.1, of(key))).collect()
     }
 }
 

@@ -144,6 +144,7 @@ pub fn run(
             .map(|entry| Timed {
                 settings: Settings { width, height, samples: 1, ..entry.settings.clone() },
                 scene: &filled,
+                source: cookbook::recipe_source(entry.settings.rung.recipe()),
             })
             .collect();
         let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;

@@ -84,6 +84,12 @@ pub struct Report {
 }
 
 impl RungReport {
+    /// The time in milliseconds, with a star where not the whole frame was timed.
+    fn milliseconds(&self) -> String {
+        let shown = |timing: Timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" });
+        self.timing.map_or("-".to_owned(), shown)
+    }
+
     /// The mean over the views of the error by the measure of that number in [`MEASURES`].
     pub fn mean(&self, measure: usize) -> f64 {
         let errors: Vec<f64> = self.errors.iter().flatten().map(|errors| errors.of(measure)).collect();
@@ -91,7 +97,20 @@ impl RungReport {
     }
 }
 
+/// By how much a rung may err more than a faster one and still be no worse: equal geometry gives equal pictures but for rounding.
+const ALIKE: f64 = 1.001;
+
 impl Report {
+    /// The rung of that name.
+    fn rung(&self, name: &str) -> Option<&RungReport> {
+        self.rungs.iter().find(|rung| rung.rung == name)
+    }
+
+    /// How many times as long `slow` takes as `fast`.
+    fn ratio(&self, slow: &str, fast: &str) -> Option<f64> {
+        Some(self.rung(slow)?.timing?.ms / self.rung(fast)?.timing?.ms)
+    }
+
     /// A row for each rung, measure and view.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
@@ -120,12 +139,12 @@ impl Report {
         rows
     }
 
-    /// Marks the rungs that another one beats: faster, and in the mean over the views no worse by FLIP nor by RMSE, a thousandth
-    /// aside, since equal geometry gives equal pictures but for rounding.
+    /// Marks the rungs that another one beats: faster, and in the mean over the views no worse by FLIP nor by RMSE, as near as
+    /// [`ALIKE`] tells.
     pub fn mark_dominated(&mut self) {
         let beats = |other: &RungReport, rung: &RungReport| {
             let faster = matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms < rung.ms);
-            faster && (0..2).all(|measure| other.mean(measure) <= 1.001 * rung.mean(measure))
+            faster && (0..2).all(|measure| other.mean(measure) <= ALIKE * rung.mean(measure))
         };
         let marks: Vec<bool> =
             self.rungs.iter().map(|rung| self.rungs.iter().any(|other| beats(other, rung))).collect();

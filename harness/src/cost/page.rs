@@ -36,7 +36,7 @@ pub fn check(page: &str) -> Result<(), String> {
 ///
 /// As [`check`]; or a report that does not hold the whole ladder, which would leave a page with holes.
 pub fn fill(page: &str, report: &Report) -> Result<String, String> {
-    let missing = RUNGS.iter().find(|name| of(report, name).is_none_or(|rung| rung.timing.is_none()));
+    let missing = RUNGS.iter().find(|name| report.rung(name).is_none_or(|rung| rung.timing.is_none()));
     if let Some(name) = missing {
         return Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"));
     }
@@ -72,21 +72,6 @@ fn row(table: &mut String, cells: &[String]) {
     let _ = writeln!(table, "| {} |", cells.join(" | "));
 }
 
-/// Milliseconds, with a star where not the whole frame was timed.
-fn time(rung: &RungReport) -> String {
-    let timing = |timing: super::Timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" });
-    rung.timing.map_or("-".to_owned(), timing)
-}
-
-fn of<'a>(report: &'a Report, name: &str) -> Option<&'a RungReport> {
-    report.rungs.iter().find(|rung| rung.rung == name)
-}
-
-/// How many times as long `slow` takes as `fast`.
-fn ratio(report: &Report, slow: &str, fast: &str) -> Option<f64> {
-    Some(of(report, slow)?.timing?.ms / of(report, fast)?.timing?.ms)
-}
-
 fn ladder(report: &Report) -> String {
     let [width, height] = report.frame;
     let columns = ["rung", "ms", "× proxy-1", "FLIP", "RMSE", "energy", "SPIR-V vertex + fragment", "bytes", ""];
@@ -94,8 +79,8 @@ fn ladder(report: &Report) -> String {
     for rung in &report.rungs {
         let cells = [
             rung.rung.clone(),
-            time(rung),
-            ratio(report, &rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
+            rung.milliseconds(),
+            report.ratio(&rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
             format!("{:.3}", rung.mean(0)),
             format!("{:.3}", rung.mean(1)),
             format!("{:.3}", rung.mean(2)),
@@ -116,7 +101,7 @@ fn ladder(report: &Report) -> String {
 
 fn goals(report: &Report) -> String {
     let mut table = header(&["goal", "measured", ""]);
-    let times = |slow: &str, fast: &str| ratio(report, slow, fast);
+    let times = |slow: &str, fast: &str| report.ratio(slow, fast);
     let mut judge = |goal: &str, measured: Option<f64>, met: &dyn Fn(f64) -> bool, shown: &dyn Fn(f64) -> String| {
         let Some(measured) = measured else { return };
         row(&mut table, &[goal.to_owned(), shown(measured), if met(measured) { "met" } else { "missed" }.to_owned()]);
@@ -158,17 +143,17 @@ fn goals(report: &Report) -> String {
 
 fn paper(report: &Report) -> String {
     let mut table = header(&["", "the paper (GeForce GTX 760)", "here"]);
-    let ms = |name: &str| of(report, name).map_or("-".to_owned(), time);
+    let ms = |name: &str| report.rung(name).map_or("-".to_owned(), RungReport::milliseconds);
     let compared = |name: &str, what: &str| {
-        let ratio = ratio(report, name, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.1}"));
+        let ratio = report.ratio(name, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.1}"));
         format!("{} ms, {ratio} times ({what})", ms(name))
     };
     let counts = |name: &str| {
-        of(report, name).map_or("-".to_owned(), |r| format!("{} + {}", r.vertex_instructions, r.fragment_instructions))
+        report.rung(name).map_or("-".to_owned(), |r| format!("{} + {}", r.vertex_instructions, r.fragment_instructions))
     };
     let encodes: Vec<f64> = report.rungs.iter().filter_map(|rung| Some(rung.timing?.encode_us)).collect();
     let (least, most) = encodes.iter().fold((f64::INFINITY, 0f64), |(a, b), &us| (a.min(us), b.max(us)));
-    let exact_bytes = of(report, "convex-1").map_or(0, |rung| rung.geometry_bytes);
+    let exact_bytes = report.rung("convex-1").map_or(0, |rung| rung.geometry_bytes);
     let rows = [
         ["proxy, one hit", "3 ms", &format!("{} ms", ms("proxy-1"))],
         [
@@ -250,18 +235,10 @@ fn colours(Report { colours, .. }: &Report) -> String {
 
 fn ends(Report { choices, .. }: &Report) -> String {
     let mut table = header(&["rung", "end", "FLIP", "RMSE", "energy"]);
-    let mut seen: Vec<(&str, &str)> = Vec::new();
-    for choice in choices {
-        let key = (choice.rung.as_str(), choice.choice.as_str());
-        if seen.contains(&key) {
-            continue;
-        }
-        seen.push(key);
-        let [flip, rmse, energy] = Choice::means(choices, key);
-        row(
-            &mut table,
-            &[key.0.to_owned(), key.1.to_owned(), format!("{flip:.4}"), format!("{rmse:.4}"), format!("{energy:+.4}")],
-        );
+    for (rung, choice, [flip, rmse, energy]) in Choice::means(choices) {
+        let cells =
+            [rung.to_owned(), choice.to_owned(), format!("{flip:.4}"), format!("{rmse:.4}"), format!("{energy:+.4}")];
+        row(&mut table, &cells);
     }
     table
 }

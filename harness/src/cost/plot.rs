@@ -1,6 +1,6 @@
 //! The ladder as a picture: time against error, both logarithmic.
 
-use super::{CostError, MEASURES, Report, RungReport};
+use super::{ALIKE, CostError, MEASURES, Report, RungReport};
 use crate::render::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -21,7 +21,7 @@ struct Point<'a> {
     rung: Option<Rung>,
     ms: f64,
     error: f64,
-    /// No other point is both faster and no worse, a thousandth aside as in [`Report::mark_dominated`].
+    /// No other point is both faster and no worse, as in [`Report::mark_dominated`].
     front: bool,
 }
 
@@ -34,7 +34,7 @@ fn points(report: &Report, measure: usize) -> Vec<Point<'_>> {
             rung: rung.rung.trim_end_matches("-fitted").parse().ok(),
             ms,
             error,
-            front: !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= 1.001 * error),
+            front: !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= ALIKE * error),
         })
         .collect()
 }

@@ -1,9 +1,10 @@
 //! Where a frame's time goes: frames of one stone from whose recipe one thing after another is taken away.
 
+use super::timing::{self, Timed};
 use super::{CostError, views};
 use crate::cookbook;
 use crate::gpu::Gpu;
-use crate::render::{Frame, Rung, Settings};
+use crate::render::{Rung, Settings};
 use crate::scene::Scene;
 use std::fmt::Write as _;
 
@@ -28,10 +29,15 @@ const CUTS: [(&str, &str, &str); 3] = [
 /// The rungs whose frames are cut.
 const RUNGS: [&str; 3] = ["proxy-0", "proxy-1", "convex-1"];
 
-/// Times the frames, interleaved, the least of `rounds`, as a table for people.
-pub fn profile(gpu: &Gpu, rounds: u32, [width, height]: [u32; 2]) -> Result<String, CostError> {
+/// Times the frames, interleaved, the least of `rounds`, as a table for people. `progress` is told how many frames of how many are done.
+pub fn profile(
+    gpu: &Gpu,
+    rounds: u32,
+    [width, height]: [u32; 2],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<String, CostError> {
     let scene = views::filled(&Scene::named("brilliant")?);
-    let mut frames = Vec::new();
+    let (mut places, mut timed) = (Vec::new(), Vec::new());
     for (row, (_, right, cut)) in CUTS.iter().enumerate() {
         for (column, name) in RUNGS.iter().enumerate() {
             let Ok(rung) = name.parse::<Rung>() else { continue };
@@ -41,22 +47,12 @@ pub fn profile(gpu: &Gpu, rounds: u32, [width, height]: [u32; 2]) -> Result<Stri
                 continue;
             }
             let settings = Settings { rung, samples: 1, ..Settings::of_size(width, height) };
-            let frame = Frame::of_source(
-                gpu,
-                &scene,
-                &settings,
-                &if right.is_empty() { source } else { source.replace(right, cut) },
-            )?;
-            // The first frame compiles.
-            frame.run()?;
-            frames.push((row, column, frame, f64::INFINITY));
+            let source = if right.is_empty() { source } else { source.replace(right, cut) };
+            places.push((row, column));
+            timed.push(Timed { settings, scene: &scene, source });
         }
     }
-    for _ in 0..rounds {
-        for (.., frame, least) in &mut frames {
-            *least = least.min(frame.run()?.total.as_secs_f64() * 1e3);
-        }
-    }
+    let timings = timing::time(gpu, &timed, rounds, progress)?;
     let mut text = format!("{}, {width}x{height}, least of {rounds} interleaved rounds, ms\n{:52}", gpu.describe(), "");
     for name in RUNGS {
         let _ = write!(text, "{name:>10}");
@@ -64,8 +60,8 @@ pub fn profile(gpu: &Gpu, rounds: u32, [width, height]: [u32; 2]) -> Result<Stri
     for (row, (what, ..)) in CUTS.iter().enumerate() {
         let _ = write!(text, "\n{what:52}");
         for column in 0..RUNGS.len() {
-            let found = frames.iter().find(|frame| (frame.0, frame.1) == (row, column));
-            let _ = write!(text, "{:>10}", found.map_or(String::new(), |frame| format!("{:.1}", frame.3)));
+            let found = places.iter().position(|place| *place == (row, column));
+            let _ = write!(text, "{:>10}", found.map_or(String::new(), |k| format!("{:.1}", timings[k].ms)));
         }
     }
     Ok(text)

@@ -26,15 +26,9 @@ fn ladder(text: &mut String, report: &Report) {
         "{:26} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8}",
         "rung", "ms", "x proxy", "flip", "rmse", "energy", "SPIR-V", "bytes", "us CPU"
     );
-    let proxy = report.rungs.iter().find(|rung| rung.rung == "proxy-1").and_then(|rung| rung.timing);
     for rung in &report.rungs {
-        let ms = rung
-            .timing
-            .map_or("-".to_owned(), |timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" }));
-        let ratio = match (rung.timing, proxy) {
-            (Some(timing), Some(proxy)) => format!("{:.2}", timing.ms / proxy.ms),
-            _ => "-".to_owned(),
-        };
+        let ms = rung.milliseconds();
+        let ratio = report.ratio(&rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}"));
         let cpu = rung.timing.map_or("-".to_owned(), |timing| format!("{:.0}", timing.encode_us));
         let instructions = format!("{}+{}", rung.vertex_instructions, rung.fragment_instructions);
         let _ = writeln!(
@@ -107,15 +101,8 @@ fn choices(text: &mut String, choices: &[Choice]) {
     }
     let _ = writeln!(text, "\nHow a ray ends, means over the views");
     let _ = writeln!(text, "{:20} {:28} {:>8} {:>8} {:>8}", "rung", "choice", "flip", "rmse", "energy");
-    let mut seen: Vec<(&str, &str)> = Vec::new();
-    for choice in choices {
-        let key = (choice.rung.as_str(), choice.choice.as_str());
-        if seen.contains(&key) {
-            continue;
-        }
-        seen.push(key);
-        let [flip, rmse, energy] = Choice::means(choices, key);
-        let _ = writeln!(text, "{:20} {:28} {flip:>8.4} {rmse:>8.4} {energy:>+8.4}", key.0, key.1);
+    for (rung, choice, [flip, rmse, energy]) in Choice::means(choices) {
+        let _ = writeln!(text, "{rung:20} {choice:28} {flip:>8.4} {rmse:>8.4} {energy:>+8.4}");
     }
 }
 

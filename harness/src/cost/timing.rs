@@ -32,6 +32,8 @@ pub struct Timed<'a> {
     pub settings: Settings,
     /// What.
     pub scene: &'a Scene,
+    /// The composed recipe of the settings' rung, or another text of it.
+    pub source: String,
 }
 
 /// Times all of them, round by round. `progress` is told how many frames of how many are done.
@@ -46,7 +48,7 @@ pub fn time(
     for (done, timed) in (1..).zip(timed) {
         let Settings { width, height, .. } = timed.settings;
         let reduced = Settings { width: width / REDUCTION, height: height / REDUCTION, ..timed.settings.clone() };
-        let small = Frame::new(gpu, timed.scene, &reduced)?;
+        let small = Frame::of_source(gpu, timed.scene, &reduced, &timed.source)?;
         // The first frame compiles.
         small.run()?;
         let pixels = f64::from(width * height) / f64::from(reduced.width * reduced.height);
@@ -54,7 +56,7 @@ pub fn time(
         frames.push(if whole > SLOW {
             (small, 1.0 / pixels)
         } else {
-            let frame = Frame::new(gpu, timed.scene, &timed.settings)?;
+            let frame = Frame::of_source(gpu, timed.scene, &timed.settings, &timed.source)?;
             frame.run()?;
             (frame, 1.0)
         });

@@ -19,7 +19,7 @@ mod view;
 
 pub use geometry::Geometry;
 
-use crate::render::{Environment, LARGEST_SIDE};
+use crate::render::{Environment, LARGEST_SIDE, SAMPLES};
 use crate::scene::{Object, Scene};
 use geometry::Bodies;
 use glam::DVec3;
@@ -30,6 +30,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Surroundings};
 use view::View;
 
+/// Wavelengths where nothing else is asked for.
+pub const WAVELENGTHS: usize = 31;
+/// The energy bound where nothing else is asked for.
+pub const ENERGY_BOUND: f64 = 1e-4;
 /// The most wavelengths of a spectrum.
 pub const MOST_WAVELENGTHS: usize = 301;
 /// The most samples along each side of a pixel.
@@ -64,9 +68,9 @@ impl Settings<'static> {
             width,
             height,
             window: None,
-            wavelengths: 31,
-            samples: 4,
-            energy_bound: 1e-4,
+            wavelengths: WAVELENGTHS,
+            samples: SAMPLES,
+            energy_bound: ENERGY_BOUND,
             environment: &Environment::Studio,
             geometry: Geometry::Planes,
         }

@@ -90,8 +90,8 @@ impl Settings {
             deferred: false,
             environment: Environment::Studio,
             exposure: 1.0,
-            wavelengths: 31,
-            energy_bound: 1e-4,
+            wavelengths: reference::WAVELENGTHS,
+            energy_bound: reference::ENERGY_BOUND,
         }
     }
 }

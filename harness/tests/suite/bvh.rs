@@ -4,13 +4,10 @@
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
 use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
-use lapidary_harness::cookbook;
-use lapidary_harness::dispatch;
+use lapidary_harness::dispatch::{self, Binding, RecipeRun};
 use lapidary_harness::gpu::Gpu;
 use lapidary_harness::property::draws::{Domain, Draws};
 use lapidary_harness::scene::{Bvh, Mesh, Scene};
-use std::borrow::Cow;
-use wgpu::util::DeviceExt as _;
 
 /// Rays a body.
 const RAYS: usize = 16_384;
@@ -111,8 +108,6 @@ impl Body {
 
 /// Runs the recipe over `queries`.
 fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) -> Vec<BvhTraceHit> {
-    let source = cookbook::recipe_source("trace");
-    let (module, _) = dispatch::parse(&source, "recipe trace").unwrap_or_else(|error| panic!("{error}"));
     let words: Vec<[u32; 8]> = queries
         .iter()
         .map(|query| {
@@ -121,62 +116,21 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
             [x, y, z, query.left, u, v, w, 0]
         })
         .collect();
+    let mesh = [
+        Binding::Storage(bytemuck::cast_slice(&body.bvh.nodes)),
+        Binding::Storage(bytemuck::cast_slice(&body.mesh.positions)),
+        Binding::Storage(bytemuck::cast_slice(&body.bvh.indices)),
+    ];
     // Distance, padding, weights, triangle, padding.
-    let bytes = (queries.len() * 24) as u64;
-    let readback = gpu.guarded("tracing rays", |device| {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("trace"),
-            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("trace"),
-            layout: None,
-            module: &module,
-            entry_point: Some("trace_rays"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-            cache: None,
-        });
-        let storage = |contents: &[u8]| {
-            let usage = wgpu::BufferUsages::STORAGE;
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-        };
-        let empty = |usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size: bytes, usage, mapped_at_creation: false })
-        };
-        let hits = empty(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let readback = empty(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        let mesh = [
-            storage(bytemuck::cast_slice(&body.bvh.nodes)),
-            storage(bytemuck::cast_slice(&body.mesh.positions)),
-            storage(bytemuck::cast_slice(&body.bvh.indices)),
-        ];
-        let rays = [storage(bytemuck::cast_slice(&words)), hits.clone()];
-        let group = |index: u32, buffers: &[wgpu::Buffer]| {
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-                .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-                .collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &pipeline.get_bind_group_layout(index),
-                entries: &entries,
-            })
-        };
-        let groups = [group(0, &mesh), group(1, &rays)];
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &groups[0], &[]);
-            pass.set_bind_group(1, &groups[1], &[]);
-            pass.dispatch_workgroups(queries.len().div_ceil(64) as u32, 1, 1);
-        }
-        encoder.copy_buffer_to_buffer(&hits, 0, &readback, 0, bytes);
-        gpu.queue.submit([encoder.finish()]);
-        readback
-    });
-    let readback = readback.unwrap_or_else(|error| panic!("{error}"));
-    let hits = gpu.read_back(&readback, bytes, |bytes| {
+    let rays = [Binding::Storage(bytemuck::cast_slice(&words)), Binding::Result((queries.len() * 24) as u64)];
+    let run = RecipeRun {
+        recipe: "trace",
+        entry: "trace_rays",
+        constants,
+        bindings: &[&mesh, &rays],
+        workgroups: [queries.len().div_ceil(64) as u32, 1, 1],
+    };
+    let hits = dispatch::run_recipe(gpu, &run, |bytes| {
         let words: &[[u32; 6]] = bytemuck::cast_slice(bytes);
         words
             .iter()
