@@ -10,6 +10,7 @@ use super::{Averaging, Camera, Material, Mesh, Object, Scene, SceneError, gltf, 
 
 mod materials;
 mod prisms;
+mod translucent;
 
 /// A scene that needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +22,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 15] = [
+pub const BUILT_IN: [BuiltIn; 24] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -104,6 +105,29 @@ pub const BUILT_IN: [BuiltIn; 15] = [
         name: "brilliant_plain",
         description: "The diamond with the plain average of the facets' normals at each vertex, as many exporters write it.",
     },
+    BuiltIn {
+        name: "skin",
+        description: "Five spheres of human skin, with radii of 40, 24, 14, 8 and 5 mm, lit from the left: the smaller \
+            the sphere, the further light creeps round into the shadow, and red further than blue.",
+    },
+    BuiltIn { name: "skin_ring", description: "A ring of human skin, lit by a sun and two lamps." },
+    BuiltIn { name: "skin_bunny", description: "The Stanford bunny, 60 mm high, of human skin, in one light." },
+    BuiltIn {
+        name: "wax",
+        description: "Five spheres of wax, with radii of 40, 24, 14, 8 and 5 mm, lit from the left. Wax scatters all \
+            colours alike.",
+    },
+    BuiltIn { name: "wax_ring", description: "A ring of wax, lit by a sun and two lamps." },
+    BuiltIn { name: "wax_bunny", description: "The Stanford bunny, 60 mm high, of wax, in one light." },
+    BuiltIn {
+        name: "jade",
+        description: "Five polished spheres of green jade, with radii of 40, 24, 14, 8 and 5 mm, lit from the left.",
+    },
+    BuiltIn { name: "jade_ring", description: "A polished ring of green jade, lit by a sun and two lamps." },
+    BuiltIn {
+        name: "jade_bunny",
+        description: "The Stanford bunny, 60 mm high, of polished green jade, in one light.",
+    },
 ];
 
 /// The names of all built-in scenes, as a list for a message.
@@ -145,6 +169,9 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "brilliant_strip" => diamond(name, Averaging::default(), Triangulation::Strip),
         "brilliant_sliver" => diamond(name, Averaging::default(), Triangulation::Sliver),
         "brilliant_area" => diamond(name, Averaging::Area, Triangulation::Centroid),
+        "skin" | "wax" | "jade" => Ok(translucent::spheres(name)),
+        "skin_ring" | "wax_ring" | "jade_ring" => Ok(translucent::ring(name)),
+        "skin_bunny" | "wax_bunny" | "jade_bunny" => translucent::bunny(name),
         "brilliant_plain" => diamond(name, Averaging::Plain, Triangulation::Centroid),
         _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }
@@ -181,7 +208,7 @@ fn bunny(name: &str) -> Result<Scene, SceneError> {
 
 fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     let camera = Camera::framing(vertices(&objects), toward_eye, VERTICAL_FOV);
-    Scene { name: name.to_owned(), objects, camera }
+    Scene { name: name.to_owned(), objects, lights: Vec::new(), camera }
 }
 
 pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {

@@ -221,7 +221,7 @@ fn material(material: &Material, thickness: f32) -> Value {
         "pbrMetallicRoughness": {
             "baseColorFactor": material.base_color.extend(1.0).to_array(),
             "metallicFactor": 0.0,
-            "roughnessFactor": 0.0,
+            "roughnessFactor": material.roughness,
         },
         "extensions": {
             "KHR_materials_ior": {"ior": material.ior},

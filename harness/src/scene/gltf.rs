@@ -111,7 +111,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
             Camera::framing(vertices(&objects), toward_eye, vertical_fov)
         }
     };
-    Ok(Scene { name: shown.name, objects, camera })
+    Ok(Scene { name: shown.name, objects, lights: Vec::new(), camera })
 }
 
 fn check_asset(root: &Root) -> Result<(), GltfError> {

@@ -19,6 +19,23 @@ pub struct Material {
     pub attenuation_color: Vec3,
     /// In world units, above 0 and no subnormal number; infinite where the body absorbs nothing.
     pub attenuation_distance: f32,
+    /// Of the surface, 0 (a mirror) to 1, as glTF has it: its square is the width of the microfacets' slopes.
+    pub roughness: f32,
+    /// Of the curvature-dependent reflectance function: the Gaussian's width in radians is this times the curvature. In world units,
+    /// for red, green and blue, at least 0 and finite. `None` where the material does not say.
+    pub sigma0: Option<Vec3>,
+    /// How the inside scatters light; `None` where the material does not say.
+    pub medium: Option<Medium>,
+}
+
+/// Matter that scatters light to all sides alike: what is left of forward scattering after similarity theory. Per unit of length, for red,
+/// green and blue, at least 0 and finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Medium {
+    /// Reduced scattering coefficient.
+    pub scattering: Vec3,
+    /// Absorption coefficient.
+    pub absorption: Vec3,
 }
 
 /// How a refractive index depends on the wavelength.
@@ -119,6 +136,9 @@ impl Material {
             dispersion: Dispersion::None,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
+            roughness: 1.0,
+            sigma0: None,
+            medium: None,
         }
     }
 
@@ -130,6 +150,7 @@ impl Material {
     pub fn problem(&self) -> Option<&'static str> {
         // Written so that NaN breaks every promise.
         let is_color = |color: Vec3| color.to_array().iter().all(|part| (0.0..=1.0).contains(part));
+        let is_length = |length: Vec3| length.is_finite() && length.cmpge(Vec3::ZERO).all();
         let disperses = match self.dispersion {
             Dispersion::None => true,
             Dispersion::Abbe(dispersion) => dispersion > 0.0 && dispersion.is_finite(),
@@ -148,6 +169,12 @@ impl Material {
             Some("its material's attenuation colour has a part outside 0 to 1; mend it")
         } else if !(f32::MIN_POSITIVE..).contains(&self.attenuation_distance) {
             Some("its material's attenuation distance is not above 0; mend it")
+        } else if !(0.0..=1.0).contains(&self.roughness) {
+            Some("its material's roughness is not between 0 and 1; mend it")
+        } else if !self.sigma0.is_none_or(is_length) {
+            Some("its material's sigma0 is not finite and at least 0; mend it")
+        } else if !self.medium.is_none_or(|medium| is_length(medium.scattering) && is_length(medium.absorption)) {
+            Some("its material's scattering or absorption is not finite and at least 0; mend it")
         } else {
             None
         }

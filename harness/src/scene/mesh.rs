@@ -1,12 +1,12 @@
 //! A triangle mesh in world space.
 
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec2, Vec3};
 
 use super::normals::{Averaging, shared_normals};
 
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
 ///
-/// The loader and the cuts of this crate always give meshes whose three parts fit together:
+/// The loader and the cuts of this crate always give meshes whose parts fit together:
 /// `normals` is as long as `positions`, every normal has unit length, `indices` is a multiple of
 /// three long and every index is below `positions.len()`. Triangles wind counter-clockwise seen
 /// from outside.
@@ -16,6 +16,8 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// A unit normal for each position, pointing out of the body.
     pub normals: Vec<Vec3>,
+    /// Texture coordinates for each position, v down as in glTF; empty where there are none.
+    pub uvs: Vec<Vec2>,
     /// Three indices into `positions` for each triangle.
     pub indices: Vec<u32>,
 }
@@ -26,7 +28,7 @@ impl Mesh {
     #[must_use]
     pub fn with_shared_normals(positions: Vec<Vec3>, indices: Vec<u32>, averaging: Averaging) -> Self {
         let normals = shared_normals(&positions, &indices, averaging);
-        Self { positions, normals, indices }
+        Self { positions, normals, uvs: Vec::new(), indices }
     }
 
     /// The mesh turned by `rotation`, of unit length, and then moved by `translation`.
@@ -37,14 +39,20 @@ impl Mesh {
         Self {
             positions: self.positions.iter().map(position).collect(),
             normals: self.normals.iter().map(normal).collect(),
+            uvs: self.uvs.clone(),
             indices: self.indices.clone(),
         }
     }
 
     /// Adds the triangles of `other`, so that one draw call shows both. No vertex becomes shared: each body
-    /// keeps the normals that it had alone. Together they may have 2³² vertices.
+    /// keeps the normals that it had alone. Together they may have 2³² vertices. Texture coordinates are kept where both have them.
     pub fn append(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
+        if self.uvs.len() == self.positions.len() && other.uvs.len() == other.positions.len() {
+            self.uvs.extend(&other.uvs);
+        } else {
+            self.uvs.clear();
+        }
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
         self.indices.extend(other.indices.iter().map(|index| first + index));
@@ -77,10 +85,11 @@ impl Mesh {
         parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     }
 
-    /// The memory that the three lists hold, in bytes.
+    /// The memory that the lists hold, in bytes.
     #[must_use]
     pub fn byte_size(&self) -> u64 {
         let vectors = self.positions.len() + self.normals.len();
-        (vectors * size_of::<Vec3>() + self.indices.len() * size_of::<u32>()) as u64
+        let uvs = self.uvs.len() * size_of::<Vec2>();
+        (vectors * size_of::<Vec3>() + uvs + self.indices.len() * size_of::<u32>()) as u64
     }
 }

@@ -18,17 +18,20 @@ mod error;
 pub mod fuzz;
 pub mod glb;
 pub mod gltf;
+pub mod light;
 pub mod material;
 pub mod mesh;
 pub mod normals;
 pub mod polyhedron;
+pub mod surfaces;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::Convex;
 pub use error::SceneError;
-pub use material::{Dispersion, Material, Mineral};
+pub use light::Light;
+pub use material::{Dispersion, Material, Medium, Mineral};
 pub use mesh::Mesh;
 pub use normals::Averaging;
 
@@ -43,13 +46,15 @@ pub struct Object {
     pub material: Material,
 }
 
-/// Bodies and a camera.
+/// Bodies, lights and a camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// The built-in's name, the glTF scene's name, or the file's.
     pub name: String,
     /// The bodies, in the file's order.
     pub objects: Vec<Object>,
+    /// The lights, beside the environment.
+    pub lights: Vec<Light>,
     /// Where to look at them from.
     pub camera: Camera,
 }

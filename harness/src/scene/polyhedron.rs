@@ -182,7 +182,7 @@ impl Polyhedron {
         let mut mesh = Mesh {
             positions: self.vertices.iter().copied().map(y_up).collect(),
             normals: self.vertex_normals(averaging),
-            indices: Vec::new(),
+            ..Mesh::default()
         };
         for (face, plane) in self.faces.iter().zip(&self.planes) {
             let ring: Vec<DVec3> = face.iter().map(|&k| self.vertices[k]).collect();

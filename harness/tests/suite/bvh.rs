@@ -271,7 +271,7 @@ fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
         let place = draws.below(indices.len() as u32) as usize;
         indices[place] = u32::MAX;
     }
-    Mesh { normals: vec![Vec3::Y; positions.len()], positions, indices }
+    Mesh { normals: vec![Vec3::Y; positions.len()], positions, indices, ..Mesh::default() }
 }
 
 /// What a shader relies on.
@@ -328,7 +328,7 @@ fn many_equal_triangles_still_fit_the_stack() {
     let count = 20_000;
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y].repeat(count);
     let indices = (0..3 * count as u32).collect();
-    let mesh = Mesh { normals: vec![Vec3::Z; positions.len()], positions, indices };
+    let mesh = Mesh { normals: vec![Vec3::Z; positions.len()], positions, indices, ..Mesh::default() };
     let bvh = Bvh::build(&mesh);
     check_hierarchy(&mesh, &bvh);
     println!("{count} equal triangles: {} deep", bvh.depth());

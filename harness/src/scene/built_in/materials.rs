@@ -59,12 +59,16 @@ pub(super) fn flint_glass() -> Material {
 
 fn measured(name: &str, mineral: Mineral) -> Material {
     let dispersion = Dispersion::Sellmeier(mineral);
-    Material { name: name.to_owned(), ior: mineral.index(), dispersion, ..Material::standard() }
+    Material { name: name.to_owned(), ior: mineral.index(), dispersion, ..polished() }
 }
 
 fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
     let dispersion = Dispersion::Abbe(20.0 / abbe_number);
-    Material { name: name.to_owned(), ior, dispersion, ..Material::standard() }
+    Material { name: name.to_owned(), ior, dispersion, ..polished() }
+}
+
+fn polished() -> Material {
+    Material { roughness: 0.0, ..Material::standard() }
 }
 
 fn tinted(material: Material, color: Vec3) -> Material {

@@ -54,6 +54,11 @@ impl<'a> Materials<'a> {
 /// A material of the file, still without its name; or what is wrong with it.
 fn read(json: &JsonMaterial) -> Result<Material, String> {
     let mut material = Material::standard();
+    let roughness = json.pbr_metallic_roughness.roughness_factor.0;
+    if !(0.0..=1.0).contains(&roughness) {
+        return Err(format!("its roughnessFactor is {roughness}, but must lie from 0 to 1"));
+    }
+    material.roughness = roughness;
     let [red, green, blue, _] = json.pbr_metallic_roughness.base_color_factor.0;
     let color = [red, green, blue];
     if !color.iter().all(|part| (0.0..=1.0).contains(part)) {

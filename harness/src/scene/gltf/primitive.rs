@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
             Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
             None => shared_normals(&positions, &indices, Averaging::Angle),
         };
-        Ok(Mesh { positions, normals, indices })
+        Ok(Mesh { positions, normals, uvs: Vec::new(), indices })
     }
 
     fn attribute(&self, semantic: &Semantic) -> Result<Option<Elements<'a>>, GltfError> {

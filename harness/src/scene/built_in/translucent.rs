@@ -1,0 +1,115 @@
+//! Skin, wax and jade: spheres of falling radius, a torus and the bunny. Lengths are in millimetres.
+
+use glam::{DQuat, DVec3, Vec3};
+use std::f32::consts::PI;
+
+use super::{BUNNY, direction, framed};
+use crate::scene::surfaces::{sphere, torus};
+use crate::scene::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+
+/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): skin1.
+fn skin() -> Material {
+    scattering(
+        "skin",
+        Medium { scattering: Vec3::new(0.74, 0.88, 1.01), absorption: Vec3::new(0.032, 0.17, 0.48) },
+        Vec3::new(0.625, 0.385, 0.241),
+        Vec3::new(5.8, 3.8, 2.3),
+        (1.4, 0.45),
+    )
+}
+
+/// Bleached wax. Its coefficients are chosen by eye, between Jensen's marble and whole milk.
+fn wax() -> Material {
+    scattering(
+        "wax",
+        Medium { scattering: Vec3::new(1.2, 1.2, 1.1), absorption: Vec3::new(0.003, 0.006, 0.02) },
+        Vec3::new(0.891, 0.850, 0.735),
+        Vec3::new(4.0, 4.0, 4.1),
+        (1.44, 0.35),
+    )
+}
+
+/// Green jade (jadeite), polished. Its coefficients are chosen by eye.
+fn jade() -> Material {
+    scattering(
+        "jade",
+        Medium { scattering: Vec3::new(0.8, 1.2, 0.9), absorption: Vec3::new(0.12, 0.02, 0.08) },
+        Vec3::new(0.428, 0.745, 0.515),
+        Vec3::new(4.6, 3.9, 4.5),
+        (1.66, 0.0),
+    )
+}
+
+/// `base_color` is what a half space of the medium reflects of diffuse light, and `sigma0` the width that random walks through
+/// spheres of ten mean free paths give: docs/cdrf.md.
+fn scattering(name: &str, medium: Medium, base_color: Vec3, sigma0: Vec3, (ior, roughness): (f32, f32)) -> Material {
+    Material {
+        name: name.to_owned(),
+        base_color,
+        ior,
+        roughness,
+        sigma0: Some(sigma0),
+        medium: Some(medium),
+        ..Material::standard()
+    }
+}
+
+/// The radii of the spheres.
+const RADII: [f64; 5] = [40.0, 24.0, 14.0, 8.0, 5.0];
+
+/// The material that a scene's name begins with.
+fn material(name: &str) -> Material {
+    match name.split('_').next() {
+        Some("skin") => skin(),
+        Some("wax") => wax(),
+        _ => jade(),
+    }
+}
+
+/// The paper's picture: spheres of falling radius side by side, lit from the left.
+pub(super) fn spheres(name: &str) -> Scene {
+    let mut left = 0.0;
+    let objects = RADII.map(|radius| {
+        let centre = DVec3::new(left + radius, radius, 0.0);
+        left += 2.0 * radius + 4.0;
+        object(&format!("{radius} mm"), sphere(radius, 128).placed(DQuat::IDENTITY, centre), name)
+    });
+    Scene { lights: vec![sun(Vec3::new(-1.0, 0.35, 0.25))], ..framed(name, objects.into(), direction(90.0, 0.0)) }
+}
+
+/// A ring, with a sun, a warm lamp near its inner side and a cool one behind.
+pub(super) fn ring(name: &str) -> Scene {
+    let lights = vec![
+        sun(Vec3::new(-0.7, 0.6, 0.2)),
+        Light::Point { position: Vec3::new(4.0, 14.0, 0.0), intensity: 300.0 * Vec3::new(1.0, 0.75, 0.5) },
+        Light::Point { position: Vec3::new(45.0, 15.0, -40.0), intensity: 4000.0 * Vec3::new(0.5, 0.7, 1.0) },
+    ];
+    let mesh = torus(20.0, 7.0, 160, 64);
+    Scene { lights, ..framed(name, vec![object("ring", mesh, name)], direction(48.0, 0.0)) }
+}
+
+/// The Stanford bunny, 60 mm high, in one light.
+pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
+    let parsed = gltf::parse(BUNNY, None)?;
+    let objects = parsed.objects.into_iter().map(|found| object("bunny", sized(found.mesh, 60.0), name)).collect();
+    Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
+}
+
+/// A directional light under which a white, facing surface has radiance 1.
+fn sun(toward: Vec3) -> Light {
+    Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(PI) }
+}
+
+fn object(name: &str, mesh: Mesh, scene: &str) -> Object {
+    Object { name: name.to_owned(), mesh, material: material(scene) }
+}
+
+/// The mesh scaled to this height.
+fn sized(mut mesh: Mesh, height: f32) -> Mesh {
+    let bounds = Bounds::of(mesh.positions.iter().copied());
+    let scale = height / (bounds.max.y - bounds.min.y);
+    for position in &mut mesh.positions {
+        *position = scale * (*position - bounds.centre());
+    }
+    mesh
+}
