@@ -71,7 +71,7 @@ pub const MODULES: &[Module] = modules![
 
 /// Every recipe, in the order of their names.
 pub const RECIPES: &[Recipe] =
-    recipes!["cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
+    recipes!["cdrf_shading", "cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading", "mesh", "surroundings", "trace_nearest"];
+pub const PARTS: &[Part] = parts!["gem_shading", "lights", "mesh", "surroundings", "trace_nearest"];

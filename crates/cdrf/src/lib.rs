@@ -3,7 +3,7 @@
 
 pub mod oracle;
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 
 /// From this sigma on the Fourier series is summed, below it the form at one edge.
 pub const CDRF_SWITCH: f32 = 0.3;
@@ -156,22 +156,34 @@ pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
     accurate(cosine.acos().cos(), sigma)
 }
 
-/// The convolution, cheap.
+/// The convolution, cheap: no angle, no loop, one exponential and one division.
+#[rustfmt::skip] // a line of coefficients, as in the shader
 pub fn cheap(cosine: f32, sigma: f32) -> f32 {
-    if sigma >= CDRF_CHEAP_SWITCH {
-        return series(cosine, sigma, 4).max(0.0);
-    }
     let c = cosine.clamp(-1.0, 1.0);
-    let s = sigma.max(0.0);
-    let x = c.asin();
-    let u = deviations(x, s);
+    let s = sigma.clamp(0.0, CDRF_WIDEST);
     let v = s * s;
-    let density = normal_density(u);
-    let t = 1.0 / (1.0 + 0.33267 * u.abs());
-    let tail = density * t * (0.4361836 + t * (-0.1201676 + t * 0.937298));
-    let share = 0.5 + sign(u) * (0.5 - tail);
-    let decay = 1.0 - v * (0.5 - v * 0.125);
-    (decay * c * share + s * density * (1.0 - (x * x + 2.0 * v) / 6.0)).max(0.0)
+    let decay = (-0.5 * v).exp();
+    // From 4 standard deviations on nothing is left of the bump.
+    let u = (c.abs() / s.max(CDRF_SMALLEST)).min(4.0);
+    let still = 0.7946532 + u * (-0.24850859 + u * (-0.017165287 + u * (0.0063169101 + u * (0.0022658597 - u * 0.00038703455))));
+    let first = -0.063233062 + u * (0.033650108 + u * (0.004489035 - u * 0.036961523));
+    let second = -0.01467108 + u * (0.19967449 - u * 0.23975015);
+    let root = (still + v * (first + v * second)).max(0.0);
+    let squared = root * root;
+    let narrow = decay * c.max(0.0) + s * squared * squared;
+    let decay_squared = decay * decay;
+    let weight = decay_squared * decay_squared;
+    let weight_squared = weight * weight;
+    let weight_fourth = weight_squared * weight_squared;
+    let weight_ninth = weight_fourth * weight_fourth * weight;
+    let y = 1.0 - 2.0 * c * c;
+    let y_second = 2.0 * y * y - 1.0;
+    let y_third = 2.0 * y * y_second - y;
+    let y_fourth = 2.0 * y_second * y_second - 1.0;
+    let even = weight * (0.21220659 * y) + weight_fourth * (0.04244132 * y_second) + weight_ninth * (0.018189136 * y_third)
+        + weight_ninth * weight_fourth * weight_squared * weight * (0.010105076 * y_fourth);
+    let wide = 0.31830987 + 0.5 * decay * c - even;
+    (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).max(0.0)
 }
 
 /// The accurate convolution for a material whose channels scatter differently far.
@@ -255,6 +267,14 @@ pub fn spherical(cosine: f32, sigma: f32) -> f32 {
         moment *= (1.0 - degree) / (degree + 4.0);
     }
     sum.max(0.0)
+}
+
+/// How strongly the spherical form answers to degrees 0, 1, 2 and 4 of the light around.
+pub fn harmonic_weights(sigma: f32) -> Vec4 {
+    let s = sigma.clamp(0.0, CDRF_WIDEST);
+    let decay = (-s * s).exp();
+    let cube = decay * decay * decay;
+    Vec4::new(3.1415927, 2.0943952 * decay, 0.7853982 * cube, -0.1308997 * cube * cube * cube * decay)
 }
 
 /// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.

@@ -2,7 +2,7 @@
 //! Gauss's quadrature; where the Gaussian is wider than a radian, over the wrapped Gaussian instead. Neither closed form nor
 //! Fourier series of the shader's is used. The spherical form sums Laplace's integral for the Legendre polynomials.
 
-use glam::{DVec2, DVec3, UVec2};
+use glam::{DVec2, DVec3, DVec4, UVec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::OnceLock;
 
@@ -186,20 +186,9 @@ pub fn series(cosine: f64, sigma: f64, terms: u32) -> f64 {
     1.0 / PI + 0.5 * harmonic(1) + 2.0 / PI * even.sum::<f64>()
 }
 
-/// The cheap form's own formula, with the exact angle and the exact distribution.
+/// The convolution, which the cheap form stands for.
 pub fn cheap(cosine: f64, sigma: f64) -> f64 {
-    if sigma >= f64::from(0.35f32) {
-        return series(cosine, sigma, 4).clamp(0.0, 1.0);
-    }
-    let cosine = cosine.clamp(-1.0, 1.0);
-    if sigma <= 0.0 {
-        return cosine.max(0.0);
-    }
-    let x = cosine.asin();
-    let variance = sigma * sigma;
-    let decay = 0.5 + 0.5 * (1.0 - 0.5 * variance).powi(2);
-    let carried = sigma * density(x / sigma) * (1.0 - x * x / 6.0 - variance / 3.0);
-    (decay * cosine * normal_share(x / sigma) + carried).clamp(0.0, 1.0)
+    accurate(cosine, sigma)
 }
 
 /// Channel by channel.
@@ -281,6 +270,24 @@ pub fn spherical(cosine: f64, sigma: f64) -> f64 {
 /// Shared: the same function, for a narrow Gaussian.
 pub fn spherical_edge(cosine: f64, sigma: f64) -> f64 {
     spherical(cosine, sigma)
+}
+
+/// Funk and Hecke: 4π/(2l+1) times the Legendre coefficient of the form, the moments of the cosine integrated over the lit half.
+pub fn harmonic_weights(sigma: f64) -> DVec4 {
+    let sigma = sigma.max(0.0);
+    DVec4::from_array([0u32, 1, 2, 4].map(|l| {
+        let moment = integral(0.0, 1.0, 0.25, |c| c * legendre(l, c));
+        TAU * moment * (-0.5 * f64::from(l * (l + 1)) * sigma * sigma).exp()
+    }))
+}
+
+/// Legendre's polynomial by Bonnet's recurrence.
+fn legendre(l: u32, x: f64) -> f64 {
+    let step = |(before, last): (f64, f64), k: u32| {
+        let k = f64::from(k);
+        (last, ((2.0 * k + 1.0) * x * last - k * before) / (k + 1.0))
+    };
+    (0..l).fold((0.0, 1.0), step).1
 }
 
 /// The cosine's distance from -1, and 1 - 1 / (1 + σ).

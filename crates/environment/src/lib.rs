@@ -3,7 +3,7 @@
 
 pub mod oracle;
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _};
 
 /// Angle of the point (x, y) in turns, counterclockwise from +x, in [-1/2, 1/2].
 #[rustfmt::skip] // two lines of coefficients, as in the shader
@@ -97,6 +97,49 @@ pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     let lower = corner.floor().max(Vec2::ZERO).as_uvec2();
     let upper = (lower + 1).min(size - 1);
     EnvironmentTexels { lower, upper, weight: corner - corner.floor() }
+}
+
+/// The real spherical harmonics of a direction, orthonormal over the sphere, in each degree by order from -l to l.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentHarmonics {
+    /// Of degree 0: the same everywhere.
+    pub zeroth: f32,
+    /// Of degree 1: y, z, x.
+    pub first: Vec3,
+    /// Of degree 2.
+    pub second: [f32; 5],
+    /// Of degree 4.
+    pub fourth: [f32; 9],
+}
+
+/// Spherical harmonics as polynomials of the direction's components, z being the axis of their orders.
+pub fn harmonics(direction: Vec3) -> EnvironmentHarmonics {
+    let x = direction.x;
+    let y = direction.y;
+    let z = direction.z;
+    let xx = x * x;
+    let yy = y * y;
+    let zz = z * z;
+    let first = 0.48860252 * direction.yzx();
+    let second = [
+        1.0925485 * x * y,
+        1.0925485 * y * z,
+        0.31539157 * (3.0 * zz - 1.0),
+        1.0925485 * x * z,
+        0.54627424 * (xx - yy),
+    ];
+    let fourth = [
+        2.5033429 * x * y * (xx - yy),
+        1.7701308 * y * z * (3.0 * xx - yy),
+        0.9461747 * x * y * (7.0 * zz - 1.0),
+        0.66904655 * y * z * (7.0 * zz - 3.0),
+        0.10578555 * (zz * (35.0 * zz - 30.0) + 3.0),
+        0.66904655 * x * z * (7.0 * zz - 3.0),
+        0.47308735 * (xx - yy) * (7.0 * zz - 1.0),
+        1.7701308 * x * z * (xx - 3.0 * yy),
+        0.62583573 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy)),
+    ];
+    EnvironmentHarmonics { zeroth: 0.28209478, first, second, fourth }
 }
 
 /// How much of a rectangular, soft-edged light a direction meets, in [0, 1].

@@ -70,6 +70,53 @@ pub fn texels(uv: DVec2, size: UVec2) -> EnvironmentTexels {
     }
 }
 
+/// The mirror's struct in f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentHarmonics {
+    /// Of degree 0.
+    pub zeroth: f64,
+    /// Of degree 1: y, z, x.
+    pub first: DVec3,
+    /// Of degree 2, by order from -2 to 2.
+    pub second: [f64; 5],
+    /// Of degree 4, by order from -4 to 4.
+    pub fourth: [f64; 9],
+}
+
+/// By angles, degree by degree.
+pub fn harmonics(direction: DVec3) -> EnvironmentHarmonics {
+    EnvironmentHarmonics {
+        zeroth: harmonic(0, 0, direction),
+        first: DVec3::new(harmonic(1, -1, direction), harmonic(1, 0, direction), harmonic(1, 1, direction)),
+        second: std::array::from_fn(|k| harmonic(2, k as i32 - 2, direction)),
+        fourth: std::array::from_fn(|k| harmonic(4, k as i32 - 4, direction)),
+    }
+}
+
+/// The associated Legendre function of the polar angle, by its recurrence over the degree, without the sign of Condon and Shortley, times the
+/// cosine or sine of a multiple of the azimuth.
+fn harmonic(l: u32, m: i32, direction: DVec3) -> f64 {
+    let order = m.unsigned_abs();
+    let across = direction.truncate().length();
+    let (sine, cosine) = across.atan2(direction.z).sin_cos();
+    let mut legendre = (0..order).fold(1.0, |value, k| value * f64::from(2 * k + 1) * sine);
+    let mut before = 0.0;
+    for degree in order + 1..=l {
+        let next = (f64::from(2 * degree - 1) * cosine * legendre - f64::from(degree + order - 1) * before)
+            / f64::from(degree - order);
+        (before, legendre) = (legendre, next);
+    }
+    let factorials: f64 = (l - order + 1..=l + order).map(f64::from).product();
+    let norm = (f64::from(2 * l + 1) / (4.0 * PI) / factorials).sqrt();
+    let azimuth = direction.y.atan2(direction.x) * f64::from(order);
+    let around = match m.signum() {
+        0 => 1.0,
+        1 => 2f64.sqrt() * azimuth.cos(),
+        _ => 2f64.sqrt() * azimuth.sin(),
+    };
+    norm * legendre * around
+}
+
 /// The ray meets the light's plane, whose point nearest to the origin is `axis`; each smoothstep is the area under 6 x (1 - x), by
 /// Simpson's rule, which is exact for it.
 pub fn softbox(direction: DVec3, axis: DVec3, up: DVec3, half_size: DVec2, softness: f64) -> f64 {

@@ -28,6 +28,23 @@ impl Format {
             Self::R32Float => value,
         }
     }
+
+    /// The texture's format, and the bytes of `texels` in it; alpha, where there is one, is 1.
+    pub fn texture(self, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>) {
+        let colors = || texels.iter().flat_map(|texel| texel.extend(1.0).to_array());
+        match self {
+            Self::Rgba8 => {
+                (wgpu::TextureFormat::Rgba8Unorm, colors().map(|value| (value * 255.0).round() as u8).collect())
+            }
+            Self::Rgba16Float => {
+                let half = |value| exr::prelude::f16::from_f32(value).to_le_bytes();
+                (wgpu::TextureFormat::Rgba16Float, colors().flat_map(half).collect())
+            }
+            Self::R32Float => {
+                (wgpu::TextureFormat::R32Float, texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect())
+            }
+        }
+    }
 }
 
 /// Bakes a table of `size` on the GPU, row by row.

@@ -4,7 +4,9 @@ use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Environment, GRAMMAR, Geometry, Rung, Settings, Spectrum};
+use lapidary_harness::render::{
+    self, Curvature, Environment, GRAMMAR, Geometry, Reflectance, Rung, Settings, Spectrum,
+};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::{self, Scene};
 use std::path::PathBuf;
@@ -25,17 +27,20 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
     #[arg(
         long,
-        default_value = "proxy-4+tracker",
         value_parser = |text: &str| text.parse::<Rung>(),
-        help = format!("How much of the light's way is followed: {GRAMMAR}")
+        help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out: proxy-4+tracker, or accurate")
     )]
-    rung: Rung,
+    rung: Option<Rung>,
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
     #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
     from: Option<(f32, f32)>,
-    /// An effect that is left out though the material calls for it: absorption.
-    #[arg(long, value_name = "EFFECT", value_parser = ["absorption"])]
+    /// An effect that is left out though the scene calls for it: absorption in clear stones; environment (its light) or reflection (the
+    /// polished surface's) on what scatters light.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = ["absorption", "environment", "reflection"])]
     without: Vec<String>,
+    /// Which curvature spreads the light of what scatters it: mean, towards (each light), or naive (|dN| / |dP|).
+    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = ["mean", "towards", "naive"])]
+    curvature: String,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
     strength: f32,
@@ -88,19 +93,24 @@ fn parse_positive(text: &str) -> Result<f32, String> {
 }
 
 /// A flag that the rung does not obey would be believed to have been obeyed.
-fn refuse_what_is_ignored(arguments: &Arguments) -> Result<(), Failure> {
-    let rung = arguments.rung;
+fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung) -> Result<(), Failure> {
     let reference = rung == Rung::Reference;
     let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
     // Nothing of the recipes' way inside.
     let outside = reference || rung == Rung::Surface;
+    let diffuse = matches!(rung, Rung::Diffuse(_));
+    let blurs = diffuse && rung != Rung::Diffuse(Reflectance::Lambert);
+    let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
     let ignored = [
         ("--wavelengths", !reference && arguments.wavelengths.is_some()),
         ("--energy-bound", !reference && arguments.energy_bound.is_some()),
-        ("--without", outside && !arguments.without.is_empty()),
-        ("--rest dropped", outside && arguments.rest == "dropped"),
-        ("--distance-limit", outside && arguments.distance_limit.is_some()),
-        ("--deferred", reference && arguments.deferred),
+        ("--without absorption", (outside || diffuse) && without("absorption")),
+        ("--without environment", !diffuse && without("environment")),
+        ("--without reflection", !diffuse && without("reflection")),
+        ("--curvature", !blurs && arguments.curvature != "mean"),
+        ("--rest dropped", (outside || diffuse) && arguments.rest == "dropped"),
+        ("--distance-limit", (outside || diffuse) && arguments.distance_limit.is_some()),
+        ("--deferred", (reference || diffuse) && arguments.deferred),
         ("--centre paper", !proxy && arguments.centre == "paper"),
         ("--strength", rung.spectrum() != Spectrum::Paper && arguments.strength != 1.0),
     ];
@@ -115,7 +125,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if let Some((polar, azimuth)) = arguments.from {
         scene = scene.seen_from(polar, azimuth);
     }
-    refuse_what_is_ignored(arguments)?;
+    let rung = arguments.rung.unwrap_or_else(|| Rung::usual(&scene));
+    refuse_what_is_ignored(arguments, rung)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
     file::check_writable(&out)?;
@@ -125,10 +136,18 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     };
     let (width, height) = arguments.size;
     let usual = Settings::of_size(width, height);
+    let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
     let settings = Settings {
-        rung: arguments.rung,
+        rung,
         paper_centre: arguments.centre == "paper",
-        absorption: !arguments.without.iter().any(|effect| effect == "absorption"),
+        absorption: !without("absorption"),
+        light_from_environment: !without("environment"),
+        reflection: !without("reflection"),
+        curvature: match arguments.curvature.as_str() {
+            "towards" => Curvature::Towards,
+            "naive" => Curvature::Naive,
+            _ => Curvature::Mean,
+        },
         dispersion_strength: arguments.strength,
         rest_from_environment: arguments.rest == "environment",
         distance_limit: arguments.distance_limit,
@@ -140,7 +159,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
         ..usual
     };
-    let source = cookbook::recipe_source(arguments.rung.recipe());
+    let source = cookbook::recipe_source(rung.recipe());
     let bar = progress::bar(0, "rendering");
     let picture = render::render_with(context.gpu()?, &scene, &settings, &source, &mut |done, total| {
         bar.set_length(total);

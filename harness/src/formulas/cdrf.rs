@@ -4,7 +4,7 @@ use super::near;
 use crate::formula::{Formula, formula};
 use crate::mirror_struct;
 use crate::property::draws::Draws;
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_cdrf::{self as mirror, CdrfTexels, oracle};
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -237,9 +237,6 @@ fn rungs() -> Vec<Formula> {
             .edge("at the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH)
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
             .invariant("Lambert's law without blur", lambert_at_zero)
-            .invariant("within 2e-4 of the truth", |(c, s), reflectance: f32| {
-                near("reflectance", reflectance.into(), oracle::accurate(c.into(), s.into()), 2e-4)
-            })
             .build(),
         formula(M, "cdrf_quadrature", mirror::quadrature, oracle::quadrature, |draws| {
             let (cosine, sigma) = shading(draws);
@@ -395,6 +392,18 @@ fn others() -> Vec<Formula> {
         .edge("no blur", |(_, s)| s == 0.0)
         .edge("the terminator", |(c, s)| c == 0.0 && s > 0.0)
         .invariant("Lambert's law without blur", lambert_at_zero)
+        .build(),
+        formula(M, "cdrf_harmonic_weights", mirror::harmonic_weights, oracle::harmonic_weights, |draws| {
+            (shading(draws).1,)
+        })
+        .edge("no blur", |(s,)| s == 0.0)
+        .edge("huge", |(s,)| s > 1e18)
+        .invariant("more blur of higher degrees", |_, weights: Vec4| {
+            let all = [PI, PI / 1.5, PI / 4.0, PI / 24.0].map(|weight| weight as f32);
+            let shares = weights.abs() / Vec4::from_array(all);
+            let falling = shares.to_array().windows(2).all(|pair| f64::from(pair[1]) <= f64::from(pair[0]) + 1e-6);
+            if falling { Ok(()) } else { Err(format!("{shares}")) }
+        })
         .build(),
         formula(M, "cdrf_spherical", mirror::spherical, oracle::spherical, shading)
             .edge("no blur", |(_, s)| s == 0.0)

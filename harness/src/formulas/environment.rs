@@ -5,9 +5,11 @@ use crate::formula::{Formula, formula};
 use crate::mirror_struct;
 use crate::property::draws::Draws;
 use glam::{DVec2, UVec2, Vec2, Vec3};
-use lapidary_environment::{self as mirror, EnvironmentTexels, oracle};
+use lapidary_environment::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
+use std::f64::consts::PI;
 
 mirror_struct!(lapidary_environment, EnvironmentTexels { lower, upper, weight });
+mirror_struct!(lapidary_environment, EnvironmentHarmonics { zeroth, first, second, fourth });
 
 const M: &str = "environment";
 
@@ -326,6 +328,18 @@ fn light_formulas() -> Vec<Formula> {
         })
         .benign(1e-5)
         .build(),
+        formula(M, "environment_harmonics", mirror::harmonics, oracle::harmonics, |draws| (draws.unit_vector(),))
+            .edge("along an axis", |(d,)| d.abs().max_element() == 1.0)
+            .edge("near the orders' axis", |(d,)| d.z.abs() > 0.999 && d.z.abs() < 1.0)
+            .invariant("squares add up by degree", |_, found: EnvironmentHarmonics| {
+                let squares = |values: &[f32]| values.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>();
+                let all = [&[found.zeroth][..], &found.first.to_array(), &found.second, &found.fourth];
+                for (degree, values) in [0.0, 1.0, 2.0, 4.0].into_iter().zip(all) {
+                    near("sum", squares(values), (2.0 * degree + 1.0) / (4.0 * PI), 1e-5)?;
+                }
+                Ok(())
+            })
+            .build(),
         formula(M, "environment_dome", mirror::dome, oracle::dome, |draws| {
             let light = |draws: &mut Draws<'_>| draws.magnitude(-10, 10) * (Vec3::ONE + 0.9 * draws.in_cube());
             (draws.unit_vector(), light(draws), light(draws))

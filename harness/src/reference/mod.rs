@@ -13,7 +13,7 @@
 mod bvh;
 mod geometry;
 pub mod spectrum;
-mod surroundings;
+pub(crate) mod surroundings;
 mod trace;
 mod view;
 

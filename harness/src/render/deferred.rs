@@ -1,7 +1,7 @@
 //! The deferred way (the paper's section 4.3.4): the gem recipe fills a geometry buffer, and a lighting pass makes the picture.
 
 use super::device::{self, PipelineSource};
-use super::gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
+use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, TILE};
 use crate::gpu::Gpu;
 use glam::{Mat4, Vec3};
@@ -54,13 +54,13 @@ impl<'gpu> DeferredPass<'gpu> {
     pub(super) fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        gem: &GemPass<'_>,
+        gem: &ScenePass<'_>,
         clip_from_world: Mat4,
         eye: Vec3,
         samples: &wgpu::TextureView,
         size: [u32; 2],
     ) {
-        let target = GemTarget {
+        let target = SceneTarget {
             colors: vec![&self.emission, &self.normal, &self.reflectance],
             depth: &self.depth,
             keep_depth: true,

@@ -3,6 +3,7 @@
 use super::RenderError;
 use crate::dispatch::{self, DispatchError};
 use crate::gpu::Gpu;
+use crate::scene::Object;
 use std::borrow::Cow;
 use wgpu::util::DeviceExt as _;
 
@@ -79,6 +80,25 @@ pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::Ren
 /// A buffer with contents.
 pub(super) fn buffer(device: &wgpu::Device, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+}
+
+/// How many vertices draw `object`, whose parts are to be storage buffers.
+///
+/// # Errors
+/// Where this device cannot hold one of the parts.
+pub(super) fn mesh_vertices<'a>(
+    gpu: &Gpu,
+    object: &Object,
+    indices: &[u32],
+    parts: impl IntoIterator<Item = &'a [u8]>,
+) -> Result<u32, RenderError> {
+    let limits = gpu.device.limits();
+    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
+    if let Some(bytes) = parts.into_iter().map(|part| part.len() as u64).find(|bytes| *bytes > limit) {
+        return Err(too_large(bytes));
+    }
+    u32::try_from(indices.len()).map_err(|_| too_large(size_of_val(indices) as u64))
 }
 
 /// A uniform buffer; uniform structs are padded to 16 bytes.

@@ -1,7 +1,7 @@
 //! The display recipe's pass, and reading a tile back.
 
 use super::device::{self, PipelineSource};
-use super::gem::SAMPLE_FORMAT;
+use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, TILE, Tile};
 use crate::cookbook;
 use crate::gpu::Gpu;
@@ -46,7 +46,7 @@ impl<'gpu> DisplayPass<'gpu> {
         Ok(Self { gpu, pipeline, samples, samples_view, linear, encoded })
     }
 
-    /// What the gem pass draws to.
+    /// What the scene's pass draws to.
     pub(super) fn samples(&self) -> &wgpu::TextureView {
         &self.samples_view
     }

@@ -1,7 +1,7 @@
-//! One frame of the gem recipe alone, to be timed: drawn again and again, nothing brought back.
+//! One frame of a rung's recipe alone, to be timed: drawn again and again, nothing brought back.
 
-use super::gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
-use super::{RenderError, Settings, camera, device};
+use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::{RenderError, Settings, camera, device, scene_pass};
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
 use crate::scene::Scene;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// A scene on the device and what it is drawn to, one sample a pixel.
 pub struct Frame<'gpu> {
     gpu: &'gpu Gpu,
-    gem: GemPass<'gpu>,
+    pass: ScenePass<'gpu>,
     view: wgpu::BindGroup,
     color: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -34,7 +34,7 @@ impl<'gpu> Frame<'gpu> {
 
     /// The same of another text of the rung's recipe.
     pub fn of_source(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Self, RenderError> {
-        let gem = GemPass::new(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT])?;
+        let pass = scene_pass(gpu, scene, settings, source)?;
         let size = [settings.width, settings.height];
         let [color, depth] = gpu.guarded("allocating a frame", |device| {
             [SAMPLE_FORMAT, DEPTH_FORMAT]
@@ -42,16 +42,16 @@ impl<'gpu> Frame<'gpu> {
         })?;
         let matrix =
             camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
-        let view = gem.view(matrix, scene.camera.eye);
-        Ok(Self { gpu, gem, view, color, depth, size })
+        let view = pass.view(matrix, scene.camera.eye);
+        Ok(Self { gpu, pass, view, color, depth, size })
     }
 
     /// Draws it once and waits.
     pub fn run(&self) -> Result<FrameTime, RenderError> {
         let start = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let target = GemTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
-        self.gem.draw(&mut encoder, &self.view, &target);
+        let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
+        self.pass.draw(&mut encoder, &self.view, &target);
         self.gpu.queue.submit([encoder.finish()]);
         let encode = start.elapsed();
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
@@ -61,6 +61,6 @@ impl<'gpu> Frame<'gpu> {
 
     /// How many draw calls it takes.
     pub fn draw_calls(&self) -> usize {
-        self.gem.draw_calls()
+        self.pass.draw_calls()
     }
 }

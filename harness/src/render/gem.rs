@@ -1,34 +1,10 @@
-//! The gem recipe's pass: stones on the device, and drawing them.
+//! The gem recipes' pass.
 
 use super::device::{self, PipelineSource};
-use super::stone::Stone;
-use super::{Environment, Geometry, RenderError, Rung, Settings, Spectrum};
+use super::pass::{Body, DEPTH_FORMAT, ScenePass, Shared};
+use super::{Environment, Geometry, RenderError, Rung, Settings, Spectrum, stone};
 use crate::gpu::Gpu;
 use crate::scene::Scene;
-use glam::{Mat4, Vec3};
-
-/// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.
-pub(super) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// Of the depth buffer.
-pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// A compiled recipe and the scene's stones.
-pub(super) struct GemPass<'gpu> {
-    gpu: &'gpu Gpu,
-    pipeline: wgpu::RenderPipeline,
-    environment: wgpu::TextureView,
-    stones: Vec<Stone>,
-}
-
-/// What a pass draws to.
-pub(super) struct GemTarget<'a> {
-    pub(super) colors: Vec<&'a wgpu::TextureView>,
-    pub(super) depth: &'a wgpu::TextureView,
-    /// Whether the depth is wanted afterwards.
-    pub(super) keep_depth: bool,
-    /// In texels, from the upper left corner.
-    pub(super) size: [u32; 2],
-}
 
 /// The overrides of the gem recipes for these settings.
 pub(crate) fn constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
@@ -59,68 +35,28 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str
     ]
 }
 
-impl<'gpu> GemPass<'gpu> {
-    /// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, and uploads the scene.
-    pub(super) fn new(
-        gpu: &'gpu Gpu,
-        scene: &Scene,
-        settings: &Settings,
-        source: &str,
-        fragment: &str,
-        formats: &[wgpu::TextureFormat],
-    ) -> Result<Self, RenderError> {
-        let pipeline = device::pipeline(
-            gpu,
-            &PipelineSource {
-                recipe: settings.rung.recipe(),
-                source,
-                entries: ["gem_vertex", fragment],
-                constants: &constants(scene, settings),
-                formats,
-                depth: Some(DEPTH_FORMAT),
-            },
-        )?;
-        let environment = super::environment::texture(gpu, &settings.environment)?;
-        let stones: Result<Vec<Stone>, RenderError> =
-            scene.objects.iter().map(|object| Stone::upload(gpu, &pipeline, object, settings)).collect();
-        Ok(Self { gpu, pipeline, environment, stones: stones? })
-    }
-
-    /// The recipe's view: group 0.
-    pub(super) fn view(&self, clip_from_world: Mat4, eye: Vec3) -> wgpu::BindGroup {
-        let device = &self.gpu.device;
-        let mut values = clip_from_world.to_cols_array().to_vec();
-        values.extend(eye.to_array());
-        let uniform = device::uniform(device, &values);
-        let resources = vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.environment)];
-        device::bind_group(device, &self.pipeline, 0, resources)
-    }
-
-    /// Draws the stones: one draw call for each object.
-    pub(super) fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, target: &GemTarget<'_>) {
-        let colors: Vec<_> = target.colors.iter().map(|view| device::cleared(view)).collect();
-        let store = if target.keep_depth { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("gem"),
-            color_attachments: &colors,
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: target.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store }),
-                stencil_ops: None,
-            }),
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        let [width, height] = target.size;
-        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, view, &[]);
-        for stone in &self.stones {
-            stone.draw(&mut pass);
-        }
-    }
-
-    /// How many draw calls a frame takes.
-    pub(super) fn draw_calls(&self) -> usize {
-        self.stones.len()
-    }
+/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, and uploads the scene's stones.
+pub(super) fn pass<'gpu>(
+    gpu: &'gpu Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    source: &str,
+    fragment: &str,
+    formats: &[wgpu::TextureFormat],
+) -> Result<ScenePass<'gpu>, RenderError> {
+    let pipeline = device::pipeline(
+        gpu,
+        &PipelineSource {
+            recipe: settings.rung.recipe(),
+            source,
+            entries: ["gem_vertex", fragment],
+            constants: &constants(scene, settings),
+            formats,
+            depth: Some(DEPTH_FORMAT),
+        },
+    )?;
+    let shared = vec![Shared::Texture(super::environment::texture(gpu, &settings.environment)?)];
+    let bodies: Result<Vec<Body>, RenderError> =
+        scene.objects.iter().map(|object| stone::upload(gpu, &pipeline, object, settings)).collect();
+    Ok(ScenePass { gpu, pipeline, shared, bodies: bodies? })
 }

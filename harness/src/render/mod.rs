@@ -1,4 +1,4 @@
-//! A scene to a picture: the rung's gem recipe over tiles, supersampled, then the display recipe; or the reference.
+//! A scene to a picture: the rung's recipe over tiles, supersampled, then the display recipe; or the reference.
 
 mod camera;
 mod deferred;
@@ -8,8 +8,12 @@ mod environment;
 pub mod file;
 mod frame;
 mod gem;
+mod harmonics;
+mod pass;
+mod reflectance;
 mod rung;
 mod stone;
+mod translucent;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
@@ -20,7 +24,8 @@ use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
 pub(crate) use gem::constants;
-use gem::{DEPTH_FORMAT, GemPass, GemTarget, SAMPLE_FORMAT};
+use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 use std::sync::Mutex;
 pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
@@ -64,6 +69,12 @@ pub struct Settings {
     pub distance_limit: Option<f32>,
     /// By a geometry buffer and a lighting pass instead of in one.
     pub deferred: bool,
+    /// What scatters light is lit by the environment too, not by the scene's lights alone.
+    pub light_from_environment: bool,
+    /// A polished surface of what scatters light mirrors the environment.
+    pub reflection: bool,
+    /// Which curvature spreads the light of what scatters it.
+    pub curvature: Curvature,
     /// The light around the scene.
     pub environment: Environment,
     /// Radiance is multiplied by this before the tone curve.
@@ -88,6 +99,9 @@ impl Settings {
             rest_from_environment: true,
             distance_limit: None,
             deferred: false,
+            light_from_environment: true,
+            reflection: true,
+            curvature: Curvature::Mean,
             environment: Environment::Studio,
             exposure: 1.0,
             wavelengths: reference::WAVELENGTHS,
@@ -153,6 +167,19 @@ pub enum RenderError {
         /// What the driver allows.
         limit: u64,
     },
+    /// A material that a rung for scattering cannot draw.
+    #[error(
+        "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \
+         rung for clear stones"
+    )]
+    NoSigma0 {
+        /// The object's name.
+        object: String,
+        /// The material's.
+        material: String,
+        /// Which rung.
+        rung: Rung,
+    },
     /// The reference refuses.
     #[error(transparent)]
     Reference(#[from] reference::ReferenceError),
@@ -205,11 +232,12 @@ fn render_from(
     }
     let display = DisplayPass::new(gpu, settings.samples)?;
     let deferred = settings.deferred.then(|| DeferredPass::new(gpu, settings, composite)).transpose()?;
-    let (fragment, formats): (&str, &[_]) = match deferred {
-        Some(_) => ("gem_deferred_fragment", &[deferred::GEOMETRY_FORMAT; deferred::TARGETS]),
-        None => ("gem_fragment", &[SAMPLE_FORMAT]),
+    let pass = if deferred.is_some() {
+        let formats = [deferred::GEOMETRY_FORMAT; deferred::TARGETS];
+        gem::pass(gpu, scene, settings, source, "gem_deferred_fragment", &formats)?
+    } else {
+        scene_pass(gpu, scene, settings, source)?
     };
-    let gem = GemPass::new(gpu, scene, settings, source, fragment, formats)?;
     let depth = gpu.guarded("allocating a tile", |device| {
         let size = [TILE * settings.samples; 2];
         device::view(&device::target(device, size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
@@ -222,10 +250,10 @@ fn render_from(
         let encoder = gpu.guarded("rendering a tile", |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             if let Some(deferred) = &deferred {
-                deferred.draw(&mut encoder, &gem, clip_from_world, eye, display.samples(), size);
+                deferred.draw(&mut encoder, &pass, clip_from_world, eye, display.samples(), size);
             } else {
-                let target = GemTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
-                gem.draw(&mut encoder, &gem.view(clip_from_world, eye), &target);
+                let target = SceneTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
+                pass.draw(&mut encoder, &pass.view(clip_from_world, eye), &target);
             }
             encoder
         })?;
@@ -233,6 +261,19 @@ fn render_from(
         progress(done, tiles.len() as u64);
     }
     Ok(picture)
+}
+
+/// The pass of the settings' rung, in one go.
+fn scene_pass<'gpu>(
+    gpu: &'gpu Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    source: &str,
+) -> Result<ScenePass<'gpu>, RenderError> {
+    match settings.rung {
+        Rung::Diffuse(reflectance) => translucent::pass(gpu, scene, settings, reflectance, source),
+        _ => gem::pass(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT]),
+    }
 }
 
 /// What the reference sees of `scene`, by the settings' size, samples and environment.

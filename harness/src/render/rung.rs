@@ -1,6 +1,8 @@
 //! The ladder's rungs: how much of the light's way is followed.
 
+use super::reflectance::{REFLECTANCES, Reflectance};
 use crate::nearest;
+use crate::scene::Scene;
 use std::fmt;
 use std::str::FromStr;
 
@@ -18,7 +20,9 @@ pub enum Rung {
         /// How dispersion is followed.
         spectrum: Spectrum,
     },
-    /// The spectral reference, on the CPU in f64.
+    /// Light scattered below the surface, by what the surface sends back.
+    Diffuse(Reflectance),
+    /// The reference, on the CPU in f64: spectral for clear stones, random walks for what scatters.
     Reference,
 }
 
@@ -53,7 +57,7 @@ pub const MOST_HITS: u32 = 64;
 /// Most wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs that are offered when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 16] = [
+pub const NAMES: [&str; 25] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -69,11 +73,21 @@ pub const NAMES: [&str; 16] = [
     "convex-8+31",
     "triangles-1",
     "bvh-8",
+    "lambert",
+    "wrap",
+    "table-256-rgba8",
+    "table-257-rgba16f",
+    "table-257-r32f",
+    "cheap",
+    "accurate",
+    "quadrature",
+    "spherical",
     "reference",
 ];
 /// How a rung is written, for messages and help.
-pub const GRAMMAR: &str =
-    "surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as convex-8+31, or reference";
+pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
+     convex-8+31; for what scatters light lambert, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
+     quadrature, spherical; for both reference";
 
 const GEOMETRIES: [(&str, Geometry); 4] = [
     ("proxy", Geometry::Proxy),
@@ -86,11 +100,20 @@ impl Rung {
     /// The paper's rung: the proxy, one internal hit, no dispersion.
     pub const PAPER: Self = Self::Inside { geometry: Geometry::Proxy, hits: 1, spectrum: Spectrum::One };
 
+    /// The rung for a scene where none is asked for: the accurate reflectance where something scatters light, else the proxy.
+    pub fn usual(scene: &Scene) -> Self {
+        if scene.objects.iter().any(|object| object.material.sigma0.is_some()) {
+            return Self::Diffuse(Reflectance::Accurate);
+        }
+        Self::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker }
+    }
+
     /// The recipe that draws it.
     pub fn recipe(self) -> &'static str {
         match self {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
+            Self::Diffuse(_) => "cdrf_shading",
             Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => "gem",
         }
     }
@@ -113,8 +136,11 @@ impl Rung {
 
 impl fmt::Display for Rung {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::Inside { geometry, hits, spectrum } = self else {
-            return f.write_str(if *self == Self::Surface { "surface" } else { "reference" });
+        let (geometry, hits, spectrum) = match self {
+            Self::Inside { geometry, hits, spectrum } => (geometry, hits, spectrum),
+            Self::Surface => return f.write_str("surface"),
+            Self::Diffuse(reflectance) => return f.write_str(reflectance.name()),
+            Self::Reference => return f.write_str("reference"),
         };
         let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);
         write!(f, "{name}-{hits}")?;
@@ -135,6 +161,9 @@ impl FromStr for Rung {
             "surface" => return Ok(Self::Surface),
             "reference" => return Ok(Self::Reference),
             _ => {}
+        }
+        if let Some((_, reflectance)) = REFLECTANCES.iter().find(|(name, _)| *name == text) {
+            return Ok(Self::Diffuse(*reflectance));
         }
         let unknown = || format!("no such rung{}; a rung is {GRAMMAR}", nearest::suggest(text, &NAMES));
         let (way, spectrum) = text.split_once('+').map_or((text, None), |(way, spectrum)| (way, Some(spectrum)));

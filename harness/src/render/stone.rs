@@ -1,6 +1,7 @@
-//! One object on the device: its material, its mesh, and what its rung's geometry needs besides.
+//! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{bind_group, buffer, uniform};
+use super::device::{bind_group, buffer, mesh_vertices, uniform};
+use super::pass::Body;
 use super::{Geometry, RenderError, Rung, Settings, Spectrum};
 use crate::gpu::Gpu;
 use crate::reference::spectrum;
@@ -9,64 +10,36 @@ use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use std::borrow::Cow;
 
-/// One object's bind groups and how many vertices to draw.
-pub(super) struct Stone {
-    /// Group 1, then group 2 where the recipe has one.
-    groups: Vec<wgpu::BindGroup>,
-    vertices: u32,
-}
-
-impl Stone {
-    /// Sends an object to the device.
-    pub(super) fn upload(
-        gpu: &Gpu,
-        pipeline: &wgpu::RenderPipeline,
-        object: &Object,
-        settings: &Settings,
-    ) -> Result<Self, RenderError> {
-        let mesh = &object.mesh;
-        let Geometries { indices, own, steps } = Geometries::of(object, settings)?;
-        check_steps(gpu, settings.rung, steps)?;
-        let shared = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices)];
-        let limits = gpu.device.limits();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
-        let sizes = shared.iter().map(|part| part.len()).chain(own.iter().map(|part| part.len()));
-        if let Some(bytes) = sizes.map(|bytes| bytes as u64).find(|bytes| *bytes > limit) {
-            return Err(too_large(bytes));
+/// Sends an object to the device.
+pub(super) fn upload(
+    gpu: &Gpu,
+    pipeline: &wgpu::RenderPipeline,
+    object: &Object,
+    settings: &Settings,
+) -> Result<Body, RenderError> {
+    let mesh = &object.mesh;
+    let Geometries { indices, own, steps } = Geometries::of(object, settings)?;
+    check_steps(gpu, settings.rung, steps)?;
+    let material = material(&object.material, settings);
+    let wavelengths = wavelengths(&object.material, settings.rung.spectrum());
+    let shared: [&[u8]; 3] =
+        [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices), bytemuck::cast_slice(&wavelengths)];
+    let vertices = mesh_vertices(gpu, object, &indices, shared.into_iter().chain(own.iter().map(|part| &part[..])))?;
+    let groups = gpu.guarded("uploading a mesh", |device| {
+        let storage = |contents: &[u8]| buffer(device, contents, wgpu::BufferUsages::STORAGE);
+        let first: Vec<wgpu::Buffer> = std::iter::once(uniform(device, &material)).chain(shared.map(storage)).collect();
+        let second: Vec<wgpu::Buffer> = own.iter().map(|part| storage(part)).collect();
+        let bind = |group: u32, buffers: &[wgpu::Buffer]| {
+            let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
+            bind_group(device, pipeline, group, resources)
+        };
+        let mut groups = vec![bind(1, &first)];
+        if !second.is_empty() {
+            groups.push(bind(2, &second));
         }
-        let vertices = u32::try_from(indices.len()).map_err(|_| too_large(shared[1].len() as u64))?;
-        let material = material(&object.material, settings);
-        let wavelengths = wavelengths(&object.material, settings.rung.spectrum());
-        let groups = gpu.guarded("uploading a mesh", |device| {
-            let storage = |contents: &[u8]| buffer(device, contents, wgpu::BufferUsages::STORAGE);
-            let first = [
-                uniform(device, &material),
-                storage(shared[0]),
-                storage(shared[1]),
-                storage(bytemuck::cast_slice(&wavelengths)),
-            ];
-            let second: Vec<wgpu::Buffer> = own.iter().map(|part| storage(part)).collect();
-            let bind = |group: u32, buffers: &[wgpu::Buffer]| {
-                let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
-                bind_group(device, pipeline, group, resources)
-            };
-            let mut groups = vec![bind(1, &first)];
-            if !second.is_empty() {
-                groups.push(bind(2, &second));
-            }
-            groups
-        })?;
-        Ok(Self { groups, vertices })
-    }
-
-    /// Draws it, in one call.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for (group, bind_group) in (1..).zip(&self.groups) {
-            pass.set_bind_group(group, bind_group, &[]);
-        }
-        pass.draw(0..self.vertices, 0..1);
-    }
+        groups
+    })?;
+    Ok(Body { groups, vertices })
 }
 
 /// What a rung's geometry needs of a mesh, beside its positions.

@@ -54,8 +54,9 @@ fn scattering(name: &str, medium: Medium, base_color: Vec3, sigma0: Vec3, (ior, 
     }
 }
 
-/// The radii of the spheres.
-const RADII: [f64; 5] = [40.0, 24.0, 14.0, 8.0, 5.0];
+/// The spheres: radius, and where in the picture's plane the middle is.
+const SPHERES: [(f64, [f64; 2]); 5] =
+    [(40.0, [-28.0, 18.0]), (24.0, [40.0, 34.0]), (14.0, [42.0, -8.0]), (8.0, [20.0, -30.0]), (5.0, [2.0, -39.0])];
 
 /// The material that a scene's name begins with.
 fn material(name: &str) -> Material {
@@ -66,12 +67,10 @@ fn material(name: &str) -> Material {
     }
 }
 
-/// The paper's picture: spheres of falling radius side by side, lit from the left.
+/// The paper's picture: spheres of falling radius in a falling row, lit from the left.
 pub(super) fn spheres(name: &str) -> Scene {
-    let mut left = 0.0;
-    let objects = RADII.map(|radius| {
-        let centre = DVec3::new(left + radius, radius, 0.0);
-        left += 2.0 * radius + 4.0;
+    let objects = SPHERES.map(|(radius, [x, y])| {
+        let centre = DVec3::new(x, y, 0.0);
         object(&format!("{radius} mm"), sphere(radius, 128).placed(DQuat::IDENTITY, centre), name)
     });
     Scene { lights: vec![sun(Vec3::new(-1.0, 0.35, 0.25))], ..framed(name, objects.into(), direction(90.0, 0.0)) }
@@ -81,8 +80,8 @@ pub(super) fn spheres(name: &str) -> Scene {
 pub(super) fn ring(name: &str) -> Scene {
     let lights = vec![
         sun(Vec3::new(-0.7, 0.6, 0.2)),
-        Light::Point { position: Vec3::new(4.0, 14.0, 0.0), intensity: 300.0 * Vec3::new(1.0, 0.75, 0.5) },
-        Light::Point { position: Vec3::new(45.0, 15.0, -40.0), intensity: 4000.0 * Vec3::new(0.5, 0.7, 1.0) },
+        Light::Point { position: Vec3::new(4.0, 14.0, 0.0), intensity: 120.0 * Vec3::new(1.0, 0.75, 0.5) },
+        Light::Point { position: Vec3::new(45.0, 15.0, -40.0), intensity: 2000.0 * Vec3::new(0.5, 0.7, 1.0) },
     ];
     let mesh = torus(20.0, 7.0, 160, 64);
     Scene { lights, ..framed(name, vec![object("ring", mesh, name)], direction(48.0, 0.0)) }
@@ -95,9 +94,9 @@ pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
 }
 
-/// A directional light under which a white, facing surface has radiance 1.
+/// A directional light under which a white, facing surface has radiance 0.6.
 fn sun(toward: Vec3) -> Light {
-    Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(PI) }
+    Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(0.6 * PI) }
 }
 
 fn object(name: &str, mesh: Mesh, scene: &str) -> Object {

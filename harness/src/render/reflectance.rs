@@ -1,0 +1,78 @@
+//! How what scatters light sends it back: the rungs of the curvature-dependent reflectance function.
+
+use crate::cdrf::table::Format;
+
+/// A step of the ladder from cheap to exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reflectance {
+    /// Lambert's law: no scattering.
+    Lambert,
+    /// Wrap lighting.
+    Wrap,
+    /// A lookup table of this many texels a side.
+    Table(u32, Format),
+    /// The cheap closed form.
+    Cheap,
+    /// The accurate closed form.
+    Accurate,
+    /// The convolution by quadrature.
+    Quadrature,
+    /// The form that keeps energy over the sphere.
+    Spherical,
+}
+
+/// Every one, by its rung's name.
+pub(super) const REFLECTANCES: [(&str, Reflectance); 9] = [
+    ("lambert", Reflectance::Lambert),
+    ("wrap", Reflectance::Wrap),
+    ("table-256-rgba8", Reflectance::Table(256, Format::Rgba8)),
+    ("table-257-rgba16f", Reflectance::Table(257, Format::Rgba16Float)),
+    ("table-257-r32f", Reflectance::Table(257, Format::R32Float)),
+    ("cheap", Reflectance::Cheap),
+    ("accurate", Reflectance::Accurate),
+    ("quadrature", Reflectance::Quadrature),
+    ("spherical", Reflectance::Spherical),
+];
+
+impl Reflectance {
+    /// Its rung's name.
+    pub fn name(self) -> &'static str {
+        REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
+    }
+
+    /// `CDRF_FORM` of the recipe; none for Lambert's law.
+    pub(super) fn form(self) -> Option<u32> {
+        match self {
+            Self::Lambert => None,
+            Self::Wrap => Some(0),
+            Self::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
+            Self::Table(_, Format::R32Float) => Some(2),
+            Self::Cheap => Some(3),
+            Self::Accurate => Some(4),
+            Self::Quadrature => Some(5),
+            Self::Spherical => Some(6),
+        }
+    }
+}
+
+/// Which curvature spreads the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curvature {
+    /// The mean curvature.
+    Mean,
+    /// The normal curvature of the section towards each light.
+    Towards,
+    /// The usual |dN| / |dP|.
+    Naive,
+}
+
+impl Curvature {
+    /// `CURVATURE_FORM` of the recipe.
+    pub(super) fn form(self) -> u32 {
+        match self {
+            Self::Mean => 0,
+            Self::Towards => 1,
+            Self::Naive => 2,
+        }
+    }
+}

@@ -1,0 +1,218 @@
+// cdrf_shading: skin, wax or jade by curvature-dependent reflectance, in one draw call, under lights and an environment.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
+// requires: cdrf, curvature, environment, fresnel
+// parts: mesh, surroundings, lights
+//
+// Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
+// applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
+
+// Light that crosses inside from the lit side to the dark one. Called for by extras.lapidary.sigma0 above 0.
+override EFFECT_CDRF: bool = true;
+// Its form: 0 wrap lighting, 1 a table through a sampler, 2 a table by hand (formats that no sampler filters), 3 cheap, 4 accurate,
+// 5 quadrature, 6 spherical.
+override CDRF_FORM: u32 = 4u;
+// Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|.
+override CURVATURE_FORM: u32 = 0u;
+// Light from all around, beside the lights. Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
+// The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
+override EFFECT_REFLECTION: bool = false;
+
+const CDRF_FORM_WRAP: u32 = 0u;
+const CDRF_FORM_TABLE: u32 = 1u;
+const CDRF_FORM_TEXELS: u32 = 2u;
+const CDRF_FORM_CHEAP: u32 = 3u;
+const CDRF_FORM_QUADRATURE: u32 = 5u;
+const CDRF_FORM_SPHERICAL: u32 = 6u;
+const CURVATURE_FORM_TOWARDS: u32 = 1u;
+const CURVATURE_FORM_NAIVE: u32 = 2u;
+
+struct CdrfView {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+}
+
+struct CdrfMaterial {
+    // Linear RGB: what the surface sends back of diffuse light.
+    base_color: vec3f,
+    // Index of refraction, relative to the medium outside.
+    index: f32,
+    // In units of length, one for each channel. Anything that is not a positive number counts as 0.
+    sigma0: vec3f,
+    // The largest of the three: what a table that was baked for this material is looked up with.
+    table_sigma0: f32,
+}
+
+// The environment's spherical harmonics, linear RGB: one of degree 0, three of 1, five of 2, nine of 4. Degree 3 has no part in a clamped cosine.
+struct CdrfHarmonics {
+    coefficients: array<vec4f, 18>,
+}
+
+@group(0) @binding(0) var<uniform> view: CdrfView;
+@group(0) @binding(3) var<uniform> harmonics: CdrfHarmonics;
+@group(1) @binding(0) var<uniform> material: CdrfMaterial;
+// Three floats a vertex.
+@group(1) @binding(1) var<storage, read> positions: array<f32>;
+@group(1) @binding(2) var<storage, read> indices: array<u32>;
+@group(1) @binding(3) var<storage, read> normals: array<f32>;
+// Baked by the recipe cdrf_table with this material's tint.
+@group(1) @binding(4) var table: texture_2d<f32>;
+@group(1) @binding(5) var table_sampler: sampler;
+// Baked with the tint (1, 1, 1) for every material, of one channel, in a format that no sampler filters.
+@group(1) @binding(6) var table_texels: texture_2d<f32>;
+
+struct CdrfVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+}
+
+@vertex
+fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
+    let index = indices[vertex];
+    let position = mesh_position(index);
+    let normal = vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
+    return CdrfVertex(view.clip_from_world * vec4f(position, 1.0f), position, normal);
+}
+
+// The derivatives of a pixel, and what curvature follows from them.
+struct CdrfSurface {
+    position_x: vec3f,
+    position_y: vec3f,
+    normal_x: vec3f,
+    normal_y: vec3f,
+    curvature: f32,
+}
+
+// Outside of every branch: derivatives need the neighbouring pixels.
+fn cdrf_surface(position: vec3f, normal: vec3f) -> CdrfSurface {
+    let position_x = dpdx(position);
+    let position_y = dpdy(position);
+    let normal_x = curvature_normal_derivative(normal, dpdx(normal));
+    let normal_y = curvature_normal_derivative(normal, dpdy(normal));
+    if (CURVATURE_FORM == CURVATURE_FORM_NAIVE) {
+        let naive = curvature_naive(position_x, position_y, normal_x, normal_y);
+        return CdrfSurface(position_x, position_y, normal_x, normal_y, naive);
+    }
+    let mean = curvature_mean(position_x, position_y, normal_x, normal_y);
+    return CdrfSurface(position_x, position_y, normal_x, normal_y, mean);
+}
+
+// The unit normal; the triangle's own where interpolation between opposite normals leaves none.
+fn cdrf_unit_normal(normal: vec3f, surface: CdrfSurface, toward_eye: vec3f) -> vec3f {
+    let squared = dot(normal, normal);
+    if (squared > 1e-12f) {
+        return normal * inverseSqrt(squared);
+    }
+    let pixel = curvature_pixel(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y);
+    let across = cross(pixel.p_x, pixel.p_y);
+    let facing = across * sign(dot(across, toward_eye));
+    return facing * inverseSqrt(max(dot(facing, facing), 1.1754944e-38f));
+}
+
+// Width of the Gaussian for each channel.
+fn cdrf_sigmas(curvature: f32) -> vec3f {
+    return vec3f(
+        cdrf_sigma(material.sigma0.x, curvature),
+        cdrf_sigma(material.sigma0.y, curvature),
+        cdrf_sigma(material.sigma0.z, curvature),
+    );
+}
+
+// The table by hand, blended between four texels.
+fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
+    let texels = cdrf_texels(cdrf_table_coordinates(cosine, sigma), textureDimensions(table_texels));
+    return cdrf_blend(
+        texels.weight,
+        textureLoad(table_texels, texels.lower, 0).rgb,
+        textureLoad(table_texels, vec2u(texels.upper.x, texels.lower.y), 0).rgb,
+        textureLoad(table_texels, vec2u(texels.lower.x, texels.upper.y), 0).rgb,
+        textureLoad(table_texels, texels.upper, 0).rgb,
+    ).x;
+}
+
+// The reflectance towards one light, for each channel.
+fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
+    if (!EFFECT_CDRF) {
+        return vec3f(cdrf_lambert(cosine));
+    }
+    if (CDRF_FORM == CDRF_FORM_TABLE) {
+        let coordinates = cdrf_table_coordinates(cosine, cdrf_sigma(material.table_sigma0, curvature));
+        return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
+    }
+    let sigma = cdrf_sigmas(curvature);
+    if (CDRF_FORM == CDRF_FORM_TEXELS) {
+        return vec3f(cdrf_lookup(cosine, sigma.x), cdrf_lookup(cosine, sigma.y), cdrf_lookup(cosine, sigma.z));
+    }
+    if (CDRF_FORM == CDRF_FORM_WRAP) {
+        return vec3f(cdrf_wrap(cosine, sigma.x), cdrf_wrap(cosine, sigma.y), cdrf_wrap(cosine, sigma.z));
+    }
+    if (CDRF_FORM == CDRF_FORM_CHEAP) {
+        return vec3f(cdrf_cheap(cosine, sigma.x), cdrf_cheap(cosine, sigma.y), cdrf_cheap(cosine, sigma.z));
+    }
+    if (CDRF_FORM == CDRF_FORM_QUADRATURE) {
+        return vec3f(cdrf_quadrature(cosine, sigma.x), cdrf_quadrature(cosine, sigma.y), cdrf_quadrature(cosine, sigma.z));
+    }
+    if (CDRF_FORM == CDRF_FORM_SPHERICAL) {
+        return vec3f(cdrf_spherical(cosine, sigma.x), cdrf_spherical(cosine, sigma.y), cdrf_spherical(cosine, sigma.z));
+    }
+    return vec3f(cdrf_accurate(cosine, sigma.x), cdrf_accurate(cosine, sigma.y), cdrf_accurate(cosine, sigma.z));
+}
+
+@fragment
+fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
+    let surface = cdrf_surface(input.position, input.normal);
+    let toward_eye = normalize(view.eye - input.position);
+    let normal = cdrf_unit_normal(input.normal, surface, toward_eye);
+
+    // Irradiance, each light's part spread by its reflectance.
+    var received = vec3f(0.0f);
+    for (var index = 0u; index < arrayLength(&lights); index++) {
+        let arrival = light_arrival(lights[index], input.position);
+        var curvature = surface.curvature;
+        if (CURVATURE_FORM == CURVATURE_FORM_TOWARDS) {
+            curvature = curvature_towards(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction);
+        }
+        received += arrival.irradiance * cdrf_reflectance(dot(normal, arrival.direction), curvature);
+    }
+    if (EFFECT_ENVIRONMENT) {
+        var sigma = vec3f(0.0f);
+        if (EFFECT_CDRF) {
+            sigma = cdrf_sigmas(surface.curvature);
+        }
+        let red = cdrf_harmonic_weights(sigma.x);
+        let green = cdrf_harmonic_weights(sigma.y);
+        let blue = cdrf_harmonic_weights(sigma.z);
+        let basis = environment_harmonics(normal);
+        let first = basis.first[0] * harmonics.coefficients[1].rgb
+            + basis.first[1] * harmonics.coefficients[2].rgb
+            + basis.first[2] * harmonics.coefficients[3].rgb;
+        let second = basis.second[0] * harmonics.coefficients[4].rgb
+            + basis.second[1] * harmonics.coefficients[5].rgb
+            + basis.second[2] * harmonics.coefficients[6].rgb
+            + basis.second[3] * harmonics.coefficients[7].rgb
+            + basis.second[4] * harmonics.coefficients[8].rgb;
+        let fourth = basis.fourth[0] * harmonics.coefficients[9].rgb
+            + basis.fourth[1] * harmonics.coefficients[10].rgb
+            + basis.fourth[2] * harmonics.coefficients[11].rgb
+            + basis.fourth[3] * harmonics.coefficients[12].rgb
+            + basis.fourth[4] * harmonics.coefficients[13].rgb
+            + basis.fourth[5] * harmonics.coefficients[14].rgb
+            + basis.fourth[6] * harmonics.coefficients[15].rgb
+            + basis.fourth[7] * harmonics.coefficients[16].rgb
+            + basis.fourth[8] * harmonics.coefficients[17].rgb;
+        let around = basis.zeroth * harmonics.coefficients[0].rgb * vec3f(red.x, green.x, blue.x)
+            + first * vec3f(red.y, green.y, blue.y)
+            + second * vec3f(red.z, green.z, blue.z)
+            + fourth * vec3f(red.w, green.w, blue.w);
+        // A few degrees cannot follow a small light: they swing below 0 opposite to it.
+        received += max(around, vec3f(0.0f));
+    }
+    var radiance = 0.31830987f * material.base_color * received;
+    if (EFFECT_REFLECTION) {
+        let reflectance = fresnel_dielectric(max(dot(normal, toward_eye), 0.0f), material.index);
+        radiance = mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
+    }
+    return vec4f(radiance, 1.0f);
+}
