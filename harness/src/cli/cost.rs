@@ -1,44 +1,58 @@
 //! `cook cost`.
 
+mod gem;
+mod sphere;
+
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cost::{self, CostError, Options, Report, page, plot, views};
+use lapidary_harness::cost::page::{self, Tables};
+use lapidary_harness::cost::{CostError, Options, views};
 use lapidary_harness::render::Rung;
 use lapidary_harness::render::file;
+use serde::{Serialize, de::DeserializeOwned};
+use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
 /// What accuracy costs: the error and the time of every rung of a ladder.
 ///
-/// Takes minutes. Times are the least of interleaved rounds; leave the machine alone meanwhile.
+/// `gem`: the gem's ladder, timed. Takes minutes. Times are the least of interleaved rounds; leave the machine alone meanwhile.
+///
+/// `sphere`: the curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md"
+    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost sphere --out target/cost"
 )]
 pub(super) struct Arguments {
-    /// The ladder: gem.
+    /// What to measure: gem or sphere.
     #[arg(default_value = "gem")]
     technique: String,
-    /// Rungs to measure, comma-separated; all where left out.
+    /// gem: rungs to measure, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung)]
     rungs: Vec<Rung>,
-    /// Views to compare in, comma-separated; all where left out.
+    /// gem: views to compare in, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
-    /// Rounds of timing; 0 leaves times out.
-    #[arg(long, default_value_t = Options::default().rounds)]
-    rounds: u32,
-    /// Show an earlier run's gem.json again instead of measuring.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds"])]
+    /// gem: rounds of timing, 7 where left out; 0 leaves times out.
+    #[arg(long)]
+    rounds: Option<u32>,
+    /// sphere: random walks through each sphere, 1000000 where left out.
+    #[arg(long, value_name = "N")]
+    walks: Option<NonZeroU64>,
+    /// sphere: the same seed gives the same walks; 1 where left out.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Show an earlier run's gem.json or sphere.json again instead of measuring.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds", "walks", "seed"])]
     from: Option<PathBuf>,
-    /// One JSON document on stdout, a row for each rung, measure and view, and nothing else.
+    /// One JSON document on stdout, a row for each thing measured, and nothing else.
     #[arg(long)]
     json: bool,
-    /// A folder for gem.txt, gem.json (everything), gem_flip.svg and gem_rmse.svg.
+    /// A folder for the text, the plots and NAME.json, which holds everything.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Pages, comma-separated, whose generated tables are made anew.
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     fill: Vec<PathBuf>,
-    /// Where the time of the cheapest rungs goes instead: frames from which one thing after another is taken away; with --out,
+    /// gem: where the time of the cheapest rungs goes instead: frames from which one thing after another is taken away; with --out,
     /// gem_profile.txt.
     #[arg(long, conflicts_with_all = ["rungs", "views", "from", "json", "fill"])]
     profile: bool,
@@ -55,6 +69,22 @@ fn parse_view(text: &str) -> Result<views::View, String> {
     let names: Vec<&str> = views::VIEWS.iter().map(|view| view.name).collect();
     let found = views::VIEWS.iter().find(|view| view.name == text).copied();
     found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
+}
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    match arguments.technique.as_str() {
+        "gem" => gem::run(context, arguments),
+        "sphere" => sphere::run(arguments),
+        other => Err(CostError::Technique(other.to_owned()).into()),
+    }
+}
+
+/// Refuses the flags that the technique would ignore.
+fn refuse(technique: &str, flags: &[(&str, bool)]) -> Result<(), Failure> {
+    match flags.iter().find(|(_, given)| *given) {
+        Some((flag, _)) => Err(Failure(format!("`{technique}` knows no {flag}; leave it out"))),
+        None => Ok(()),
+    }
 }
 
 /// Runs what takes minutes behind a progress bar.
@@ -75,81 +105,67 @@ fn read_text(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|error| Failure(format!("{}: cannot be read: {error}", path.display())))
 }
 
-fn read(path: &Path) -> Result<Report, Failure> {
-    serde_json::from_str(&read_text(path)?).map_err(|error| {
-        Failure(format!("{}: not a gem.json of `./cook cost gem --out`: {error}; measure anew", path.display()))
-    })
+/// Where a report goes, found fit before anything is measured.
+struct Places<'a> {
+    technique: &'static str,
+    arguments: &'a Arguments,
+    pages: Vec<(&'a PathBuf, String)>,
 }
 
-pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    if arguments.technique != "gem" {
-        return Err(CostError::Technique(arguments.technique.clone()).into());
-    }
-    let mut options = Options { rounds: arguments.rounds, ..Options::default() };
-    if !arguments.rungs.is_empty() {
-        options.rungs.clone_from(&arguments.rungs);
-    }
-    if !arguments.views.is_empty() {
-        options.views.clone_from(&arguments.views);
-    }
-    if let Some(out) = &arguments.out {
-        let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
-        std::fs::create_dir_all(out).map_err(failed)?;
-        file::check_writable(&out.join("gem.txt"))?;
-    }
-    if arguments.profile {
-        let gpu = context.gpu()?;
-        let text = behind_a_bar(|progress| {
-            let mut timing = |done, total| progress("timing", done, total);
-            cost::profile(gpu, options.rounds.max(1), options.frame, &mut timing)
-        })?;
+/// What is shown of a report.
+struct Shown {
+    text: String,
+    /// The document of `--json`.
+    rows: String,
+    /// Names and contents of plots.
+    plots: Vec<(String, String)>,
+}
+
+impl<'a> Places<'a> {
+    fn new(technique: &'static str, arguments: &'a Arguments) -> Result<Self, Failure> {
         if let Some(out) = &arguments.out {
-            file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
+            let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
+            std::fs::create_dir_all(out).map_err(failed)?;
+            file::check_writable(&out.join(format!("{technique}.txt")))?;
         }
-        output::line(&text)?;
-        return Ok(Outcome::Passed);
-    }
-    let pages: Vec<(&PathBuf, String)> =
-        arguments.fill.iter().map(|path| Ok((path, read_text(path)?))).collect::<Result<_, Failure>>()?;
-    for (path, page) in &pages {
-        page::check(page).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
-        file::check_writable(path)?;
-    }
-    let mut report = match &arguments.from {
-        Some(path) => read(path)?,
-        None => {
-            let gpu = context.gpu()?;
-            behind_a_bar(|progress| cost::run(gpu, &options, progress))?
+        let read = |path: &'a PathBuf| Ok((path, read_text(path)?));
+        let pages: Vec<(&PathBuf, String)> = arguments.fill.iter().map(read).collect::<Result<_, Failure>>()?;
+        for (path, page) in &pages {
+            page::check(page).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
+            file::check_writable(path)?;
         }
-    };
-    report.mark_dominated();
-    let filled: Vec<(&PathBuf, String)> = pages
-        .iter()
-        .map(|(path, page)| match page::fill(page, &report) {
+        Ok(Self { technique, arguments, pages })
+    }
+
+    /// The report of `--from`, or a new one.
+    fn report<R: DeserializeOwned>(&self, measure: impl FnOnce() -> Result<R, Failure>) -> Result<R, Failure> {
+        let Some(path) = &self.arguments.from else { return measure() };
+        let technique = self.technique;
+        serde_json::from_str(&read_text(path)?).map_err(|error| {
+            let path = path.display();
+            Failure(format!("{path}: not a {technique}.json of `./cook cost {technique} --out`: {error}; measure anew"))
+        })
+    }
+
+    /// Writes the report's files and pages, all of them or none that is not whole, and shows it.
+    fn write<R: Tables + Serialize>(&self, report: &R, shown: &Shown) -> Result<Outcome, Failure> {
+        let fill = |(path, page): &(&'a PathBuf, String)| match page::fill(page, report) {
             Ok(filled) => Ok((*path, filled)),
             Err(error) => Err(Failure(format!("{}: {error}", path.display()))),
-        })
-        .collect::<Result<_, _>>()?;
-    let text = report.text();
-    if let Some(out) = &arguments.out {
-        let write = |name: &str, contents: &str| -> Result<(), Failure> {
-            Ok(file::replace(&out.join(name), contents.as_bytes())?)
         };
-        write("gem.txt", &text)?;
-        write("gem.json", &serde_json::to_string_pretty(&report)?)?;
-        if report.rungs.iter().any(|rung| rung.timing.is_some()) {
-            for measure in ["flip", "rmse"] {
-                write(&format!("gem_{measure}.svg"), &plot::svg(&report, measure)?)?;
+        let filled: Vec<(&PathBuf, String)> = self.pages.iter().map(fill).collect::<Result<_, _>>()?;
+        if let Some(out) = &self.arguments.out {
+            let write = |name: &str, contents: &str| file::replace(&out.join(name), contents.as_bytes());
+            write(&format!("{}.txt", self.technique), &shown.text)?;
+            write(&format!("{}.json", self.technique), &serde_json::to_string_pretty(report)?)?;
+            for (name, plot) in &shown.plots {
+                write(name, plot)?;
             }
         }
+        for (path, page) in filled {
+            file::replace(path, page.as_bytes())?;
+        }
+        output::line(if self.arguments.json { &shown.rows } else { shown.text.trim_end() })?;
+        Ok(Outcome::Passed)
     }
-    for (path, page) in filled {
-        file::replace(path, page.as_bytes())?;
-    }
-    if arguments.json {
-        output::line(&serde_json::to_string_pretty(&report.rows())?)?;
-    } else {
-        output::line(text.trim_end())?;
-    }
-    Ok(Outcome::Passed)
 }

@@ -43,7 +43,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let figures = ladder();
+    let figures = plots();
     let index = gallery::write(&out, &Site { adapter: gpu.describe(), pictures: &pictures, figures: &figures })?;
     let index = index.canonicalize().unwrap_or(index);
     output::line(&index.display().to_string())?;
@@ -53,27 +53,52 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     Ok(Outcome::Passed)
 }
 
-/// The committed plots of the ladder: to measure it anew takes minutes and a quiet machine.
-fn ladder() -> Vec<(String, Picture)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/lavapipe");
-    let figure = |measure: &str, title: &str, paragraph: &str| {
+/// The committed plots, each with its module's or recipe's name: to measure anew takes minutes and a quiet machine.
+fn plots() -> Vec<(String, Picture)> {
+    let figure = |name: &str, file: &str, command: &str, title: &str, paragraph: &str| {
         let picture = Picture {
             title: title.to_owned(),
-            file: folder.join(format!("gem_{measure}.svg")),
+            file: Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements").join(file),
             paragraph: paragraph.to_owned(),
-            command: "./cook cost gem --out docs/measurements/lavapipe".to_owned(),
+            command: command.to_owned(),
             size: PLOT_SIZE,
         };
-        ("gem".to_owned(), picture)
+        (name.to_owned(), picture)
     };
+    let gem = "./cook cost gem --out docs/measurements/lavapipe";
+    let sphere = "./cook cost sphere --out docs/measurements/random_walk";
     vec![
         figure(
-            "flip",
+            "gem",
+            "lavapipe/gem_flip.svg",
+            gem,
             "What accuracy costs: FLIP",
             "Time of a frame that the stone fills against the visible difference from the spectral reference. On the grey line lie the \
                 rungs to choose from: nothing faster is better.",
         ),
-        figure("rmse", "What accuracy costs: RMSE", "The same by the error in linear radiance."),
+        figure(
+            "gem",
+            "lavapipe/gem_rmse.svg",
+            gem,
+            "What accuracy costs: RMSE",
+            "The same by the error in linear radiance.",
+        ),
+        figure(
+            "cdrf",
+            "random_walk/sphere_sigma.svg",
+            sphere,
+            "The best width over the radius",
+            "Width times radius, in mean free paths, that brings the function nearest to random walks through spheres. Were the width \
+                proportional to curvature, lines would be level.",
+        ),
+        figure(
+            "cdrf",
+            "random_walk/sphere_profile.svg",
+            sphere,
+            "Spheres and the best function",
+            "What leaves a sphere by the angle from the light, as random walks give it with their standard errors, and the function that \
+                comes nearest.",
+        ),
     ]
 }
 

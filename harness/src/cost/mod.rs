@@ -4,10 +4,12 @@ mod choices;
 mod dispersion;
 mod error;
 mod gem;
+mod gem_tables;
 pub mod page;
 pub mod plot;
 mod profile;
 mod reflection;
+pub mod sphere;
 mod table;
 mod timing;
 pub mod views;
@@ -168,7 +170,7 @@ fn no_slower(other: &RungReport, rung: &RungReport) -> bool {
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// No such ladder.
-    #[error("no ladder `{0}`; there is gem")]
+    #[error("no ladder `{0}`; there are gem and sphere")]
     Technique(String),
     /// A picture or a frame could not be rendered.
     #[error(transparent)]

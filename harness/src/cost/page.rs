@@ -1,7 +1,7 @@
 //! A report's tables in the pages of `docs/`, between marks, so that no figure is copied by hand.
 
-use super::views::VIEWS;
-use super::{Choice, Colours, RUNGS, Report, RungReport};
+use super::Report;
+use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
 /// What a page holds before a generated table, NAME being a table's name, ...
@@ -9,17 +9,27 @@ const BEGIN: &str = "<!-- generated: ";
 /// ... and after it.
 const END: &str = "<!-- end -->";
 
-/// A table of a report.
-type Table = fn(&Report) -> String;
+/// A table's name and what makes it of a report.
+pub type Table<R> = (&'static str, fn(&R) -> String);
 
-const TABLES: [(&str, Table); 6] = [
-    ("ladder", ladder),
-    ("goals", goals),
-    ("paper", paper),
-    ("colours", colours),
-    ("ends", ends),
-    ("reflections", reflections),
-];
+/// A report whose tables pages show.
+pub trait Tables: Sized + 'static {
+    /// The tables, whose names no other report's tables have.
+    const TABLES: &'static [Table<Self>];
+
+    /// Whether the report holds all that its tables show.
+    ///
+    /// # Errors
+    ///
+    /// What is missing: a page would have holes.
+    fn whole(&self) -> Result<(), String>;
+}
+
+/// The names of all reports' tables.
+fn names() -> Vec<&'static str> {
+    let gem = Report::TABLES.iter().map(|(name, _)| *name);
+    gem.chain(SphereReport::TABLES.iter().map(|(name, _)| *name)).collect()
+}
 
 /// Whether a page's marks are sound.
 ///
@@ -27,229 +37,52 @@ const TABLES: [(&str, Table); 6] = [
 ///
 /// A mark without an end, or with a name that no table has.
 pub fn check(page: &str) -> Result<(), String> {
-    with_tables(page, |_| String::new()).map(|_| ())
+    with_tables(page, |_| None).map(|_| ())
 }
 
-/// `page` with each of its marked tables made anew from `report`.
+/// `page` with each of its marked tables made anew from `report`; tables of other reports stay.
 ///
 /// # Errors
 ///
-/// As [`check`]; or a report that does not hold the whole ladder, which would leave a page with holes.
-pub fn fill(page: &str, report: &Report) -> Result<String, String> {
-    let missing = RUNGS.iter().find(|name| report.rung(name).is_none_or(|rung| rung.timing.is_none()));
-    if let Some(name) = missing {
-        return Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"));
-    }
-    if report.views.len() < VIEWS.len() {
-        return Err("the report does not hold all views; only the whole ladder fills a page".to_owned());
-    }
-    with_tables(page, |table| table(report))
+/// As [`check`]; or a report that is not [whole](Tables::whole).
+pub fn fill<R: Tables>(page: &str, report: &R) -> Result<String, String> {
+    report.whole()?;
+    remake(page, report)
 }
 
-fn with_tables(page: &str, make: impl Fn(Table) -> String) -> Result<String, String> {
+fn remake<R: Tables>(page: &str, report: &R) -> Result<String, String> {
+    with_tables(page, |name| {
+        let (_, make) = R::TABLES.iter().find(|(table, _)| *table == name)?;
+        Some(format!("\n{}", make(report)))
+    })
+}
+
+/// `page` with what `make` gives for each name between its marks; what is there, where it gives nothing.
+fn with_tables(page: &str, make: impl Fn(&str) -> Option<String>) -> Result<String, String> {
     let mut filled = String::new();
     let mut rest = page;
     while let Some((before, marked)) = rest.split_once(BEGIN) {
         let (name, after) = marked.split_once(" -->").ok_or(format!("`{BEGIN}` without `-->`"))?;
-        let (_, after) = after.split_once(END).ok_or(format!("`{BEGIN}{name} -->` without `{END}`"))?;
-        let Some((_, table)) = TABLES.iter().find(|(table, _)| *table == name) else {
-            let names = TABLES.map(|(name, _)| name).join(", ");
-            return Err(format!("no table `{name}`; there are {names}"));
-        };
-        let table = make(*table);
-        let _ = write!(filled, "{before}{BEGIN}{name} -->\n{table}{END}");
+        let (old, after) = after.split_once(END).ok_or(format!("`{BEGIN}{name} -->` without `{END}`"))?;
+        if !names().contains(&name) {
+            return Err(format!("no table `{name}`; there are {}", names().join(", ")));
+        }
+        let table = make(name).unwrap_or_else(|| old.to_owned());
+        let _ = write!(filled, "{before}{BEGIN}{name} -->{table}{END}");
         rest = after;
     }
     filled.push_str(rest);
     Ok(filled)
 }
 
-fn header(columns: &[&str]) -> String {
+/// A table's first two lines.
+pub(super) fn header(columns: &[&str]) -> String {
     format!("| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()))
 }
 
-fn row(table: &mut String, cells: &[String]) {
+/// Adds a line to a table.
+pub(super) fn row(table: &mut String, cells: &[String]) {
     let _ = writeln!(table, "| {} |", cells.join(" | "));
-}
-
-fn ladder(report: &Report) -> String {
-    let [width, height] = report.frame;
-    let columns = ["rung", "ms", "× proxy-1", "FLIP", "RMSE", "energy", "SPIR-V vertex + fragment", "bytes", ""];
-    let mut table = header(&columns);
-    for rung in &report.rungs {
-        let cells = [
-            rung.rung.clone(),
-            rung.milliseconds(),
-            report.ratio(&rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
-            format!("{:.3}", rung.mean(0)),
-            format!("{:.3}", rung.mean(1)),
-            format!("{:.3}", rung.mean(2)),
-            format!("{} + {}", rung.vertex_instructions, rung.fragment_instructions),
-            rung.geometry_bytes.to_string(),
-            if rung.dominated { "dominated" } else { "" }.to_owned(),
-        ];
-        row(&mut table, &cells);
-    }
-    let _ = writeln!(
-        table,
-        "\nMilliseconds for {width} × {height} pixels that the brilliant fills, the least of interleaved rounds, on {}. * timed on 1/16 of \
-         the pixels and scaled.",
-        report.adapter
-    );
-    table
-}
-
-fn goals(report: &Report) -> String {
-    let mut table = header(&["goal", "measured", ""]);
-    let times = |slow: &str, fast: &str| report.ratio(slow, fast);
-    let mut judge = |goal: &str, measured: Option<f64>, met: &dyn Fn(f64) -> bool, shown: &dyn Fn(f64) -> String| {
-        let Some(measured) = measured else { return };
-        row(&mut table, &[goal.to_owned(), shown(measured), if met(measured) { "met" } else { "missed" }.to_owned()]);
-    };
-    let factor = |value: f64| format!("{value:.1} times");
-    judge(
-        "proxy at least 20 times as fast as the loop over all triangles, one hit each",
-        times("triangles-1", "proxy-1"),
-        &|value| value >= 20.0,
-        &factor,
-    );
-    judge(
-        "proxy at least 8 times as fast as the loop over the facet planes",
-        times("convex-1", "proxy-1"),
-        &|value| value >= 8.0,
-        &factor,
-    );
-    judge("proxy faster than the BVH", times("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
-    for rung in ["proxy-1", "convex-8"] {
-        // The paper's is one shader at two strengths: the faster of them is its time.
-        let tracker = format!("{rung}+tracker");
-        let twins = [format!("{rung}+paper"), format!("{rung}+paper-fitted")].map(|paper| times(&tracker, &paper));
-        judge(
-            &format!("exact tracker's time within 10 % of the paper's tracker's, `{rung}`"),
-            twins[0].zip(twins[1]).map(|(a, b)| a.max(b)),
-            &|value| value <= 1.1,
-            &|value| format!("{:+.1} %", 100.0 * (value - 1.0)),
-        );
-    }
-    let least = report.colours.iter().map(gain).reduce(f64::min);
-    judge(
-        "its colours at least 5 times as close to separate wavelengths' as the paper's at its best strength, in the view where they gain least",
-        least,
-        &|value| value >= 5.0,
-        &factor,
-    );
-    table
-}
-
-fn paper(report: &Report) -> String {
-    let mut table = header(&["", "the paper (GeForce GTX 760)", "here"]);
-    let ms = |name: &str| report.rung(name).map_or("-".to_owned(), RungReport::milliseconds);
-    let compared = |name: &str, what: &str| {
-        let ratio = report.ratio(name, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.1}"));
-        format!("{} ms, {ratio} times ({what})", ms(name))
-    };
-    let counts = |name: &str| {
-        report.rung(name).map_or("-".to_owned(), |r| format!("{} + {}", r.vertex_instructions, r.fragment_instructions))
-    };
-    let encodes: Vec<f64> = report.rungs.iter().filter_map(|rung| Some(rung.timing?.encode_us)).collect();
-    let (least, most) = encodes.iter().fold((f64::INFINITY, 0f64), |(a, b), &us| (a.min(us), b.max(us)));
-    let exact_bytes = report.rung("convex-1").map_or(0, |rung| rung.geometry_bytes);
-    let rows = [
-        ["proxy, one hit", "3 ms", &format!("{} ms", ms("proxy-1"))],
-        [
-            "exact: all polygons in a loop",
-            "15 ms, 5 times",
-            &format!("{}; {}", compared("triangles-1", "all triangles"), compared("convex-1", "facet planes")),
-        ],
-        ["BVH", "-", &compared("bvh-1", "112 triangles")],
-        [
-            "CPU for a frame",
-            "20 µs for both",
-            &format!("{least:.0} to {most:.0} µs, recording and submitting through wgpu"),
-        ],
-        [
-            "shaders, proxy",
-            "16 + 160 + 181 slots (vertex, geometry, pixel)",
-            &format!(
-                "{} SPIR-V instructions (vertex, fragment); +paper {}; +tracker {}",
-                counts("proxy-1"),
-                counts("proxy-1+paper"),
-                counts("proxy-1+tracker")
-            ),
-        ],
-        ["shaders, exact", "16 + 160 + 152 slots", &counts("convex-1")],
-        [
-            "constants",
-            "2304 bytes; exact 15056 bytes",
-            &format!("128 bytes of uniforms; exact {exact_bytes} bytes more in storage"),
-        ],
-    ];
-    for cells in rows {
-        row(&mut table, &cells.map(str::to_owned));
-    }
-    table
-}
-
-/// How many times as close the exact tracker is as the paper's at its best.
-fn gain(colours: &Colours) -> f64 {
-    colours.fitted_rms / colours.tracker_rms
-}
-
-/// `least to most` of a value.
-fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> String {
-    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
-    format!("{} to {}", show(least), show(most))
-}
-
-fn colours(Report { colours, .. }: &Report) -> String {
-    let columns = [
-        "geometry",
-        "pixels that keep together",
-        "no dispersion",
-        "the paper's, literal",
-        "best strength",
-        "the paper's at it",
-        "exact tracker",
-        "gain",
-    ];
-    let mut table = header(&columns);
-    let mut rungs: Vec<&str> = colours.iter().map(|c| c.rung.as_str()).collect();
-    rungs.dedup();
-    for rung in rungs {
-        let here: Vec<&Colours> = colours.iter().filter(|c| c.rung == rung).collect();
-        let of = |value: fn(&Colours) -> f64, show: &dyn Fn(f64) -> String| range(here.iter().map(|c| value(c)), show);
-        let cells = [
-            rung.to_owned(),
-            of(|c| 100.0 * c.shared, &|value| format!("{value:.0} %")),
-            of(|c| c.none_rms, &|value| format!("{value:.4}")),
-            of(|c| c.paper_rms, &|value| format!("{value:.3}")),
-            of(|c| f64::from(c.strength), &|value| format!("{value:.4}")),
-            of(|c| c.fitted_rms, &|value| format!("{value:.4}")),
-            of(|c| c.tracker_rms, &|value| format!("{value:.5}")),
-            of(gain, &|value| format!("{value:.0} times")),
-        ];
-        row(&mut table, &cells);
-    }
-    table
-}
-
-fn ends(Report { choices, .. }: &Report) -> String {
-    let mut table = header(&["rung", "end", "FLIP", "RMSE", "energy"]);
-    for (rung, choice, [flip, rmse, energy]) in Choice::means(choices) {
-        let cells =
-            [rung.to_owned(), choice.to_owned(), format!("{flip:.4}"), format!("{rmse:.4}"), format!("{energy:+.4}")];
-        row(&mut table, &cells);
-    }
-    table
-}
-
-fn reflections(report: &Report) -> String {
-    let mut table = header(&["mesh", "by the table", "by the crown"]);
-    for reflection in &report.reflections {
-        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-        row(&mut table, &[reflection.mesh.clone(), percent(reflection.table), percent(reflection.crown)]);
-    }
-    table
 }
 
 #[cfg(test)]
@@ -267,7 +100,7 @@ mod tests {
     #[test]
     fn what_is_marked_is_made_anew_and_the_rest_stays() {
         let page = "before\n<!-- generated: reflections -->\nold\n<!-- end -->\nafter\n";
-        let fill = |page: &str| with_tables(page, |table| table(&report())).expect("filled");
+        let fill = |page: &str| remake(page, &report()).expect("filled");
         let filled = fill(page);
         assert!(filled.starts_with("before\n<!-- generated: reflections -->\n| mesh |"), "{filled}");
         assert!(filled.contains("| exact | 100.0 % | 50.0 % |\n<!-- end -->\nafter\n") && !filled.contains("old"));
@@ -281,6 +114,22 @@ mod tests {
             assert!(check(page).is_err(), "{page}");
         }
         assert_eq!(check("<!-- generated: ladder --><!-- end -->"), Ok(()));
+    }
+
+    #[test]
+    fn tables_of_other_reports_stay() {
+        let page = "<!-- generated: ladder -->\nmine\n<!-- end -->\n";
+        let empty = SphereReport::of(1, 1, Vec::new());
+        assert_eq!(remake(page, &empty).expect("filled"), page);
+        assert!(fill(page, &empty).expect_err("it holds nothing").contains("albedo"));
+    }
+
+    #[test]
+    fn no_two_tables_have_one_name() {
+        let mut all = names();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), names().len());
     }
 
     #[test]

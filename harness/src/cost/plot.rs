@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// Width and height of the plot.
 pub const SIZE: (u32, u32) = (1200, 760);
 /// Of a series: colour-blind safe (Okabe and Ito 2008).
-const COLORS: [RGBColor; 5] = [
+pub(super) const COLORS: [RGBColor; 5] = [
     RGBColor(0x00, 0x00, 0x00),
     RGBColor(0xd5, 0x5e, 0x00),
     RGBColor(0x00, 0x72, 0xb2),
@@ -52,7 +52,7 @@ fn color(rung: Option<Rung>) -> RGBColor {
 }
 
 /// Limits of a logarithmic axis about `values`, with a margin.
-fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
+pub(super) fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
     let low = values.clone().fold(f64::INFINITY, f64::min);
     let high = values.fold(0.0, f64::max);
     low / margin..high * margin

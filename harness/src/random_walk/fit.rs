@@ -1,86 +1,144 @@
-//! Is sigma = sigma_0 kappa true? The curvature-dependent reflectance function fitted to what a sphere really shows.
+//! Reflectance functions fitted to what a sphere really shows.
 
 use super::{BINS, Profile};
 use crate::golden_section::golden_section;
-use lapidary_cdrf::oracle as cdrf;
+use lapidary_cdrf as cdrf;
+use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
-use std::f64::consts::PI;
 
-/// The reflectance function that comes nearest to a sphere's profile.
-#[derive(Clone, Copy, Debug)]
+/// A reflectance function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// The clamped cosine itself, whatever the width.
+    Lambert,
+    /// The paper's: convolved on the circle.
+    Circular,
+    /// Diffused over the sphere, which adds no light.
+    Spherical,
+}
+
+impl Form {
+    fn value(self, cosine: f64, sigma: f64) -> f64 {
+        // The mirror: its error, 1.5e-6, is a thousandth of what a fit leaves, and a fit asks for tens of thousands of values.
+        let function = match self {
+            Self::Lambert => return cosine.max(0.0),
+            Self::Circular => cdrf::accurate,
+            Self::Spherical => cdrf::spherical,
+        };
+        f64::from(function(cosine as f32, sigma as f32))
+    }
+
+    /// The function's mean over each interval.
+    fn values(self, sigma: f64) -> [f64; BINS] {
+        std::array::from_fn(|bin| Profile::mean(bin, |cosine| self.value(cosine, sigma)))
+    }
+}
+
+/// A reflectance function beside a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Its width, in radians.
     pub sigma: f64,
-    /// What it is multiplied by: the albedo of the whole sphere.
+    /// What it is multiplied by.
     pub scale: f64,
     /// RMS of the difference over the sphere's surface, over the irradiance of a surface that faces the light.
     pub residual: f64,
 }
 
-/// The function at the middle of each interval. Intervals are 5 degrees wide, over which the mean of a function as smooth as a fit's is its
-/// value at the middle to 1e-3.
-fn values(sigma: f64) -> [f64; BINS] {
-    std::array::from_fn(|bin| cdrf::accurate((PI * (bin as f64 + 0.5) / BINS as f64).cos(), sigma))
+impl Fit {
+    /// The function of width `sigma`, multiplied by `scale`, or where there is none by what brings it nearest.
+    pub fn at(profile: &Profile, form: Form, sigma: f64, scale: Option<f64>) -> Self {
+        let values = form.values(sigma);
+        let sum = |term: &dyn Fn(usize) -> f64| (0..BINS).map(|bin| Profile::share(bin) * term(bin)).sum::<f64>();
+        let scale = scale
+            .unwrap_or_else(|| sum(&|bin| values[bin] * profile.exitance[bin]) / sum(&|bin| values[bin] * values[bin]));
+        let residual = sum(&|bin| (profile.exitance[bin] - scale * values[bin]).powi(2)).sqrt();
+        Self { sigma, scale, residual }
+    }
+
+    /// The width that brings the function nearest, with the scale as in [`Fit::at`].
+    pub fn best(profile: &Profile, form: Form, scale: Option<f64>) -> Self {
+        if form == Form::Lambert {
+            return Self::at(profile, form, 0.0, scale);
+        }
+        let sigma = best_sigma(|sigma| Self::at(profile, form, sigma, scale).residual);
+        Self::at(profile, form, sigma, scale)
+    }
 }
 
-fn at(profile: &Profile, sigma: f64) -> Fit {
-    let values = values(sigma);
-    let areas: [f64; BINS] = std::array::from_fn(|bin| {
-        let [greater, less] = Profile::cosines(bin);
-        0.5 * (greater - less)
-    });
-    let sum = |term: &dyn Fn(usize) -> f64| (0..BINS).map(|bin| areas[bin] * term(bin)).sum::<f64>();
-    let scale = sum(&|bin| values[bin] * profile.exitance[bin]) / sum(&|bin| values[bin] * values[bin]);
-    let residual = sum(&|bin| (profile.exitance[bin] - scale * values[bin]).powi(2)).sqrt();
-    Fit { sigma, scale, residual }
-}
-
-/// The best of a grid from 0.01 to 10 rad, a twentieth apart, and golden sections about it.
-pub fn fit(profile: &Profile) -> Fit {
-    let grid = |k: i32| 0.01 * 1.05f64.powi(k);
-    let best = (0..142).min_by(|&a, &b| at(profile, grid(a)).residual.total_cmp(&at(profile, grid(b)).residual));
-    let best = best.unwrap_or_default();
-    let Ok(sigma) =
-        golden_section::<Infallible>([grid(best - 1), grid(best + 1)], 30, |sigma| Ok(at(profile, sigma).residual));
-    at(profile, sigma)
+/// Where `value` is least between 0 and 10 rad: the best of a grid from 0.01, a twentieth apart, and golden sections about it.
+pub fn best_sigma(value: impl Fn(f64) -> f64) -> f64 {
+    let grid = |k: i32| if k < 0 { 0.0 } else { 0.01 * 1.05f64.powi(k) };
+    let values: Vec<f64> = (0..142).map(|k| value(grid(k))).collect();
+    let best = (0..142).min_by(|&a, &b| values[a as usize].total_cmp(&values[b as usize])).unwrap_or_default();
+    let Ok(sigma) = golden_section::<Infallible>([grid(best - 1), grid(best + 1)], 30, |sigma| Ok(value(sigma)));
+    sigma
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::profile;
+    use super::super::{half_space, profile};
     use super::*;
+    use lapidary_cdrf::oracle;
+
+    /// A reflectance of a cosine and a width.
+    type Reflectance = fn(f64, f64) -> f64;
+
+    /// A profile of a known function: the oracle's, which is not what is fitted.
+    fn known(function: Reflectance, sigma: f64, scale: f64) -> Profile {
+        let exitance = std::array::from_fn(|bin| scale * Profile::mean(bin, |cosine| function(cosine, sigma)));
+        Profile { radius: 1.0, albedo: 0.9, exitance, standard_error: [0.0; BINS] }
+    }
 
     #[test]
-    fn a_profile_that_is_a_reflectance_function_gives_its_width_back() {
-        for sigma in [0.05, 0.3, 1.0] {
-            let exitance = values(sigma).map(|value| 0.7 * value);
-            let found = fit(&Profile { radius: 1.0, albedo: 0.9, exitance, standard_error: [0.0; BINS] });
-            assert!((found.sigma / sigma - 1.0).abs() < 1e-3, "{sigma}: {found:?}");
-            assert!((found.scale - 0.7).abs() < 1e-3 && found.residual < 1e-4, "{sigma}: {found:?}");
+    fn a_profile_that_is_a_reflectance_function_gives_its_parameters_back() {
+        let forms: [(Form, Reflectance); 2] =
+            [(Form::Circular, oracle::accurate), (Form::Spherical, oracle::spherical)];
+        for (form, function) in forms {
+            for sigma in [0.05, 0.3, 1.0] {
+                let profile = known(function, sigma, 0.7);
+                for scale in [None, Some(0.7)] {
+                    let found = Fit::best(&profile, form, scale);
+                    assert!((found.sigma / sigma - 1.0).abs() < 1e-3, "{form:?} {sigma}: {found:?}");
+                    assert!((found.scale - 0.7).abs() < 1e-4 && found.residual < 3e-6, "{form:?} {sigma}: {found:?}");
+                }
+                // The wrong scale or the wrong form leaves something over.
+                assert!(Fit::best(&profile, form, Some(0.5)).residual > 1e-2);
+                let other = if form == Form::Circular { Form::Spherical } else { Form::Circular };
+                assert!(Fit::best(&profile, other, Some(0.7)).residual > 1e-4);
+            }
         }
     }
 
-    /// Were sigma = sigma_0 / R true, sigma R were one number for a matter. It is not.
     #[test]
-    fn the_best_width_is_not_inverse_to_the_radius() {
-        for albedo in [0.9, 0.99, 1.0] {
-            let found = [2.0, 5.0, 10.0, 20.0, 50.0].map(|radius| (radius, fit(&profile(radius, albedo, 400_000, 11))));
-            for (radius, fit) in found {
-                println!(
-                    "albedo {albedo:4}, radius {radius:2}: sigma {:.4}, sigma R {:.3}, scale {:.3}, residual {:.4}",
-                    fit.sigma,
-                    fit.sigma * radius,
-                    fit.scale,
-                    fit.residual
-                );
+    fn no_width_at_all_is_found_too() {
+        let lambert = known(|cosine, _| cosine.max(0.0), 0.0, 0.4);
+        for form in [Form::Circular, Form::Spherical] {
+            let found = Fit::best(&lambert, form, Some(0.4));
+            assert!(found.sigma < 1e-3 && found.residual < 1e-6, "{form:?}: {found:?}");
+        }
+        let found = Fit::best(&lambert, Form::Lambert, None);
+        assert!((found.scale - 0.4).abs() < 1e-12 && found.residual < 1e-12, "{found:?}");
+    }
+
+    /// A scale that may be chosen brings a function no farther off, and a width no farther than none.
+    #[test]
+    fn freedom_never_harms() {
+        for (radius, albedo) in [(2.0, 0.8), (5.0, 1.0), (20.0, 0.99)] {
+            let profile = profile(radius, albedo, 50_000, 11);
+            let fixed = Some(half_space::diffuse_albedo(albedo));
+            for scale in [None, fixed] {
+                let lambert = Fit::best(&profile, Form::Lambert, scale).residual;
+                for form in [Form::Circular, Form::Spherical] {
+                    let found = Fit::best(&profile, form, scale).residual;
+                    assert!(found <= lambert, "{radius} {albedo} {form:?} {scale:?}: {found}, {lambert}");
+                }
             }
-            let widths = found.map(|(radius, fit)| radius * fit.sigma);
-            let drift =
-                widths.iter().copied().fold(0.0, f64::max) / widths.iter().copied().fold(f64::INFINITY, f64::min);
-            println!("albedo {albedo}: sigma R drifts {drift:.2} times");
-            // The smaller the sphere, the wider: so much is true.
-            assert!(found.windows(2).all(|pair| pair[0].1.sigma > pair[1].1.sigma), "{found:?}");
-            assert!(drift > 1.3, "{drift}");
+            for form in [Form::Lambert, Form::Circular, Form::Spherical] {
+                let [free, fixed] = [None, fixed].map(|scale| Fit::best(&profile, form, scale).residual);
+                assert!(free <= fixed + 1e-9, "{radius} {albedo} {form:?}: {free}, {fixed}");
+            }
         }
     }
 }

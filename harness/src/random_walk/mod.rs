@@ -5,9 +5,10 @@
 //! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
 
 mod fit;
+pub mod half_space;
 mod sphere;
 
-pub use fit::{Fit, fit};
+pub use fit::{Fit, Form, best_sigma};
 pub use sphere::{BINS, Profile, profile};
 
 use glam::DVec3;

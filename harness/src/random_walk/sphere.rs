@@ -2,13 +2,14 @@
 
 use super::{Ball, Exit, Walks, fold, in_disc};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Intervals of the angle, from 0 to pi.
 pub const BINS: usize = 36;
 
 /// What leaves a sphere where its normal makes an angle with the direction to the light.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// In mean free paths.
     pub radius: f64,
@@ -16,8 +17,10 @@ pub struct Profile {
     pub albedo: f64,
     /// Radiant exitance by interval of the angle, over the irradiance of a surface that faces the light. Scattered light alone: what went
     /// straight through is seen only by who looks into the light.
+    #[serde(with = "by_interval")]
     pub exitance: [f64; BINS],
     /// The standard error of each.
+    #[serde(with = "by_interval")]
     pub standard_error: [f64; BINS],
 }
 
@@ -25,6 +28,49 @@ impl Profile {
     /// The bounds of an interval, as cosines: the greater first.
     pub fn cosines(bin: usize) -> [f64; 2] {
         [bin, bin + 1].map(|edge| (PI * edge as f64 / BINS as f64).cos())
+    }
+
+    /// An interval's share of the sphere's surface.
+    pub fn share(bin: usize) -> f64 {
+        let [greater, less] = Self::cosines(bin);
+        0.5 * (greater - less)
+    }
+
+    /// The mean of a function of the cosine over an interval's surface, by Gauss's three points.
+    pub fn mean(bin: usize, function: impl Fn(f64) -> f64) -> f64 {
+        let [greater, less] = Self::cosines(bin);
+        // Equal steps of the cosine are equal areas.
+        let (middle, reach) = (0.5 * (greater + less), 0.5 * (greater - less) * 0.6f64.sqrt());
+        (5.0 * function(middle - reach) + 8.0 * function(middle) + 5.0 * function(middle + reach)) / 18.0
+    }
+
+    /// The share of the light on the sphere that leaves it scattered.
+    pub fn whole(&self) -> f64 {
+        // The surface is four times the disc that the light falls on.
+        (0..BINS).map(|bin| 4.0 * Self::share(bin) * self.exitance[bin]).sum()
+    }
+
+    /// What the walks' statistics alone leave between this profile and the truth: RMS over the surface.
+    pub fn noise(&self) -> f64 {
+        (0..BINS).map(|bin| Self::share(bin) * self.standard_error[bin].powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// Values by interval: serde knows no arrays of this length.
+mod by_interval {
+    use super::BINS;
+    use serde::de::{Deserialize as _, Deserializer, Error as _};
+    use serde::ser::{Serialize as _, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(values: &[f64; BINS], serializer: S) -> Result<S::Ok, S::Error> {
+        values.as_slice().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; BINS], D::Error> {
+        let values = Vec::deserialize(deserializer)?;
+        values
+            .try_into()
+            .map_err(|values: Vec<f64>| D::Error::invalid_length(values.len(), &"a value for each interval"))
     }
 }
 
@@ -42,11 +88,8 @@ pub fn profile(radius: f64, albedo: f64, count: u64, seed: u64) -> Profile {
     };
     let join = |a: [u64; BINS], b: [u64; BINS]| std::array::from_fn(|bin| a[bin] + b[bin]);
     let counts = fold(&Ball { radius }, Walks { albedo, count, seed }, enter, || [0; BINS], add, join);
-    // The beam's power is pi r^2 E, an interval's area 2 pi r^2 (cos - cos).
-    let scale = |bin: usize| {
-        let [greater, less] = Profile::cosines(bin);
-        1.0 / (2.0 * (greater - less))
-    };
+    // The beam's power is pi r^2 E, the whole surface is 4 pi r^2.
+    let scale = |bin: usize| 0.25 / Profile::share(bin);
     let share = |bin: usize| counts[bin] as f64 / count as f64;
     Profile {
         radius,
@@ -66,11 +109,7 @@ mod tests {
         for radius in [0.5, 2.0, 10.0] {
             let count = 200_000;
             let profile = profile(radius, 1.0, count, 5);
-            let area = |bin: usize| {
-                let [greater, less] = Profile::cosines(bin);
-                2.0 * (greater - less)
-            };
-            let out: f64 = (0..BINS).map(|bin| profile.exitance[bin] * area(bin)).sum();
+            let out = profile.whole();
             // The mean of exp(-2 r c) over the disc, with c dc its measure.
             let way = 2.0 * radius;
             let straight = 2.0 * (1.0 - (1.0 + way) * (-way).exp()) / (way * way);

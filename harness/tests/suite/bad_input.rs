@@ -113,13 +113,27 @@ const CHECK: &[Row] = &[
 ];
 
 const OTHERS: &[Row] = &[
-    ("cost skin", One, &["no ladder `skin`", "gem"]),
+    ("cost skin", One, &["no ladder `skin`", "gem", "sphere"]),
     ("cost gem --from {}/none.json", One, &["none.json: ", "cannot be read"]),
     ("cost gem --from {}/text.glb", One, &["text.glb: ", "not a gem.json"]),
     ("cost gem --fill {}/none.md", One, &["none.md: ", "cannot be read"]),
     ("cost gem --rungs proxi-1", Usage, &["did you mean `proxy-1`"]),
     ("cost gem --rungs reference", Usage, &["compared with"]),
     ("cost gem --views briliant", Usage, &["did you mean `brilliant`"]),
+    ("cost gem --walks 5", One, &["`gem` knows no --walks"]),
+    ("cost gem --seed 5", One, &["`gem` knows no --seed"]),
+    ("cost sphere --rungs proxy-1", One, &["`sphere` knows no --rungs"]),
+    ("cost sphere --views brilliant", One, &["`sphere` knows no --views"]),
+    ("cost sphere --rounds 7", One, &["`sphere` knows no --rounds"]),
+    ("cost sphere --profile", One, &["`sphere` knows no --profile"]),
+    ("cost sphere --walks 0", Usage, &["--walks"]),
+    ("cost sphere --from {}/none.json", One, &["none.json: ", "cannot be read"]),
+    ("cost sphere --from {}/text.glb", One, &["text.glb: ", "not a sphere.json"]),
+    ("cost sphere --from {}/empty.json --walks 9", Usage, &["--walks", "--from"]),
+    ("cost sphere --from {}/empty.json --fill {}/page.md", One, &["page.md: ", "no sphere of albedo 0.8 and radius 2"]),
+    ("cost sphere --from {}/empty.json --out {}/folder.png", One, &["no widths"]),
+    ("cost sphere --fill {}/none.md", One, &["none.md: ", "cannot be read"]),
+    ("cost sphere --fill {}/bad.md", One, &["bad.md: ", "no table `other`", "sphere_widths"]),
     ("cost gem --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
     ("chek", Usage, &["chek", "check"]),
     ("list --jsn", Usage, &["--jsn"]),
@@ -228,6 +242,10 @@ fn write_bad_files(folder: &Path) {
         b"fn refraction_reflect(incident: f32, normal: vec3f) -> vec3f {\n    return incident * normal;\n}\n",
     );
     write("other.wgsl", b"fn mine(incident: vec3f) -> vec3f {\n    return incident;\n}\n");
+    let empty = json!({"walks": 1, "seed": 1, "profiles": [], "rows": [], "limits": [], "laws": [], "choices": []});
+    write("empty.json", empty.to_string().as_bytes());
+    write("page.md", b"<!-- generated: sphere_widths --><!-- end -->\n");
+    write("bad.md", b"<!-- generated: other --><!-- end -->\n");
     std::fs::create_dir(folder.join("folder.png")).expect("a folder");
     std::fs::create_dir(folder.join("folder.glb")).expect("a folder");
 }

@@ -1,7 +1,10 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
 use crate::program::{folder, succeeds};
-use lapidary_harness::cost::{MEASURES, page, views};
+use lapidary_harness::cost::page::{self, Tables};
+use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
+use lapidary_harness::cost::{MEASURES, Report, views};
+use lapidary_harness::random_walk::{self, Form};
 use lapidary_harness::render::{Frame, Settings};
 use lapidary_harness::scene::Scene;
 use serde_json::Value;
@@ -84,17 +87,111 @@ fn a_profile_cuts_every_frame() {
     assert_eq!(times.count(), 7, "{text}");
 }
 
-/// The record of the repository, and the pages that show it.
+/// The records of the repository, and the pages that show them.
 #[test]
 fn the_pages_show_the_record() {
+    let gem: Report = record("measurements/lavapipe/gem.json");
+    holds(&gem, "gem", "lavapipe", &["gem_ladder.md", "gem_proxy.md"]);
+    let sphere: SphereReport = record("measurements/random_walk/sphere.json");
+    holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
+}
+
+fn docs(name: &str) -> String {
     let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let read = |name: &str| std::fs::read_to_string(docs.join(name)).expect(name);
-    let report = serde_json::from_str(&read("measurements/lavapipe/gem.json")).expect("a report");
-    for page in ["gem_ladder.md", "gem_proxy.md"] {
-        let text = read(page);
-        assert!(text.contains("<!-- generated: "), "{page}");
-        let again =
-            "./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md";
-        assert!(page::fill(&text, &report).expect("filled") == text, "{page} is not the record's: {again}");
+    std::fs::read_to_string(docs.join(name)).expect(name)
+}
+
+fn record<R: serde::de::DeserializeOwned>(name: &str) -> R {
+    serde_json::from_str(&docs(name)).expect(name)
+}
+
+fn holds<R: Tables>(report: &R, technique: &str, folder: &str, pages: &[&str]) {
+    for page in pages {
+        let text = docs(page);
+        assert!(R::TABLES.iter().any(|(name, _)| text.contains(&format!("<!-- generated: {name} -->"))), "{page}");
+        let fill: Vec<String> = pages.iter().map(|page| format!("docs/{page}")).collect();
+        let again = format!(
+            "./cook cost {technique} --from docs/measurements/{folder}/{technique}.json --fill {}",
+            fill.join(",")
+        );
+        assert!(page::fill(&text, report).expect("filled") == text, "{page} is not the record's: {again}");
     }
+}
+
+/// The spheres' fits and rules are what this code makes of the recorded walks, and new walks of another seed agree with those.
+#[test]
+fn the_record_of_spheres_is_what_walks_give() {
+    let record: SphereReport = record("measurements/random_walk/sphere.json");
+    let again = SphereReport::of(record.walks, record.seed, record.profiles.clone());
+    assert_eq!(docs("measurements/random_walk/sphere.txt"), record.text());
+    // Another platform's exponential moves the bottom of a flat valley, and hardly what is left there.
+    let near = |found: f64, recorded: f64, part: f64| (found - recorded).abs() <= part * recorded.abs() + 1e-5;
+    assert_eq!(again.rows.len(), record.rows.len());
+    for (found, recorded) in again.rows.iter().zip(&record.rows) {
+        let same = |row: &Row| (row.albedo, row.radius, row.form, row.scale_kind);
+        assert_eq!(same(found), same(recorded));
+        assert!(near(found.residual, recorded.residual, 1e-4), "{found:?} {recorded:?}");
+        assert!(
+            near(found.sigma, recorded.sigma, 5e-3) && near(found.scale, recorded.scale, 5e-3),
+            "{found:?} {recorded:?}"
+        );
+    }
+    // What the page advises.
+    let law = record.laws.iter().find(|law| law.form == Form::Circular && law.albedo.is_none()).expect("a law");
+    let [factor, power] = [format!("{:.1}", law.factor), format!("{:.2}", 1.0 - law.exponent)];
+    assert!(docs("cdrf.md").contains(&format!("σ = {factor} (κℓ)^{power}")), "{law:?}");
+    assert_eq!((again.laws.len(), again.choices.len()), (record.laws.len(), record.choices.len()));
+    for (found, recorded) in again.laws.iter().zip(&record.laws) {
+        assert_eq!((found.form, found.albedo, found.radii), (recorded.form, recorded.albedo, recorded.radii));
+        assert!(near(found.factor, recorded.factor, 5e-3), "{found:?} {recorded:?}");
+        assert!(near(found.exponent, recorded.exponent, 5e-3), "{found:?} {recorded:?}");
+    }
+    for (found, recorded) in again.choices.iter().zip(&record.choices) {
+        assert_eq!((found.form, found.albedo, found.radii), (recorded.form, recorded.albedo, recorded.radii));
+        assert!(near(found.sigma0, recorded.sigma0, 5e-3), "{found:?} {recorded:?}");
+        assert!(near(found.residual, recorded.residual, 1e-4), "{found:?} {recorded:?}");
+    }
+    for (albedo, radius) in [(0.8, 10.0), (0.99, 3.0)] {
+        let walked = random_walk::profile(radius, albedo, 100_000, record.seed ^ 0xabcd);
+        let recorded = record.profile(albedo, radius).expect("a sphere");
+        let squares = (0..random_walk::BINS).map(|bin| {
+            let error = walked.standard_error[bin].hypot(recorded.standard_error[bin]);
+            // Where nothing left the sphere there is no error to measure by.
+            let apart = walked.exitance[bin] - recorded.exitance[bin];
+            if error > 0.0 { (apart / error).powi(2) } else { 0.0 }
+        });
+        // Chi squared of 36 intervals: 36 in the mean, its deviation 8.5.
+        let chi_squared: f64 = squares.sum();
+        assert!(chi_squared < 36.0 + 4.0 * 8.5, "albedo {albedo}, radius {radius}: {chi_squared}");
+    }
+}
+
+#[test]
+fn spheres_are_walked_written_and_shown_again() {
+    let folder = folder();
+    let page = "before\n<!-- generated: sphere_widths --><!-- end -->\n<!-- generated: ladder -->mine<!-- end -->\n";
+    std::fs::write(folder.path().join("page.md"), page).expect("a page");
+    let arguments =
+        ["cost", "sphere", "--walks", "500", "--seed", "3", "--json", "--out", "report", "--fill", "page.md"];
+    let rows: Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON alone");
+    let rows = rows.as_array().expect("an array");
+    assert_eq!(rows.len(), ALBEDOS.len() * RADII.len() * 6);
+    for row in rows {
+        for field in ["albedo", "radius", "sigma", "sigma_radius", "scale", "residual"] {
+            assert!(row[field].as_f64().is_some_and(|value| value >= 0.0), "{field}: {row}");
+        }
+        assert!(row["form"].is_string() && row["scale_kind"].is_string(), "{row}");
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
+    let text = read("report/sphere.txt");
+    let again = succeeds(folder.path(), &["cost", "sphere", "--from", "report/sphere.json"]).stdout;
+    assert_eq!(again.trim_end(), text.trim_end());
+    for plot in ["report/sphere_sigma.svg", "report/sphere_profile.svg"] {
+        assert!(read(plot).ends_with("</svg>\n"), "{plot}");
+    }
+    let filled = read("page.md");
+    assert!(filled.contains("| 0.99 |") && filled.contains("<!-- generated: ladder -->mine<!-- end -->"), "{filled}");
+    // The same seed, the same walks.
+    let other = succeeds(folder.path(), &["cost", "sphere", "--walks", "500", "--seed", "3"]).stdout;
+    assert_eq!(other, again);
 }

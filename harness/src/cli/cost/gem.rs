@@ -1,0 +1,45 @@
+//! The gem ladder.
+
+use super::{Arguments, Context, Failure, Options, Outcome, Places, Shown, behind_a_bar, file, output, refuse};
+use lapidary_harness::cost::{self, CostError, plot};
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    refuse("gem", &[("--walks", arguments.walks.is_some()), ("--seed", arguments.seed.is_some())])?;
+    let mut options = Options::default();
+    if let Some(rounds) = arguments.rounds {
+        options.rounds = rounds;
+    }
+    if !arguments.rungs.is_empty() {
+        options.rungs.clone_from(&arguments.rungs);
+    }
+    if !arguments.views.is_empty() {
+        options.views.clone_from(&arguments.views);
+    }
+    let places = Places::new("gem", arguments)?;
+    if arguments.profile {
+        let gpu = context.gpu()?;
+        let text = behind_a_bar(|progress| {
+            let mut timing = |done, total| progress("timing", done, total);
+            cost::profile(gpu, options.rounds.max(1), options.frame, &mut timing)
+        })?;
+        if let Some(out) = &arguments.out {
+            file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
+        }
+        output::line(&text)?;
+        return Ok(Outcome::Passed);
+    }
+    let mut report = places.report(|| {
+        let gpu = context.gpu()?;
+        behind_a_bar(|progress| cost::run(gpu, &options, progress))
+    })?;
+    report.mark_dominated();
+    let timed = arguments.out.is_some() && report.rungs.iter().any(|rung| rung.timing.is_some());
+    let measures: &[&str] = if timed { &["flip", "rmse"] } else { &[] };
+    let plot = |measure: &&str| Ok((format!("gem_{measure}.svg"), plot::svg(&report, measure)?));
+    let shown = Shown {
+        text: report.text(),
+        rows: serde_json::to_string_pretty(&report.rows())?,
+        plots: measures.iter().map(plot).collect::<Result<_, CostError>>()?,
+    };
+    places.write(&report, &shown)
+}

@@ -1,0 +1,29 @@
+//! The translucent sphere.
+
+use super::{Arguments, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use lapidary_harness::cost::sphere::{self, plot};
+
+/// Walks through each sphere: half a minute on two cores.
+const WALKS: u64 = 1_000_000;
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let ignored = [
+        ("--rungs", !arguments.rungs.is_empty()),
+        ("--views", !arguments.views.is_empty()),
+        ("--rounds", arguments.rounds.is_some()),
+        ("--profile", arguments.profile),
+    ];
+    refuse("sphere", &ignored)?;
+    let places = Places::new("sphere", arguments)?;
+    let report = places.report(|| {
+        let walks = arguments.walks.map_or(WALKS, u64::from);
+        behind_a_bar(|progress| Ok(sphere::run(walks, arguments.seed.unwrap_or(1), progress)))
+    })?;
+    let mut plots = Vec::new();
+    if arguments.out.is_some() {
+        plots.push(("sphere_sigma.svg".to_owned(), plot::sigma(&report)?));
+        plots.push(("sphere_profile.svg".to_owned(), plot::profile(&report)?));
+    }
+    let shown = Shown { text: report.text(), rows: serde_json::to_string_pretty(&report.rows)?, plots };
+    places.write(&report, &shown)
+}

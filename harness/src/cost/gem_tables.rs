@@ -1,0 +1,208 @@
+//! The gem ladder's tables for the pages of `docs/`.
+
+use super::page::{Table, Tables, header, row};
+use super::views::VIEWS;
+use super::{Choice, Colours, RUNGS, Report, RungReport};
+use std::fmt::Write as _;
+
+impl Tables for Report {
+    const TABLES: &'static [Table<Self>] = &[
+        ("ladder", ladder),
+        ("goals", goals),
+        ("paper", paper),
+        ("colours", colours),
+        ("ends", ends),
+        ("reflections", reflections),
+    ];
+
+    fn whole(&self) -> Result<(), String> {
+        let missing = RUNGS.iter().find(|name| self.rung(name).is_none_or(|rung| rung.timing.is_none()));
+        if let Some(name) = missing {
+            return Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"));
+        }
+        if self.views.len() < VIEWS.len() {
+            return Err("the report does not hold all views; only the whole ladder fills a page".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn ladder(report: &Report) -> String {
+    let [width, height] = report.frame;
+    let columns = ["rung", "ms", "× proxy-1", "FLIP", "RMSE", "energy", "SPIR-V vertex + fragment", "bytes", ""];
+    let mut table = header(&columns);
+    for rung in &report.rungs {
+        let cells = [
+            rung.rung.clone(),
+            rung.milliseconds(),
+            report.ratio(&rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
+            format!("{:.3}", rung.mean(0)),
+            format!("{:.3}", rung.mean(1)),
+            format!("{:.3}", rung.mean(2)),
+            format!("{} + {}", rung.vertex_instructions, rung.fragment_instructions),
+            rung.geometry_bytes.to_string(),
+            if rung.dominated { "dominated" } else { "" }.to_owned(),
+        ];
+        row(&mut table, &cells);
+    }
+    let _ = writeln!(
+        table,
+        "\nMilliseconds for {width} × {height} pixels that the brilliant fills, the least of interleaved rounds, on {}. * timed on 1/16 of \
+         the pixels and scaled.",
+        report.adapter
+    );
+    table
+}
+
+fn goals(report: &Report) -> String {
+    let mut table = header(&["goal", "measured", ""]);
+    let times = |slow: &str, fast: &str| report.ratio(slow, fast);
+    let mut judge = |goal: &str, measured: Option<f64>, met: &dyn Fn(f64) -> bool, shown: &dyn Fn(f64) -> String| {
+        let Some(measured) = measured else { return };
+        row(&mut table, &[goal.to_owned(), shown(measured), if met(measured) { "met" } else { "missed" }.to_owned()]);
+    };
+    let factor = |value: f64| format!("{value:.1} times");
+    judge(
+        "proxy at least 20 times as fast as the loop over all triangles, one hit each",
+        times("triangles-1", "proxy-1"),
+        &|value| value >= 20.0,
+        &factor,
+    );
+    judge(
+        "proxy at least 8 times as fast as the loop over the facet planes",
+        times("convex-1", "proxy-1"),
+        &|value| value >= 8.0,
+        &factor,
+    );
+    judge("proxy faster than the BVH", times("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
+    for rung in ["proxy-1", "convex-8"] {
+        // The paper's is one shader at two strengths: the faster of them is its time.
+        let tracker = format!("{rung}+tracker");
+        let twins = [format!("{rung}+paper"), format!("{rung}+paper-fitted")].map(|paper| times(&tracker, &paper));
+        judge(
+            &format!("exact tracker's time within 10 % of the paper's tracker's, `{rung}`"),
+            twins[0].zip(twins[1]).map(|(a, b)| a.max(b)),
+            &|value| value <= 1.1,
+            &|value| format!("{:+.1} %", 100.0 * (value - 1.0)),
+        );
+    }
+    let least = report.colours.iter().map(gain).reduce(f64::min);
+    judge(
+        "its colours at least 5 times as close to separate wavelengths' as the paper's at its best strength, in the view where they gain least",
+        least,
+        &|value| value >= 5.0,
+        &factor,
+    );
+    table
+}
+
+fn paper(report: &Report) -> String {
+    let mut table = header(&["", "the paper (GeForce GTX 760)", "here"]);
+    let ms = |name: &str| report.rung(name).map_or("-".to_owned(), RungReport::milliseconds);
+    let compared = |name: &str, what: &str| {
+        let ratio = report.ratio(name, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.1}"));
+        format!("{} ms, {ratio} times ({what})", ms(name))
+    };
+    let counts = |name: &str| {
+        report.rung(name).map_or("-".to_owned(), |r| format!("{} + {}", r.vertex_instructions, r.fragment_instructions))
+    };
+    let encodes: Vec<f64> = report.rungs.iter().filter_map(|rung| Some(rung.timing?.encode_us)).collect();
+    let (least, most) = encodes.iter().fold((f64::INFINITY, 0f64), |(a, b), &us| (a.min(us), b.max(us)));
+    let exact_bytes = report.rung("convex-1").map_or(0, |rung| rung.geometry_bytes);
+    let rows = [
+        ["proxy, one hit", "3 ms", &format!("{} ms", ms("proxy-1"))],
+        [
+            "exact: all polygons in a loop",
+            "15 ms, 5 times",
+            &format!("{}; {}", compared("triangles-1", "all triangles"), compared("convex-1", "facet planes")),
+        ],
+        ["BVH", "-", &compared("bvh-1", "112 triangles")],
+        [
+            "CPU for a frame",
+            "20 µs for both",
+            &format!("{least:.0} to {most:.0} µs, recording and submitting through wgpu"),
+        ],
+        [
+            "shaders, proxy",
+            "16 + 160 + 181 slots (vertex, geometry, pixel)",
+            &format!(
+                "{} SPIR-V instructions (vertex, fragment); +paper {}; +tracker {}",
+                counts("proxy-1"),
+                counts("proxy-1+paper"),
+                counts("proxy-1+tracker")
+            ),
+        ],
+        ["shaders, exact", "16 + 160 + 152 slots", &counts("convex-1")],
+        [
+            "constants",
+            "2304 bytes; exact 15056 bytes",
+            &format!("128 bytes of uniforms; exact {exact_bytes} bytes more in storage"),
+        ],
+    ];
+    for cells in rows {
+        row(&mut table, &cells.map(str::to_owned));
+    }
+    table
+}
+
+/// How many times as close the exact tracker is as the paper's at its best.
+fn gain(colours: &Colours) -> f64 {
+    colours.fitted_rms / colours.tracker_rms
+}
+
+/// `least to most` of a value.
+fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> String {
+    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
+    format!("{} to {}", show(least), show(most))
+}
+
+fn colours(Report { colours, .. }: &Report) -> String {
+    let columns = [
+        "geometry",
+        "pixels that keep together",
+        "no dispersion",
+        "the paper's, literal",
+        "best strength",
+        "the paper's at it",
+        "exact tracker",
+        "gain",
+    ];
+    let mut table = header(&columns);
+    let mut rungs: Vec<&str> = colours.iter().map(|c| c.rung.as_str()).collect();
+    rungs.dedup();
+    for rung in rungs {
+        let here: Vec<&Colours> = colours.iter().filter(|c| c.rung == rung).collect();
+        let of = |value: fn(&Colours) -> f64, show: &dyn Fn(f64) -> String| range(here.iter().map(|c| value(c)), show);
+        let cells = [
+            rung.to_owned(),
+            of(|c| 100.0 * c.shared, &|value| format!("{value:.0} %")),
+            of(|c| c.none_rms, &|value| format!("{value:.4}")),
+            of(|c| c.paper_rms, &|value| format!("{value:.3}")),
+            of(|c| f64::from(c.strength), &|value| format!("{value:.4}")),
+            of(|c| c.fitted_rms, &|value| format!("{value:.4}")),
+            of(|c| c.tracker_rms, &|value| format!("{value:.5}")),
+            of(gain, &|value| format!("{value:.0} times")),
+        ];
+        row(&mut table, &cells);
+    }
+    table
+}
+
+fn ends(Report { choices, .. }: &Report) -> String {
+    let mut table = header(&["rung", "end", "FLIP", "RMSE", "energy"]);
+    for (rung, choice, [flip, rmse, energy]) in Choice::means(choices) {
+        let cells =
+            [rung.to_owned(), choice.to_owned(), format!("{flip:.4}"), format!("{rmse:.4}"), format!("{energy:+.4}")];
+        row(&mut table, &cells);
+    }
+    table
+}
+
+fn reflections(report: &Report) -> String {
+    let mut table = header(&["mesh", "by the table", "by the crown"]);
+    for reflection in &report.reflections {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        row(&mut table, &[reflection.mesh.clone(), percent(reflection.table), percent(reflection.crown)]);
+    }
+    table
+}

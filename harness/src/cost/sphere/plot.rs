@@ -1,0 +1,202 @@
+//! The spheres as pictures: the width over the radius, and what spheres show over the angle from the light.
+
+use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
+use crate::cost::CostError;
+use crate::cost::plot::{COLORS, SIZE, span};
+use crate::random_walk::{BINS, Form};
+use lapidary_cdrf as cdrf;
+use plotters::prelude::*;
+
+/// The spheres whose profiles are drawn: their albedo ...
+const ALBEDO: f64 = 0.99;
+/// ... and their radii.
+const RADII: [f64; 3] = [2.0, 10.0, 50.0];
+/// Labels of the axis of widths times radii.
+const WIDTHS: [f64; 12] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0];
+const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
+const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
+const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
+
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// Width times radius over the radius, a line for each albedo: level, were sigma = sigma_0 kappa true.
+///
+/// # Errors
+///
+/// A report without widths; plotters' own.
+pub fn sigma(report: &SphereReport) -> Result<String, CostError> {
+    written(|text| draw_sigma(text, report))
+}
+
+/// Exitance over the angle from the light, with the best circular form with a free scale beside it, and Lambert's law.
+///
+/// # Errors
+///
+/// A report without one of the spheres; plotters' own.
+pub fn profile(report: &SphereReport) -> Result<String, CostError> {
+    written(|text| draw_profile(text, report))
+}
+
+fn written(draw: impl FnOnce(&mut String) -> Drawn) -> Result<String, CostError> {
+    let mut text = String::new();
+    draw(&mut text).map_err(|error| CostError::Plot(error.to_string()))?;
+    Ok(text)
+}
+
+/// Those of an axis's labels that lie on it.
+fn ticks(labels: &[f64], axis: &std::ops::Range<f64>) -> Vec<f64> {
+    labels.iter().copied().filter(|label| axis.contains(label)).collect()
+}
+
+/// Radius and width times radius.
+type Point = (f64, f64);
+
+fn draw_sigma(text: &mut String, report: &SphereReport) -> Drawn {
+    // Neither has a place on a logarithmic axis.
+    let visible = |&(radius, width): &Point| radius > 0.0 && width > 0.0;
+    let lines = ALBEDOS.map(|albedo| -> Vec<Point> {
+        let rows = report.best(albedo, Form::Circular, ScaleKind::Free);
+        rows.map(|row| (row.radius, row.sigma_radius)).filter(visible).collect()
+    });
+    let points: Vec<Point> = lines.concat();
+    if points.is_empty() {
+        return Err("the report has no widths".into());
+    }
+    let across = span(points.iter().map(|point| point.0), 1.15);
+    let up = span(points.iter().map(|point| point.1), 1.15);
+    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    let caption = "Best width times radius: level lines, were σ = σ₀κ true";
+    let mut chart = ChartBuilder::on(&root)
+        .caption(caption, ("sans-serif", 18))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(
+            across.clone().log_scale().with_key_points(ticks(&ALL_RADII, &across)),
+            up.clone().log_scale().with_key_points(ticks(&WIDTHS, &up)),
+        )?;
+    chart
+        .configure_mesh()
+        .x_desc("radius in mean free paths")
+        .y_desc("σR in mean free paths, the circular form with a free scale")
+        .x_label_formatter(&|radius| format!("{radius:.0}"))
+        .y_label_formatter(&|width| format!("{width:.0}"))
+        .light_line_style(LIGHT)
+        .label_style(("sans-serif", 13))
+        .draw()?;
+    if let Some(law) = report.laws.iter().find(|law| law.form == Form::Circular && law.albedo.is_none()) {
+        let line = law.radii.map(|radius| (radius, radius * law.sigma(radius)));
+        chart
+            .draw_series(LineSeries::new(line, GREY.stroke_width(6)))?
+            .label(format!("σR = {:.2} R^{:.2}", law.factor, law.exponent))
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(6)));
+    }
+    for ((albedo, line), color) in ALBEDOS.into_iter().zip(lines).zip(COLORS) {
+        chart.draw_series(line.iter().map(|&at| Circle::new(at, 4, color.filled())))?;
+        chart
+            .draw_series(LineSeries::new(line, color.stroke_width(2)))?
+            .label(format!("albedo {albedo}"))
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .border_style(FRAME)
+        .background_style(WHITE.mix(0.9))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}
+
+fn draw_profile(text: &mut String, report: &SphereReport) -> Drawn {
+    let mut spheres = Vec::new();
+    for radius in RADII {
+        let sphere = report.profile(ALBEDO, radius).zip(report.row(ALBEDO, radius, Form::Circular, ScaleKind::Free));
+        spheres.push(sphere.ok_or_else(|| format!("the report has no sphere of albedo {ALBEDO} and radius {radius}"))?);
+    }
+    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    let caption = format!("Spheres of albedo {ALBEDO}: random walks and the best of the reflectance function");
+    let mut chart = ChartBuilder::on(&root)
+        .caption(caption, ("sans-serif", 18))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(0.0..180.0, 0.0..0.9)?;
+    chart
+        .configure_mesh()
+        .x_desc("angle between the normal and the light, degrees")
+        .y_desc("exitance over the irradiance square to the light")
+        .x_labels(13)
+        .x_label_formatter(&|angle| format!("{angle:.0}"))
+        .y_label_formatter(&|value| format!("{value:.1}"))
+        .light_line_style(LIGHT)
+        .label_style(("sans-serif", 13))
+        .draw()?;
+    let curve = |value: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
+        (0..=360).map(|half| 0.5 * f64::from(half)).map(|angle| (angle, value(angle.to_radians().cos()))).collect()
+    };
+    if let Some(limit) = report.limits.iter().find(|limit| limit.albedo == ALBEDO) {
+        let lambert = curve(&|cosine| limit.diffuse_albedo * cosine.max(0.0));
+        chart
+            .draw_series(LineSeries::new(lambert, GREY.stroke_width(2)))?
+            .label("Lambert, the half space's albedo")
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(2)));
+    }
+    for ((profile, row), color) in spheres.into_iter().zip(&COLORS[1..]) {
+        let color = *color;
+        let best = curve(&|cosine| row.scale * f64::from(cdrf::accurate(cosine as f32, row.sigma as f32)));
+        chart
+            .draw_series(LineSeries::new(best, color.stroke_width(1)))?
+            .label(format!("R = {}: σ = {:.3}, residual {:.3}", row.radius, row.sigma, row.residual))
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+        let points: Vec<(f64, f64, f64)> = (0..BINS)
+            .map(|bin| {
+                let angle = 180.0 * (bin as f64 + 0.5) / BINS as f64;
+                (angle, profile.exitance[bin], profile.standard_error[bin])
+            })
+            .collect();
+        chart.draw_series(points.iter().map(|&(angle, value, _)| Circle::new((angle, value), 3, color.filled())))?;
+        chart.draw_series(points.iter().map(|&(angle, value, error)| {
+            PathElement::new([(angle, value - error), (angle, value + error)], color.stroke_width(2))
+        }))?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .border_style(FRAME)
+        .background_style(WHITE.mix(0.9))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random_walk;
+
+    #[test]
+    fn plots_show_every_line() {
+        let sphere = |albedo| RADII.map(|radius| random_walk::profile(radius, albedo, 2000, 1)).to_vec();
+        let report = SphereReport::of(2000, 1, [sphere(ALBEDO), sphere(1.0)].concat());
+        let svg = sigma(&report).expect("drawn");
+        for part in ["albedo 0.99", "albedo 1", "R^", "mean free paths"] {
+            assert!(svg.contains(part), "{part}");
+        }
+        let svg = profile(&report).expect("drawn");
+        for part in ["R = 2:", "R = 10:", "R = 50:", "Lambert"] {
+            assert!(svg.contains(part), "{part}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_there_is_not_drawn() {
+        let empty = SphereReport::of(1, 1, Vec::new());
+        assert!(sigma(&empty).expect_err("nothing").to_string().contains("no widths"));
+        assert!(profile(&empty).expect_err("nothing").to_string().contains("radius 2"));
+    }
+}

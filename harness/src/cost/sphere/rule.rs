@@ -1,0 +1,200 @@
+//! Rules for the width: how it goes with the radius, and what one width times radius costs.
+
+use super::{Row, ScaleKind, rows_of};
+use crate::random_walk::{Fit, Form, Profile, best_sigma};
+use serde::{Deserialize, Serialize};
+
+/// The radii whose widths make the laws: larger spheres are so near Lambert's law that a width hardly matters.
+const LAW_RADII: [f64; 2] = [2.0, 20.0];
+/// Ranges of radii to choose one width times radius for.
+pub const RANGES: [[f64; 2]; 3] = [[2.0, 5.0], [5.0, 20.0], [20.0, 100.0]];
+/// The forms that have a width.
+const WIDE: [Form; 2] = [Form::Circular, Form::Spherical];
+
+/// sigma R = factor R^exponent, the straight line of least squares through logarithms of the best widths with free scales.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Law {
+    /// Whose width.
+    pub form: Form,
+    /// Of one scattering; none where one law is for all albedos.
+    pub albedo: Option<f64>,
+    /// The least and the largest radius.
+    pub radii: [f64; 2],
+    /// In mean free paths: sigma R at a radius of one.
+    pub factor: f64,
+    /// 0 were sigma = sigma_0 / R true.
+    pub exponent: f64,
+    /// By what share the law's width is off at worst.
+    pub worst: f64,
+}
+
+impl Law {
+    /// Width for a radius in mean free paths, in radians.
+    pub fn sigma(&self, radius: f64) -> f64 {
+        self.factor * radius.powf(self.exponent - 1.0)
+    }
+}
+
+/// One width times radius for a range of radii. Residuals are root mean squares over its spheres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Of one scattering.
+    pub albedo: f64,
+    /// What is fitted.
+    pub form: Form,
+    /// Whether each sphere has a scale of its own.
+    pub scale_kind: ScaleKind,
+    /// The least and the largest radius.
+    pub radii: [f64; 2],
+    /// The width times radius, in mean free paths, that leaves least.
+    pub sigma0: f64,
+    /// What it leaves.
+    pub residual: f64,
+    /// What the law for all albedos leaves; none where there is no law.
+    pub law: Option<f64>,
+    /// What each sphere's own best width leaves.
+    pub best: f64,
+    /// What no width at all leaves.
+    pub lambert: f64,
+}
+
+/// Each form's law, for all albedos and for each.
+pub(super) fn laws(albedos: &[f64], rows: &[Row]) -> Vec<Law> {
+    let kinds = std::iter::once(None).chain(albedos.iter().copied().map(Some));
+    let each = kinds.flat_map(|albedo| WIDE.map(|form| (form, albedo)));
+    each.filter_map(|(form, albedo)| law(form, albedo, rows)).collect()
+}
+
+fn law(form: Form, albedo: Option<f64>, rows: &[Row]) -> Option<Law> {
+    let [low, high] = LAW_RADII;
+    let of_law = |row: &&Row| {
+        row.form == form
+            && row.scale_kind == ScaleKind::Free
+            && albedo.is_none_or(|albedo| row.albedo == albedo)
+            && (low..=high).contains(&row.radius)
+            && row.sigma > 0.0
+    };
+    let points: Vec<[f64; 2]> =
+        rows.iter().filter(of_law).map(|row| [row.radius.ln(), row.sigma_radius.ln()]).collect();
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+    let middle = [mean(0), mean(1)];
+    let moment =
+        |axis: usize| points.iter().map(|point| (point[0] - middle[0]) * (point[axis] - middle[axis])).sum::<f64>();
+    let spread = moment(0);
+    // One radius alone makes no law, nor does none, whose spread is 0 or not a number.
+    if spread.is_nan() || spread < 1e-9 {
+        return None;
+    }
+    let exponent = moment(1) / spread;
+    let factor = (middle[1] - exponent * middle[0]).exp();
+    let off = |[radius, width]: &[f64; 2]| (factor.ln() + exponent * radius - width).exp_m1().abs();
+    let worst = points.iter().map(off).fold(0.0, f64::max);
+    Some(Law { form, albedo, radii: LAW_RADII, factor, exponent, worst })
+}
+
+/// The choices of an albedo, for each range that has spheres.
+pub(super) fn choices(albedo: f64, profiles: &[Profile], rows: &[Row], laws: &[Law]) -> Vec<Choice> {
+    let mut found = Vec::new();
+    for radii @ [low, high] in RANGES {
+        let inside = |radius: f64| (low..=high).contains(&radius);
+        let spheres: Vec<&Profile> =
+            profiles.iter().filter(|profile| profile.albedo == albedo && inside(profile.radius)).collect();
+        if spheres.is_empty() {
+            continue;
+        }
+        let mean = |squares: f64| (squares / spheres.len() as f64).sqrt();
+        for scale_kind in ScaleKind::ALL {
+            let scale = scale_kind.of(albedo);
+            for form in WIDE {
+                let with = |sigma: &dyn Fn(f64) -> f64| {
+                    let residual = |sphere: &&Profile| Fit::at(sphere, form, sigma(sphere.radius), scale).residual;
+                    mean(spheres.iter().map(|sphere| residual(sphere).powi(2)).sum())
+                };
+                let own = |form| {
+                    let rows = rows_of(rows, albedo, form, scale_kind).filter(|row| inside(row.radius));
+                    mean(rows.map(|row| row.residual.powi(2)).sum())
+                };
+                // Searched for as the width at the range's middle.
+                let middle = (low * high).sqrt();
+                let sigma0 = middle * best_sigma(|sigma| with(&|radius| sigma * middle / radius));
+                let law = laws.iter().find(|law| law.form == form && law.albedo.is_none());
+                found.push(Choice {
+                    albedo,
+                    form,
+                    scale_kind,
+                    radii,
+                    sigma0,
+                    residual: with(&|radius| sigma0 / radius),
+                    law: law.map(|law| with(&|radius| law.sigma(radius))),
+                    best: own(form),
+                    lambert: own(Form::Lambert),
+                });
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows whose widths follow a law, with one that does not.
+    fn rows(factor: f64, exponent: f64, off: f64) -> Vec<Row> {
+        let row = |radius: f64| {
+            let law = factor * f64::powf(radius, exponent);
+            // A large sphere is no part of the law.
+            let sigma_radius = if radius > 20.0 { 3.0 * law } else { law };
+            Row {
+                albedo: 0.9,
+                radius,
+                form: Form::Circular,
+                scale_kind: ScaleKind::Free,
+                sigma: sigma_radius / radius,
+                sigma_radius,
+                scale: 1.0,
+                residual: 0.0,
+            }
+        };
+        let mut rows: Vec<Row> = [2.0, 5.0, 12.0, 20.0, 50.0].map(row).to_vec();
+        rows[1].sigma_radius *= 1.0 + off;
+        rows
+    }
+
+    #[test]
+    fn a_law_is_found_again() {
+        let found = laws(&[0.9], &rows(1.7, 0.4, 0.0));
+        assert_eq!(found.len(), 2, "one for all albedos, one for its own: {found:?}");
+        for law in &found {
+            assert!((law.factor - 1.7).abs() < 1e-9 && (law.exponent - 0.4).abs() < 1e-9, "{law:?}");
+            assert!(law.worst < 1e-9 && (law.sigma(4.0) * 4.0 / (1.7 * 4f64.powf(0.4)) - 1.0).abs() < 1e-9, "{law:?}");
+        }
+        let rough = &laws(&[0.9], &rows(1.7, 0.4, 0.1))[0];
+        assert!((0.05..0.1).contains(&rough.worst), "{rough:?}");
+        assert!(laws(&[0.9], &rows(1.7, 0.4, 0.0)[..1]).is_empty() && laws(&[0.9], &[]).is_empty());
+    }
+
+    /// Spheres that obey sigma = sigma_0 / R are met without a loss.
+    #[test]
+    fn a_rule_that_is_true_costs_nothing() {
+        let sphere = |radius: f64| {
+            let exitance = std::array::from_fn(|bin| {
+                0.6 * Profile::mean(bin, |cosine| lapidary_cdrf::oracle::accurate(cosine, 3.0 / radius))
+            });
+            Profile { radius, albedo: 0.9, exitance, standard_error: exitance }
+        };
+        let spheres = [5.0, 10.0, 20.0].map(sphere);
+        let rows: Vec<Row> = spheres.iter().flat_map(super::super::fits).collect();
+        let found = choices(0.9, &spheres, &rows, &[]);
+        // The first range holds the radius 5 alone, the last 20.
+        assert_eq!(found.len(), 3 * 4);
+        for choice in found.iter().filter(|choice| choice.radii == [5.0, 20.0]) {
+            assert!(choice.best <= choice.residual + 1e-9 && choice.residual < choice.lambert, "{choice:?}");
+            if choice.form == Form::Circular && choice.scale_kind == ScaleKind::Free {
+                assert!((choice.sigma0 - 3.0).abs() < 3e-3 && choice.residual < 1e-5, "{choice:?}");
+            } else {
+                assert!(choice.residual > 1e-4, "{choice:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Half spaces in closed form (Chandrasekhar, "Radiative Transfer", 1950): what a sphere comes to where it is large.
+
+use super::{BINS, Profile};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Nodes of the quadrature to each side of its middle, and the way between two.
+const NODES: i32 = 80;
+const STEP: f64 = 0.04;
+
+/// Chandrasekhar's H of isotropic scattering: exp(-μ/π ∫ ln(1 - ω φ cot φ) / (cos² φ + μ² sin² φ) dφ) over a quarter turn, μ a `cosine` above 0
+/// and ω the `albedo` of one scattering.
+pub fn h(cosine: f64, albedo: f64) -> f64 {
+    // Tanh-sinh quadrature, since both ends are logarithmic: at 0 where nothing is absorbed, at the other for a small cosine.
+    let sum: f64 = (-NODES..=NODES)
+        .map(|node| {
+            let t = STEP * f64::from(node);
+            let odds = (PI * t.sinh()).exp();
+            // Each end's distance by itself, so that neither loses its digits.
+            let (angle, rest) = (FRAC_PI_2 * odds / (1.0 + odds), FRAC_PI_2 / (1.0 + odds));
+            let weight = PI * t.cosh() * angle * rest / FRAC_PI_2;
+            let square = angle * angle;
+            // 1 - φ cot φ cancels at 0.
+            let lack = if angle < 0.1 {
+                square * (1.0 / 3.0 + square * (1.0 / 45.0 + square * (2.0 / 945.0 + square / 4725.0)))
+            } else {
+                1.0 - angle * rest.tan()
+            };
+            weight * (1.0 - albedo + albedo * lack).ln() / (rest.sin().powi(2) + (cosine * angle.sin()).powi(2))
+        })
+        .sum();
+    (-cosine / PI * STEP * sum).exp()
+}
+
+/// The share of light that a half space gives back, where it falls on it at an angle of that `cosine`, above 0.
+pub fn reflectance(cosine: f64, albedo: f64) -> f64 {
+    1.0 - h(cosine, albedo) * (1.0 - albedo).max(0.0).sqrt()
+}
+
+/// What a sphere of infinite radius would show: flat matter everywhere, lit at all angles.
+pub fn profile(albedo: f64) -> Profile {
+    let lit = |cosine: f64| if cosine > 0.0 { cosine * reflectance(cosine, albedo) } else { 0.0 };
+    let exitance = std::array::from_fn(|bin| Profile::mean(bin, lit));
+    Profile { radius: f64::INFINITY, albedo, exitance, standard_error: [0.0; BINS] }
+}
+
+/// The share that a half space gives back of diffuse light. A large sphere gives back the same share of parallel light: its disc holds all angles
+/// by their cosines, as diffuse light does.
+pub fn diffuse_albedo(albedo: f64) -> f64 {
+    profile(albedo).whole()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_spaces_reflect_as_in_tables() {
+        for (albedo, normal, diffuse) in
+            [(0.5, 0.115226, 0.146544), (0.9, 0.414947, 0.478024), (0.99, 0.752721, 0.794564)]
+        {
+            let found = [reflectance(1.0, albedo), diffuse_albedo(albedo)];
+            assert!((found[0] - normal).abs() < 6e-7 && (found[1] - diffuse).abs() < 6e-7, "{albedo}: {found:?}");
+        }
+        assert_eq!((reflectance(0.3, 1.0), reflectance(0.3, 0.0)), (1.0, 0.0));
+        assert!((diffuse_albedo(1.0) - 1.0).abs() < 1e-12);
+    }
+
+    /// H is the solution of 1/H(μ) = √(1 - ω) + ω/2 ∫ μ' H(μ') / (μ + μ') dμ', another formula than it is calculated by.
+    #[test]
+    fn h_solves_its_equation() {
+        for albedo in [0.5, 0.99, 1.0] {
+            for cosine in [0.02, 0.3, 1.0] {
+                let count = 2000;
+                let integral: f64 = (0..count)
+                    .map(|node| (f64::from(node) + 0.5) / f64::from(count))
+                    .map(|other| other * h(other, albedo) / (cosine + other) / f64::from(count))
+                    .sum();
+                let right = (1.0f64 - albedo).sqrt() + 0.5 * albedo * integral;
+                assert!((h(cosine, albedo) * right - 1.0).abs() < 2e-6, "{albedo} {cosine}: {}", h(cosine, albedo));
+            }
+        }
+    }
+}
