@@ -12,10 +12,13 @@ override EFFECT_CDRF: bool = true;
 // Its form: 0 wrap lighting, 1 a table through a sampler, 2 a table by hand (formats that no sampler filters), 3 cheap, 4 accurate,
 // 5 quadrature, 6 spherical.
 override CDRF_FORM: u32 = 4u;
-// Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|.
+// Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|, all from the pixel's derivatives; 3 mean, given for each
+// vertex. Derivatives need no data and jump from triangle to triangle of a coarse mesh; what vertices hold does not.
 override CURVATURE_FORM: u32 = 0u;
 // Light from all around, beside the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
+// Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
+override ENVIRONMENT_AT_VERTICES: bool = true;
 // The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
 override EFFECT_REFLECTION: bool = false;
 
@@ -27,6 +30,7 @@ const CDRF_FORM_QUADRATURE: u32 = 5u;
 const CDRF_FORM_SPHERICAL: u32 = 6u;
 const CURVATURE_FORM_TOWARDS: u32 = 1u;
 const CURVATURE_FORM_NAIVE: u32 = 2u;
+const CURVATURE_FORM_VERTEX: u32 = 3u;
 
 struct CdrfView {
     clip_from_world: mat4x4f,
@@ -61,11 +65,49 @@ struct CdrfHarmonics {
 @group(1) @binding(5) var table_sampler: sampler;
 // Baked with the tint (1, 1, 1) for every material, of one channel, in a format that no sampler filters.
 @group(1) @binding(6) var table_texels: texture_2d<f32>;
+// Mean curvature of each vertex, for the form that takes it from there; per unit of length.
+@group(1) @binding(7) var<storage, read> curvatures: array<f32>;
 
 struct CdrfVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
+    @location(2) curvature: f32,
+    // CdrfAround, where it is summed for each vertex.
+    @location(3) around_zeroth: vec3f,
+    @location(4) around_first: vec3f,
+    @location(5) around_second: vec3f,
+    @location(6) around_fourth: vec3f,
+}
+
+// What the environment's harmonics add up to along a normal, by degree, linear RGB.
+struct CdrfAround {
+    zeroth: vec3f,
+    first: vec3f,
+    second: vec3f,
+    fourth: vec3f,
+}
+
+fn cdrf_around(normal: vec3f) -> CdrfAround {
+    let basis = environment_harmonics(normal);
+    let first = basis.first[0] * harmonics.coefficients[1].rgb
+        + basis.first[1] * harmonics.coefficients[2].rgb
+        + basis.first[2] * harmonics.coefficients[3].rgb;
+    let second = basis.second[0] * harmonics.coefficients[4].rgb
+        + basis.second[1] * harmonics.coefficients[5].rgb
+        + basis.second[2] * harmonics.coefficients[6].rgb
+        + basis.second[3] * harmonics.coefficients[7].rgb
+        + basis.second[4] * harmonics.coefficients[8].rgb;
+    let fourth = basis.fourth[0] * harmonics.coefficients[9].rgb
+        + basis.fourth[1] * harmonics.coefficients[10].rgb
+        + basis.fourth[2] * harmonics.coefficients[11].rgb
+        + basis.fourth[3] * harmonics.coefficients[12].rgb
+        + basis.fourth[4] * harmonics.coefficients[13].rgb
+        + basis.fourth[5] * harmonics.coefficients[14].rgb
+        + basis.fourth[6] * harmonics.coefficients[15].rgb
+        + basis.fourth[7] * harmonics.coefficients[16].rgb
+        + basis.fourth[8] * harmonics.coefficients[17].rgb;
+    return CdrfAround(basis.zeroth * harmonics.coefficients[0].rgb, first, second, fourth);
 }
 
 @vertex
@@ -73,7 +115,16 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     let index = indices[vertex];
     let position = mesh_position(index);
     let normal = vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
-    return CdrfVertex(view.clip_from_world * vec4f(position, 1.0f), position, normal);
+    var curvature = 0.0f;
+    if (CURVATURE_FORM == CURVATURE_FORM_VERTEX) {
+        curvature = curvatures[index];
+    }
+    var around = CdrfAround(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
+    if (EFFECT_ENVIRONMENT && ENVIRONMENT_AT_VERTICES) {
+        around = cdrf_around(normal);
+    }
+    let clip = view.clip_from_world * vec4f(position, 1.0f);
+    return CdrfVertex(clip, position, normal, curvature, around.zeroth, around.first, around.second, around.fourth);
 }
 
 // The derivatives of a pixel, and what curvature follows from them.
@@ -86,29 +137,24 @@ struct CdrfSurface {
 }
 
 // Outside of every branch: derivatives need the neighbouring pixels.
-fn cdrf_surface(position: vec3f, normal: vec3f) -> CdrfSurface {
-    let position_x = dpdx(position);
-    let position_y = dpdy(position);
-    let normal_x = curvature_normal_derivative(normal, dpdx(normal));
-    let normal_y = curvature_normal_derivative(normal, dpdy(normal));
+fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
+    let position_x = dpdx(input.position);
+    let position_y = dpdy(input.position);
+    let normal_x = curvature_normal_derivative(input.normal, dpdx(input.normal));
+    let normal_y = curvature_normal_derivative(input.normal, dpdy(input.normal));
+    var curvature = input.curvature;
     if (CURVATURE_FORM == CURVATURE_FORM_NAIVE) {
-        let naive = curvature_naive(position_x, position_y, normal_x, normal_y);
-        return CdrfSurface(position_x, position_y, normal_x, normal_y, naive);
+        curvature = curvature_naive(position_x, position_y, normal_x, normal_y);
+    } else if (CURVATURE_FORM != CURVATURE_FORM_VERTEX) {
+        curvature = curvature_mean(position_x, position_y, normal_x, normal_y);
     }
-    let mean = curvature_mean(position_x, position_y, normal_x, normal_y);
-    return CdrfSurface(position_x, position_y, normal_x, normal_y, mean);
+    return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature);
 }
 
-// The unit normal; the triangle's own where interpolation between opposite normals leaves none.
-fn cdrf_unit_normal(normal: vec3f, surface: CdrfSurface, toward_eye: vec3f) -> vec3f {
+// The unit normal. Where interpolation between opposite normals leaves none, the surface counts as facing the eye.
+fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     let squared = dot(normal, normal);
-    if (squared > 1e-12f) {
-        return normal * inverseSqrt(squared);
-    }
-    let pixel = curvature_pixel(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y);
-    let across = cross(pixel.p_x, pixel.p_y);
-    let facing = across * sign(dot(across, toward_eye));
-    return facing * inverseSqrt(max(dot(facing, facing), 1.1754944e-38f));
+    return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 }
 
 // Width of the Gaussian for each channel.
@@ -162,9 +208,9 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
 
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
-    let surface = cdrf_surface(input.position, input.normal);
+    let surface = cdrf_surface(input);
     let toward_eye = normalize(view.eye - input.position);
-    let normal = cdrf_unit_normal(input.normal, surface, toward_eye);
+    let normal = cdrf_unit_normal(input.normal, toward_eye);
 
     // Irradiance, each light's part spread by its reflectance.
     var received = vec3f(0.0f);
@@ -184,30 +230,16 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
         let red = cdrf_harmonic_weights(sigma.x);
         let green = cdrf_harmonic_weights(sigma.y);
         let blue = cdrf_harmonic_weights(sigma.z);
-        let basis = environment_harmonics(normal);
-        let first = basis.first[0] * harmonics.coefficients[1].rgb
-            + basis.first[1] * harmonics.coefficients[2].rgb
-            + basis.first[2] * harmonics.coefficients[3].rgb;
-        let second = basis.second[0] * harmonics.coefficients[4].rgb
-            + basis.second[1] * harmonics.coefficients[5].rgb
-            + basis.second[2] * harmonics.coefficients[6].rgb
-            + basis.second[3] * harmonics.coefficients[7].rgb
-            + basis.second[4] * harmonics.coefficients[8].rgb;
-        let fourth = basis.fourth[0] * harmonics.coefficients[9].rgb
-            + basis.fourth[1] * harmonics.coefficients[10].rgb
-            + basis.fourth[2] * harmonics.coefficients[11].rgb
-            + basis.fourth[3] * harmonics.coefficients[12].rgb
-            + basis.fourth[4] * harmonics.coefficients[13].rgb
-            + basis.fourth[5] * harmonics.coefficients[14].rgb
-            + basis.fourth[6] * harmonics.coefficients[15].rgb
-            + basis.fourth[7] * harmonics.coefficients[16].rgb
-            + basis.fourth[8] * harmonics.coefficients[17].rgb;
-        let around = basis.zeroth * harmonics.coefficients[0].rgb * vec3f(red.x, green.x, blue.x)
-            + first * vec3f(red.y, green.y, blue.y)
-            + second * vec3f(red.z, green.z, blue.z)
-            + fourth * vec3f(red.w, green.w, blue.w);
+        var around = CdrfAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
+        if (!ENVIRONMENT_AT_VERTICES) {
+            around = cdrf_around(normal);
+        }
+        let arriving = around.zeroth * vec3f(red.x, green.x, blue.x)
+            + around.first * vec3f(red.y, green.y, blue.y)
+            + around.second * vec3f(red.z, green.z, blue.z)
+            + around.fourth * vec3f(red.w, green.w, blue.w);
         // A few degrees cannot follow a small light: they swing below 0 opposite to it.
-        received += max(around, vec3f(0.0f));
+        received += max(arriving, vec3f(0.0f));
     }
     var radiance = 0.31830987f * material.base_color * received;
     if (EFFECT_REFLECTION) {

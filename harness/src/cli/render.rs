@@ -38,8 +38,9 @@ pub(super) struct Arguments {
     /// polished surface's) on what scatters light.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = ["absorption", "environment", "reflection"])]
     without: Vec<String>,
-    /// Which curvature spreads the light of what scatters it: mean, towards (each light), or naive (|dN| / |dP|).
-    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = ["mean", "towards", "naive"])]
+    /// Which curvature spreads the light of what scatters it: from the pixel's derivatives mean, towards
+    /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
+    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = ["mean", "towards", "naive", "vertex"])]
     curvature: String,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
@@ -146,6 +147,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         curvature: match arguments.curvature.as_str() {
             "towards" => Curvature::Towards,
             "naive" => Curvature::Naive,
+            "vertex" => Curvature::Vertex,
             _ => Curvature::Mean,
         },
         dispersion_strength: arguments.strength,

@@ -71,6 +71,8 @@ pub struct Settings {
     pub deferred: bool,
     /// What scatters light is lit by the environment too, not by the scene's lights alone.
     pub light_from_environment: bool,
+    /// The environment's light is summed for each vertex, not for each pixel.
+    pub environment_at_vertices: bool,
     /// A polished surface of what scatters light mirrors the environment.
     pub reflection: bool,
     /// Which curvature spreads the light of what scatters it.
@@ -100,6 +102,7 @@ impl Settings {
             distance_limit: None,
             deferred: false,
             light_from_environment: true,
+            environment_at_vertices: true,
             reflection: true,
             curvature: Curvature::Mean,
             environment: Environment::Studio,

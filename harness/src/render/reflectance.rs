@@ -64,6 +64,8 @@ pub enum Curvature {
     Towards,
     /// The usual |dN| / |dP|.
     Naive,
+    /// The mean curvature of the mesh, given for each vertex.
+    Vertex,
 }
 
 impl Curvature {
@@ -73,6 +75,7 @@ impl Curvature {
             Self::Mean => 0,
             Self::Towards => 1,
             Self::Naive => 2,
+            Self::Vertex => 3,
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices, uniform};
 use super::pass::{Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
-use super::{Environment, Reflectance, RenderError, Settings, harmonics};
+use super::{Curvature, Environment, Reflectance, RenderError, Settings, harmonics};
 use crate::cdrf::table::{self, Format};
 use crate::gpu::Gpu;
+use crate::scene::curvatures::vertex_curvatures;
 use crate::scene::{Light, Material, Object, Scene};
 use glam::{UVec2, Vec3};
 use wgpu::util::DeviceExt as _;
@@ -51,7 +52,7 @@ pub(super) fn pass<'gpu>(
     })?;
     let shared = vec![Shared::Texture(environment), Shared::Buffer(lights), Shared::Buffer(coefficients)];
     let bodies: Result<Vec<Body>, RenderError> =
-        scene.objects.iter().map(|object| upload(gpu, &pipeline, object, reflectance)).collect();
+        scene.objects.iter().map(|object| upload(gpu, &pipeline, object, settings, reflectance)).collect();
     Ok(ScenePass { gpu, pipeline, shared, bodies: bodies? })
 }
 
@@ -66,6 +67,7 @@ fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Ve
         ("CDRF_FORM", f64::from(reflectance.form().unwrap_or_default())),
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
         ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
+        ("ENVIRONMENT_AT_VERTICES", flag(settings.environment_at_vertices)),
         ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
         ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
     ]
@@ -94,13 +96,16 @@ fn upload(
     gpu: &Gpu,
     pipeline: &wgpu::RenderPipeline,
     object: &Object,
+    settings: &Settings,
     reflectance: Reflectance,
 ) -> Result<Body, RenderError> {
     let Object { mesh, material, .. } = object;
-    let parts: [&[u8]; 3] = [
+    let curvatures = if settings.curvature == Curvature::Vertex { vertex_curvatures(mesh) } else { vec![0.0] };
+    let parts: [&[u8]; 4] = [
         bytemuck::cast_slice(&mesh.positions),
         bytemuck::cast_slice(&mesh.indices),
         bytemuck::cast_slice(&mesh.normals),
+        bytemuck::cast_slice(&curvatures),
     ];
     let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
     let (filtered, texels) = match reflectance {
@@ -116,13 +121,17 @@ fn upload(
         });
         let uniform = uniform(device, &uniform_of(material));
         let buffers = parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE));
-        let mut resources = vec![uniform.as_entire_binding()];
-        resources.extend(buffers.iter().map(wgpu::Buffer::as_entire_binding));
-        resources.extend([
+        let [positions, indices, normals, curvatures] = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
+        let resources = vec![
+            uniform.as_entire_binding(),
+            positions,
+            indices,
+            normals,
             wgpu::BindingResource::TextureView(&filtered),
             wgpu::BindingResource::Sampler(&sampler),
             wgpu::BindingResource::TextureView(&texels),
-        ]);
+            curvatures,
+        ];
         bind_group(device, pipeline, 1, resources)
     })?;
     Ok(Body { groups: vec![group], vertices })

@@ -12,6 +12,7 @@ mod built_in;
 pub mod bvh;
 mod camera;
 pub mod convex;
+pub mod curvatures;
 pub mod cuts;
 pub mod environment_map;
 mod error;
