@@ -5,6 +5,7 @@
 //! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
 
 mod fit;
+pub mod mesh;
 mod sphere;
 
 pub use fit::{Fit, fit};

@@ -7,7 +7,7 @@ use lapidary_environment::oracle;
 
 /// Linear RGB radiance that arrives from a direction, by the recipe's rule: the studio, or the map's four nearest
 /// texels.
-pub(super) fn radiance(environment: &Environment, direction: DVec3) -> DVec3 {
+pub(crate) fn radiance(environment: &Environment, direction: DVec3) -> DVec3 {
     match environment {
         Environment::Studio => oracle::studio(direction),
         Environment::Map(map) => bilinear(map, direction),
