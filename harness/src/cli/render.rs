@@ -5,7 +5,7 @@ use lapidary_harness::cookbook;
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{
-    self, Curvature, Environment, GRAMMAR, Geometry, Reflectance, Rung, Settings, Spectrum,
+    self, Curvature, Environment, GRAMMAR, Geometry, Reflectance, Rung, Settings, Spectrum, WalkedPicture,
 };
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::{self, Scene};
@@ -69,6 +69,9 @@ pub(super) struct Arguments {
     /// Wavelengths of the reference; 31 where left out.
     #[arg(long)]
     wavelengths: Option<usize>,
+    /// Walks from each pixel that the reference of what scatters light follows; 256 where left out.
+    #[arg(long)]
+    walks: Option<u32>,
     /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     energy_bound: Option<f64>,
@@ -94,7 +97,7 @@ fn parse_positive(text: &str) -> Result<f32, String> {
 }
 
 /// A flag that the rung does not obey would be believed to have been obeyed.
-fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung) -> Result<(), Failure> {
+fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> Result<(), Failure> {
     let reference = rung == Rung::Reference;
     let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
     // Nothing of the recipes' way inside.
@@ -103,10 +106,11 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung) -> Result<(), Failu
     let blurs = diffuse && rung != Rung::Diffuse(Reflectance::Lambert);
     let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
     let ignored = [
-        ("--wavelengths", !reference && arguments.wavelengths.is_some()),
-        ("--energy-bound", !reference && arguments.energy_bound.is_some()),
+        ("--wavelengths", (!reference || scatters) && arguments.wavelengths.is_some()),
+        ("--energy-bound", (!reference || scatters) && arguments.energy_bound.is_some()),
+        ("--walks", !(reference && scatters) && arguments.walks.is_some()),
         ("--without absorption", (outside || diffuse) && without("absorption")),
-        ("--without environment", !diffuse && without("environment")),
+        ("--without environment", !(diffuse || reference && scatters) && without("environment")),
         ("--without reflection", !diffuse && without("reflection")),
         ("--curvature", !blurs && arguments.curvature != "mean"),
         ("--rest dropped", (outside || diffuse) && arguments.rest == "dropped"),
@@ -127,7 +131,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         scene = scene.seen_from(polar, azimuth);
     }
     let rung = arguments.rung.unwrap_or_else(|| Rung::usual(&scene));
-    refuse_what_is_ignored(arguments, rung)?;
+    refuse_what_is_ignored(arguments, rung, render::scatters(&scene))?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
     file::check_writable(&out)?;
@@ -159,6 +163,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         samples: arguments.samples,
         wavelengths: arguments.wavelengths.unwrap_or(usual.wavelengths),
         energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
+        walks: arguments.walks.unwrap_or(usual.walks),
         ..usual
     };
     let source = cookbook::recipe_source(rung.recipe());
@@ -172,6 +177,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     output::line(&out.display().to_string())?;
     if let Some(Lost { max, mean }) = picture.lost {
         output::line(&format!("not followed: {max:.1e} of a ray's energy at most, {mean:.1e} in the mean"))?;
+    }
+    if let Some(WalkedPicture { error, walks, lost }) = picture.walked {
+        output::line(&format!("standard error {:.1} % of the mean brightness; {walks} walks, {lost} lost", 100.0 * error))?;
     }
     Ok(Outcome::Passed)
 }

@@ -6,6 +6,7 @@
 
 mod fit;
 pub mod half_space;
+pub mod mesh;
 mod sphere;
 
 pub use fit::{Fit, Form, best_sigma};
@@ -151,6 +152,7 @@ fn in_disc(random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     /// The share of walks that leave a half space, and its standard error.
     fn reflectance(albedo: f64, count: u64, enter: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (f64, f64) {
@@ -166,6 +168,34 @@ mod tests {
         (share, (share * (1.0 - share) / count as f64).sqrt())
     }
 
+    /// A direction of diffuse light from above.
+    fn diffuse_down(random: &mut Xoshiro256PlusPlus) -> DVec3 {
+        let (x, y) = in_disc(random);
+        DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
+    }
+
+    /// The base colour of a built-in scene's translucent material is what a half space of its medium reflects of diffuse light.
+    #[test]
+    fn base_colors_are_the_reflectances_of_their_media() {
+        for name in ["skin", "wax", "jade"] {
+            let scene = Scene::named(name).expect("built in");
+            let material = &scene.objects[0].material;
+            let medium = material.medium.expect("a medium");
+            for channel in 0..3 {
+                let scattering = f64::from(medium.scattering[channel]);
+                let albedo = scattering / (scattering + f64::from(medium.absorption[channel]));
+                let (found, error) = reflectance(albedo, 400_000, diffuse_down);
+                let stated = f64::from(material.base_color[channel]);
+                println!("{name}, channel {channel}: albedo {albedo:.4}, {found:.4} ± {error:.4}, stated {stated:.3}");
+                // And half of the last of three decimals.
+                assert!(
+                    (found - stated).abs() <= 4.0 * error + 0.0005,
+                    "{name} {channel}: {found} ± {error}, stated {stated}"
+                );
+            }
+        }
+    }
+
     /// Chandrasekhar, "Radiative Transfer": 1 - H(1) sqrt(1 - albedo) for light at normal incidence, and its mean over diffuse light.
     #[test]
     fn half_spaces_reflect_as_chandrasekhar_has_it() {
@@ -173,12 +203,8 @@ mod tests {
             [(0.5, 0.115226, 0.146544), (0.9, 0.414947, 0.478024), (0.99, 0.752721, 0.794564)]
         {
             let down = |_: &mut Xoshiro256PlusPlus| DVec3::NEG_Z;
-            let cosine = |random: &mut Xoshiro256PlusPlus| {
-                let (x, y) = in_disc(random);
-                DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
-            };
             for ((found, error), expected) in
-                [(reflectance(albedo, 400_000, down), normal), (reflectance(albedo, 400_000, cosine), diffuse)]
+                [(reflectance(albedo, 400_000, down), normal), (reflectance(albedo, 400_000, diffuse_down), diffuse)]
             {
                 println!("albedo {albedo}: {found:.5} ± {error:.5}, expected {expected}");
                 assert!(
@@ -195,10 +221,7 @@ mod tests {
     fn the_mean_way_through_a_ball_does_not_depend_on_scattering() {
         for radius in [0.5, 2.0, 10.0] {
             let (count, body) = (200_000u64, Ball { radius });
-            let enter = |random: &mut Xoshiro256PlusPlus| {
-                let (x, y) = in_disc(random);
-                (DVec3::new(0.0, 0.0, radius), DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt()))
-            };
+            let enter = |random: &mut Xoshiro256PlusPlus| (DVec3::new(0.0, 0.0, radius), diffuse_down(random));
             let add = |sums: &mut [f64; 2], exit: Option<Exit>| {
                 let way = exit.expect("nothing is absorbed").travelled;
                 sums[0] += way;

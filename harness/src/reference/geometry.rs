@@ -17,24 +17,24 @@ pub enum Geometry {
 
 /// Where a ray meets a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hit {
+pub(crate) struct Hit {
     /// In units of the direction, at least 0 up to rounding.
-    pub(super) distance: f64,
+    pub(crate) distance: f64,
     /// Unit normal, out of the body.
-    pub(super) normal: DVec3,
+    pub(crate) normal: DVec3,
     /// Where.
-    pub(super) place: Place,
+    pub(crate) place: Place,
 }
 
 /// A facet or triangle of a body: a ray that sets out from it does not meet it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) body: usize,
-    pub(super) face: usize,
+pub(crate) struct Place {
+    pub(crate) body: usize,
+    pub(crate) face: usize,
 }
 
 /// All bodies of a scene. They are closed and do not overlap.
-pub(super) struct Bodies {
+pub(crate) struct Bodies {
     bodies: Vec<Body>,
     tree: Bvh,
 }
@@ -45,7 +45,7 @@ enum Body {
 }
 
 impl Bodies {
-    pub(super) fn new(objects: &[Object], geometry: Geometry) -> Self {
+    pub(crate) fn new(objects: &[Object], geometry: Geometry) -> Self {
         let extents: Vec<Extent> = objects
             .iter()
             .map(|object| {
@@ -66,7 +66,7 @@ impl Bodies {
     }
 
     /// Where a ray outside enters a body first, `left` being the face that it comes from.
-    pub(super) fn enter(&self, origin: DVec3, direction: DVec3, left: Option<Place>) -> Option<Hit> {
+    pub(crate) fn enter(&self, origin: DVec3, direction: DVec3, left: Option<Place>) -> Option<Hit> {
         // What leaves a convex body goes past it.
         if let (Some(place), [Body::Convex(_)]) = (left, &self.bodies[..]) {
             debug_assert_eq!(place.body, 0);
@@ -91,13 +91,23 @@ impl Bodies {
     /// Where a ray inside the body of `left`, which it comes from, leaves it. `None` where it finds no way out: the
     /// surface is not closed there.
     pub(super) fn leave(&self, origin: DVec3, direction: DVec3, left: Place) -> Option<Hit> {
-        let found = match &self.bodies[left.body] {
-            Body::Convex(planes) => planes.leave(origin, direction, left.face),
-            Body::Triangles(triangles) => {
-                triangles.first(origin, direction, Some(left.face), f64::INFINITY, Side::Back)
-            }
+        self.leave_body(origin, direction, left.body, Some(left.face), f64::INFINITY)
+    }
+
+    /// Where a ray that sets out inside `body`, or from its face `left`, leaves it before `limit`.
+    pub(crate) fn leave_body(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        body: usize,
+        left: Option<usize>,
+        limit: f64,
+    ) -> Option<Hit> {
+        let found = match &self.bodies[body] {
+            Body::Convex(planes) => planes.leave(origin, direction, left).filter(|(distance, ..)| *distance < limit),
+            Body::Triangles(triangles) => triangles.first(origin, direction, left, limit, Side::Back),
         };
-        found.map(|(distance, face, normal)| Hit { distance, normal, place: Place { body: left.body, face } })
+        found.map(|(distance, face, normal)| Hit { distance, normal, place: Place { body, face } })
     }
 }
 
@@ -117,10 +127,10 @@ impl Planes {
     }
 
     /// The nearest plane that the ray runs towards, leaving out the face just left: no epsilon is needed.
-    fn leave(&self, origin: DVec3, direction: DVec3, left: usize) -> Option<Found> {
+    fn leave(&self, origin: DVec3, direction: DVec3, left: Option<usize>) -> Option<Found> {
         let mut nearest: Option<Found> = None;
         self.sieve.candidates(origin, direction, |face| {
-            let Some(plane) = self.planes.get(face).filter(|_| face != left) else { return };
+            let Some(plane) = self.planes.get(face).filter(|_| Some(face) != left) else { return };
             let slope = plane.normal.dot(direction);
             let distance = -plane.height(origin) / slope;
             if slope > 0.0 && nearest.is_none_or(|(least, ..)| distance < least) {

@@ -11,11 +11,11 @@
 //! recipes have them.
 
 mod bvh;
-mod geometry;
+pub(crate) mod geometry;
 pub mod spectrum;
 pub(crate) mod surroundings;
 mod trace;
-mod view;
+pub(crate) mod view;
 
 pub use geometry::Geometry;
 

@@ -4,9 +4,9 @@ use crate::scene::Camera;
 use glam::DVec3;
 
 /// A camera over a picture of a given size.
-pub(super) struct View {
+pub(crate) struct View {
     /// The camera's place.
-    pub(super) eye: DVec3,
+    pub(crate) eye: DVec3,
     /// The line of sight, and the picture's half sides at distance 1.
     forward: DVec3,
     half_right: DVec3,
@@ -16,7 +16,7 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn new(camera: &Camera, width: u32, height: u32) -> Self {
+    pub(crate) fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let (eye, target) = (camera.eye.as_dvec3(), camera.target.as_dvec3());
         let (width, height) = (f64::from(width), f64::from(height));
         let forward = (target - eye).normalize_or(DVec3::NEG_Z);
@@ -33,7 +33,7 @@ impl View {
     }
 
     /// The unit direction in which `x` pixels from the left and `y` pixels from the top lie; pixel k spans k to k + 1.
-    pub(super) fn direction(&self, x: f64, y: f64) -> DVec3 {
+    pub(crate) fn direction(&self, x: f64, y: f64) -> DVec3 {
         let right = 2.0 * x / self.width - 1.0;
         let up = 1.0 - 2.0 * y / self.height;
         (self.forward + self.half_right * right + self.half_up * up).normalize()

@@ -17,6 +17,7 @@ mod translucent;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
+use crate::random_walk::mesh::{self, Rendering as Walked};
 use crate::reference::{self, Lost, Rendering};
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
@@ -36,6 +37,9 @@ pub const LARGEST_SIDE: u32 = 8192;
 const TILE: u32 = 512;
 /// Samples along each side of a pixel, where nothing else is asked for.
 pub const SAMPLES: u32 = 4;
+
+/// Walks from each pixel, where nothing else is asked for.
+pub const WALKS: u32 = 256;
 
 /// The light around the scene.
 #[derive(Clone, Debug)]
@@ -85,6 +89,8 @@ pub struct Settings {
     pub wavelengths: usize,
     /// The share of a camera ray's energy that the reference need not follow.
     pub energy_bound: f64,
+    /// Walks from each pixel that the reference of what scatters light follows.
+    pub walks: u32,
 }
 
 impl Settings {
@@ -109,6 +115,7 @@ impl Settings {
             exposure: 1.0,
             wavelengths: reference::WAVELENGTHS,
             energy_bound: reference::ENERGY_BOUND,
+            walks: WALKS,
         }
     }
 }
@@ -124,8 +131,21 @@ pub struct Picture {
     pub linear: Vec<[f32; 4]>,
     /// sRGB, opaque.
     pub encoded: Vec<[u8; 4]>,
-    /// What the reference did not follow; none of another rung.
+    /// What the reference of clear stones did not follow; none of another rung.
     pub lost: Option<Lost>,
+    /// How good the reference of what scatters light is; none of another rung.
+    pub walked: Option<WalkedPicture>,
+}
+
+/// How good a picture by random walks is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WalkedPicture {
+    /// The root mean square of the pixels' standard errors over the mean brightness, where there is a body.
+    pub error: f64,
+    /// Samples that met a body.
+    pub walks: u64,
+    /// Walks that slipped through a surface by rounding, and were followed no further.
+    pub lost: u64,
 }
 
 /// Why there is no picture.
@@ -186,6 +206,9 @@ pub enum RenderError {
     /// The reference refuses.
     #[error(transparent)]
     Reference(#[from] reference::ReferenceError),
+    /// The reference of what scatters light refuses.
+    #[error(transparent)]
+    Walk(#[from] mesh::WalkError),
     /// The recipe is not valid WGSL.
     #[error("{0}")]
     Recipe(#[from] crate::dispatch::DispatchError),
@@ -226,7 +249,14 @@ fn render_from(
     }
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
-    let mut picture = Picture { width, height, linear, encoded, lost: None };
+    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
+    if settings.rung == Rung::Reference && scatters(scene) {
+        let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
+        picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });
+        picture.linear = linear;
+        encode(gpu, settings, &mut picture)?;
+        return Ok(picture);
+    }
     if settings.rung == Rung::Reference {
         let Rendering { linear, lost, .. } = follow(scene, settings, progress)?;
         (picture.linear, picture.lost) = (linear, Some(lost));
@@ -277,6 +307,42 @@ fn scene_pass<'gpu>(
         Rung::Diffuse(reflectance) => translucent::pass(gpu, scene, settings, reflectance, source),
         _ => gem::pass(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT]),
     }
+}
+
+/// Whether a body of `scene` scatters light.
+pub fn scatters(scene: &Scene) -> bool {
+    scene.objects.iter().any(|object| object.material.medium.is_some())
+}
+
+/// What random walks see of `scene`.
+fn walk(
+    scene: &Scene,
+    settings: &Settings,
+    progress: &mut (dyn FnMut(u64, u64) + Send),
+) -> Result<Walked, RenderError> {
+    let of_walks = mesh::Settings {
+        width: settings.width,
+        height: settings.height,
+        samples_per_pixel: settings.walks,
+        seed: 1,
+        environment: settings.light_from_environment.then_some(&settings.environment),
+    };
+    let progress = Mutex::new(progress);
+    let tell = |done, total| {
+        if let Ok(mut progress) = progress.lock() {
+            progress(done, total);
+        }
+    };
+    Ok(mesh::render(scene, &of_walks, &tell)?)
+}
+
+/// The root mean square of the standard errors of what is covered, over its mean brightness.
+fn mean_error(linear: &[[f32; 4]], standard_error: &[[f32; 3]]) -> f64 {
+    let covered = || linear.iter().zip(standard_error).filter(|(pixel, _)| pixel[3] > 0.0);
+    let squares: f64 = covered().flat_map(|(_, error)| error).map(|error| f64::from(*error).powi(2)).sum();
+    let sum: f64 = covered().flat_map(|(pixel, _)| &pixel[..3]).map(|value| f64::from(*value)).sum();
+    let count = 3.0 * covered().count() as f64;
+    (squares / count).sqrt() / (sum / count)
 }
 
 /// What the reference sees of `scene`, by the settings' size, samples and environment.

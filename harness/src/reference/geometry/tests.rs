@@ -95,7 +95,7 @@ fn the_sieve_keeps_the_nearest_plane() {
                     (slope > 0.0 && face != left).then(|| (face, -plane.height(origin) / slope))
                 });
                 let (face, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a way out");
-                let found = planes.leave(origin, direction, left).expect("a way out");
+                let found = planes.leave(origin, direction, Some(left)).expect("a way out");
                 assert_eq!((found.0, found.1), (distance.max(0.0), face), "{name}");
                 planes.sieve.candidates(origin, direction, |_| candidates += 1);
                 searches += 1;
@@ -140,5 +140,23 @@ fn what_leaves_a_stone_may_enter_another() {
         assert_eq!((first.place.body, out.place.body, second.place.body), (0, 0, 1));
         assert!((after.z + second.distance - (5.0 - 0.625)).abs() < 1e-12);
         assert!(bodies.enter(after, -DVec3::Y, Some(out.place)).is_none());
+    }
+}
+
+/// From a point inside, whichever way one looks, as far as there is body; and nothing before a nearer limit.
+#[test]
+fn rays_from_inside_leave() {
+    for geometry in [Geometry::Planes, Geometry::Triangles] {
+        let (_, octahedron) = bodies("octahedron", geometry);
+        let inside = DVec3::new(0.125, 0.25, -0.0625);
+        for k in 0..500u32 {
+            let direction = DVec3::new(f64::from(k % 7) - 2.9, f64::from(k % 11) - 5.2, f64::from(k % 13) - 6.1);
+            let direction = direction.normalize();
+            let out = octahedron.leave_body(inside, direction, 0, None, f64::INFINITY).expect("a way out");
+            let height = (inside + out.distance * direction).abs().element_sum();
+            assert!((height - 1.0).abs() < 1e-6 && out.normal.dot(direction) > 0.0, "{direction}: {height}");
+            assert_eq!(octahedron.leave_body(inside, direction, 0, None, 1.001 * out.distance), Some(out));
+            assert_eq!(octahedron.leave_body(inside, direction, 0, None, 0.999 * out.distance), None);
+        }
     }
 }

@@ -184,6 +184,7 @@ fn materials_say_colour_index_dispersion_and_attenuation() {
         dispersion: Dispersion::Abbe(0.1),
         attenuation_color: Vec3::new(1.0, 0.25, 0.0),
         attenuation_distance: 0.5,
+        ..Material::standard()
     };
     assert_eq!(material.unwrap(), expected);
 }

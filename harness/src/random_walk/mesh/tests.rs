@@ -1,0 +1,158 @@
+use super::*;
+use crate::scene::environment_map::EnvironmentMap;
+use crate::scene::surfaces::sphere;
+use crate::scene::{Light, Material, Medium, Mesh, Object};
+use glam::Vec3;
+use std::time::Instant;
+
+fn settings(side: u32, samples_per_pixel: u32) -> Settings<'static> {
+    Settings { width: side, height: side, samples_per_pixel, seed: 1, environment: None }
+}
+
+fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
+    render(scene, settings, &|_, _| {}).expect("rendered")
+}
+
+fn named(name: &str) -> Scene {
+    Scene::named(name).expect("built in")
+}
+
+#[test]
+fn a_seed_gives_the_same_picture_on_any_number_of_threads() {
+    let scene = named("jade_ring");
+    let on = |threads: usize, seed: u64| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| rendered(&scene, &Settings { seed, ..settings(24, 5) }))
+    };
+    let one = on(1, 7);
+    assert_eq!(one, on(3, 7));
+    assert_ne!(one.linear, on(1, 8).linear);
+}
+
+/// The further a point light, the more parallel its rays.
+#[test]
+fn a_far_point_light_is_a_directional_one() {
+    let mut scene = named("wax_bunny");
+    let [Light::Directional { toward, irradiance }] = scene.lights[..] else { panic!("one sun") };
+    let sunlit = rendered(&scene, &settings(24, 6));
+    let distance = 1e7;
+    scene.lights = vec![Light::Point { position: distance * toward, intensity: distance * distance * irradiance }];
+    let lamplit = rendered(&scene, &settings(24, 6));
+    let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
+    // The same walks: what differs is the light's direction, by 1e-6, and f32's digits.
+    let apart = |(a, b): &(&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-4 * a[k] + 1e-6);
+    // But a light that just grazes an edge may fall to either side.
+    let (compared, different) = (pairs().count(), pairs().filter(apart).count());
+    let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
+    let ratio = total(&lamplit) / total(&sunlit);
+    println!("{different} of {compared} pixels differ; in all {ratio}");
+    assert!(compared > 150 && different * 50 < compared && (ratio - 1.0).abs() < 1e-3);
+}
+
+/// Where nothing is absorbed and nothing shows through, a picture in a white furnace is its own coverage.
+#[test]
+fn white_furnace() {
+    let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
+    let mut scene = named("wax_bunny");
+    let mesh = sphere(30.0, 128);
+    scene.objects[0].mesh = mesh;
+    scene.objects[0].material.medium = Some(Medium { scattering: Vec3::ONE, absorption: Vec3::ZERO });
+    scene.lights.clear();
+    let scene = scene.seen_from(60.0, 0.0);
+    let rendering = rendered(&scene, &Settings { environment: Some(&ones), ..settings(24, 4) });
+    let inner = rendering.linear.iter().zip(&rendering.standard_error).filter(|(pixel, _)| pixel[3] == 1.0);
+    let whole = inner.clone().filter(|([red, green, blue, _], error)| {
+        // Some of the light from behind may show through near the rim, and is left out.
+        let all = [red, green, blue].iter().all(|channel| (**channel - 1.0).abs() < 1e-6);
+        assert!(all || error[0] > 0.0);
+        all
+    });
+    let (whole, inner) = (whole.count(), inner.count());
+    println!("{whole} of {inner} pixels are white");
+    assert!(whole > 200 && whole * 10 > inner * 9);
+    assert!(rendering.linear.iter().all(|pixel| pixel[0] <= pixel[3] + 1e-6));
+}
+
+/// What pictures differ by from seed to seed is what their standard errors say, and no more: the strata can only help.
+#[test]
+fn errors_are_what_they_are_said_to_be() {
+    let scene = named("skin_ring");
+    let pictures: Vec<Rendering> =
+        (0..64).map(|seed| rendered(&scene, &Settings { seed, ..settings(10, 12) })).collect();
+    let count = pictures.len() as f64;
+    let (mut found, mut said) = (DVec3::ZERO, DVec3::ZERO);
+    for pixel in (0..100).filter(|&pixel| pictures.iter().all(|picture| picture.linear[pixel][3] == 1.0)) {
+        for channel in 0..3 {
+            let values = || pictures.iter().map(|picture| f64::from(picture.linear[pixel][channel]));
+            let mean = values().sum::<f64>() / count;
+            found[channel] += values().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+            let squares = pictures.iter().map(|picture| f64::from(picture.standard_error[pixel][channel]).powi(2));
+            said[channel] += squares.sum::<f64>() / count;
+        }
+    }
+    println!("variance over what is said: {}", found / said);
+    assert!((found / said).cmpgt(DVec3::splat(0.75)).all() && (found / said).cmplt(DVec3::splat(1.15)).all());
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused() {
+    let scene = named("skin_bunny");
+    let refused = |scene: &Scene, settings: &Settings<'_>| {
+        let error = render(scene, settings, &|_, _| {}).expect_err("refused");
+        assert!(!error.to_string().contains('\n') && error.to_string().len() > 20);
+        error
+    };
+    let wide = Settings { width: LARGEST_SIDE + 1, ..settings(8, 2) };
+    assert_eq!(refused(&scene, &wide), WalkError::Size { width: LARGEST_SIDE + 1, height: 8 });
+    assert_eq!(refused(&scene, &settings(0, 2)), WalkError::Size { width: 0, height: 0 });
+    assert_eq!(refused(&scene, &settings(8, 1)), WalkError::Samples(1));
+    assert_eq!(refused(&scene, &settings(8, MOST_SAMPLES + 1)), WalkError::Samples(MOST_SAMPLES + 1));
+
+    let with = |change: &dyn Fn(&mut Object)| {
+        let mut scene = scene.clone();
+        change(&mut scene.objects[0]);
+        refused(&scene, &settings(8, 2))
+    };
+    let object = || "bunny".to_owned();
+    assert_eq!(with(&|body| body.material = Material::standard()), WalkError::NoMedium { object: object() });
+    let open = with(&|body| body.mesh.indices.truncate(body.mesh.indices.len() - 3));
+    assert_eq!(open, WalkError::Open { object: object(), edges: 3 });
+    let turned = with(&|body| body.mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2)));
+    assert_eq!(turned, WalkError::InsideOut { object: object() });
+    assert_eq!(with(&|body| body.mesh = Mesh::default()), WalkError::InsideOut { object: object() });
+}
+
+#[test]
+fn progress_counts_rows() {
+    let seen = std::sync::Mutex::new(Vec::new());
+    let note = |done, all| seen.lock().expect("no panic").push((done, all));
+    render(&named("skin"), &settings(6, 2), &note).expect("rendered");
+    let mut seen = seen.into_inner().expect("no panic");
+    seen.sort_unstable();
+    assert_eq!(seen, (1..=6).map(|done| (done, 6)).collect::<Vec<_>>());
+}
+
+/// How fast, how noisy, and how many walks slip through a surface: next to none.
+#[test]
+fn hardly_a_walk_is_lost() {
+    for name in ["skin_bunny", "jade_ring", "wax"] {
+        let scene = named(name);
+        let start = Instant::now();
+        let (side, samples) = (48, 16);
+        let rendering = rendered(&scene, &settings(side, samples));
+        let seconds = start.elapsed().as_secs_f64();
+        let covered = || rendering.linear.iter().zip(&rendering.standard_error).filter(|(pixel, _)| pixel[3] == 1.0);
+        let mean = covered().map(|(pixel, _)| pixel[1]).sum::<f32>() / covered().count() as f32;
+        let mut errors: Vec<f32> = covered().map(|(_, error)| error[1]).collect();
+        errors.sort_by(f32::total_cmp);
+        println!(
+            "{name}: {:.0} walks/s, {:.1} scatterings a walk, {} of {} walks lost; median standard error {:.1} % of the mean green",
+            rendering.walks as f64 / seconds,
+            rendering.scatterings as f64 / rendering.walks as f64,
+            rendering.lost,
+            rendering.walks,
+            100.0 * errors[errors.len() / 2] / mean,
+        );
+        assert!(rendering.walks > 4000 && rendering.lost * 10_000 <= rendering.walks);
+    }
+}
