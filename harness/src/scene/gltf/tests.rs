@@ -7,6 +7,7 @@ use super::*;
 use crate::scene::normals::FALLBACK_NORMAL;
 use crate::scene::{Dispersion, Material, Medium, Mineral, glb};
 
+mod example;
 mod lights;
 mod refusals;
 mod refused_data;
