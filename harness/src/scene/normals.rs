@@ -84,7 +84,7 @@ pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging)
 }
 
 /// For each position the number of its first exact equal, and how many different ones there are.
-fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
+pub(super) fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
     let mut seen = HashMap::with_capacity(positions.len());
     let welded = positions
         .iter()
