@@ -5,7 +5,7 @@ use lapidary_harness::render::file;
 use lapidary_harness::scene::{self, Scene, glb};
 use std::path::PathBuf;
 
-/// Writes a built-in scene as a glTF 2.0 binary, mesh, material and camera, to be opened elsewhere.
+/// Writes a built-in scene as a glTF 2.0 binary, meshes, materials, lights and camera, to be opened elsewhere.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook scene brilliant --out harness/assets/brilliant.glb")]
 pub(super) struct Arguments {

@@ -94,7 +94,7 @@ impl Facets {
 }
 
 /// Whether each directed edge has its opposite. Vertices at one position are one, whatever their normals.
-fn is_closed(mesh: &Mesh) -> bool {
+pub(super) fn is_closed(mesh: &Mesh) -> bool {
     let mut number_at = HashMap::new();
     // Adding 0 makes -0 and 0 the same bits.
     let key = |position: &Vec3| position.to_array().map(|part| (part + 0.0).to_bits());

@@ -2,8 +2,8 @@
 //!
 //! The test suite runs [`SUITE_CASES`], a benchmark [`BENCHMARK_CASES`]; both call [`run`]. A case is a
 //! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
-//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`] or [`Material`](super::Material)
-//! promises.
+//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`], [`Material`](super::Material) or
+//! [`Light`](super::Light) promises.
 
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, any, prop_oneof};
@@ -64,23 +64,32 @@ pub const HOSTILE_NUMBERS: [&str; 18] = [
 ];
 
 /// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
-/// indices, no normals, a hierarchy with a matrix and with translation, rotation and scale, a material with
-/// attenuation and an Abbe number, and one whose Sellmeier equation is named.
+/// indices, no normals, texture coordinates as floats and as bytes, a hierarchy with a matrix and with translation,
+/// rotation and scale, two lights, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
+/// and one with a medium.
 const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior",
-"KHR_materials_volume","KHR_materials_dispersion"],
-"scene":0,"scenes":[{"nodes":[0,3]}],
+"KHR_materials_volume","KHR_materials_dispersion","KHR_lights_punctual"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":3},
+{"type":"point","intensity":40}]}},
+"scene":0,"scenes":[{"nodes":[0,3,4]}],
 "nodes":[{"children":[1,2],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
 {"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},{"mesh":0},
-{"camera":0,"translation":[0,0,9]}],
+{"camera":0,"translation":[0,0,9]},
+{"rotation":[0.6,0,0,0.8],"extensions":{"KHR_lights_punctual":{"light":0}},"children":[5]},
+{"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":1}}}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0},
-{"attributes":{"POSITION":0},"mode":6,"material":1},{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":4}]}],
+{"attributes":{"POSITION":0,"TEXCOORD_0":2},"mode":6,"material":1},
+{"attributes":{"POSITION":0,"NORMAL":0,"TEXCOORD_0":3},"indices":1,"mode":4,"material":2}]}],
 "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},
 "extensions":{"KHR_materials_ior":{"ior":1.75},"KHR_materials_dispersion":{"dispersion":0.35},
 "KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,1,0],"attenuationDistance":2.5}}},
-{"extensions":{"KHR_materials_ior":{"ior":1.768}},"extras":{"lapidary":{"sellmeier":"corundum"}}}],
+{"extensions":{"KHR_materials_ior":{"ior":1.768}},"extras":{"lapidary":{"sellmeier":"corundum"}}},
+{"extras":{"lapidary":{"sigma0":[4.5,3,2],"scattering":[0.75,1,1.25],"absorption":[0.5,0,0.125]}}}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
-{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],
+{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"},
+{"bufferView":0,"componentType":5126,"count":4,"type":"VEC2"},
+{"bufferView":0,"componentType":5121,"count":4,"type":"VEC2","normalized":true}],
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48,"byteStride":12},
 {"buffer":0,"byteOffset":48,"byteLength":6}],
 "buffers":[{"byteLength":54,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAECAgED"}]}"#;
@@ -233,12 +242,17 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     if let Some(object) = wrong {
         return Err(format!("a broken mesh: {object:?}"));
     }
-    let problem = scene.objects.iter().find_map(|object| object.material.problem());
-    problem.map_or(Ok(()), |problem| Err(format!("a broken material: {problem}")))
+    if let Some(problem) = scene.objects.iter().find_map(|object| object.material.problem()) {
+        return Err(format!("a broken material: {problem}"));
+    }
+    let problem = scene.lights.iter().find_map(super::Light::problem);
+    problem.map_or(Ok(()), |problem| Err(format!("a broken light: {problem}")))
 }
 
 fn is_sound(mesh: &Mesh) -> bool {
     mesh.normals.len() == mesh.positions.len()
+        && (mesh.uvs.is_empty() || mesh.uvs.len() == mesh.positions.len())
+        && mesh.uvs.iter().all(|uv| uv.is_finite())
         && mesh.indices.len().is_multiple_of(3)
         && mesh.triangles().count() == mesh.triangle_count()
         && mesh.positions.iter().all(|position| position.is_finite())

@@ -2,11 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 use thiserror::Error;
 
-use super::{Bounds, Camera, Dispersion, Material, Mesh, Object, Scene};
+use super::{Bounds, Camera, Material, Mesh, Object, Scene};
+
+mod light;
+mod material;
 
 /// Why a scene cannot be written. Nothing is written then.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -22,6 +25,14 @@ pub enum GlbError {
     Object {
         /// The object's name.
         object: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A light breaks what [`Light`](super::Light) promises.
+    #[error("light {light} cannot be written as glTF: {problem}")]
+    Light {
+        /// Its place among the scene's lights, from 0.
+        light: usize,
         /// What is wrong.
         problem: &'static str,
     },
@@ -42,18 +53,20 @@ const ARRAY_BUFFER: u32 = 34_962;
 /// Buffer view target of indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// The bytes of a .glb with the scene's objects, their materials (see below) and its camera.
+/// The bytes of a .glb with the scene's objects, their materials (see below), its lights and its camera.
 ///
-/// A material is fully transmissive by `KHR_materials_transmission`, has its refractive index by
+/// A clear material is fully transmissive by `KHR_materials_transmission`, has its refractive index by
 /// `KHR_materials_ior`, its attenuation by `KHR_materials_volume`, whose thickness also says that the body
 /// is solid, and its dispersion by `KHR_materials_dispersion`. A Sellmeier equation, which glTF cannot
-/// say, is named in `extras.lapidary.sellmeier`; the dispersion beside it is what others make of it.
+/// say, is named in `extras.lapidary.sellmeier`; the dispersion beside it is what others make of it. A material
+/// with a medium or a `sigma0` is not transmissive: others show its base colour, and `extras.lapidary` holds its
+/// numbers. Lights go by `KHR_lights_punctual`.
 ///
-/// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes and
-/// materials back; of the camera it gives the same view, to rounding.
+/// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes, materials
+/// and lights back; of the camera it gives the same view, to rounding.
 ///
 /// # Errors
-/// [`GlbError`], where a mesh is not well-formed or the file would pass 4 GiB.
+/// [`GlbError`], where a mesh or light is not well-formed or the file would pass 4 GiB.
 pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
     if scene.objects.is_empty() {
         return Err(GlbError::Empty);
@@ -67,6 +80,10 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
     let mut document = Document::default();
     for object in &scene.objects {
         document.add(object)?;
+    }
+    let broken = scene.lights.iter().enumerate().find_map(|(k, light)| Some((k, light.problem()?)));
+    if let Some((light, problem)) = broken {
+        return Err(GlbError::Light { light, problem });
     }
     let json = document.json(scene).to_string();
     container(json.as_bytes(), &document.binary)
@@ -108,10 +125,14 @@ impl Document {
             return Err(GlbError::Object { object: object.name.clone(), problem });
         }
         let bounds = Bounds::of(mesh.positions.iter().copied());
-        let position = self.vectors(&mesh.positions);
+        let position = self.vectors(mesh.positions.iter().map(Vec3::to_array));
         self.accessors[position]["min"] = json!(bounds.min.to_array());
         self.accessors[position]["max"] = json!(bounds.max.to_array());
-        let normal = self.vectors(&mesh.normals);
+        let normal = self.vectors(mesh.normals.iter().map(Vec3::to_array));
+        let mut attributes = json!({"POSITION": position, "NORMAL": normal});
+        if !mesh.uvs.is_empty() {
+            attributes["TEXCOORD_0"] = json!(self.vectors(mesh.uvs.iter().map(Vec2::to_array)));
+        }
         let indices = mesh.indices.iter().flat_map(|k| k.to_le_bytes());
         let indices = self.accessor(
             indices,
@@ -122,23 +143,20 @@ impl Document {
         self.meshes.push(json!({
             "name": object.name,
             "primitives": [{
-                "attributes": {"POSITION": position, "NORMAL": normal},
+                "attributes": attributes,
                 "indices": indices,
                 "material": self.materials.len(),
                 "mode": 4,
             }],
         }));
-        self.materials.push(material(&object.material, thickness(mesh)));
+        self.materials.push(material::material(&object.material, material::thickness(mesh)));
         Ok(())
     }
 
-    fn vectors(&mut self, vectors: &[Vec3]) -> usize {
-        let components = vectors.iter().flat_map(|v| v.to_array());
-        self.accessor(
-            components.flat_map(f32::to_le_bytes),
-            json!({"componentType": FLOAT, "count": vectors.len(), "type": "VEC3"}),
-            ARRAY_BUFFER,
-        )
+    /// An accessor of vectors of `N` components.
+    fn vectors<const N: usize>(&mut self, vectors: impl ExactSizeIterator<Item = [f32; N]>) -> usize {
+        let accessor = json!({"componentType": FLOAT, "count": vectors.len(), "type": format!("VEC{N}")});
+        self.accessor(vectors.flatten().flat_map(f32::to_le_bytes), accessor, ARRAY_BUFFER)
     }
 
     /// Appends an accessor with a buffer view of its own. All data is of four bytes, so that every
@@ -164,14 +182,18 @@ impl Document {
     }
 
     fn json(&self, scene: &Scene) -> Value {
-        let camera_node = self.nodes.len();
         let mut nodes = self.nodes.clone();
         nodes.push(camera_pose(&scene.camera));
-        json!({
+        nodes.extend(scene.lights.iter().enumerate().map(|(number, light)| light::node(light, number)));
+        let mut extensions_used = self.extensions_used();
+        if !scene.lights.is_empty() {
+            extensions_used.insert(light::EXTENSION);
+        }
+        let mut written = json!({
             "asset": {"version": "2.0", "generator": "Lapidary"},
-            "extensionsUsed": self.extensions_used(),
+            "extensionsUsed": extensions_used,
             "scene": 0,
-            "scenes": [{"name": scene.name, "nodes": (0..=camera_node).collect::<Vec<_>>()}],
+            "scenes": [{"name": scene.name, "nodes": (0..nodes.len()).collect::<Vec<_>>()}],
             "nodes": nodes,
             "cameras": [{
                 "type": "perspective",
@@ -182,7 +204,12 @@ impl Document {
             "accessors": self.accessors,
             "bufferViews": self.views,
             "buffers": [{"byteLength": self.binary.len()}],
-        })
+        });
+        if !scene.lights.is_empty() {
+            let lights: Vec<Value> = scene.lights.iter().map(light::light).collect();
+            written["extensions"] = json!({light::EXTENSION: {"lights": lights}});
+        }
+        written
     }
 }
 
@@ -196,58 +223,17 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
         Some("its number of indices is not a multiple of three; complete the last triangle")
     } else if mesh.normals.len() != vertices {
         Some("it has not one normal for each position; compute them again")
+    } else if !mesh.uvs.is_empty() && mesh.uvs.len() != vertices {
+        Some("it has neither one pair of texture coordinates for each position nor none; compute them again")
     } else if !mesh.indices.iter().all(in_range) {
         Some("an index is past its last vertex; mend the triangles")
     } else if !mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()) {
         Some("a position or normal is not finite; mend or remove the vertex")
+    } else if !mesh.uvs.iter().all(|uv| uv.is_finite()) {
+        Some("a texture coordinate is not finite; mend it")
     } else {
         material.problem()
     }
-}
-
-/// The mean length of a straight way through a body, which renderers that do not trace it take as its
-/// thickness: 4 V/S for a convex body (Cauchy), and for several alike that of one. A body that encloses
-/// nothing gets the diagonal of its box; a 0 would call it thin-walled.
-fn thickness(mesh: &Mesh) -> f32 {
-    let (volume, area) = mesh.volume_and_area();
-    let mean = (4.0 * volume / area) as f32;
-    let across = 2.0 * Bounds::of(mesh.positions.iter().copied()).radius();
-    if mean > 0.0 && mean <= across { mean } else { across }
-}
-
-fn material(material: &Material, thickness: f32) -> Value {
-    let mut written = json!({
-        "name": material.name,
-        "pbrMetallicRoughness": {
-            "baseColorFactor": material.base_color.extend(1.0).to_array(),
-            "metallicFactor": 0.0,
-            "roughnessFactor": material.roughness,
-        },
-        "extensions": {
-            "KHR_materials_ior": {"ior": material.ior},
-            "KHR_materials_transmission": {"transmissionFactor": 1.0},
-            "KHR_materials_volume": {
-                "thicknessFactor": thickness,
-                "attenuationColor": material.attenuation_color.to_array(),
-            },
-        },
-    });
-    // JSON has no infinity: what is left out is glTF's default, which is that.
-    if material.attenuation_distance.is_finite() {
-        written["extensions"]["KHR_materials_volume"]["attenuationDistance"] = json!(material.attenuation_distance);
-    }
-    let dispersion = match material.dispersion {
-        Dispersion::None => None,
-        Dispersion::Abbe(dispersion) => Some(dispersion),
-        Dispersion::Sellmeier(mineral) => {
-            written["extras"] = json!({"lapidary": {"sellmeier": mineral.name()}});
-            Some(20.0 / mineral.abbe_number())
-        }
-    };
-    if let Some(dispersion) = dispersion {
-        written["extensions"]["KHR_materials_dispersion"] = json!({"dispersion": dispersion});
-    }
-    written
 }
 
 /// A glTF camera looks along its node's -z with +y up.

@@ -7,7 +7,7 @@ use super::normals::{Averaging, shared_normals};
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
 ///
 /// The loader and the cuts of this crate always give meshes whose parts fit together:
-/// `normals` is as long as `positions`, every normal has unit length, `indices` is a multiple of
+/// `normals` is as long as `positions`, `uvs` is too or empty, every normal has unit length, `indices` is a multiple of
 /// three long and every index is below `positions.len()`. Triangles wind counter-clockwise seen
 /// from outside.
 #[derive(Debug, Clone, PartialEq, Default)]

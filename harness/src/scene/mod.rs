@@ -8,6 +8,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
+pub mod atlas;
 mod built_in;
 pub mod bvh;
 mod camera;

@@ -10,8 +10,9 @@ use super::Mesh;
 #[must_use]
 pub fn sphere(radius: f64, columns: u32) -> Mesh {
     grid([columns, columns / 2], |uv| {
-        let (polar, azimuth) = (PI * uv.y, TAU * uv.x);
-        let normal = DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), polar.sin() * azimuth.cos());
+        // Exactly 0 at both poles and once around, so that what meets there has one position.
+        let (across, azimuth) = ((PI * uv.y.min(1.0 - uv.y)).sin(), TAU * uv.x.fract());
+        let normal = DVec3::new(across * azimuth.sin(), (PI * uv.y).cos(), across * azimuth.cos());
         (radius * normal, normal)
     })
 }
@@ -20,7 +21,7 @@ pub fn sphere(radius: f64, columns: u32) -> Mesh {
 #[must_use]
 pub fn torus(major: f64, minor: f64, columns: u32, rows: u32) -> Mesh {
     grid([columns, rows], |uv| {
-        let (around, azimuth) = (-TAU * uv.y, TAU * uv.x);
+        let (around, azimuth) = (-TAU * uv.y.fract(), TAU * uv.x.fract());
         let outward = DVec3::new(azimuth.sin(), 0.0, azimuth.cos());
         let normal = around.cos() * outward + around.sin() * DVec3::Y;
         (major * outward + minor * normal, normal)

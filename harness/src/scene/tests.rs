@@ -202,21 +202,21 @@ fn every_prism_of_the_chain_hangs_at_an_angle_of_its_own() {
 fn every_built_in_is_closed() {
     for built_in in BUILT_IN {
         for object in &Scene::named(built_in.name).unwrap().objects {
-            assert!(is_closed(&object.mesh), "{}", built_in.name);
+            assert!(convex::is_closed(&object.mesh), "{}", built_in.name);
             assert!(object.mesh.volume_and_area().0 > 0.0, "{} is inside out", built_in.name);
         }
     }
 }
 
-/// Whether every edge has exactly two triangles, which run along it in opposite directions.
-fn is_closed(mesh: &Mesh) -> bool {
-    let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
-    for triangle in mesh.indices.chunks_exact(3) {
-        for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(k, l)| (triangle[k], triangle[l])) {
-            *edges.entry((from, to)).or_default() += 1;
+#[test]
+fn translucent_bodies_have_texture_coordinates() {
+    for built_in in BUILT_IN {
+        for object in &Scene::named(built_in.name).unwrap().objects {
+            let vertices = object.mesh.positions.len();
+            let expected = if object.material.medium.is_some() { vertices } else { 0 };
+            assert_eq!(object.mesh.uvs.len(), expected, "{}", built_in.name);
         }
     }
-    edges.iter().all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
 }
 
 #[test]

@@ -63,6 +63,11 @@ const SCENES: &[Row] = &[
     ("{}/empty.gltf --out {}/out.png", One, &["empty.gltf: ", "no triangles"]),
     ("{}/nan.gltf --out {}/out.png", One, &["nan.gltf: ", "vertex 1 lies at (NaN", "finite"]),
     ("{}/index.gltf --out {}/out.png", One, &["index.gltf: ", "index 1 is 3", "3 vertices"]),
+    ("{}/uv.gltf --out {}/out.png", One, &["uv.gltf: ", "vertex 1 has texture coordinates (0, NaN)", "finite"]),
+    ("{}/spot.gltf --out {}/out.png", One, &["spot.gltf: ", "light 0 \"desk\"", "spot lights are not read"]),
+    ("{}/dark.gltf --out {}/out.png", One, &["dark.gltf: ", "its intensity is -1.0", "at least 0"]),
+    ("{}/half.gltf --out {}/out.png", One, &["half.gltf: ", "material 0 \"wax\"", "scattering but no absorption"]),
+    ("{}/sigma.gltf --out {}/out.png", One, &["sigma.gltf: ", "material 0 \"wax\"", "sigma0 is [1,null,1]"]),
     ("{}/json.gltf --out {}/out.png", One, &["json.gltf: ", "not valid glTF", "line 1"]),
     ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "not a regular file"]),
     ("briliant --out {}/out.png", One, &["\"briliant\"", "did you mean brilliant?"]),
@@ -235,7 +240,12 @@ fn write_bad_files(folder: &Path) {
     write("empty.gltf", empty.as_bytes());
     write("empty.glb", &json_only_glb(&empty));
     write("nan.gltf", triangle([0.0, 0.0, 0.0, f32::NAN, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 1, 2]).to_string().as_bytes());
-    write("index.gltf", triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 3, 2]).to_string().as_bytes());
+    write("index.gltf", triangle(CORNERS, [0, 3, 2]).to_string().as_bytes());
+    for (name, change) in BAD_MEMBERS {
+        let mut document = triangle(CORNERS, [0, 1, 2]);
+        change(&mut document);
+        write(name, document.to_string().as_bytes());
+    }
     write("syntax.wgsl", b"fn refraction_reflect(incident: vec3f, normal: vec3f) -> vec3f {\n    return incident\n}\n");
     write(
         "type.wgsl",
@@ -256,6 +266,39 @@ fn json_only_glb(json: &str) -> Vec<u8> {
     text.resize(text.len().next_multiple_of(4), b' ');
     let length = |bytes: usize| u32::try_from(bytes).expect("a small file").to_le_bytes();
     [b"glTF".as_slice(), &length(2), &length(20 + text.len()), &length(text.len()), b"JSON", &text].concat()
+}
+
+/// The corners of a right triangle.
+const CORNERS: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+type Change = fn(&mut Value);
+
+/// Files whose one fault is in what scattering bodies need, each as a change to a good one.
+const BAD_MEMBERS: [(&str, Change); 5] = [
+    ("uv.gltf", |d| {
+        let uvs = [0.0, 0.0, 0.0, f32::NAN, 1.0, 0.0].into_iter().flat_map(f32::to_le_bytes);
+        let data = base64::engine::general_purpose::STANDARD.encode(uvs.collect::<Vec<u8>>());
+        let uri = format!("data:application/octet-stream;base64,{data}");
+        d["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);
+        let add = |list: &mut Value, item: Value| list.as_array_mut().expect("a list").push(item);
+        add(&mut d["accessors"], json!({"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}));
+        add(&mut d["bufferViews"], json!({"buffer": 1, "byteLength": 24}));
+        add(&mut d["buffers"], json!({"byteLength": 24, "uri": uri}));
+    }),
+    ("spot.gltf", |d| add_light(d, json!({"type": "spot", "name": "desk", "spot": {}}))),
+    ("dark.gltf", |d| add_light(d, json!({"type": "point", "intensity": -1}))),
+    ("half.gltf", |d| add_wax(d, json!({"scattering": [1, 1, 1]}))),
+    ("sigma.gltf", |d| add_wax(d, json!({"sigma0": [1, null, 1]}))),
+];
+
+fn add_light(document: &mut Value, light: Value) {
+    document["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});
+    document["nodes"][0]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
+}
+
+fn add_wax(document: &mut Value, members: Value) {
+    document["materials"] = json!([{"name": "wax", "extras": {"lapidary": members}}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
 }
 
 /// A glTF file of one triangle, its data in the JSON.
@@ -280,7 +323,7 @@ fn triangle(corners: [f32; 9], indices: [u16; 3]) -> Value {
 
 #[test]
 fn the_triangle_that_the_bad_files_vary_is_good() {
-    let good = triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0, 1, 2]).to_string();
+    let good = triangle(CORNERS, [0, 1, 2]).to_string();
     let scene = lapidary_harness::scene::gltf::parse(good.as_bytes(), None).expect("a triangle");
     assert_eq!(scene.triangle_count(), 1);
 }

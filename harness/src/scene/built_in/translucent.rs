@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 
 use super::{BUNNY, direction, framed};
 use crate::scene::surfaces::{sphere, torus};
-use crate::scene::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use crate::scene::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, atlas, gltf};
 
 /// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): skin1.
 fn skin() -> Material {
@@ -90,7 +90,8 @@ pub(super) fn ring(name: &str) -> Scene {
 /// The Stanford bunny, 60 mm high, in one light.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     let parsed = gltf::parse(BUNNY, None)?;
-    let objects = parsed.objects.into_iter().map(|found| object("bunny", sized(found.mesh, 60.0), name)).collect();
+    let meshes = parsed.objects.into_iter().map(|found| sized(atlas::unwrap(&found.mesh), 60.0));
+    let objects = meshes.map(|mesh| object("bunny", mesh, name)).collect();
     Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
 }
 

@@ -1,4 +1,18 @@
+use glam::{Vec2, Vec3};
+
 use super::*;
+use crate::scene::Light;
+
+#[test]
+fn the_hand_written_seed_reaches_what_it_says() {
+    let [_, document] = seeds().unwrap();
+    let scene = gltf::parse(&document, None).unwrap();
+    assert_eq!(scene.lights.len(), 2);
+    let textured = scene.objects.iter().filter(|object| !object.mesh.uvs.is_empty());
+    // Two of the mesh's three primitives, at two nodes.
+    assert_eq!((scene.objects.len(), textured.count()), (6, 4));
+    assert!(scene.objects.iter().any(|object| object.material.medium.is_some() && object.material.sigma0.is_some()));
+}
 
 #[test]
 fn seeds_are_valid() {
@@ -46,4 +60,7 @@ fn a_scene_that_breaks_a_promise_is_noticed() {
     assert!(broken(|scene| scene.objects[0].mesh.positions[0].x = f32::NAN));
     assert!(broken(|scene| scene.camera.target = scene.camera.eye));
     assert!(broken(|scene| scene.objects[0].material.attenuation_distance = 0.0));
+    assert!(broken(|scene| scene.objects[0].mesh.uvs = vec![Vec2::ZERO]));
+    assert!(broken(|scene| scene.objects[0].mesh.uvs = vec![Vec2::NAN; scene.objects[0].mesh.positions.len()]));
+    assert!(broken(|scene| scene.lights = vec![Light::Directional { toward: Vec3::ZERO, irradiance: Vec3::ONE }]));
 }

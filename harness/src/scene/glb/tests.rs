@@ -1,5 +1,6 @@
+use super::material::thickness;
 use super::*;
-use crate::scene::{BUILT_IN, Mineral, gltf};
+use crate::scene::{BUILT_IN, Dispersion, Light, Medium, Mineral, gltf};
 
 fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {
     let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -13,6 +14,7 @@ fn every_built_in_scene_survives_writing_and_loading() {
         let again = gltf::parse(&write(&scene).unwrap(), None).unwrap();
         assert_eq!(again.name, scene.name);
         assert_eq!(again.objects, scene.objects);
+        assert_eq!(again.lights, scene.lights);
         let (a, b) = (again.camera, scene.camera);
         assert_eq!(a.vertical_fov, b.vertical_fov);
         assert_eq!(a.eye, b.eye);
@@ -49,6 +51,10 @@ fn json_of(scene: &Scene) -> Value {
     serde_json::from_slice(chunk(&write(scene).unwrap(), 12).1).unwrap()
 }
 
+fn medium() -> Medium {
+    Medium { scattering: Vec3::new(0.0, f32::MIN_POSITIVE, 0.1), absorption: Vec3::new(1.0 / 7.0, f32::MAX, 0.0) }
+}
+
 #[test]
 fn every_kind_of_material_survives_writing_and_loading() {
     let mut scene = Scene::named("octahedron").unwrap();
@@ -65,7 +71,19 @@ fn every_kind_of_material_survives_writing_and_loading() {
         Material { attenuation_color: Vec3::new(0.0, 0.1, 1.0), ..standard.clone() },
         Material { attenuation_distance: 1.0 / 3.0, ..standard.clone() },
         Material { attenuation_distance: f32::MIN_POSITIVE, ..standard.clone() },
-        Material { attenuation_distance: f32::MAX, attenuation_color: Vec3::splat(0.7), ..standard },
+        Material { attenuation_distance: f32::MAX, attenuation_color: Vec3::splat(0.7), ..standard.clone() },
+        Material { roughness: 1.0 / 3.0, ..standard.clone() },
+        Material { sigma0: Some(Vec3::new(0.0, 1.0 / 3.0, f32::MAX)), ..standard.clone() },
+        Material { medium: Some(medium()), ..standard.clone() },
+        Material {
+            dispersion: Dispersion::Sellmeier(Mineral::Quartz),
+            ior: Mineral::Quartz.index(),
+            attenuation_distance: 2.0,
+            attenuation_color: Vec3::splat(0.7),
+            sigma0: Some(Vec3::ZERO),
+            medium: Some(medium()),
+            ..standard
+        },
     ];
     for material in measured.into_iter().chain(others) {
         scene.objects[0].material = material;
@@ -102,6 +120,61 @@ fn materials_are_written_for_other_readers_too() {
 }
 
 #[test]
+fn what_scatters_is_written_as_opaque_with_its_numbers_beside() {
+    let mut scene = Scene::named("jade_ring").unwrap();
+    let json = json_of(&scene);
+    assert_eq!(json["extensionsUsed"], json!(["KHR_lights_punctual", "KHR_materials_ior"]));
+    let material = &json["materials"][0];
+    let members = material["extras"]["lapidary"].as_object().unwrap();
+    assert_eq!(members.keys().collect::<Vec<_>>(), ["absorption", "scattering", "sigma0"]);
+    assert_eq!(members["scattering"][1].as_f64().unwrap() as f32, 1.2);
+    assert_eq!(material["pbrMetallicRoughness"]["roughnessFactor"], 0.0);
+
+    scene.objects[0].material.attenuation_distance = 3.0;
+    let used = json!(["KHR_lights_punctual", "KHR_materials_ior", "KHR_materials_volume"]);
+    assert_eq!(json_of(&scene)["extensionsUsed"], used);
+}
+
+#[test]
+fn texture_coordinates_are_written_where_there_are_some() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let attributes = |scene: &Scene| json_of(scene)["meshes"][0]["primitives"][0]["attributes"].clone();
+    assert_eq!(attributes(&scene)["TEXCOORD_0"], Value::Null);
+    let uv = |k: usize| Vec2::new(k as f32 / 7.0, -1e30);
+    scene.objects[0].mesh.uvs = (0..scene.objects[0].mesh.positions.len()).map(uv).collect();
+    assert!(attributes(&scene)["TEXCOORD_0"].is_u64());
+    assert_eq!(gltf::parse(&write(&scene).unwrap(), None).unwrap().objects, scene.objects);
+}
+
+#[test]
+fn every_kind_of_light_survives_writing_and_loading() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    let toward = |x, y, z| Vec3::new(x, y, z).normalize();
+    let directions = [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, toward(-0.7, 0.6, 0.2), toward(1e-9, -1.0, 1e-3)];
+    let lights = [Vec3::ZERO, Vec3::new(0.1, 1.0 / 3.0, 7e5), Vec3::new(f32::MAX, f32::MIN_POSITIVE, 1e-40)];
+    for radiometric in lights {
+        scene.lights.extend(directions.map(|toward| Light::Directional { toward, irradiance: radiometric }));
+        scene.lights.extend(directions.map(|place| Light::Point { position: 1e5 * place, intensity: radiometric }));
+    }
+    let again = gltf::parse(&write(&scene).unwrap(), None).unwrap();
+    assert_eq!(again.lights, scene.lights);
+    assert_eq!(again.objects, scene.objects);
+
+    // Other readers take colours from 0 to 1, and a rotation from the matrix.
+    let json = json_of(&scene);
+    for light in json["extensions"]["KHR_lights_punctual"]["lights"].as_array().unwrap() {
+        let color = light["color"].as_array().unwrap().iter().map(|part| part.as_f64().unwrap());
+        assert_eq!(color.fold(0.0, f64::max), 1.0, "{light}");
+    }
+    for node in json["nodes"].as_array().unwrap().iter().filter(|node| node["matrix"].is_array()) {
+        let matrix: Vec<f32> = node["matrix"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap() as f32).collect();
+        let turn = glam::Mat4::from_cols_slice(&matrix);
+        assert!((turn * turn.transpose()).abs_diff_eq(glam::Mat4::IDENTITY, 1e-6), "{node}");
+        assert!((turn.determinant() - 1.0).abs() < 1e-6, "{node}");
+    }
+}
+
+#[test]
 fn thickness_is_the_mean_way_through_and_never_nothing() {
     // The regular octahedron with its corners at distance 1: V = 4/3, S = 4√3.
     let octahedron = Scene::named("octahedron").unwrap().objects.remove(0).mesh;
@@ -134,4 +207,24 @@ fn what_gltf_forbids_is_refused() {
     assert!(refused(|s| s.objects[0].material.ior = 2.4).contains("Sellmeier"));
     assert!(refused(|s| s.objects[0].mesh.positions[0].x = f32::NAN).contains("not finite"));
     assert!(refused(|s| s.objects[0].material.ior = f32::NAN).contains("refractive index"));
+    assert!(refused(|s| s.objects[0].material.roughness = 1.1).contains("roughness"));
+    assert!(refused(|s| s.objects[0].material.sigma0 = Some(Vec3::NEG_X)).contains("sigma0"));
+    let broken = Medium { absorption: Vec3::NAN, ..medium() };
+    let mut scene = good.clone();
+    scene.objects[0].material.medium = Some(broken);
+    assert!(write(&scene).unwrap_err().to_string().contains("absorption"));
+    assert!(refused(|s| s.objects[0].mesh.uvs = vec![Vec2::ZERO]).contains("texture coordinates"));
+    let uvs = |s: &mut Scene| s.objects[0].mesh.uvs = vec![Vec2::INFINITY; s.objects[0].mesh.positions.len()];
+    assert!(refused(uvs).contains("texture coordinate is not finite"));
+    let sound = Light::Point { position: Vec3::ZERO, intensity: Vec3::ONE };
+    for (light, says) in [
+        (Light::Directional { toward: 2.0 * Vec3::X, irradiance: Vec3::ONE }, "unit length"),
+        (Light::Directional { toward: Vec3::X, irradiance: Vec3::NAN }, "not finite and at least 0"),
+        (Light::Point { position: Vec3::INFINITY, intensity: Vec3::ONE }, "position"),
+        (Light::Point { position: Vec3::ZERO, intensity: Vec3::NEG_Z }, "not finite and at least 0"),
+    ] {
+        let scene = Scene { lights: vec![sound, light], ..good.clone() };
+        let message = write(&scene).unwrap_err().to_string();
+        assert!(message.starts_with("light 1 cannot be written") && message.contains(says), "{message}");
+    }
 }

@@ -14,6 +14,7 @@ pub(super) struct Elements<'a> {
     stride: usize,
     size: usize,
     count: usize,
+    component: ComponentType,
 }
 
 /// What an accessor must hold.
@@ -27,6 +28,13 @@ pub(super) struct Kind {
 /// Positions and normals.
 pub(super) const VECTORS: Kind =
     Kind { type_: Type::Vec3, components: &[ComponentType::F32], description: "VEC3 of float" };
+
+/// Texture coordinates. Of whole numbers, the largest stands for 1.
+pub(super) const TEXTURE_COORDINATES: Kind = Kind {
+    type_: Type::Vec2,
+    components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
+    description: "VEC2 of float, or of normalised unsigned byte or short,",
+};
 
 /// Indices.
 pub(super) const INDICES: Kind = Kind {
@@ -55,7 +63,10 @@ impl<'a> Elements<'a> {
                 return Err(wrong("its componentType is not one of glTF's".to_owned()));
             }
         };
-        if accessor.type_ != Checked::Valid(kind.type_) || !kind.components.contains(&component) {
+        // What stands for a fraction must say so.
+        let stands_for_fraction = kind.type_ != Type::Scalar && component != ComponentType::F32;
+        let is_kind = accessor.type_ == Checked::Valid(kind.type_) && kind.components.contains(&component);
+        if !is_kind || (stands_for_fraction && !accessor.normalized) {
             return Err(wrong(format!(
                 "{user} needs {} there; export without quantisation or compression",
                 kind.description
@@ -100,7 +111,7 @@ impl<'a> Elements<'a> {
                  bufferView of {has} bytes; export it again"
             )));
         };
-        Ok(Self { bytes, stride, size, count })
+        Ok(Self { bytes, stride, size, count, component })
     }
 
     /// The number of elements, at least one.
@@ -113,6 +124,20 @@ impl<'a> Elements<'a> {
         self.elements().map(|bytes| {
             let mut components = bytes.chunks_exact(4).map(little_endian).map(f32::from_bits);
             std::array::from_fn(|_| components.next().unwrap_or(0.0))
+        })
+    }
+
+    /// The elements as pairs. Meant for [`TEXTURE_COORDINATES`].
+    pub(super) fn pairs(self) -> impl Iterator<Item = [f32; 2]> + 'a {
+        let component = self.component;
+        let number = move |bytes: &[u8]| match component {
+            ComponentType::U8 => little_endian(bytes) as f32 / 255.0,
+            ComponentType::U16 => little_endian(bytes) as f32 / 65535.0,
+            _ => f32::from_bits(little_endian(bytes)),
+        };
+        self.elements().map(move |bytes| {
+            let (first, second) = bytes.split_at(component.size());
+            [number(first), number(second)]
         })
     }
 

@@ -1,11 +1,9 @@
 //! The bound on what a file can make the loader allocate.
 
-use glam::Vec3;
-
 use super::error::GltfError;
 use super::{MAX_EXPANSION, MAX_TRIANGLES};
 
-/// What an object takes besides its mesh: its own size, two names of at most 65 characters, and five
+/// What an object takes besides its mesh: its own size, two names of at most 65 characters, and six
 /// allocations.
 const OBJECT_BYTES: u64 = 1024;
 
@@ -28,14 +26,14 @@ impl Budget {
         }
     }
 
-    /// Takes what one object needs, before it is made.
-    pub(super) fn take(&mut self, vertices: u64, triangles: u64) -> Result<(), GltfError> {
+    /// Takes what one object needs, before it is made. A vertex takes `vertex_bytes`.
+    pub(super) fn take(&mut self, vertices: u64, vertex_bytes: usize, triangles: u64) -> Result<(), GltfError> {
         let left = self.triangles.checked_sub(triangles);
         self.triangles = left.ok_or(GltfError::TooManyTriangles)?;
         let left = self.vertices.checked_sub(vertices);
         self.vertices = left.ok_or(GltfError::TooManyTriangles)?;
         // No overflow: both numbers are at most a buffer's length.
-        let bytes = vertices * 2 * size_of::<Vec3>() as u64 + triangles * 3 * 4 + OBJECT_BYTES;
+        let bytes = vertices * vertex_bytes as u64 + triangles * 3 * 4 + OBJECT_BYTES;
         let left = self.bytes.checked_sub(bytes);
         self.bytes = left.ok_or(GltfError::Expansion { file_bytes: self.file_bytes })?;
         Ok(())

@@ -1,9 +1,11 @@
-//! Materials of a file: `baseColorFactor`, `KHR_materials_ior`, `KHR_materials_volume` (attenuation alone),
-//! `KHR_materials_dispersion`, and `extras.lapidary.sellmeier`.
+//! Materials of a file: `baseColorFactor`, `roughnessFactor`, `KHR_materials_ior`, `KHR_materials_volume`
+//! (attenuation alone), `KHR_materials_dispersion`, and `extras.lapidary` for what glTF cannot say.
 //!
-//! The last names a measured Sellmeier equation, one of [`Mineral::ALL`], which glTF cannot say. It takes the
-//! place of `KHR_materials_dispersion`, and gives the refractive index too, with which the file's own, if it has
-//! one, must agree. Every body is taken as solid and traced, so `thicknessFactor`, a stand-in for tracing,
+//! `sellmeier` there names a measured Sellmeier equation, one of [`Mineral::ALL`]. It takes the place of
+//! `KHR_materials_dispersion`, and gives the refractive index too, with which the file's own, if it has one, must
+//! agree. `sigma0` is [`Material::sigma0`]; `scattering` and `absorption`, which come together, are
+//! [`Material::medium`]. All three are lengths, or per length, of the world: as with `attenuationDistance`, the scale of
+//! a node does not change them. Every body is taken as solid and traced, so `thicknessFactor`, a stand-in for tracing,
 //! is not read.
 
 use std::collections::HashMap;
@@ -11,12 +13,12 @@ use std::collections::HashMap;
 use ::gltf::json::Root;
 use ::gltf::json::material::Material as JsonMaterial;
 use glam::Vec3;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
-use serde_json::{Map, Value};
 
 use super::error::{GltfError, designation, excerpt, item};
-use crate::scene::{Dispersion, Material, Mineral};
+use super::extension::Extension;
+use crate::scene::{Dispersion, Material, Medium, Mineral};
 
 /// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
 const INDEX_AGREES: f32 = 0.005;
@@ -73,7 +75,8 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
         material.ior = ior;
     }
 
-    let volume = Extension::of(json, "KHR_materials_volume")?;
+    let others = json.extensions.as_ref().map(|all| &all.others);
+    let volume = Extension::of(others, "KHR_materials_volume")?;
     if let Some(color) = volume.color("attenuationColor")? {
         material.attenuation_color = color;
     }
@@ -89,7 +92,7 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
         material.attenuation_distance = single;
     }
 
-    if let Some(dispersion) = Extension::of(json, "KHR_materials_dispersion")?.number("dispersion")? {
+    if let Some(dispersion) = Extension::of(others, "KHR_materials_dispersion")?.number("dispersion")? {
         let single = dispersion as f32;
         if !(dispersion >= 0.0 && single.is_finite()) {
             return Err(format!("its dispersion is {dispersion:?}, but must be at least 0 and finite: 20/V_d"));
@@ -98,7 +101,10 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
             material.dispersion = Dispersion::Abbe(single);
         }
     }
-    if let Some(mineral) = sellmeier(json)? {
+    let Some(extras) = lapidary(json)? else {
+        return Ok(material);
+    };
+    if let Some(mineral) = extras.sellmeier.map(mineral).transpose()? {
         let index = mineral.index();
         if let Some(ior) = ior.filter(|ior| (ior - index).abs() > INDEX_AGREES) {
             return Err(format!(
@@ -110,6 +116,8 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
         material.ior = index;
         material.dispersion = Dispersion::Sellmeier(mineral);
     }
+    material.sigma0 = extras.sigma0.map(|json| lengths("sigma0", json)).transpose()?;
+    material.medium = medium(&extras)?;
     Ok(material)
 }
 
@@ -128,61 +136,6 @@ fn check_index(ior: f32) -> Result<(), String> {
     Ok(())
 }
 
-/// An extension that the gltf crate leaves as JSON.
-#[derive(Debug)]
-struct Extension<'a> {
-    /// Nothing where the material does not have it.
-    members: Option<&'a Map<String, Value>>,
-}
-
-impl<'a> Extension<'a> {
-    fn of(json: &'a JsonMaterial, name: &str) -> Result<Self, String> {
-        let value = json.extensions.as_ref().and_then(|all| all.others.get(name));
-        let members = value.map(|value| value.as_object().ok_or_else(|| wrong_kind(name, value, "an object")));
-        Ok(Self { members: members.transpose()? })
-    }
-
-    fn member(&self, key: &str) -> Option<&'a Value> {
-        self.members.and_then(|members| members.get(key))
-    }
-
-    fn number(&self, key: &str) -> Result<Option<f64>, String> {
-        let number = self.member(key).map(|value| value.as_f64().ok_or_else(|| wrong_kind(key, value, "a number")));
-        number.transpose()
-    }
-
-    /// Linear RGB, each 0 to 1.
-    fn color(&self, key: &str) -> Result<Option<Vec3>, String> {
-        let Some(value) = self.member(key) else {
-            return Ok(None);
-        };
-        let wrong = || wrong_kind(key, value, "three numbers");
-        let [red, green, blue] = value.as_array().map(Vec::as_slice).ok_or_else(wrong)? else {
-            return Err(wrong());
-        };
-        let mut color = [0.0; 3];
-        for (part, value) in color.iter_mut().zip([red, green, blue]) {
-            *part = value.as_f64().ok_or_else(wrong)?;
-        }
-        if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
-            return Err(format!("its {key} is {color:?}, but each part must lie from 0 to 1"));
-        }
-        Ok(Some(Vec3::from_array(color.map(|part| part as f32))))
-    }
-}
-
-fn wrong_kind(name: &str, value: &Value, expected: &str) -> String {
-    let found = match value {
-        Value::Null => "null",
-        Value::Bool(_) => "true or false",
-        Value::Number(_) => "a number",
-        Value::String(_) => "a string",
-        Value::Array(_) => "an array of something else",
-        Value::Object(_) => "an object",
-    };
-    format!("its {name} is {found}, but must be {expected}")
-}
-
 /// What `extras` hold for this program. Kept as text, so that the extras of others cost nothing.
 #[derive(Deserialize)]
 struct Extras<'a> {
@@ -193,12 +146,23 @@ struct Extras<'a> {
 /// `extras.lapidary`, of which a newer program may know more.
 #[derive(Deserialize)]
 struct Lapidary<'a> {
-    #[serde(borrow)]
+    #[serde(borrow, default, deserialize_with = "present")]
     sellmeier: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    sigma0: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    scattering: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    absorption: Option<&'a RawValue>,
 }
 
-/// The mineral that `extras.lapidary.sellmeier` names, if the material has it.
-fn sellmeier(json: &JsonMaterial) -> Result<Option<Mineral>, String> {
+/// A member that is there, even where it is null: a writer that has no number for a NaN writes that.
+fn present<'de, D: Deserializer<'de>>(member: D) -> Result<Option<&'de RawValue>, D::Error> {
+    <&RawValue>::deserialize(member).map(Some)
+}
+
+/// The material's `extras.lapidary`, if it has them.
+fn lapidary(json: &JsonMaterial) -> Result<Option<Lapidary<'_>>, String> {
     // glTF lets extras be anything; what is not an object is someone else's.
     let Some(extras) = json.extras.as_deref().filter(|extras| is_object(extras)) else {
         return Ok(None);
@@ -212,17 +176,43 @@ fn sellmeier(json: &JsonMaterial) -> Result<Option<Mineral>, String> {
     if !is_object(lapidary) {
         return Err(format!("its extras.lapidary is {}, but must be an object", excerpt(lapidary.get())));
     }
-    let lapidary: Lapidary<'_> =
-        serde_json::from_str(lapidary.get()).map_err(|error| unreadable("extras.lapidary", error))?;
-    let Some(name) = lapidary.sellmeier else {
-        return Ok(None);
-    };
-    let mineral = serde_json::from_str::<String>(name.get()).ok().and_then(|name| Mineral::named(&name));
-    mineral.map(Some).ok_or_else(|| {
+    let lapidary = serde_json::from_str(lapidary.get());
+    lapidary.map(Some).map_err(|error| unreadable("extras.lapidary", error))
+}
+
+/// The mineral that `extras.lapidary.sellmeier` names.
+fn mineral(json: &RawValue) -> Result<Mineral, String> {
+    let mineral = serde_json::from_str::<String>(json.get()).ok().and_then(|name| Mineral::named(&name));
+    mineral.ok_or_else(|| {
         format!(
             "its extras.lapidary.sellmeier is {}, but must be one of {}",
-            excerpt(name.get()),
+            excerpt(json.get()),
             Mineral::ALL.map(|mineral| format!("{:?}", mineral.name())).join(", ")
+        )
+    })
+}
+
+/// The medium of `extras.lapidary`, of which no half is left out.
+fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
+    match (extras.scattering, extras.absorption) {
+        (None, None) => Ok(None),
+        (Some(scattering), Some(absorption)) => Ok(Some(Medium {
+            scattering: lengths("scattering", scattering)?,
+            absorption: lengths("absorption", absorption)?,
+        })),
+        (Some(_), None) => Err("its extras.lapidary has scattering but no absorption; give both or neither".to_owned()),
+        (None, Some(_)) => Err("its extras.lapidary has absorption but no scattering; give both or neither".to_owned()),
+    }
+}
+
+/// The member `name` of `extras.lapidary`: numbers for red, green and blue that have a length unit.
+fn lengths(name: &str, json: &RawValue) -> Result<Vec3, String> {
+    let numbers = serde_json::from_str::<[f64; 3]>(json.get()).ok();
+    let single = numbers.map(|numbers| Vec3::from_array(numbers.map(|number| number as f32)));
+    single.filter(|single| single.is_finite() && single.cmpge(Vec3::ZERO).all()).ok_or_else(|| {
+        format!(
+            "its extras.lapidary.{name} is {}, but must be three numbers of at least 0, finite in single precision",
+            excerpt(json.get())
         )
     })
 }

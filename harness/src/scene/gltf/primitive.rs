@@ -4,10 +4,10 @@ use ::gltf::Semantic;
 use ::gltf::json::Root;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use super::MAX_COORDINATE;
-use super::accessor::{Elements, INDICES, VECTORS};
+use super::accessor::{Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, excerpt, item};
@@ -100,23 +100,25 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn mesh(&mut self, arrangement: Arrangement, world: DMat4) -> Result<Mesh, GltfError> {
         let positions = self
-            .attribute(&Semantic::Positions)?
+            .attribute(&Semantic::Positions, VECTORS)?
             .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
-        let normals = self.attribute(&Semantic::Normals)?;
+        let normals = self.attribute(&Semantic::Normals, VECTORS)?;
+        let uvs = self.attribute(&Semantic::TexCoords(0), TEXTURE_COORDINATES)?;
         let indices = match self.primitive.indices {
             Some(index) => Some(self.elements(index.value(), INDICES)?),
             None => None,
         };
         let vertices = positions.count();
-        if normals.is_some_and(|normals| normals.count() != vertices) {
-            return Err(GltfError::part(
-                self.user.to_owned(),
-                "it has not as many normals as positions; export it again",
-            ));
+        for (what, elements) in [("normals", normals), ("texture coordinates", uvs)] {
+            if elements.is_some_and(|elements| elements.count() != vertices) {
+                let problem = format!("it has not as many {what} as positions; export it again");
+                return Err(GltfError::part(self.user.to_owned(), problem));
+            }
         }
         let corners = indices.map_or(vertices, |indices| indices.count());
         let triangles = arrangement.triangles(corners);
-        self.budget.take(vertices as u64, triangles as u64)?;
+        let uv_bytes = if uvs.is_some() { size_of::<Vec2>() } else { 0 };
+        self.budget.take(vertices as u64, 2 * size_of::<Vec3>() + uv_bytes, triangles as u64)?;
 
         let positions = self.positions(positions, world)?;
         let corners = match indices {
@@ -131,16 +133,17 @@ impl<'a> Reader<'a> {
             Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
             None => shared_normals(&positions, &indices, Averaging::Angle),
         };
-        Ok(Mesh { positions, normals, uvs: Vec::new(), indices })
+        let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
+        Ok(Mesh { positions, normals, uvs, indices })
     }
 
-    fn attribute(&self, semantic: &Semantic) -> Result<Option<Elements<'a>>, GltfError> {
+    fn attribute(&self, semantic: &Semantic, kind: Kind) -> Result<Option<Elements<'a>>, GltfError> {
         let attributes = &self.primitive.attributes;
         let index = attributes.get(&Checked::Valid(semantic.clone()));
-        index.map(|index| self.elements(index.value(), VECTORS)).transpose()
+        index.map(|index| self.elements(index.value(), kind)).transpose()
     }
 
-    fn elements(&self, index: usize, kind: super::accessor::Kind) -> Result<Elements<'a>, GltfError> {
+    fn elements(&self, index: usize, kind: Kind) -> Result<Elements<'a>, GltfError> {
         Elements::of(self.root, self.buffers, index, kind, self.user)
     }
 
@@ -160,6 +163,19 @@ impl<'a> Reader<'a> {
             positions.push(position);
         }
         Ok(positions)
+    }
+
+    fn texture_coordinates(&self, elements: Elements<'_>) -> Result<Vec<Vec2>, GltfError> {
+        let finite = |(vertex, [u, v]): (usize, [f32; 2])| {
+            let uv = Vec2::new(u, v);
+            uv.is_finite().then_some(uv).ok_or_else(|| {
+                GltfError::part(
+                    self.user.to_owned(),
+                    format!("vertex {vertex} has texture coordinates ({u}, {v}), but they must be finite; mend them"),
+                )
+            })
+        };
+        elements.pairs().enumerate().map(finite).collect()
     }
 
     fn in_range(&self, elements: Elements<'_>, vertices: usize) -> Result<Vec<u32>, GltfError> {

@@ -5,10 +5,13 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::scene::normals::FALLBACK_NORMAL;
-use crate::scene::{Dispersion, Material, Mineral, glb};
+use crate::scene::{Dispersion, Material, Medium, Mineral, glb};
 
+mod example;
+mod lights;
 mod refusals;
 mod refused_data;
+mod texture_coordinates;
 
 /// Three corners of a right triangle, then indices 0 1 2 0 as shorts.
 fn binary() -> Vec<u8> {
@@ -144,6 +147,22 @@ fn an_uneven_scale_keeps_normals_at_right_angles() {
 }
 
 #[test]
+fn a_normal_without_length_is_replaced_by_the_shared_one() {
+    let mut data = binary();
+    for normal in [Vec3::ZERO, Vec3::new(0.0, 3.0, 4.0), Vec3::splat(f32::NAN)] {
+        data.extend(normal.to_array().into_iter().flat_map(f32::to_le_bytes));
+    }
+    let mut document = document();
+    document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(2);
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC3"}));
+    document["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 0, "byteOffset": 44, "byteLength": 36}));
+    document["buffers"][0]["byteLength"] = json!(80);
+    let scene = parse(&file(&document, &data), None).unwrap();
+    assert_eq!(only_mesh(&scene).normals, [Vec3::Z, Vec3::new(0.0, 0.6, 0.8), Vec3::Z]);
+}
+
+#[test]
 fn flattened_bodies_load() {
     let scene = load_changed(|d| d["nodes"][0]["scale"] = json!([0, 0, 0])).unwrap();
     assert_eq!(only_mesh(&scene).normals, [FALLBACK_NORMAL; 3]);
@@ -161,10 +180,10 @@ fn material_of(material: Value) -> Result<Material, SceneError> {
 }
 
 #[test]
-fn materials_say_colour_index_dispersion_and_attenuation() {
+fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() {
     let material = material_of(json!({
         "name": "ruby",
-        "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.1, 0.2, 1.0]},
+        "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.1, 0.2, 1.0], "roughnessFactor": 0.25},
         "extensions": {
             "KHR_materials_ior": {"ior": 1.768},
             "KHR_materials_dispersion": {"dispersion": 0.1},
@@ -175,7 +194,12 @@ fn materials_say_colour_index_dispersion_and_attenuation() {
                 "attenuationDistance": 0.5,
             },
         },
-        "extras": {"someone": "else's", "lapidary": {"later": [1, 2]}},
+        "extras": {"someone": "else's", "lapidary": {
+            "later": [1, 2],
+            "sigma0": [4.5, 0, 1],
+            "scattering": [0.74, 0.88, 1.01],
+            "absorption": [0.032, 0.17, 0],
+        }},
     }));
     let expected = Material {
         name: "ruby".to_owned(),
@@ -184,7 +208,9 @@ fn materials_say_colour_index_dispersion_and_attenuation() {
         dispersion: Dispersion::Abbe(0.1),
         attenuation_color: Vec3::new(1.0, 0.25, 0.0),
         attenuation_distance: 0.5,
-        ..Material::standard()
+        roughness: 0.25,
+        sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
+        medium: Some(Medium { scattering: Vec3::new(0.74, 0.88, 1.01), absorption: Vec3::new(0.032, 0.17, 0.0) }),
     };
     assert_eq!(material.unwrap(), expected);
 }
@@ -201,6 +227,19 @@ fn what_a_material_leaves_out_has_gltfs_default() {
             assert_eq!(material.unwrap(), Material::standard(), "{extensions} {extras}");
         }
     }
+}
+
+#[test]
+fn a_scale_changes_no_coefficient() {
+    let extras = json!({"lapidary": {"sigma0": [1, 2, 3], "scattering": [4, 5, 6], "absorption": [7, 8, 9]}});
+    let scene = load_changed(|d| {
+        d["nodes"][0]["scale"] = json!([10, 10, 10]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        d["materials"][0]["extras"] = extras;
+    });
+    let material = scene.unwrap().objects.remove(0).material;
+    let medium = Medium { scattering: Vec3::new(4.0, 5.0, 6.0), absorption: Vec3::new(7.0, 8.0, 9.0) };
+    assert_eq!((material.sigma0, material.medium), (Some(Vec3::new(1.0, 2.0, 3.0)), Some(medium)));
 }
 
 #[test]

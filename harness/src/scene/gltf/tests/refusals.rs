@@ -190,6 +190,7 @@ fn measured_equations_that_are_not_known_or_do_not_agree() {
     sellmeier(json!("x\n".repeat(100_000)), "but must be one of");
     sellmeier(json!(2.4), "sellmeier is 2.4, but must be one of");
     sellmeier(json!(["diamond"]), "but must be one of");
+    sellmeier(Value::Null, "sellmeier is null, but must be one of");
     material_refused(
         "extras",
         json!({"lapidary": "diamond"}),
@@ -204,6 +205,42 @@ fn measured_equations_that_are_not_known_or_do_not_agree() {
     });
     let says = "material 0: its ior is 1.77, but the Sellmeier equation of diamond in its extras gives 2.41749; ";
     assert!(message.starts_with(says), "{message}");
+}
+
+#[test]
+fn media_and_widths_that_are_no_lengths() {
+    let good = json!([0.1, 0, 2]);
+    for name in ["sigma0", "scattering", "absorption"] {
+        for bad in [
+            json!([0.1, -1e-9, 0.1]),
+            json!([0.1, "NaN", 0.1]),
+            json!([0.1, null, 0.1]),
+            json!([0.1, 1e39, 0.1]),
+            json!([0.1, 0.1]),
+            json!([0.1, 0.1, 0.1, 0.1]),
+            json!(0.1),
+            json!("x\n".repeat(100_000)),
+            Value::Null,
+        ] {
+            let mut members = json!({"scattering": good, "absorption": good, "sigma0": good});
+            members[name] = bad;
+            let says = "but must be three numbers of at least 0, finite in single precision";
+            material_refused("extras", json!({"lapidary": members}), says);
+            material_refused("extras", json!({"lapidary": members}), &format!("its extras.lapidary.{name} is "));
+        }
+    }
+    let says = "its extras.lapidary has scattering but no absorption; give both or neither";
+    material_refused("extras", json!({"lapidary": {"scattering": good}}), says);
+    let says = "its extras.lapidary has absorption but no scattering; give both or neither";
+    material_refused("extras", json!({"lapidary": {"absorption": good, "sigma0": good}}), says);
+}
+
+#[test]
+fn roughnesses_out_of_range() {
+    for roughness in [-0.1, 1.5, 1e39] {
+        let says = "its roughnessFactor is ";
+        material_refused("pbrMetallicRoughness", json!({"roughnessFactor": roughness}), says);
+    }
 }
 
 #[test]

@@ -1,0 +1,54 @@
+//! Texture coordinates for a mesh that has none: an atlas of charts.
+//!
+//! The mesh is cut into charts (`atlas/charts.rs`), each drawn as it is seen along an axis of its own, and these are
+//! packed into the unit square (`atlas/packing.rs`). The scale is the same for all. What this costs is what a drawing
+//! foreshortens: a triangle that leans away from its chart's axis is drawn narrower by the cosine of the angle.
+//!
+//! Written here, since no crate serves: bindings of xatlas build C++ of their own, and what packs boxes alone
+//! (rectangle-pack, guillotiere) leaves half of the square empty about drawings that are no boxes.
+
+use std::collections::HashMap;
+
+use super::Mesh;
+
+mod charts;
+mod packing;
+
+/// The same triangles in the same order, with texture coordinates in the unit square. Vertices on the borders of charts
+/// stand there once for each chart, with the same position and normal; vertices of no triangle are left out.
+///
+/// A triangle is drawn clockwise with v down, so that nothing is mirrored as seen from outside. To the rounding of f32 no two
+/// triangles overlap. Charts are at least 8 texels apart in a texture of 1024², also where it repeats. A mesh of so many
+/// charts that these gutters fill the square, more than 4096, gets no texture coordinates.
+#[must_use]
+pub fn unwrap(mesh: &Mesh) -> Mesh {
+    let charts = charts::charts(mesh);
+    let drawings: Vec<packing::Drawing> = charts.iter().map(|chart| packing::Drawing::new(chart.drawn(mesh))).collect();
+    let Some(placements) = packing::pack(&drawings) else {
+        return Mesh { uvs: Vec::new(), ..mesh.clone() };
+    };
+    let mut chart_of = vec![0; mesh.triangle_count()];
+    for (number, chart) in charts.iter().enumerate() {
+        chart.triangles.iter().for_each(|&triangle| chart_of[triangle as usize] = number);
+    }
+    let mut unwrapped = Mesh::default();
+    let mut places: HashMap<(u32, usize), u32> = HashMap::with_capacity(mesh.positions.len());
+    for (corners, &chart) in mesh.indices.chunks_exact(3).zip(&chart_of) {
+        for &vertex in corners {
+            let next = unwrapped.positions.len() as u32;
+            let place = *places.entry((vertex, chart)).or_insert(next);
+            if place == next {
+                let position = mesh.positions[vertex as usize];
+                let uv = placements[chart].apply(charts[chart].axis.draw(position.as_dvec3()));
+                unwrapped.positions.push(position);
+                unwrapped.normals.push(mesh.normals[vertex as usize]);
+                unwrapped.uvs.push(uv.as_vec2());
+            }
+            unwrapped.indices.push(place);
+        }
+    }
+    unwrapped
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,38 @@
+//! Lights as glTF: `KHR_lights_punctual`.
+
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+use crate::scene::Light;
+
+/// The extension's name.
+pub(super) const EXTENSION: &str = "KHR_lights_punctual";
+
+/// The light, still without its place.
+pub(super) fn light(light: &Light) -> Value {
+    let (kind, radiometric) = match *light {
+        Light::Directional { irradiance, .. } => ("directional", irradiance),
+        Light::Point { intensity, .. } => ("point", intensity),
+    };
+    // glTF's colours lie from 0 to 1. In f64, so that the product of the two is the f32 that it was.
+    let radiometric = radiometric.as_dvec3();
+    let intensity = radiometric.max_element();
+    let color = if intensity > 0.0 { radiometric / intensity } else { DVec3::ONE };
+    json!({"type": kind, "color": color.to_array(), "intensity": intensity})
+}
+
+/// The node that places light `number`.
+pub(super) fn node(light: &Light, number: usize) -> Value {
+    let mut node = json!({"name": format!("light {number}"), "extensions": {EXTENSION: {"light": number}}});
+    match *light {
+        // It shines along its node's -z. A matrix holds that direction to the last bit, which a rotation would not.
+        Light::Directional { toward, .. } => {
+            let right = toward.any_orthonormal_vector();
+            let columns = [right, toward.cross(right), toward, Vec3::ZERO];
+            let fourth = [0.0, 0.0, 0.0, 1.0];
+            node["matrix"] = columns.iter().zip(fourth).flat_map(|(c, w)| c.extend(w).to_array()).collect();
+        }
+        Light::Point { position, .. } => node["translation"] = json!(position.to_array()),
+    }
+    node
+}

@@ -1,0 +1,78 @@
+//! Extensions that the gltf crate leaves as JSON, read with messages that name the member.
+
+use glam::Vec3;
+use serde_json::{Map, Value};
+
+/// The members of an object.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extension<'a> {
+    /// Nothing where the file does not have the extension.
+    members: Option<&'a Map<String, Value>>,
+}
+
+impl<'a> Extension<'a> {
+    /// Extension `name` among `all` of a part of the file.
+    pub(super) fn of(all: Option<&'a Map<String, Value>>, name: &str) -> Result<Self, String> {
+        let value = all.and_then(|all| all.get(name));
+        let members = value.map(|value| value.as_object().ok_or_else(|| wrong_kind(name, value, "an object")));
+        Ok(Self { members: members.transpose()? })
+    }
+
+    /// An object inside an extension; any other value has no members.
+    pub(super) fn inside(value: &'a Value) -> Self {
+        Self { members: value.as_object() }
+    }
+
+    pub(super) fn member(&self, key: &str) -> Option<&'a Value> {
+        self.members.and_then(|members| members.get(key))
+    }
+
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, String> {
+        let number = self.member(key).map(|value| value.as_f64().ok_or_else(|| wrong_kind(key, value, "a number")));
+        number.transpose()
+    }
+
+    pub(super) fn three_numbers(&self, key: &str) -> Result<Option<[f64; 3]>, String> {
+        let Some(value) = self.member(key) else {
+            return Ok(None);
+        };
+        let wrong = || wrong_kind(key, value, "three numbers");
+        let [red, green, blue] = value.as_array().map(Vec::as_slice).ok_or_else(wrong)? else {
+            return Err(wrong());
+        };
+        let mut numbers = [0.0; 3];
+        for (number, value) in numbers.iter_mut().zip([red, green, blue]) {
+            *number = value.as_f64().ok_or_else(wrong)?;
+        }
+        Ok(Some(numbers))
+    }
+
+    /// Linear RGB, each 0 to 1.
+    pub(super) fn color(&self, key: &str) -> Result<Option<Vec3>, String> {
+        let Some(color) = self.three_numbers(key)? else {
+            return Ok(None);
+        };
+        if !color.iter().all(|part| (0.0..=1.0).contains(part)) {
+            return Err(format!("its {key} is {color:?}, but each part must lie from 0 to 1"));
+        }
+        Ok(Some(Vec3::from_array(color.map(|part| part as f32))))
+    }
+
+    /// The values of a list; none where it is not there.
+    pub(super) fn list(&self, key: &str) -> Result<&'a [Value], String> {
+        let list = self.member(key).map(|value| value.as_array().ok_or_else(|| wrong_kind(key, value, "an array")));
+        Ok(list.transpose()?.map(Vec::as_slice).unwrap_or_default())
+    }
+}
+
+fn wrong_kind(name: &str, value: &Value, expected: &str) -> String {
+    let found = match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "an array of something else",
+        Value::Object(_) => "an object",
+    };
+    format!("its {name} is {found}, but must be {expected}")
+}
