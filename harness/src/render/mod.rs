@@ -10,6 +10,7 @@ mod frame;
 mod gem;
 mod rung;
 mod stone;
+pub mod texture_diffusion;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
