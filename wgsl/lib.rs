@@ -66,12 +66,22 @@ pub const MODULES: &[Module] = modules![
     "fresnel",
     "proxy_geometry",
     "refraction",
-    "srgb"
+    "srgb",
+    "texture_diffusion"
 ];
 
 /// Every recipe, in the order of their names.
-pub const RECIPES: &[Recipe] =
-    recipes!["cdrf_shading", "cdrf_table", "display", "gem", "gem_bvh", "gem_composite", "gem_convex", "trace"];
+pub const RECIPES: &[Recipe] = recipes![
+    "cdrf_shading",
+    "cdrf_table",
+    "display",
+    "gem",
+    "gem_bvh",
+    "gem_composite",
+    "gem_convex",
+    "texture_diffusion",
+    "trace"
+];
 
 /// Every part, in the order of their names.
 pub const PARTS: &[Part] = parts!["gem_shading", "lights", "mesh", "surroundings", "trace_nearest"];

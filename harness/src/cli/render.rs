@@ -179,7 +179,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         output::line(&format!("not followed: {max:.1e} of a ray's energy at most, {mean:.1e} in the mean"))?;
     }
     if let Some(WalkedPicture { error, walks, lost }) = picture.walked {
-        output::line(&format!("standard error {:.1} % of the mean brightness; {walks} walks, {lost} lost", 100.0 * error))?;
+        output::line(&format!(
+            "standard error {:.1} % of the mean brightness; {walks} walks, {lost} lost",
+            100.0 * error
+        ))?;
     }
     Ok(Outcome::Passed)
 }

@@ -13,6 +13,7 @@ mod fresnel;
 mod proxy_geometry;
 mod refraction;
 mod srgb;
+mod texture_diffusion;
 
 use crate::formula::Formula;
 use std::sync::OnceLock;
@@ -34,6 +35,7 @@ pub fn all() -> &'static [Formula] {
             proxy_geometry::formulas(),
             refraction::formulas(),
             srgb::formulas(),
+            texture_diffusion::formulas(),
         ]
         .into_iter()
         .flatten()

@@ -13,6 +13,7 @@ mod pass;
 mod reflectance;
 mod rung;
 mod stone;
+pub mod texture_diffusion;
 mod translucent;
 
 use crate::cookbook;

@@ -21,6 +21,7 @@ mod reference;
 mod snapshots;
 mod specialise;
 mod text;
+mod texture_diffusion;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
 
