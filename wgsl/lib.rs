@@ -80,8 +80,9 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_composite",
     "gem_convex",
     "texture_diffusion",
+    "texture_irradiance",
     "trace"
 ];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading", "lights", "mesh", "surroundings", "trace_nearest"];
+pub const PARTS: &[Part] = parts!["gem_shading", "harmonics", "lights", "mesh", "surroundings", "trace_nearest"];

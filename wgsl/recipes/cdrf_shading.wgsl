@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel
-// parts: mesh, surroundings, lights
+// parts: mesh, surroundings, lights, harmonics
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
 // applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
@@ -15,6 +15,8 @@ override CDRF_FORM: u32 = 4u;
 // Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|, all from the pixel's derivatives; 3 mean, given for each
 // vertex. Derivatives need no data and jump from triangle to triangle of a coarse mesh; what vertices hold does not.
 override CURVATURE_FORM: u32 = 0u;
+// All that arrives was drawn into the mesh's own texture and blurred there, instead: the recipes texture_irradiance and texture_diffusion.
+override EFFECT_TEXTURE_DIFFUSION: bool = false;
 // Light from all around, beside the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
 // Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
@@ -48,13 +50,7 @@ struct CdrfMaterial {
     table_sigma0: f32,
 }
 
-// The environment's spherical harmonics, linear RGB: one of degree 0, three of 1, five of 2, nine of 4. Degree 3 has no part in a clamped cosine.
-struct CdrfHarmonics {
-    coefficients: array<vec4f, 18>,
-}
-
 @group(0) @binding(0) var<uniform> view: CdrfView;
-@group(0) @binding(3) var<uniform> harmonics: CdrfHarmonics;
 @group(1) @binding(0) var<uniform> material: CdrfMaterial;
 // Three floats a vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
@@ -67,47 +63,23 @@ struct CdrfHarmonics {
 @group(1) @binding(6) var table_texels: texture_2d<f32>;
 // Mean curvature of each vertex, for the form that takes it from there; per unit of length.
 @group(1) @binding(7) var<storage, read> curvatures: array<f32>;
+// Two floats a vertex, for texture diffusion.
+@group(1) @binding(8) var<storage, read> uvs: array<f32>;
+// Irradiance, blurred.
+@group(1) @binding(9) var diffused: texture_2d<f32>;
+@group(1) @binding(10) var diffused_sampler: sampler;
 
 struct CdrfVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) curvature: f32,
-    // CdrfAround, where it is summed for each vertex.
+    // HarmonicsAround, where it is summed for each vertex.
     @location(3) around_zeroth: vec3f,
     @location(4) around_first: vec3f,
     @location(5) around_second: vec3f,
     @location(6) around_fourth: vec3f,
-}
-
-// What the environment's harmonics add up to along a normal, by degree, linear RGB.
-struct CdrfAround {
-    zeroth: vec3f,
-    first: vec3f,
-    second: vec3f,
-    fourth: vec3f,
-}
-
-fn cdrf_around(normal: vec3f) -> CdrfAround {
-    let basis = environment_harmonics(normal);
-    let first = basis.first[0] * harmonics.coefficients[1].rgb
-        + basis.first[1] * harmonics.coefficients[2].rgb
-        + basis.first[2] * harmonics.coefficients[3].rgb;
-    let second = basis.second[0] * harmonics.coefficients[4].rgb
-        + basis.second[1] * harmonics.coefficients[5].rgb
-        + basis.second[2] * harmonics.coefficients[6].rgb
-        + basis.second[3] * harmonics.coefficients[7].rgb
-        + basis.second[4] * harmonics.coefficients[8].rgb;
-    let fourth = basis.fourth[0] * harmonics.coefficients[9].rgb
-        + basis.fourth[1] * harmonics.coefficients[10].rgb
-        + basis.fourth[2] * harmonics.coefficients[11].rgb
-        + basis.fourth[3] * harmonics.coefficients[12].rgb
-        + basis.fourth[4] * harmonics.coefficients[13].rgb
-        + basis.fourth[5] * harmonics.coefficients[14].rgb
-        + basis.fourth[6] * harmonics.coefficients[15].rgb
-        + basis.fourth[7] * harmonics.coefficients[16].rgb
-        + basis.fourth[8] * harmonics.coefficients[17].rgb;
-    return CdrfAround(basis.zeroth * harmonics.coefficients[0].rgb, first, second, fourth);
+    @location(7) uv: vec2f,
 }
 
 @vertex
@@ -119,12 +91,16 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     if (CURVATURE_FORM == CURVATURE_FORM_VERTEX) {
         curvature = curvatures[index];
     }
-    var around = CdrfAround(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
+    var around = HarmonicsAround(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
     if (EFFECT_ENVIRONMENT && ENVIRONMENT_AT_VERTICES) {
-        around = cdrf_around(normal);
+        around = harmonics_around(normal);
+    }
+    var uv = vec2f(0.0f);
+    if (EFFECT_TEXTURE_DIFFUSION) {
+        uv = vec2f(uvs[2u * index], uvs[2u * index + 1u]);
     }
     let clip = view.clip_from_world * vec4f(position, 1.0f);
-    return CdrfVertex(clip, position, normal, curvature, around.zeroth, around.first, around.second, around.fourth);
+    return CdrfVertex(clip, position, normal, curvature, around.zeroth, around.first, around.second, around.fourth, uv);
 }
 
 // The derivatives of a pixel, and what curvature follows from them.
@@ -206,13 +182,8 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     return vec3f(cdrf_accurate(cosine, sigma.x), cdrf_accurate(cosine, sigma.y), cdrf_accurate(cosine, sigma.z));
 }
 
-@fragment
-fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
-    let surface = cdrf_surface(input);
-    let toward_eye = normalize(view.eye - input.position);
-    let normal = cdrf_unit_normal(input.normal, toward_eye);
-
-    // Irradiance, each light's part spread by its reflectance.
+// Irradiance, each light's part spread by its reflectance.
+fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3f {
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
@@ -230,16 +201,26 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
         let red = cdrf_harmonic_weights(sigma.x);
         let green = cdrf_harmonic_weights(sigma.y);
         let blue = cdrf_harmonic_weights(sigma.z);
-        var around = CdrfAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
+        var around = HarmonicsAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
         if (!ENVIRONMENT_AT_VERTICES) {
-            around = cdrf_around(normal);
+            around = harmonics_around(normal);
         }
-        let arriving = around.zeroth * vec3f(red.x, green.x, blue.x)
-            + around.first * vec3f(red.y, green.y, blue.y)
-            + around.second * vec3f(red.z, green.z, blue.z)
-            + around.fourth * vec3f(red.w, green.w, blue.w);
-        // A few degrees cannot follow a small light: they swing below 0 opposite to it.
-        received += max(arriving, vec3f(0.0f));
+        received += harmonics_irradiance(around, red, green, blue);
+    }
+    return received;
+}
+
+@fragment
+fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
+    let surface = cdrf_surface(input);
+    let toward_eye = normalize(view.eye - input.position);
+    let normal = cdrf_unit_normal(input.normal, toward_eye);
+
+    var received = vec3f(0.0f);
+    if (EFFECT_TEXTURE_DIFFUSION) {
+        received = textureSampleLevel(diffused, diffused_sampler, input.uv, 0.0f).rgb;
+    } else {
+        received = cdrf_received(input, surface, normal);
     }
     var radiance = 0.31830987f * material.base_color * received;
     if (EFFECT_REFLECTION) {

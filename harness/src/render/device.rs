@@ -115,8 +115,19 @@ pub(super) fn bind_group(
     group: u32,
     resources: Vec<wgpu::BindingResource<'_>>,
 ) -> wgpu::BindGroup {
+    bind_group_from(device, pipeline, group, 0, resources)
+}
+
+/// The same, numbered from `first`.
+pub(super) fn bind_group_from(
+    device: &wgpu::Device,
+    pipeline: &wgpu::RenderPipeline,
+    group: u32,
+    first: u32,
+    resources: Vec<wgpu::BindingResource<'_>>,
+) -> wgpu::BindGroup {
     let entries: Vec<wgpu::BindGroupEntry<'_>> =
-        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        (first..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(group),

@@ -51,6 +51,7 @@ impl<'gpu> Frame<'gpu> {
         let start = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
+        self.pass.prepare(&mut encoder)?;
         self.pass.draw(&mut encoder, &self.view, &target);
         self.gpu.queue.submit([encoder.finish()]);
         let encode = start.elapsed();

@@ -3,6 +3,7 @@
 mod camera;
 mod deferred;
 mod device;
+mod diffusion;
 mod display;
 mod environment;
 pub mod file;
@@ -204,6 +205,14 @@ pub enum RenderError {
         /// Which rung.
         rung: Rung,
     },
+    /// A mesh that a blur in its texture cannot draw.
+    #[error(
+        "object `{object}` has no texture coordinates, which rung `blur` needs; add TEXCOORD_0, or take another rung"
+    )]
+    NoTextureCoordinates {
+        /// The object's name.
+        object: String,
+    },
     /// The reference refuses.
     #[error(transparent)]
     Reference(#[from] reference::ReferenceError),
@@ -281,8 +290,11 @@ fn render_from(
         let clip_from_world = camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, *tile);
         let eye = scene.camera.eye;
         let size = [tile.width * settings.samples, tile.height * settings.samples];
-        let encoder = gpu.guarded("rendering a tile", |device| {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if done == 1 {
+            pass.prepare(&mut encoder)?;
+        }
+        let encoder = gpu.guarded("rendering a tile", |_| {
             if let Some(deferred) = &deferred {
                 deferred.draw(&mut encoder, &pass, clip_from_world, eye, display.samples(), size);
             } else {

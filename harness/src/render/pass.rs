@@ -1,6 +1,7 @@
 //! A scene on the device under one compiled recipe, and drawing it.
 
-use super::device;
+use super::diffusion::Diffusion;
+use super::{RenderError, device};
 use crate::gpu::Gpu;
 use glam::{Mat4, Vec3};
 
@@ -41,6 +42,8 @@ pub(super) struct ScenePass<'gpu> {
     /// Group 0 from binding 1 on.
     pub(super) shared: Vec<Shared>,
     pub(super) bodies: Vec<Body>,
+    /// What is drawn and blurred before, once a frame.
+    pub(super) diffusions: Vec<Diffusion<'gpu>>,
 }
 
 /// What a pass draws to.
@@ -68,6 +71,11 @@ impl ScenePass<'_> {
         device::bind_group(device, &self.pipeline, 0, resources)
     }
 
+    /// Draws what the objects look up, in passes of its own.
+    pub(super) fn prepare(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+        self.diffusions.iter().try_for_each(|diffusion| diffusion.encode(encoder))
+    }
+
     /// Draws the objects: one draw call for each.
     pub(super) fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, target: &SceneTarget<'_>) {
         let colors: Vec<_> = target.colors.iter().map(|view| device::cleared(view)).collect();
@@ -93,6 +101,6 @@ impl ScenePass<'_> {
 
     /// How many draw calls a frame takes.
     pub(super) fn draw_calls(&self) -> usize {
-        self.bodies.len()
+        self.bodies.len() + self.diffusions.iter().map(Diffusion::draw_calls).sum::<usize>()
     }
 }

@@ -19,10 +19,12 @@ pub enum Reflectance {
     Quadrature,
     /// The form that keeps energy over the sphere.
     Spherical,
+    /// Irradiance blurred in the mesh's texture, which the others do without.
+    Blur,
 }
 
 /// Every one, by its rung's name.
-pub(super) const REFLECTANCES: [(&str, Reflectance); 9] = [
+pub(super) const REFLECTANCES: [(&str, Reflectance); 10] = [
     ("lambert", Reflectance::Lambert),
     ("wrap", Reflectance::Wrap),
     ("table-256-rgba8", Reflectance::Table(256, Format::Rgba8)),
@@ -32,6 +34,7 @@ pub(super) const REFLECTANCES: [(&str, Reflectance); 9] = [
     ("accurate", Reflectance::Accurate),
     ("quadrature", Reflectance::Quadrature),
     ("spherical", Reflectance::Spherical),
+    ("blur", Reflectance::Blur),
 ];
 
 impl Reflectance {
@@ -40,10 +43,10 @@ impl Reflectance {
         REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
     }
 
-    /// `CDRF_FORM` of the recipe; none for Lambert's law.
+    /// `CDRF_FORM` of the recipe; none where it is not used.
     pub(super) fn form(self) -> Option<u32> {
         match self {
-            Self::Lambert => None,
+            Self::Lambert | Self::Blur => None,
             Self::Wrap => Some(0),
             Self::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
             Self::Table(_, Format::R32Float) => Some(2),

@@ -57,7 +57,7 @@ pub const MOST_HITS: u32 = 64;
 /// Most wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs that are offered when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 25] = [
+pub const NAMES: [&str; 26] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -82,12 +82,13 @@ pub const NAMES: [&str; 25] = [
     "accurate",
     "quadrature",
     "spherical",
+    "blur",
     "reference",
 ];
 /// How a rung is written, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
-     quadrature, spherical; for both reference";
+     quadrature, spherical, blur; for both reference";
 
 const GEOMETRIES: [(&str, Geometry); 4] = [
     ("proxy", Geometry::Proxy),

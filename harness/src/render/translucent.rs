@@ -1,6 +1,7 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, under the scene's lights and the environment.
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices, uniform};
+use super::diffusion::{Diffusion, MeshBuffers};
 use super::pass::{Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
 use super::{Curvature, Environment, Reflectance, RenderError, Settings, harmonics};
 use crate::cdrf::table::{self, Format};
@@ -18,7 +19,10 @@ pub(super) fn pass<'gpu>(
     reflectance: Reflectance,
     source: &str,
 ) -> Result<ScenePass<'gpu>, RenderError> {
-    for Object { name, material, .. } in &scene.objects {
+    for Object { name, material, mesh } in &scene.objects {
+        if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
+            return Err(RenderError::NoTextureCoordinates { object: name.clone() });
+        }
         if material.sigma0.is_none() {
             return Err(RenderError::NoSigma0 {
                 object: name.clone(),
@@ -50,10 +54,14 @@ pub(super) fn pass<'gpu>(
         let lights = buffer(device, bytemuck::cast_slice(&lights(scene)), wgpu::BufferUsages::STORAGE);
         [lights, uniform(device, &coefficients)]
     })?;
+    let (mut bodies, mut diffusions) = (Vec::new(), Vec::new());
+    for object in &scene.objects {
+        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, [&lights, &coefficients])?;
+        bodies.push(body);
+        diffusions.extend(diffusion);
+    }
     let shared = vec![Shared::Texture(environment), Shared::Buffer(lights), Shared::Buffer(coefficients)];
-    let bodies: Result<Vec<Body>, RenderError> =
-        scene.objects.iter().map(|object| upload(gpu, &pipeline, object, settings, reflectance)).collect();
-    Ok(ScenePass { gpu, pipeline, shared, bodies: bodies? })
+    Ok(ScenePass { gpu, pipeline, shared, bodies, diffusions })
 }
 
 /// The overrides of the recipe for these settings.
@@ -63,7 +71,8 @@ fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Ve
     let scatters = materials().any(|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));
     let polished = materials().any(|material| material.roughness == 0.0 && material.ior > 1.0);
     vec![
-        ("EFFECT_CDRF", flag(scatters && reflectance != Reflectance::Lambert)),
+        ("EFFECT_CDRF", flag(scatters && reflectance.form().is_some())),
+        ("EFFECT_TEXTURE_DIFFUSION", flag(reflectance == Reflectance::Blur)),
         ("CDRF_FORM", f64::from(reflectance.form().unwrap_or_default())),
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
         ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
@@ -92,20 +101,27 @@ fn lights(scene: &Scene) -> Vec<f32> {
 }
 
 /// Sends an object to the device.
-fn upload(
-    gpu: &Gpu,
+fn upload<'gpu>(
+    gpu: &'gpu Gpu,
     pipeline: &wgpu::RenderPipeline,
     object: &Object,
     settings: &Settings,
     reflectance: Reflectance,
-) -> Result<Body, RenderError> {
+    lights_and_harmonics: [&wgpu::Buffer; 2],
+) -> Result<(Body, Option<Diffusion<'gpu>>), RenderError> {
     let Object { mesh, material, .. } = object;
     let curvatures = if settings.curvature == Curvature::Vertex { vertex_curvatures(mesh) } else { vec![0.0] };
-    let parts: [&[u8]; 4] = [
+    let unread = [0.0f32; 2];
+    let uvs: &[u8] = match reflectance {
+        Reflectance::Blur => bytemuck::cast_slice(&mesh.uvs),
+        _ => bytemuck::cast_slice(&unread),
+    };
+    let parts: [&[u8]; 5] = [
         bytemuck::cast_slice(&mesh.positions),
         bytemuck::cast_slice(&mesh.indices),
         bytemuck::cast_slice(&mesh.normals),
         bytemuck::cast_slice(&curvatures),
+        uvs,
     ];
     let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
     let (filtered, texels) = match reflectance {
@@ -113,28 +129,46 @@ fn upload(
         Reflectance::Table(side, format) => (baked(gpu, material, side, format)?, empty(gpu)?),
         _ => (empty(gpu)?, empty(gpu)?),
     };
-    let group = gpu.guarded("uploading a mesh", |device| {
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..wgpu::SamplerDescriptor::default()
-        });
+    let [positions, indices, normals, curvatures, uvs] =
+        gpu.guarded("uploading a mesh", |device| parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE)))?;
+    let diffusion = match reflectance {
+        Reflectance::Blur => {
+            let mesh = MeshBuffers { positions: &positions, indices: &indices, normals: &normals, uvs: &uvs };
+            Some(Diffusion::new(gpu, object, settings, lights_and_harmonics, &mesh)?)
+        }
+        _ => None,
+    };
+    let diffused = diffusion.as_ref().map_or_else(|| empty(gpu), |diffusion| Ok(diffusion.diffused()))?;
+    let group = gpu.guarded("uploading a material", |device| {
+        let sampler = |address| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                address_mode_u: address,
+                address_mode_v: address,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        };
+        let clamping = sampler(wgpu::AddressMode::ClampToEdge);
+        // Charts keep off the texture's edges but where it repeats, and at a sphere's poles, where either is as good.
+        let repeating = sampler(wgpu::AddressMode::Repeat);
         let uniform = uniform(device, &uniform_of(material));
-        let buffers = parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE));
-        let [positions, indices, normals, curvatures] = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
         let resources = vec![
             uniform.as_entire_binding(),
-            positions,
-            indices,
-            normals,
+            positions.as_entire_binding(),
+            indices.as_entire_binding(),
+            normals.as_entire_binding(),
             wgpu::BindingResource::TextureView(&filtered),
-            wgpu::BindingResource::Sampler(&sampler),
+            wgpu::BindingResource::Sampler(&clamping),
             wgpu::BindingResource::TextureView(&texels),
-            curvatures,
+            curvatures.as_entire_binding(),
+            uvs.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&diffused),
+            wgpu::BindingResource::Sampler(&repeating),
         ];
         bind_group(device, pipeline, 1, resources)
     })?;
-    Ok(Body { groups: vec![group], vertices })
+    Ok((Body { groups: vec![group], vertices }, diffusion))
 }
 
 /// `CdrfMaterial` of the recipe.

@@ -4,8 +4,8 @@
 //! packed into the unit square (`atlas/packing.rs`). The scale is the same for all. What this costs is what a drawing
 //! foreshortens: a triangle that leans away from its chart's axis is drawn narrower by the cosine of the angle.
 //!
-//! Written here, since no crate serves: bindings of xatlas build C++ of their own, and what packs boxes alone
-//! (rectangle-pack, guillotiere) leaves half of the square empty about drawings that are no boxes.
+//! Written here, since no crate serves: bindings of xatlas build C++ of their own, and the scale that charts are packed at is sought, with turned
+//! boxes, which what packs boxes of given sizes (rectangle-pack, guillotiere) does not do.
 
 use std::collections::HashMap;
 

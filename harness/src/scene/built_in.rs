@@ -107,21 +107,21 @@ pub const BUILT_IN: [BuiltIn; 24] = [
     },
     BuiltIn {
         name: "skin",
-        description: "Five spheres of human skin, with radii of 40, 24, 14, 8 and 5 mm, lit from the left: the smaller \
+        description: "Five spheres of human skin, with radii of 40, 24, 14, 8 and 5 mm, lit from the upper left: the smaller \
             the sphere, the further light creeps round into the shadow, and red further than blue.",
     },
     BuiltIn { name: "skin_ring", description: "A ring of human skin, lit by a sun and two lamps." },
     BuiltIn { name: "skin_bunny", description: "The Stanford bunny, 60 mm high, of human skin, in one light." },
     BuiltIn {
         name: "wax",
-        description: "Five spheres of wax, with radii of 40, 24, 14, 8 and 5 mm, lit from the left. Wax scatters all \
+        description: "Five spheres of wax, with radii of 40, 24, 14, 8 and 5 mm, lit from the upper left. Wax scatters all \
             colours alike.",
     },
     BuiltIn { name: "wax_ring", description: "A ring of wax, lit by a sun and two lamps." },
     BuiltIn { name: "wax_bunny", description: "The Stanford bunny, 60 mm high, of wax, in one light." },
     BuiltIn {
         name: "jade",
-        description: "Five polished spheres of green jade, with radii of 40, 24, 14, 8 and 5 mm, lit from the left.",
+        description: "Five polished spheres of green jade, with radii of 40, 24, 14, 8 and 5 mm, lit from the upper left.",
     },
     BuiltIn { name: "jade_ring", description: "A polished ring of green jade, lit by a sun and two lamps." },
     BuiltIn {

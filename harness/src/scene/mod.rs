@@ -20,6 +20,7 @@ mod error;
 pub mod fuzz;
 pub mod glb;
 pub mod gltf;
+pub mod layout;
 pub mod light;
 pub mod material;
 pub mod mesh;

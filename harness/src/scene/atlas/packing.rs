@@ -1,4 +1,4 @@
-//! Packs drawings into the unit square: each where it fits lowest, the largest first, as bitmaps.
+//! Packs drawings' boxes into the unit square: each where it fits lowest, the largest first.
 
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
@@ -96,148 +96,54 @@ fn attempt(drawings: &[Drawing], order: &[usize], scale: f64) -> Option<Vec<Plac
     let mut placements = vec![Placement { turn: DVec2::X, offset: DVec2::ZERO }; drawings.len()];
     for &number in order {
         let drawing = &drawings[number];
-        let quarters = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
-        let fitting = quarters.into_iter().filter_map(|quarter| {
+        let fitting = [DVec2::X, DVec2::Y].into_iter().filter_map(|quarter| {
             let turn = quarter * scale;
             let (lower, upper) = extent(&drawing.triangles, turn);
-            let mask = Mask::of(&drawing.triangles, turn, lower, upper)?;
-            let (x, y) = mask.lowest(&square)?;
-            Some((x, y, turn, lower, mask))
+            let cells = Cells::of(upper - lower)?;
+            let (x, y) = cells.lowest(&square)?;
+            Some((x, y, turn, lower, cells))
         });
-        let (x, y, turn, lower, mask) = fitting.min_by_key(|(x, y, .., mask)| (y + mask.rows.len(), *x))?;
-        mask.take(&mut square, x, y);
+        let (x, y, turn, lower, cells) = fitting.min_by_key(|(x, y, .., cells)| (y + cells.height, *x))?;
+        cells.take(&mut square, x, y);
         let corner = DVec2::new(x as f64, y as f64) + 0.5;
         placements[number] = Placement { turn: drawing.turn.rotate(turn) * GUTTER, offset: (corner - lower) * GUTTER };
     }
     Some(placements)
 }
 
-/// The cells that a drawing touches, with its lower corner in a cell's.
-#[derive(Debug)]
-struct Mask {
+/// The cells of a drawing's box. Whole boxes are kept apart, not outlines alone: who blurs a chart knows it by its box.
+#[derive(Clone, Copy, Debug)]
+struct Cells {
     width: usize,
-    rows: Vec<u128>,
+    height: usize,
 }
 
-impl Mask {
-    /// Nothing if the drawing is larger than the square.
-    fn of(triangles: &[[DVec2; 3]], turn: DVec2, lower: DVec2, upper: DVec2) -> Option<Self> {
-        let size = (upper - lower).floor() + 1.0;
-        if size.max_element() > CELLS as f64 {
-            return None;
-        }
-        let mut mask = Self { width: size.x as usize, rows: vec![0; size.y as usize] };
-        for triangle in triangles {
-            let corners = triangle.map(|point| turn.rotate(point) - lower);
-            let [a, b, c] = corners.map(|corner| corner.y);
-            for row in a.min(b).min(c) as usize..=a.max(b).max(c) as usize {
-                let (from, to) = crossed(&corners, row as f64);
-                mask.rows[row] |= ones(to as usize - from as usize + 1) << from as usize;
-            }
-        }
-        Some(mask)
+impl Cells {
+    /// Nothing if the box is larger than the square.
+    fn of(size: DVec2) -> Option<Self> {
+        let cells = size.floor() + 1.0;
+        (cells.max_element() <= CELLS as f64).then_some(Self { width: cells.x as usize, height: cells.y as usize })
     }
 
     /// The lowest place, and of these the leftmost, that is free in the square.
-    fn lowest(&self, square: &[u128; CELLS]) -> Option<(usize, usize)> {
-        let inside = ones(CELLS - self.width + 1);
-        (0..=CELLS - self.rows.len()).find_map(|y| {
-            let mut free = inside;
-            for (&row, &taken) in self.rows.iter().zip(&square[y..]) {
-                free &= !hits(taken, row);
-                if free == 0 {
-                    return None;
-                }
-            }
-            Some((free.trailing_zeros() as usize, y))
+    fn lowest(self, square: &[u128; CELLS]) -> Option<(usize, usize)> {
+        (0..=CELLS - self.height).find_map(|y| {
+            let taken = square[y..y + self.height].iter().fold(0, |all, row| all | row);
+            let x = (0..=CELLS - self.width).find(|x| taken & ones(self.width) << x == 0)?;
+            Some((x, y))
         })
     }
 
-    /// Takes its cells at this place, and those about them.
-    fn take(&self, square: &mut [u128; CELLS], x: usize, y: usize) {
-        for (row, &cells) in self.rows.iter().enumerate() {
-            let cells = cells << x;
-            let grown = cells | cells << 1 | cells >> 1;
-            let (first, last) = ((y + row).saturating_sub(1), (y + row + 1).min(CELLS - 1));
-            square[first..=last].iter_mut().for_each(|near| *near |= grown);
-        }
+    /// Takes the cells at this place, and those about them.
+    fn take(self, square: &mut [u128; CELLS], x: usize, y: usize) {
+        let cells = ones(self.width) << x;
+        let grown = cells | cells << 1 | cells >> 1;
+        let (first, last) = (y.saturating_sub(1), (y + self.height).min(CELLS - 1));
+        square[first..=last].iter_mut().for_each(|near| *near |= grown);
     }
-}
-
-/// The moves up at which one of a row's cells is `taken`, each a bit.
-fn hits(taken: u128, mut row: u128) -> u128 {
-    let mut hits = 0;
-    while taken != 0 && row != 0 {
-        let first = row.trailing_zeros() as usize;
-        let length = (row >> first).trailing_ones() as usize;
-        let mut run = taken;
-        let mut reached = 1;
-        while 2 * reached <= length {
-            run |= run >> reached;
-            reached *= 2;
-        }
-        run |= run >> (length - reached);
-        hits |= run >> first;
-        row &= !(ones(length) << first);
-    }
-    hits
 }
 
 /// The lowest `count` bits, at least one and at most all.
 fn ones(count: usize) -> u128 {
     u128::MAX >> (128 - count)
-}
-
-/// The least and largest x of a triangle between `y` and `y + 1`.
-fn crossed(corners: &[DVec2; 3], y: f64) -> (f64, f64) {
-    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut meet = |x: f64| range = (range.0.min(x), range.1.max(x));
-    for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(k, l)| (corners[k], corners[l])) {
-        if (y..=y + 1.0).contains(&from.y) {
-            meet(from.x);
-        }
-        for line in [y, y + 1.0] {
-            if (from.y < line) != (to.y < line) {
-                meet(from.x + (to.x - from.x) * ((line - from.y) / (to.y - from.y)).clamp(0.0, 1.0));
-            }
-        }
-    }
-    range
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn hits_are_the_moves_at_which_a_cell_meets_a_taken_one() {
-        let rows = [1, 0b1011, ones(64), ones(127) & !(1 << 5), 0b1110_0111_0001 << 90, u128::MAX];
-        let squares = [0, 1, 1 << 127, 0b1001 << 60, ones(30) << 50, u128::MAX, 0x5555_0000_ffff << 40];
-        for row in rows {
-            for taken in squares {
-                for x in 0..128 {
-                    let met = (row << x) & taken != 0;
-                    assert_eq!(hits(taken, row) >> x & 1 == 1, met, "{row:x} {taken:x} {x}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_mask_holds_every_cell_that_a_triangle_touches() {
-        let triangle = [DVec2::new(0.0, 3.5), DVec2::new(6.2, 0.0), DVec2::new(2.5, 7.9)];
-        let (lower, upper) = extent(&[triangle], DVec2::X);
-        let mask = Mask::of(&[triangle], DVec2::X, lower, upper).unwrap();
-        assert_eq!((mask.width, mask.rows.len()), (7, 8));
-        for k in 0..=100 {
-            for l in 0..=100 - k {
-                let [u, v] = [f64::from(k) / 100.0, f64::from(l) / 100.0];
-                let point = triangle[0] * (1.0 - u - v) + triangle[1] * u + triangle[2] * v;
-                assert!(mask.rows[point.y as usize] >> point.x as usize & 1 == 1, "{point}");
-            }
-        }
-        let count: u32 = mask.rows.iter().map(|row| row.count_ones()).sum();
-        // Its area is 26.6 cells, and about it run some 20 cells of border.
-        assert!((27..=42).contains(&count), "{count}");
-    }
 }

@@ -54,9 +54,9 @@ fn scattering(name: &str, medium: Medium, base_color: Vec3, sigma0: Vec3, (ior, 
     }
 }
 
-/// The spheres: radius, and where in the picture's plane the middle is.
-const SPHERES: [(f64, [f64; 2]); 5] =
-    [(40.0, [-28.0, 18.0]), (24.0, [40.0, 34.0]), (14.0, [42.0, -8.0]), (8.0, [20.0, -30.0]), (5.0, [2.0, -39.0])];
+/// The radii of the spheres, and the gap between two.
+const RADII: [f64; 5] = [40.0, 24.0, 14.0, 8.0, 5.0];
+const GAP: f64 = 3.0;
 
 /// The material that a scene's name begins with.
 fn material(name: &str) -> Material {
@@ -67,13 +67,17 @@ fn material(name: &str) -> Material {
     }
 }
 
-/// The paper's picture: spheres of falling radius in a falling row, lit from the left.
+/// The paper's picture: spheres of falling radius in a falling row, lit from the upper left.
 pub(super) fn spheres(name: &str) -> Scene {
-    let objects = SPHERES.map(|(radius, [x, y])| {
-        let centre = DVec3::new(x, y, 0.0);
+    // Along a line square to the light, so that none stands in another's shadow.
+    let line = DVec3::new(1.0, 1.0, 0.0).normalize();
+    let mut along = 0.0;
+    let objects = RADII.map(|radius| {
+        let centre = (along + radius) * line;
+        along += 2.0 * radius + GAP;
         object(&format!("{radius} mm"), sphere(radius, 128).placed(DQuat::IDENTITY, centre), name)
     });
-    Scene { lights: vec![sun(Vec3::new(-1.0, 0.35, 0.25))], ..framed(name, objects.into(), direction(90.0, 0.0)) }
+    Scene { lights: vec![sun(Vec3::new(-1.0, 1.0, 0.35))], ..framed(name, objects.into(), direction(90.0, 0.0)) }
 }
 
 /// A ring, with a sun, a warm lamp near its inner side and a cool one behind.

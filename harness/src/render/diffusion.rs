@@ -1,0 +1,146 @@
+//! Texture diffusion of one object: the recipe `texture_irradiance` draws what arrives, the recipe `texture_diffusion` blurs it.
+
+use super::device::{self, PipelineSource, bind_group, bind_group_from};
+use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
+use super::{RenderError, Settings};
+use crate::cookbook;
+use crate::gpu::Gpu;
+use crate::scene::Object;
+use crate::scene::layout::Layout;
+
+/// The recipe's name.
+const RECIPE: &str = "texture_irradiance";
+/// Texels along each side: the paper's.
+pub(super) const SIDE: u32 = 1024;
+
+/// An object's textures, and how they are filled.
+pub(super) struct Diffusion<'gpu> {
+    gpu: &'gpu Gpu,
+    textures: TextureDiffusion<'gpu>,
+    pipeline: wgpu::RenderPipeline,
+    /// Lights and harmonics, then the mesh.
+    groups: [wgpu::BindGroup; 2],
+    vertices: u32,
+    taps: Taps,
+    charts: Vec<Chart>,
+}
+
+/// What it reads of the mesh, in the order of its bindings.
+pub(super) struct MeshBuffers<'a> {
+    pub(super) positions: &'a wgpu::Buffer,
+    pub(super) indices: &'a wgpu::Buffer,
+    pub(super) normals: &'a wgpu::Buffer,
+    pub(super) uvs: &'a wgpu::Buffer,
+}
+
+impl<'gpu> Diffusion<'gpu> {
+    /// For `object`, which has texture coordinates, under these lights and harmonics.
+    pub(super) fn new(
+        gpu: &'gpu Gpu,
+        object: &Object,
+        settings: &Settings,
+        [lights, harmonics]: [&wgpu::Buffer; 2],
+        mesh: &MeshBuffers<'_>,
+    ) -> Result<Self, RenderError> {
+        let environment = f64::from(u8::from(settings.light_from_environment));
+        let pipeline = device::pipeline(
+            gpu,
+            &PipelineSource {
+                recipe: RECIPE,
+                source: &cookbook::recipe_source(RECIPE),
+                entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
+                constants: &[("EFFECT_ENVIRONMENT", environment)],
+                formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
+                depth: None,
+            },
+        )?;
+        let Layout { repeats, charts } = Layout::of(&object.mesh);
+        let textures = TextureDiffusion::new(gpu, [SIDE; 2], [repeats.x, repeats.y])?;
+        let groups = gpu.guarded("uploading a mesh", |device| {
+            let shared = [lights, harmonics].map(wgpu::Buffer::as_entire_binding);
+            let own = [mesh.positions, mesh.indices, mesh.normals, mesh.uvs].map(wgpu::Buffer::as_entire_binding);
+            [bind_group_from(device, &pipeline, 0, 2, shared.into()), bind_group(device, &pipeline, 1, own.into())]
+        })?;
+        Ok(Self {
+            gpu,
+            textures,
+            pipeline,
+            groups,
+            vertices: object.mesh.indices.len() as u32,
+            taps: Taps::new(object.material.sigma0.unwrap_or_default()),
+            charts: apart(charts.into_iter().map(texels).collect()),
+        })
+    }
+
+    /// What shading looks up.
+    pub(super) fn diffused(&self) -> wgpu::TextureView {
+        device::view(&self.textures.diffused)
+    }
+
+    /// Draws what arrives and blurs it.
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+        let targets = [&self.textures.irradiance, &self.textures.stretch].map(device::view);
+        self.gpu.guarded("drawing irradiance", |_| {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(RECIPE),
+                color_attachments: &targets.each_ref().map(device::cleared),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_pipeline(&self.pipeline);
+            for (group, bind_group) in (0..).zip(&self.groups) {
+                pass.set_bind_group(group, bind_group, &[]);
+            }
+            pass.draw(0..self.vertices, 0..1);
+        })?;
+        self.textures.encode(encoder, &self.taps, &self.charts)
+    }
+
+    /// How many draw calls it takes: the mesh, each chart along u and v, and the gutters.
+    pub(super) fn draw_calls(&self) -> usize {
+        2 + 2 * self.charts.len()
+    }
+}
+
+/// The texels that a box of texture coordinates touches.
+fn texels([low, high]: [glam::Vec2; 2]) -> Chart {
+    let place = |value: f32| value.clamp(0.0, SIDE as f32) as u32;
+    let (low, high) = ((low * SIDE as f32).floor(), (high * SIDE as f32).ceil());
+    Chart { low: [place(low.x), place(low.y)], high: [place(high.x), place(high.y)] }
+}
+
+/// Boxes that touch one another made one: between two that are blurred apart there is a texel.
+fn apart(mut charts: Vec<Chart>) -> Vec<Chart> {
+    let touch = |a: &Chart, b: &Chart| (0..2).all(|k| a.low[k] <= b.high[k] && b.low[k] <= a.high[k]);
+    let mut merged: Vec<Chart> = Vec::new();
+    while let Some(mut chart) = charts.pop() {
+        while let Some(place) = merged.iter().position(|other| touch(&chart, other)) {
+            let other = merged.swap_remove(place);
+            for k in 0..2 {
+                chart.low[k] = chart.low[k].min(other.low[k]);
+                chart.high[k] = chart.high[k].max(other.high[k]);
+            }
+        }
+        merged.push(chart);
+    }
+    merged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_that_touch_are_one() {
+        let chart = |low, high| Chart { low, high };
+        let apart_already = [chart([0, 0], [4, 4]), chart([6, 0], [9, 9])];
+        assert_eq!(apart(apart_already.to_vec()).len(), 2);
+        let chained = vec![chart([0, 0], [4, 4]), chart([8, 0], [12, 4]), chart([4, 2], [8, 9])];
+        assert_eq!(apart(chained), [chart([0, 0], [12, 9])]);
+    }
+
+    #[test]
+    fn a_box_covers_the_texels_that_it_touches() {
+        let found = texels([glam::Vec2::new(0.5 / 1024.0, -1.0), glam::Vec2::new(2.5 / 1024.0, 1.0)]);
+        assert_eq!(found, Chart { low: [0, 0], high: [3, 1024] });
+    }
+}

@@ -1,0 +1,55 @@
+// texture_irradiance: what arrives at a surface, drawn into the surface's own texture, for the recipe texture_diffusion to blur.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
+//   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
+// requires: cdrf, environment, texture_diffusion
+// parts: mesh, lights, harmonics
+//
+// Draw 3 vertices per triangle, without culling or depth test, into two targets that were cleared to 0: rgba16float and rg32float.
+
+// Light from all around, beside the lights. Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
+
+// Three floats a vertex, in world space; two of texture coordinates.
+@group(1) @binding(0) var<storage, read> positions: array<f32>;
+@group(1) @binding(1) var<storage, read> indices: array<u32>;
+@group(1) @binding(2) var<storage, read> normals: array<f32>;
+@group(1) @binding(3) var<storage, read> uvs: array<f32>;
+
+struct TextureIrradianceVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+}
+
+struct TextureIrradianceTexel {
+    // Times coverage, which is 1.
+    @location(0) irradiance: vec4f,
+    // World length of a texel along u and along v.
+    @location(1) stretch: vec2f,
+}
+
+@vertex
+fn texture_irradiance_vertex(@builtin(vertex_index) vertex: u32) -> TextureIrradianceVertex {
+    let index = indices[vertex];
+    let normal = vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
+    let clip = texture_diffusion_clip(vec2f(uvs[2u * index], uvs[2u * index + 1u]));
+    return TextureIrradianceVertex(clip, mesh_position(index), normal);
+}
+
+@fragment
+fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradianceTexel {
+    let stretch = texture_diffusion_stretch(dpdx(input.position), dpdy(input.position));
+    // Interpolation between opposite normals may leave none: nothing arrives there but what comes from all around.
+    let normal = input.normal * inverseSqrt(max(dot(input.normal, input.normal), 1e-12f));
+    var received = vec3f(0.0f);
+    for (var index = 0u; index < arrayLength(&lights); index++) {
+        let arrival = light_arrival(lights[index], input.position);
+        received += arrival.irradiance * cdrf_lambert(dot(normal, arrival.direction));
+    }
+    if (EFFECT_ENVIRONMENT) {
+        let weights = cdrf_harmonic_weights(0.0f);
+        received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+    }
+    return TextureIrradianceTexel(vec4f(texture_diffusion_half(received), 1.0f), stretch);
+}
