@@ -258,27 +258,28 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let s = clamp(sigma, 0.0f, CDRF_WIDEST);
     let v = s * s;
     let decay = exp(-0.5f * v);
-    // From 4 standard deviations on nothing is left of the bump.
-    let u = min(abs(c) / max(s, CDRF_SMALLEST), 4.0f);
-    let still = 0.7946532f + u * (-0.24850859f + u * (-0.017165287f + u * (0.0063169101f + u * (0.0022658597f - u * 0.00038703455f))));
-    let first = -0.063233062f + u * (0.033650108f + u * (0.004489035f - u * 0.036961523f));
-    let second = -0.01467108f + u * (0.19967449f - u * 0.23975015f);
+    // |c| / sigma, but 0 for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    let u = abs(c) * s / (v + 1e-14f);
+    let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
+    let first = -0.063232761f + u * (0.033584461f + u * (0.0047414034f - u * 0.037048171f));
+    let second = -0.014675331f + u * (0.19972939f - u * 0.2402912f);
     let root = max(still + v * (first + v * second), 0.0f);
-    let squared = root * root;
-    let narrow = decay * max(c, 0.0f) + s * squared * squared;
+    let root_squared = root * root;
+    let narrow = decay * max(c, 0.0f) + s * root_squared * root_squared;
+    // Weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;
     let weight_squared = weight * weight;
-    let weight_fourth = weight_squared * weight_squared;
-    let weight_ninth = weight_fourth * weight_fourth * weight;
+    let weight_cubed = weight_squared * weight;
+    let weight_fifth = weight_squared * weight_cubed;
     let y = 1.0f - 2.0f * c * c;
     let y_second = 2.0f * y * y - 1.0f;
     let y_third = 2.0f * y * y_second - y;
     let y_fourth = 2.0f * y_second * y_second - 1.0f;
-    let even = weight * (0.21220659f * y) + weight_fourth * (0.04244132f * y_second) + weight_ninth * (0.018189136f * y_third)
-        + weight_ninth * weight_fourth * weight_squared * weight * (0.010105076f * y_fourth);
-    let wide = 0.31830987f + 0.5f * decay * c - even;
-    return max(select(wide, narrow, s < CDRF_CHEAP_SWITCH), 0.0f);
+    let even = weight * (0.21220659f * y + weight_cubed * (0.04244132f * y_second
+        + weight_fifth * (0.018189136f * y_third + weight_fifth * weight_squared * (0.010105076f * y_fourth))));
+    let wide = 0.31830987f + decay * (0.5f * c) - even;
+    return abs(select(wide, narrow, s < CDRF_CHEAP_SWITCH));
 }
 
 // The accurate convolution for a material whose channels scatter differently far.

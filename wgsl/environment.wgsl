@@ -159,9 +159,9 @@ struct EnvironmentHarmonics {
     // Of degree 1: y, z, x.
     first: vec3f,
     // Of degree 2.
-    second: array<f32, 5>,
+    second: array<f32, 5u>,
     // Of degree 4.
-    fourth: array<f32, 9>,
+    fourth: array<f32, 9u>,
 }
 
 // Spherical harmonics as polynomials of the direction's components, z being the axis of their orders.
@@ -178,14 +178,14 @@ fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
     let yy = y * y;
     let zz = z * z;
     let first = 0.48860252f * direction.yzx;
-    let second = array<f32, 5>(
+    let second = array<f32, 5u>(
         1.0925485f * x * y,
         1.0925485f * y * z,
         0.31539157f * (3.0f * zz - 1.0f),
         1.0925485f * x * z,
         0.54627424f * (xx - yy),
     );
-    let fourth = array<f32, 9>(
+    let fourth = array<f32, 9u>(
         2.5033429f * x * y * (xx - yy),
         1.7701308f * y * z * (3.0f * xx - yy),
         0.9461747f * x * y * (7.0f * zz - 1.0f),

@@ -1,7 +1,7 @@
 //! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
 
 use crate::gpu::Gpu;
-use crate::render::{self, Picture, RenderError, Settings, file};
+use crate::render::{self, Curvature, Picture, RenderError, Rung, Settings, file};
 use crate::scene::{Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub const MOST_FLIP: f32 = 0.005;
 /// Largest RMSE in linear radiance, relative to the reference's root mean square.
 pub const MOST_RMSE: f32 = 0.05;
 
-/// A picture of a gem recipe.
+/// A picture of a recipe.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     /// Its file's name.
@@ -31,12 +31,16 @@ pub struct Shot {
     pub from: Option<(f32, f32)>,
     /// The proxy's centre by the paper's eq. (4).
     pub paper_centre: bool,
+    /// What scatters light is lit by the scene's lights alone.
+    pub lights_alone: bool,
+    /// Which curvature spreads its light.
+    pub curvature: Curvature,
     /// What it shows; where empty, the scene's own description.
     pub paragraph: &'static str,
 }
 
 /// Every committed picture.
-pub const SHOTS: [Shot; 24] = [
+pub const SHOTS: [Shot; 36] = [
     Shot {
         paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
             picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
@@ -94,10 +98,56 @@ pub const SHOTS: [Shot; 24] = [
             keep them together.",
         ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
     },
+    Shot { lights_alone: true, ..shot("skin", "Skin: spheres of falling radius", "skin", "accurate") },
+    Shot {
+        lights_alone: true,
+        paragraph: "The same by Lambert's law: the terminator is as sharp on the smallest sphere as on the largest.",
+        ..shot("skin_lambert", "Skin: spheres by Lambert's law", "skin", "lambert")
+    },
+    Shot { lights_alone: true, ..shot("wax", "Wax: spheres of falling radius", "wax", "accurate") },
+    Shot { lights_alone: true, ..shot("jade", "Jade: spheres of falling radius", "jade", "accurate") },
+    shot("skin_ring", "Skin: a ring under a sun and two lamps", "skin_ring", "accurate"),
+    shot("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
+    shot("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
+    Shot {
+        lights_alone: true,
+        paragraph: "One mesh four ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, and random \
+            walks. This is Lambert's law.",
+        ..shot("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
+    },
+    Shot {
+        lights_alone: true,
+        paragraph: "Irradiance drawn into a texture of 1024 texels a side and blurred there by a Gaussian for each channel, with the stretch of \
+            the texture taken into account: what the reflectance function replaces.",
+        ..shot("skin_bunny_blur", "Skin: the bunny by texture diffusion", "skin_bunny", "blur")
+    },
+    Shot {
+        lights_alone: true,
+        curvature: Curvature::Vertex,
+        paragraph: "The curvature-dependent reflectance, with the mean curvature of the mesh at its vertices. No texture, no second pass.",
+        ..shot("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
+    },
+    Shot {
+        lights_alone: true,
+        paragraph: "The same with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
+            as this.",
+        ..shot("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
+    },
+    Shot { curvature: Curvature::Vertex, ..shot("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate") },
 ];
 
 const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
-    Shot { name, title, scene, rung, from: None, paper_centre: false, paragraph: "" }
+    Shot {
+        name,
+        title,
+        scene,
+        rung,
+        from: None,
+        paper_centre: false,
+        lights_alone: false,
+        curvature: Curvature::Mean,
+        paragraph: "",
+    }
 }
 
 const fn face_up(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
@@ -117,7 +167,18 @@ impl Shot {
     /// Where its rung's name is none: the names are compiled in.
     pub fn settings(&self, side: u32) -> Settings {
         let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
-        Settings { rung, paper_centre: self.paper_centre, ..Settings::of_size(side, side) }
+        Settings {
+            rung,
+            paper_centre: self.paper_centre,
+            light_from_environment: !self.lights_alone,
+            curvature: self.curvature,
+            ..Settings::of_size(side, side)
+        }
+    }
+
+    /// Where its pictures are.
+    pub fn folder(&self) -> PathBuf {
+        folder(if matches!(self.settings(1).rung, Rung::Diffuse(_)) { "cdrf" } else { "gem" })
     }
 
     /// The composed recipe that draws it.
@@ -129,13 +190,19 @@ impl Shot {
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
-        format!("./cook render {}{from} --rung {}{centre} --out {}.png", self.scene, self.rung, self.name)
+        let light = if self.lights_alone { " --without environment" } else { "" };
+        let curvature = match self.curvature {
+            Curvature::Mean => String::new(),
+            other => format!(" --curvature {}", other.name()),
+        };
+        let choices = format!("{from} --rung {}{centre}{light}{curvature}", self.rung);
+        format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }
 
-/// Where the pictures of the gem recipe are.
-pub fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots/gem")
+/// Where the pictures of a technique's recipes are.
+pub fn folder(technique: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots").join(technique)
 }
 
 /// Why a snapshot does not hold.
@@ -198,7 +265,7 @@ impl Comparison {
     }
 }
 
-/// Renders `shot` with `source`, the composed gem recipe, as PNG and as EXR would hold it.
+/// Renders `shot` with `source`, the composed recipe, as PNG and as EXR would hold it.
 pub fn render_shot(gpu: &Gpu, shot: &Shot, source: &str) -> Result<[Picture; 2], SnapshotError> {
     render_scene(gpu, shot, &shot.open()?, source)
 }

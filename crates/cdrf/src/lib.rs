@@ -157,33 +157,34 @@ pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
 }
 
 /// The convolution, cheap: no angle, no loop, one exponential and one division.
-#[rustfmt::skip] // a line of coefficients, as in the shader
+#[rustfmt::skip] // lines of coefficients, as in the shader
 pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let v = s * s;
     let decay = (-0.5 * v).exp();
-    // From 4 standard deviations on nothing is left of the bump.
-    let u = (c.abs() / s.max(CDRF_SMALLEST)).min(4.0);
-    let still = 0.7946532 + u * (-0.24850859 + u * (-0.017165287 + u * (0.0063169101 + u * (0.0022658597 - u * 0.00038703455))));
-    let first = -0.063233062 + u * (0.033650108 + u * (0.004489035 - u * 0.036961523));
-    let second = -0.01467108 + u * (0.19967449 - u * 0.23975015);
+    // |c| / sigma, but 0 for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    let u = c.abs() * s / (v + 1e-14);
+    let still = 0.79465324 + u * (-0.24850852 + u * (-0.017153223 + u * (0.0062746328 + u * (0.0022976348 - u * 0.00039362809))));
+    let first = -0.063232761 + u * (0.033584461 + u * (0.0047414034 - u * 0.037048171));
+    let second = -0.014675331 + u * (0.19972939 - u * 0.2402912);
     let root = (still + v * (first + v * second)).max(0.0);
-    let squared = root * root;
-    let narrow = decay * c.max(0.0) + s * squared * squared;
+    let root_squared = root * root;
+    let narrow = decay * c.max(0.0) + s * root_squared * root_squared;
+    // Weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;
     let weight_squared = weight * weight;
-    let weight_fourth = weight_squared * weight_squared;
-    let weight_ninth = weight_fourth * weight_fourth * weight;
+    let weight_cubed = weight_squared * weight;
+    let weight_fifth = weight_squared * weight_cubed;
     let y = 1.0 - 2.0 * c * c;
     let y_second = 2.0 * y * y - 1.0;
     let y_third = 2.0 * y * y_second - y;
     let y_fourth = 2.0 * y_second * y_second - 1.0;
-    let even = weight * (0.21220659 * y) + weight_fourth * (0.04244132 * y_second) + weight_ninth * (0.018189136 * y_third)
-        + weight_ninth * weight_fourth * weight_squared * weight * (0.010105076 * y_fourth);
-    let wide = 0.31830987 + 0.5 * decay * c - even;
-    (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).max(0.0)
+    let even = weight * (0.21220659 * y + weight_cubed * (0.04244132 * y_second
+        + weight_fifth * (0.018189136 * y_third + weight_fifth * weight_squared * (0.010105076 * y_fourth))));
+    let wide = 0.31830987 + decay * (0.5 * c) - even;
+    (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).abs()
 }
 
 /// The accurate convolution for a material whose channels scatter differently far.

@@ -2,6 +2,7 @@
 
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
+use lapidary_harness::nearest::suggest;
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{
@@ -40,8 +41,8 @@ pub(super) struct Arguments {
     without: Vec<String>,
     /// Which curvature spreads the light of what scatters it: from the pixel's derivatives mean, towards
     /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
-    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = ["mean", "towards", "naive", "vertex"])]
-    curvature: String,
+    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = parse_curvature)]
+    curvature: Curvature,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
     strength: f32,
@@ -89,6 +90,12 @@ fn parse_from(text: &str) -> Result<(f32, f32), String> {
     parsed.ok_or_else(|| "expected two angles in degrees, such as 20,11".to_owned())
 }
 
+fn parse_curvature(text: &str) -> Result<Curvature, String> {
+    let names = Curvature::ALL.map(Curvature::name);
+    let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
+    found.ok_or_else(|| format!("no such curvature{}; there is {}", suggest(text, &names), names.join(", ")))
+}
+
 fn parse_positive(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(exposure) if exposure.is_finite() && exposure > 0.0 => Ok(exposure),
@@ -112,7 +119,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> 
         ("--without absorption", (outside || diffuse) && without("absorption")),
         ("--without environment", !(diffuse || reference && scatters) && without("environment")),
         ("--without reflection", !diffuse && without("reflection")),
-        ("--curvature", !blurs && arguments.curvature != "mean"),
+        ("--curvature", !blurs && arguments.curvature != Curvature::Mean),
         ("--rest dropped", (outside || diffuse) && arguments.rest == "dropped"),
         ("--distance-limit", (outside || diffuse) && arguments.distance_limit.is_some()),
         ("--deferred", (reference || diffuse) && arguments.deferred),
@@ -148,12 +155,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         absorption: !without("absorption"),
         light_from_environment: !without("environment"),
         reflection: !without("reflection"),
-        curvature: match arguments.curvature.as_str() {
-            "towards" => Curvature::Towards,
-            "naive" => Curvature::Naive,
-            "vertex" => Curvature::Vertex,
-            _ => Curvature::Mean,
-        },
+        curvature: arguments.curvature,
         dispersion_strength: arguments.strength,
         rest_from_environment: arguments.rest == "environment",
         distance_limit: arguments.distance_limit,

@@ -14,7 +14,6 @@ pub(super) struct Arguments {
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let gpu = context.gpu()?;
-    let folder = snapshot::folder();
     let bar = progress::bar(SHOTS.len() as u64, "rendering");
     let mut outcome = Outcome::Passed;
     let mut lines = Vec::new();
@@ -22,10 +21,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         bar.set_message(shot.name);
         let pictures = snapshot::render_shot(gpu, shot, &shot.source())?;
         if arguments.accept {
-            snapshot::accept(shot, &pictures, &folder)?;
+            snapshot::accept(shot, &pictures, &shot.folder())?;
             lines.push(format!("{:<24} accepted", shot.name));
         } else {
-            match snapshot::compare(shot, &pictures, &folder) {
+            match snapshot::compare(shot, &pictures, &shot.folder()) {
                 Ok(comparison) => {
                     let verdict = if comparison.holds() { "same" } else { "DIFFERENT" };
                     lines.push(format!(

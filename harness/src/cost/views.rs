@@ -64,7 +64,7 @@ impl View {
 
     /// Where its reference is kept.
     pub fn reference_file(&self) -> PathBuf {
-        snapshot::folder().join("reference").join(format!("{}.exr", self.name))
+        snapshot::folder("gem").join("reference").join(format!("{}.exr", self.name))
     }
 
     /// The command that remakes its reference.

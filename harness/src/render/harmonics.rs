@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 /// How many there are: 1 of degree 0, 3 of 1, 5 of 2, 9 of 4.
 pub(super) const COUNT: usize = 18;
 
-/// Rows of the grid of directions, from pole to pole; twice as many columns. A studio's softest edge is 2° wide, 14 rows.
-const ROWS: u32 = 1024;
+/// Rows of the grid of directions, from pole to pole; twice as many columns. A studio's sharpest edge is 3° wide, 5 rows.
+const ROWS: u32 = 256;
 
 /// The coefficients, linear RGB, by degree and order.
 pub(super) fn project(environment: &Environment) -> [DVec3; COUNT] {

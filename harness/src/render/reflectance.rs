@@ -72,6 +72,19 @@ pub enum Curvature {
 }
 
 impl Curvature {
+    /// Every one.
+    pub const ALL: [Self; 4] = [Self::Mean, Self::Towards, Self::Naive, Self::Vertex];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Towards => "towards",
+            Self::Naive => "naive",
+            Self::Vertex => "vertex",
+        }
+    }
+
     /// `CURVATURE_FORM` of the recipe.
     pub(super) fn form(self) -> u32 {
         match self {

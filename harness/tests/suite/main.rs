@@ -4,6 +4,7 @@ mod adapter;
 mod bad_input;
 mod bvh;
 mod cdrf;
+mod cdrf_shading;
 mod cli;
 mod comparator;
 mod contract;

@@ -29,14 +29,14 @@ fn copy_of(folder: &Path) -> tempfile::TempDir {
 fn every_picture_is_as_it_was() {
     for shot in &SHOTS {
         let pictures = snapshot::render_shot(super::gpu(), shot, &shot.source()).expect("rendered");
-        let comparison = snapshot::compare(shot, &pictures, &snapshot::folder()).expect(shot.name);
+        let comparison = snapshot::compare(shot, &pictures, &shot.folder()).expect(shot.name);
         assert!(comparison.holds(), "{}: {comparison:?}; see the new picture and the difference beside it", shot.name);
     }
 }
 
 /// Compares a picture with something wrong in it; its new picture and the difference must be left beside the reference.
 fn planted(scene: &Scene, source: &str) -> Comparison {
-    let copy = copy_of(&snapshot::folder());
+    let copy = copy_of(&brilliant().folder());
     let pictures = snapshot::render_scene(super::gpu(), brilliant(), scene, source).expect("rendered");
     let comparison = snapshot::compare(brilliant(), &pictures, copy.path()).expect("compared");
     for kind in ["new", "difference"] {
@@ -86,7 +86,7 @@ fn a_missing_reference_fails_and_is_not_made() {
 
 #[test]
 fn an_unreadable_reference_fails() {
-    let copy = copy_of(&snapshot::folder());
+    let copy = copy_of(&brilliant().folder());
     std::fs::write(copy.path().join("brilliant.png"), b"not a picture").expect("written");
     let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
     let error = snapshot::compare(brilliant(), &pictures, copy.path()).expect_err("no picture");
@@ -96,10 +96,10 @@ fn an_unreadable_reference_fails() {
 #[test]
 fn the_committed_pictures_are_small() {
     // By name, since another test may have left a failure's pictures beside them.
-    let files = SHOTS.iter().flat_map(|shot| ["png", "exr"].map(|extension| format!("{}.{extension}", shot.name)));
-    let sizes: Vec<u64> = files
-        .map(|file| std::fs::metadata(snapshot::folder().join(file)).expect("a committed picture").len())
-        .collect();
+    let files = SHOTS
+        .iter()
+        .flat_map(|shot| ["png", "exr"].map(|extension| shot.folder().join(format!("{}.{extension}", shot.name))));
+    let sizes: Vec<u64> = files.map(|file| std::fs::metadata(file).expect("a committed picture").len()).collect();
     assert_eq!(sizes.len(), 2 * SHOTS.len());
     assert!(sizes.iter().all(|size| *size <= snapshot::LARGEST_FILE));
     assert!(sizes.iter().sum::<u64>() <= 24 << 20);

@@ -1,0 +1,304 @@
+//! The recipe `cdrf_shading` against what its parts promise: spheres, whose curvature is known, by every rung; the environment by quadrature;
+//! what is off; and what nobody should draw.
+
+use glam::{DVec3, Vec3};
+use lapidary_cdrf::oracle;
+use lapidary_harness::pixel::Viewer;
+use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
+use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_harness::scene::surfaces::sphere;
+use lapidary_harness::scene::{Light, Material, Object, Scene};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+const SIDE: u32 = 160;
+
+fn settings(rung: &str) -> Settings {
+    let rung = rung.parse().expect(rung);
+    Settings { rung, samples: 1, light_from_environment: false, reflection: false, ..Settings::of_size(SIDE, SIDE) }
+}
+
+fn draw(scene: &Scene, settings: &Settings) -> Picture {
+    render::render(super::gpu(), scene, settings).expect("rendered")
+}
+
+/// A sphere of this radius and these widths, under a sun and a lamp.
+fn ball(radius: f64, sigma0: Vec3) -> Scene {
+    let mut scene = Scene::named("skin").expect("built in");
+    let material = Material { sigma0: Some(sigma0), ..scene.objects[0].material.clone() };
+    scene.objects = vec![Object { name: "ball".to_owned(), mesh: sphere(radius, 256), material }];
+    let lamp = 2.5 * radius as f32 * Vec3::new(0.6, 0.0, 0.8);
+    scene.lights = vec![
+        Light::Directional { toward: Vec3::new(-0.8, 0.6, 0.0), irradiance: Vec3::new(2.0, 1.5, 1.0) },
+        Light::Point { position: lamp, intensity: (radius * radius) as f32 * Vec3::new(0.5, 1.0, 2.0) },
+    ];
+    scene.seen_from(80.0, 20.0)
+}
+
+/// What a pixel of a ball about the origin should show, by the oracle's convolution for each light.
+fn expected(scene: &Scene, position: DVec3, radius: f64, reflectance: impl Fn(f64, f64) -> f64) -> DVec3 {
+    let material = &scene.objects[0].material;
+    let normal = position.normalize();
+    let mut received = DVec3::ZERO;
+    for light in &scene.lights {
+        let (toward, irradiance) = match *light {
+            Light::Directional { toward, irradiance } => (toward.as_dvec3().normalize(), irradiance.as_dvec3()),
+            Light::Point { position: place, intensity } => {
+                let way = place.as_dvec3() - position;
+                (way.normalize(), intensity.as_dvec3() / way.length_squared())
+            }
+        };
+        let sigma = material.sigma0.expect("given").as_dvec3() / radius;
+        received +=
+            irradiance * DVec3::from_array(sigma.to_array().map(|sigma| reflectance(normal.dot(toward), sigma)));
+    }
+    material.base_color.as_dvec3() * received * FRAC_1_PI
+}
+
+/// The pixels that lie wholly on the ball, with their places on it.
+fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
+    let viewer = Viewer::new(scene, SIDE, SIDE);
+    let mut found = Vec::new();
+    for (index, [r, g, b, alpha]) in (0..).zip(&picture.linear) {
+        let (row, column): (u32, u32) = (index / SIDE, index % SIDE);
+        let point = viewer.see(&scene.objects[0].mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
+        if let (Some(point), 1.0) = (point, *alpha) {
+            found.push((point.position.as_dvec3(), DVec3::new((*r).into(), (*g).into(), (*b).into())));
+        }
+    }
+    assert!(found.len() > 5000, "{} pixels", found.len());
+    found
+}
+
+/// Normals interpolated over a mesh of 256 columns are off by (2 pi / 256)^2 / 8 = 7.5e-5 in length, less in direction; curvature by
+/// derivatives by .4 %, as the curvature's own test has it. Sigma times the largest slope of the function over sigma, .4, is what that does.
+const MESH: f64 = 1.5e-3;
+
+#[test]
+fn every_rung_shows_the_convolution_on_a_sphere() {
+    // The rungs' own largest errors: the page's table.
+    let rungs = [
+        ("lambert", 0.0),
+        ("table-256-rgba8", 2.1e-3),
+        ("table-257-rgba16f", 6e-4),
+        ("table-257-r32f", 6e-4),
+        ("cheap", 1.5e-5),
+        ("accurate", 1e-6),
+        ("quadrature", 1e-6),
+        ("spherical", 2e-6),
+    ];
+    let curvatures = [Curvature::Mean, Curvature::Towards, Curvature::Vertex];
+    for (radius, sigma0) in [(10.0, Vec3::new(8.0, 4.0, 1.0)), (0.01, Vec3::new(0.0, 0.001, 0.004))] {
+        let scene = ball(radius, sigma0);
+        for (rung, error) in rungs {
+            for curvature in if rung == "accurate" { &curvatures[..] } else { &curvatures[..1] } {
+                let curvature = *curvature;
+                let picture = draw(&scene, &Settings { curvature, ..settings(rung) });
+                let mut worst = 0.0f64;
+                for (position, found) in on_the_ball(&scene, &picture) {
+                    let truth = expected(&scene, position, radius, |cosine, sigma| match rung {
+                        "lambert" => cosine.max(0.0),
+                        "spherical" => oracle::spherical(cosine, sigma),
+                        _ => oracle::accurate(cosine, sigma),
+                    });
+                    worst = worst.max((found - truth).abs().max_element());
+                }
+                // Both lights together, times the albedo over pi.
+                let scale = 1.2;
+                println!("{rung} {}, radius {radius}: off by {worst:.1e}", curvature.name());
+                assert!(worst <= scale * (error + MESH), "{rung} {curvature:?} {radius}: {worst}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_usual_curvature_depends_on_the_view() {
+    let scene = ball(10.0, Vec3::splat(6.0));
+    let worst = |curvature| {
+        let picture = draw(&scene, &Settings { curvature, ..settings("accurate") });
+        let off = |(position, found): (DVec3, DVec3)| {
+            (found - expected(&scene, position, 10.0, oracle::accurate)).abs().max_element()
+        };
+        on_the_ball(&scene, &picture).into_iter().map(off).fold(0.0, f64::max)
+    };
+    let [mean, naive] = [Curvature::Mean, Curvature::Naive].map(worst);
+    println!("mean {mean:.1e}, |dN| / |dP| {naive:.1e}");
+    assert!(naive > 5.0 * mean, "{naive} {mean}");
+}
+
+/// The smaller the sphere the further light creeps past the terminator, and red further than blue.
+#[test]
+fn light_creeps_further_on_smaller_spheres_and_red_further_than_blue() {
+    let radii = [40.0, 24.0, 14.0, 8.0, 5.0];
+    let past = radii.map(|radius| {
+        let mut scene =
+            ball(radius, Scene::named("skin").expect("built in").objects[0].material.sigma0.expect("skin's"));
+        scene.lights.truncate(1);
+        scene.lights[0] = Light::Directional { toward: Vec3::NEG_X, irradiance: Vec3::ONE };
+        let white = Material { base_color: Vec3::ONE, ..scene.objects[0].material.clone() };
+        scene.objects[0].material = white;
+        let picture = draw(&scene, &settings("accurate"));
+        let (sum, count) = on_the_ball(&scene, &picture)
+            .into_iter()
+            .filter(|(position, _)| (0.2..0.3).contains(&(position.x / radius)))
+            .fold((DVec3::ZERO, 0), |(sum, count), (_, found)| (sum + found, count + 1));
+        assert!(count > 50);
+        PI * sum / f64::from(count)
+    });
+    println!("share of the sun's light 12 to 17 degrees past the terminator: {past:.3?}");
+    assert!(past.windows(2).all(|pair| pair[1].cmpgt(pair[0]).all()), "{past:?}");
+    assert!(past.iter().all(|share| share.x > share.y && share.y > share.z), "{past:?}");
+}
+
+/// The environment through the spherical form, summed over all directions.
+#[test]
+fn the_environment_is_the_integral_of_the_spherical_form() {
+    let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
+    let scene = Scene { lights: Vec::new(), ..ball(10.0, Vec3::new(8.0, 3.0, 0.0)) };
+    let albedo = scene.objects[0].material.base_color.as_dvec3();
+    for at_vertices in [false, true] {
+        let lit = |environment: &Environment| Settings {
+            light_from_environment: true,
+            environment_at_vertices: at_vertices,
+            environment: environment.clone(),
+            ..settings("spherical")
+        };
+        // All around alike: what the surface sends back is its albedo, at any width.
+        for (_, found) in on_the_ball(&scene, &draw(&scene, &lit(&ones))) {
+            assert!((found - albedo).abs().max_element() < 1e-5, "{found} {albedo}");
+        }
+        let picture = draw(&scene, &lit(&Environment::Studio));
+        let pixels = on_the_ball(&scene, &picture);
+        let (mut worst, mut squares, mut brightest) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        let chosen: Vec<_> = pixels.iter().step_by(pixels.len() / 40).collect();
+        for (position, found) in &chosen {
+            let truth = albedo * integral(position.normalize(), DVec3::new(0.8, 0.3, 0.0)) * FRAC_1_PI;
+            let off = (*found - truth).abs();
+            worst = worst.max(off);
+            squares += off * off;
+            brightest = brightest.max(truth);
+        }
+        let rms = (squares / chosen.len() as f64).powf(0.5) / brightest;
+        println!(
+            "at vertices {at_vertices}: widths .8, .3, 0: largest error {:.4}, rms {rms:.4}, of the brightest",
+            worst / brightest
+        );
+        // What is left out, degree 6 and higher even ones, is 1/128 of a point light's power for a clamped cosine, less when it is blurred.
+        assert!((worst / brightest).max_element() < 0.02, "{worst} {brightest}");
+        assert!(rms.x < 0.003 && rms.x < rms.z, "{rms}");
+    }
+}
+
+/// ∫ f_r L over the sphere for three widths, on a grid of 256 × 512 directions.
+fn integral(normal: DVec3, sigma: DVec3) -> DVec3 {
+    const ROWS: u32 = 256;
+    let mut sum = DVec3::ZERO;
+    for row in 0..ROWS {
+        let polar = PI * (f64::from(row) + 0.5) / f64::from(ROWS);
+        let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(ROWS)).cos());
+        let solid_angle = (edges[0] - edges[1]) * PI / f64::from(ROWS);
+        for column in 0..2 * ROWS {
+            let azimuth = PI * (f64::from(column) + 0.5) / f64::from(ROWS);
+            let (sine, height) = polar.sin_cos();
+            let direction = DVec3::new(sine * azimuth.cos(), height, sine * azimuth.sin());
+            let cosine = normal.dot(direction) as f32;
+            let f = sigma.to_array().map(|sigma| f64::from(lapidary_cdrf::spherical(cosine, sigma as f32)));
+            sum += solid_angle * DVec3::from_array(f) * lapidary_environment::oracle::studio(direction);
+        }
+    }
+    sum
+}
+
+/// On a torus, curved one way much more than the other, the blur in the texture and the reflectance agree where the light comes along the tube's
+/// round; both leave Lambert's law far behind.
+#[test]
+fn the_blur_agrees_with_the_reflectance_on_a_slender_ring() {
+    let mut scene = Scene::named("wax_ring").expect("built in");
+    scene.objects[0].mesh = lapidary_harness::scene::surfaces::torus(40.0, 4.0, 320, 64);
+    scene.objects[0].material.sigma0 = Some(Vec3::splat(2.0));
+    scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE }];
+    let scene = scene.seen_from(60.0, 0.0);
+    let [lambert, blur, towards] = ["lambert", "blur", "accurate"]
+        .map(|rung| draw(&scene, &Settings { curvature: Curvature::Towards, ..settings(rung) }));
+    let distance = |picture: &Picture| {
+        let squares = picture.linear.iter().zip(&blur.linear).map(|(a, b)| f64::from(a[1] - b[1]).powi(2));
+        (squares.sum::<f64>() / picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count() as f64).sqrt()
+    };
+    let [lambert, towards] = [distance(&lambert), distance(&towards)];
+    println!("root mean square from the blur: Lambert {lambert:.4}, the reflectance {towards:.4}");
+    assert!(towards < 0.1 * lambert, "{towards} {lambert}");
+}
+
+#[test]
+fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
+    let rungs = ["wrap", "table-256-rgba8", "table-257-r32f", "cheap", "accurate", "quadrature", "spherical", "blur"];
+    let by_rung = rungs.map(|rung| (rung, Curvature::Mean));
+    let by_curvature = Curvature::ALL.map(|curvature| ("accurate", curvature));
+    for (rung, curvature) in by_rung.into_iter().chain(by_curvature) {
+        // Balls side by side, each of another kind.
+        let mut scene = ball(10.0, Vec3::ONE);
+        let sound = scene.objects[0].clone();
+        let kinds: [(Vec3, Option<Vec3>); 8] = [
+            (Vec3::ZERO, None),
+            (Vec3::NEG_ONE, None),
+            (Vec3::new(f32::NAN, 1.0, f32::NAN), None),
+            (Vec3::new(f32::INFINITY, 1.0, 0.0), None),
+            (Vec3::splat(1e-40), None),
+            (Vec3::splat(1e30), None),
+            (Vec3::splat(3.0), Some(Vec3::ZERO)),
+            (Vec3::splat(3.0), Some(Vec3::Y)),
+        ];
+        scene.objects = (0..)
+            .zip(kinds)
+            .map(|(place, (sigma0, normal))| {
+                let offset = DVec3::new(f64::from(place % 3), f64::from(place / 3), 0.0) * 25.0;
+                let mut object = Object { mesh: sound.mesh.placed(glam::DQuat::IDENTITY, offset), ..sound.clone() };
+                object.material.sigma0 = Some(sigma0);
+                if let Some(normal) = normal {
+                    object.mesh.normals.fill(normal);
+                }
+                // A triangle without area among them.
+                object.mesh.indices.extend([0, 0, 0]);
+                object
+            })
+            .collect();
+        let picture =
+            draw(&scene.seen_from(90.0, 0.0), &Settings { light_from_environment: true, curvature, ..settings(rung) });
+        let mut seen = 0;
+        for pixel in picture.linear.iter().filter(|pixel| pixel[3] == 1.0) {
+            let finite = pixel.iter().all(|value| value.is_finite() && *value >= 0.0);
+            assert!(finite && pixel[..3].iter().any(|value| *value > 0.0), "{rung} {curvature:?}: {pixel:?}");
+            seen += 1;
+        }
+        assert!(seen > 8000, "{seen} pixels");
+    }
+}
+
+#[test]
+fn what_is_off_leaves_no_trace() {
+    let scene = ball(10.0, Vec3::ZERO);
+    let bits = |settings: &Settings| draw(&scene, settings).linear;
+    assert_eq!(bits(&settings("accurate")), bits(&settings("lambert")), "no width, no scattering");
+    let lit = Settings { light_from_environment: true, reflection: true, ..settings("lambert") };
+    assert_ne!(bits(&lit), bits(&settings("lambert")));
+    let rough = Settings { light_from_environment: true, ..settings("lambert") };
+    assert_eq!(bits(&lit), bits(&rough), "only what is polished mirrors");
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let refused = |scene: &Scene, rung: &str| render::render(super::gpu(), scene, &settings(rung)).expect_err(rung);
+    let mut scene = ball(10.0, Vec3::ONE);
+    scene.objects[0].mesh.uvs.clear();
+    let error = refused(&scene, "blur");
+    assert!(
+        matches!(error, RenderError::NoTextureCoordinates { .. }) && error.to_string().contains("TEXCOORD_0"),
+        "{error}"
+    );
+    scene.objects[0].material.sigma0 = None;
+    let error = refused(&scene, "accurate");
+    assert!(matches!(error, RenderError::NoSigma0 { .. }) && error.to_string().contains("sigma0"), "{error}");
+    scene.objects[0].material.medium = None;
+    let stone = Scene::named("brilliant").expect("built in");
+    assert!(matches!(refused(&stone, "cheap"), RenderError::NoSigma0 { .. }));
+}
