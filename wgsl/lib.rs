@@ -64,6 +64,7 @@ pub const MODULES: &[Module] = modules![
     "dispersion",
     "environment",
     "fresnel",
+    "microfacet",
     "proxy_geometry",
     "refraction",
     "srgb",

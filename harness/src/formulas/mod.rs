@@ -10,6 +10,7 @@ mod curvature;
 mod dispersion;
 mod environment;
 mod fresnel;
+mod microfacet;
 mod proxy_geometry;
 mod refraction;
 mod srgb;
@@ -32,6 +33,7 @@ pub fn all() -> &'static [Formula] {
             dispersion::formulas(),
             environment::formulas(),
             fresnel::formulas(),
+            microfacet::formulas(),
             proxy_geometry::formulas(),
             refraction::formulas(),
             srgb::formulas(),

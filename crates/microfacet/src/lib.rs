@@ -1,0 +1,80 @@
+//! Rust mirror of `wgsl/microfacet.wgsl`, line by line: the highlight of a rough dielectric surface. Units, domain and
+//! accuracy stand above the WGSL functions.
+
+pub mod oracle;
+
+use glam::Vec3;
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// Smoother surfaces count as this one.
+pub const MICROFACET_SMOOTHEST: f32 = 0.001;
+/// The divisor of the visibility is at least this.
+pub const MICROFACET_GRAZING: f32 = 1e-24;
+/// The squared sum of two unit vectors that counts as the least.
+pub const MICROFACET_OPPOSITE: f32 = 1e-30;
+
+/// Distribution of the facets' normals by Trowbridge and Reitz, 1/sr, with the squared sine by Lagrange's identity.
+pub fn distribution(normal: Vec3, half: Vec3, alpha: f32) -> f32 {
+    let a = alpha.clamp(MICROFACET_SMOOTHEST, 1.0);
+    let cosine = normal.dot(half);
+    let across = normal.cross(half);
+    let cosine_squared = cosine * cosine;
+    let sine_squared = across.dot(across);
+    let spread = a * a * cosine_squared + sine_squared;
+    if spread <= 0.0 {
+        return 0.0;
+    }
+    let quotient = a * (cosine_squared + sine_squared) / spread;
+    FRAC_1_PI * quotient * quotient
+}
+
+/// The distribution from the cosine alone, a naive form.
+pub fn distribution_naive(cosine: f32, alpha: f32) -> f32 {
+    let squared = alpha * alpha;
+    let spread = cosine * cosine * (squared - 1.0) + 1.0;
+    squared / (PI * spread * spread)
+}
+
+/// Smith's height-correlated masking and shadowing over 4 (n . l) (n . v).
+pub fn visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
+    let a = alpha.clamp(MICROFACET_SMOOTHEST, 1.0);
+    let l = cosine_light.clamp(0.0, 1.0);
+    let v = cosine_eye.clamp(0.0, 1.0);
+    let squared = a * a;
+    let rest = (1.0 - a) * (1.0 + a);
+    let shadowing = v * (squared + rest * l * l).sqrt();
+    let masking = l * (squared + rest * v * v).sqrt();
+    0.5 / (shadowing + masking).max(MICROFACET_GRAZING)
+}
+
+/// The same quotient, numerator and divisor each by itself, a naive form.
+pub fn visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
+    let squared = alpha * alpha;
+    let tangent_light = 1.0 / (cosine_light * cosine_light) - 1.0;
+    let tangent_eye = 1.0 / (cosine_eye * cosine_eye) - 1.0;
+    let lambda_light = 0.5 * ((1.0 + squared * tangent_light).sqrt() - 1.0);
+    let lambda_eye = 0.5 * ((1.0 + squared * tangent_eye).sqrt() - 1.0);
+    1.0 / (1.0 + lambda_light + lambda_eye) / (4.0 * cosine_light * cosine_eye)
+}
+
+/// Normal of the facets that reflect the light into the eye; 0 for opposite directions.
+pub fn half(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
+    let sum = toward_light + toward_eye;
+    sum / sum.dot(sum).max(MICROFACET_OPPOSITE).sqrt()
+}
+
+/// The sum normalized, a naive form.
+pub fn half_naive(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
+    (toward_light + toward_eye).normalize()
+}
+
+/// BRDF times n . l, in 1/sr, for the facets' share `fresnel` of reflected light.
+pub fn reflectance(normal: Vec3, toward_light: Vec3, toward_eye: Vec3, alpha: f32, fresnel: f32) -> f32 {
+    let half = half(toward_light, toward_eye);
+    let cosine_light = normal.dot(toward_light).max(0.0);
+    let visibility = visibility(cosine_light, normal.dot(toward_eye), alpha);
+    fresnel * distribution(normal, half, alpha) * visibility * cosine_light
+}
+
+#[cfg(test)]
+mod tests;

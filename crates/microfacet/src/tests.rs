@@ -1,0 +1,206 @@
+//! What the distribution and the masking must make together: areas, energy, reciprocity; and the tables of docs/microfacet.md.
+
+use super::*;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const ALPHAS: [f64; 6] = [0.001, 0.01, 0.1, 0.25, 0.5, 1.0];
+
+/// A distribution, from normal, half and alpha.
+type Distribution = fn(DVec3, DVec3, f64) -> f64;
+/// A visibility, from both cosines and alpha.
+type Visibility = fn(f64, f64, f64) -> f64;
+
+const ORACLE: (Distribution, Visibility) = (oracle::distribution, oracle::visibility);
+const MIRROR: (Distribution, Visibility) = (
+    |normal, half, alpha| distribution(normal.as_vec3(), half.as_vec3(), alpha as f32).into(),
+    |light, eye, alpha| visibility(light as f32, eye as f32, alpha as f32).into(),
+);
+
+/// A direction towards an eye of this cosine to +z.
+fn eye(cosine: f64) -> DVec3 {
+    DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
+}
+
+/// Integral over all facet normals above the surface, by midpoints: `count` azimuths of half a turn, for functions even in y, and
+/// as many angles to the normal. The share u = tan² / (α² + tan²) of facets below an angle is taken as w² (3 - 2 w), w uniform in [0, 1]:
+/// so the angles lie close together near `alpha`, and ever closer towards either end. The midpoints of du / dw itself are off by step² / 2.
+fn over_facets(alpha: f64, count: u32, integrand: impl Fn(DVec3) -> f64) -> f64 {
+    let step = 1.0 / f64::from(count);
+    let midpoints = || (0..count).map(|index| (f64::from(index) + 0.5) * step);
+    let ring = |w: f64| {
+        let (below, above) = (w * w * (3.0 - 2.0 * w), (1.0 - w) * (1.0 - w) * (1.0 + 2.0 * w));
+        let tangent = alpha * (below / above).sqrt();
+        let angle = tangent.atan();
+        // dangle / du, then du / dw.
+        let stretch = (alpha * angle.cos() / above).powi(2) / (2.0 * tangent) * 6.0 * w * (1.0 - w);
+        let at = |azimuth: f64| DVec3::new(angle.sin() * azimuth.cos(), angle.sin() * azimuth.sin(), angle.cos());
+        stretch * angle.sin() * midpoints().map(|turn| integrand(at(PI * turn))).sum::<f64>()
+    };
+    2.0 * PI * step * step * midpoints().map(ring).sum::<f64>()
+}
+
+/// The share of light from the eye's direction that facets which reflect everything send anywhere above the surface: the integral of
+/// D V n.l over directions of light, each reflected by its facet, of solid angle 4 (v . h) times the facet's.
+fn albedo((distribution, visibility): (Distribution, Visibility), cosine: f64, alpha: f64, count: u32) -> f64 {
+    let eye = eye(cosine);
+    over_facets(alpha, count, |facet| {
+        let facing = eye.dot(facet);
+        let light = 2.0 * facing * facet.z - eye.z;
+        if facing <= 0.0 || light <= 0.0 {
+            return 0.0;
+        }
+        4.0 * facing * distribution(DVec3::Z, facet, alpha) * visibility(light, eye.z, alpha) * light
+    })
+}
+
+#[test]
+fn facets_cover_the_surface_that_they_are_on() {
+    for alpha in ALPHAS {
+        for (distribution, _) in [ORACLE, MIRROR] {
+            let covered = over_facets(alpha, 400, |facet| distribution(DVec3::Z, facet, alpha) * facet.z);
+            assert!((covered - 1.0).abs() < 1e-5, "alpha {alpha}: {covered}");
+        }
+    }
+}
+
+/// The weak white furnace (Heitz 2014, section 5.2): facets seen from any direction, less those hidden, cover what the surface covers. It ties
+/// the masking to the distribution: no other masking of this kind passes. A light above the normal is hidden by nothing, so
+/// there the visibility is the eye's masking alone, over 4 n . v.
+#[test]
+fn masking_leaves_the_facets_that_are_seen() {
+    for alpha in ALPHAS {
+        for cosine in [1.0, 0.7, 0.3, 0.1] {
+            for (distribution, visibility) in [ORACLE, MIRROR] {
+                let masking = 4.0 * cosine * visibility(1.0, cosine, alpha);
+                let seen = over_facets(alpha, 600, |facet| {
+                    masking * eye(cosine).dot(facet).max(0.0) * distribution(DVec3::Z, facet, alpha) / cosine
+                });
+                assert!((seen - 1.0).abs() < 1e-4, "alpha {alpha}, cosine {cosine}: {seen}");
+            }
+        }
+    }
+}
+
+/// 1 / G2 = 1 / G1(l) + 1 / G1(v) - 1 is what sets height-correlated masking apart from the product G1(l) G1(v).
+#[test]
+fn masking_and_shadowing_are_correlated_by_height() {
+    let inverse = |light: f64, eye: f64, alpha| 1.0 / (4.0 * light * eye * oracle::visibility(light, eye, alpha));
+    for alpha in ALPHAS {
+        for (light, eye) in [(0.9, 0.8), (0.5, 0.1), (0.01, 0.02), (1.0, 0.3)] {
+            let apart = inverse(1.0, eye, alpha) + inverse(light, 1.0, alpha) - 1.0;
+            let found = inverse(light, eye, alpha);
+            assert!((found - apart).abs() < 1e-12 * found, "{light} {eye} {alpha}: {found} {apart}");
+        }
+    }
+}
+
+#[test]
+fn no_more_light_leaves_than_came() {
+    for alpha in ALPHAS {
+        for cosine in [1.0, 0.7, 0.3, 0.1, 0.03] {
+            for parts in [ORACLE, MIRROR] {
+                let found = albedo(parts, cosine, alpha, 300);
+                assert!((0.3..1.0 + 1e-4).contains(&found), "alpha {alpha}, cosine {cosine}: {found}");
+            }
+        }
+    }
+    // Single scattering misses what a second facet reflects, ever less of it on smoother surfaces.
+    for cosine in [1.0, 0.7, 0.3] {
+        let missing: Vec<f64> =
+            [0.25, 0.1, 0.01, 0.001].iter().map(|alpha| 1.0 - albedo(ORACLE, cosine, *alpha, 600)).collect();
+        assert!(missing.is_sorted_by(|rougher, smoother| rougher > smoother), "cosine {cosine}: {missing:?}");
+        assert!(missing[3] < 2e-4, "cosine {cosine}: {missing:?}");
+    }
+}
+
+#[test]
+fn light_and_eye_may_change_places() {
+    let mut count = 0;
+    for index in 0..20_000u32 {
+        // Two directions and a width, spread by the golden ratio and its like (Roberts' sequence in five dimensions).
+        let at = |power: i32| (f64::from(index) * 1.167_304_f64.powi(-power)).fract();
+        let toward = |turn: f64, cosine: f64| {
+            let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
+            DVec3::new(sine * (2.0 * PI * turn).cos(), sine * (2.0 * PI * turn).sin(), cosine).as_vec3()
+        };
+        let [light, eye] = [toward(at(1), at(2)), toward(at(3), at(4))];
+        let alpha = at(5) as f32;
+        let there = reflectance(Vec3::Z, light, eye, alpha, 0.04) * eye.z;
+        let back = reflectance(Vec3::Z, eye, light, alpha, 0.04) * light.z;
+        assert!((there - back).abs() <= 1e-6 * there, "{light} {eye} {alpha}: {there} {back}");
+        count += u32::from(there > 0.0);
+    }
+    assert!(count > 15_000, "{count}");
+}
+
+/// A smooth surface reflects a point light from one place only: all of the highlight's light is within a few alpha of it.
+#[test]
+fn highlight_narrows_with_alpha() {
+    let within = |alpha: f64, angle: f64| -> f64 {
+        over_facets(alpha, 400, |facet| {
+            let inside = facet.z.acos() < angle;
+            if inside { oracle::distribution(DVec3::Z, facet, alpha) * facet.z } else { 0.0 }
+        })
+    };
+    for alpha in [0.001, 0.01, 0.1] {
+        // The share of slopes below t is t² / (α² + t²).
+        for widths in [1.0f64, 3.0] {
+            let angle = (widths * alpha).atan();
+            let share = widths * widths / (1.0 + widths * widths);
+            assert!((within(alpha, angle) - share).abs() < 3e-3, "{alpha} {widths}: {}", within(alpha, angle));
+        }
+        assert!((within(alpha, FRAC_PI_2) - 1.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn naive_forms_are_those_formulas() {
+    for i in 0..50 {
+        for j in 0..50 {
+            let (cosine, alpha) = (0.05 + 0.019 * f64::from(i), 0.3 + 0.014 * f64::from(j));
+            let exact = oracle::distribution_naive(cosine, alpha);
+            let found = f64::from(distribution_naive(cosine as f32, alpha as f32));
+            assert!((found - exact).abs() < 3e-5 * exact, "{cosine} {alpha}: {found} {exact}");
+            assert!((exact - oracle::distribution(DVec3::Z, eye(cosine), alpha)).abs() < 1e-12 * exact);
+            let exact = oracle::visibility_naive(cosine, alpha, alpha);
+            let found = f64::from(visibility_naive(cosine as f32, alpha as f32, alpha as f32));
+            assert!((found - exact).abs() < 3e-6 * exact, "{cosine} {alpha}: {found} {exact}");
+        }
+    }
+}
+
+/// The first table of docs/microfacet.md: what facets of reflectance 1 give back, and so what single scattering loses.
+#[test]
+fn table_of_albedos_is_current() {
+    let mut table = String::new();
+    for alpha in [0.01, 0.1, 0.25, 0.5, 1.0] {
+        table += &format!("| {alpha} |");
+        for cosine in [1.0, 0.7, 0.3, 0.1] {
+            table += &format!(" {:.3} |", albedo(ORACLE, cosine, alpha, 600));
+        }
+        table += "\n";
+    }
+    let page = include_str!("../../../docs/microfacet.md");
+    assert!(page.contains(&table), "docs/microfacet.md should hold:\n{table}");
+}
+
+/// The second: the largest relative error of each form in f32 within five alpha of a normal along z.
+#[test]
+fn table_of_errors_is_current() {
+    let mut table = String::new();
+    for alpha in [0.1f32, 0.03, 0.01, 0.003, 0.001] {
+        let (mut stable, mut naive) = (0.0f64, 0.0f64);
+        for index in 0..2000 {
+            let angle = 5.0 * f64::from(alpha) * f64::from(index) / 2000.0;
+            let facet = DVec3::new(0.6 * angle.sin(), 0.8 * angle.sin(), angle.cos()).as_vec3();
+            let exact = oracle::distribution(DVec3::Z, facet.as_dvec3(), alpha.into());
+            let error = |found: f32| (f64::from(found) - exact).abs() / exact;
+            stable = stable.max(error(distribution(Vec3::Z, facet, alpha)));
+            naive = naive.max(error(distribution_naive(facet.z, alpha)));
+        }
+        table += &format!("| {alpha} | {naive:.1e} | {stable:.1e} |\n");
+    }
+    let page = include_str!("../../../docs/microfacet.md");
+    assert!(page.contains(&table), "docs/microfacet.md should hold:\n{table}");
+}
