@@ -25,10 +25,9 @@ pub(super) struct Diffusion<'gpu> {
     charts: Vec<Chart>,
 }
 
-/// What it reads of the mesh, in the order of its bindings.
+/// What it reads of the mesh as it is shown.
 pub(super) struct MeshBuffers<'a> {
     pub(super) positions: &'a wgpu::Buffer,
-    pub(super) indices: &'a wgpu::Buffer,
     pub(super) normals: &'a wgpu::Buffer,
     pub(super) uvs: &'a wgpu::Buffer,
 }
@@ -56,9 +55,13 @@ impl<'gpu> Diffusion<'gpu> {
         )?;
         let Layout { repeats, charts } = Layout::of(&object.mesh);
         let textures = TextureDiffusion::new(gpu, [SIDE; 2], [repeats.x, repeats.y])?;
+        // Halos first, so that of two that touch a texel the chart's own triangle stays.
+        let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
+        let vertices = device::mesh_vertices(gpu, object, &drawn, [bytemuck::cast_slice(&drawn)])?;
         let groups = gpu.guarded("uploading a mesh", |device| {
+            let indices = device::buffer(device, bytemuck::cast_slice(&drawn), wgpu::BufferUsages::STORAGE);
             let shared = [lights, harmonics].map(wgpu::Buffer::as_entire_binding);
-            let own = [mesh.positions, mesh.indices, mesh.normals, mesh.uvs].map(wgpu::Buffer::as_entire_binding);
+            let own = [mesh.positions, &indices, mesh.normals, mesh.uvs].map(wgpu::Buffer::as_entire_binding);
             [bind_group_from(device, &pipeline, 0, 2, shared.into()), bind_group(device, &pipeline, 1, own.into())]
         })?;
         Ok(Self {
@@ -66,7 +69,7 @@ impl<'gpu> Diffusion<'gpu> {
             textures,
             pipeline,
             groups,
-            vertices: object.mesh.indices.len() as u32,
+            vertices,
             taps: Taps::new(object.material.sigma0.unwrap_or_default()),
             charts: apart(charts.into_iter().map(texels).collect()),
         })
@@ -126,21 +129,4 @@ fn apart(mut charts: Vec<Chart>) -> Vec<Chart> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn boxes_that_touch_are_one() {
-        let chart = |low, high| Chart { low, high };
-        let apart_already = [chart([0, 0], [4, 4]), chart([6, 0], [9, 9])];
-        assert_eq!(apart(apart_already.to_vec()).len(), 2);
-        let chained = vec![chart([0, 0], [4, 4]), chart([8, 0], [12, 4]), chart([4, 2], [8, 9])];
-        assert_eq!(apart(chained), [chart([0, 0], [12, 9])]);
-    }
-
-    #[test]
-    fn a_box_covers_the_texels_that_it_touches() {
-        let found = texels([glam::Vec2::new(0.5 / 1024.0, -1.0), glam::Vec2::new(2.5 / 1024.0, 1.0)]);
-        assert_eq!(found, Chart { low: [0, 0], high: [3, 1024] });
-    }
-}
+mod tests;

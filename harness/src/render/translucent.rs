@@ -133,7 +133,7 @@ fn upload<'gpu>(
         gpu.guarded("uploading a mesh", |device| parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE)))?;
     let diffusion = match reflectance {
         Reflectance::Blur => {
-            let mesh = MeshBuffers { positions: &positions, indices: &indices, normals: &normals, uvs: &uvs };
+            let mesh = MeshBuffers { positions: &positions, normals: &normals, uvs: &uvs };
             Some(Diffusion::new(gpu, object, settings, lights_and_harmonics, &mesh)?)
         }
         _ => None,

@@ -62,7 +62,7 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 /// with a medium or a `sigma0` is not transmissive: others show its base colour, and `extras.lapidary` holds its
 /// numbers. Lights go by `KHR_lights_punctual`.
 ///
-/// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes, materials
+/// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes (without [`Mesh::halo`]), materials
 /// and lights back; of the camera it gives the same view, to rounding.
 ///
 /// # Errors
@@ -124,6 +124,8 @@ impl Document {
         if let Some(problem) = problem_of(mesh, &object.material) {
             return Err(GlbError::Object { object: object.name.clone(), problem });
         }
+        // glTF has no triangles that are not shown.
+        let mesh = &mesh.without_halo();
         let bounds = Bounds::of(mesh.positions.iter().copied());
         let position = self.vectors(mesh.positions.iter().map(Vec3::to_array));
         self.accessors[position]["min"] = json!(bounds.min.to_array());
@@ -225,7 +227,7 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
         Some("it has not one normal for each position; compute them again")
     } else if !mesh.uvs.is_empty() && mesh.uvs.len() != vertices {
         Some("it has neither one pair of texture coordinates for each position nor none; compute them again")
-    } else if !mesh.indices.iter().all(in_range) {
+    } else if !mesh.indices.iter().chain(&mesh.halo).all(in_range) {
         Some("an index is past its last vertex; mend the triangles")
     } else if !mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()) {
         Some("a position or normal is not finite; mend or remove the vertex")

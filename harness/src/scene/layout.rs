@@ -12,7 +12,8 @@ pub struct Layout {
     /// Whether the surface goes on across the texture's edges, along u and along v: vertices on one edge stand on the other too, at the
     /// same place.
     pub repeats: BVec2,
-    /// Lower and upper corner of each chart's box in texture coordinates. Charts are what triangles with common vertices make up.
+    /// Lower and upper corner of each chart's box in texture coordinates. Charts are what triangles with common vertices make up, halos
+    /// included.
     pub charts: Vec<[Vec2; 2]>,
 }
 
@@ -50,14 +51,14 @@ fn charts(mesh: &Mesh) -> Vec<[Vec2; 2]> {
         }
         vertex
     }
-    for triangle in mesh.indices.chunks_exact(3) {
+    for triangle in mesh.indices.chunks_exact(3).chain(mesh.halo.chunks_exact(3)) {
         let [a, b, c] = [0, 1, 2].map(|k| root(&mut parent, triangle[k]));
         parent[b as usize] = a;
         let c = root(&mut parent, c);
         parent[c as usize] = a;
     }
     let mut boxes: HashMap<u32, [Vec2; 2]> = HashMap::new();
-    for &vertex in &mesh.indices {
+    for &vertex in mesh.indices.iter().chain(&mesh.halo) {
         let uv = mesh.uvs[vertex as usize];
         let [low, high] = boxes.entry(root(&mut parent, vertex)).or_insert([uv, uv]);
         (*low, *high) = (low.min(uv), high.max(uv));

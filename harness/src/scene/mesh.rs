@@ -20,6 +20,9 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Three indices into `positions` for each triangle.
     pub indices: Vec<u32>,
+    /// Three indices into `positions` for each triangle that exists in texture space alone: a second copy of what lies beside a chart,
+    /// drawn beside it, so that a blur there sees across the chart's border. Empty where there are none; only texture diffusion reads it.
+    pub halo: Vec<u32>,
 }
 
 impl Mesh {
@@ -28,7 +31,7 @@ impl Mesh {
     #[must_use]
     pub fn with_shared_normals(positions: Vec<Vec3>, indices: Vec<u32>, averaging: Averaging) -> Self {
         let normals = shared_normals(&positions, &indices, averaging);
-        Self { positions, normals, uvs: Vec::new(), indices }
+        Self { positions, normals, uvs: Vec::new(), indices, halo: Vec::new() }
     }
 
     /// The mesh turned by `rotation`, of unit length, and then moved by `translation`.
@@ -41,6 +44,33 @@ impl Mesh {
             normals: self.normals.iter().map(normal).collect(),
             uvs: self.uvs.clone(),
             indices: self.indices.clone(),
+            halo: self.halo.clone(),
+        }
+    }
+
+    /// The mesh without `halo` and without the vertices of that alone.
+    #[must_use]
+    pub fn without_halo(&self) -> Self {
+        let count = self.positions.len();
+        let mut kept = vec![true; count];
+        for (list, keep) in [(&self.halo, false), (&self.indices, true)] {
+            list.iter().for_each(|&vertex| kept[vertex as usize] = keep);
+        }
+        let places = kept.iter().scan(0u32, |next, &keep| {
+            let place = *next;
+            *next += u32::from(keep);
+            Some(place)
+        });
+        let places: Vec<u32> = places.collect();
+        fn filtered<T: Copy>(list: &[T], kept: &[bool]) -> Vec<T> {
+            list.iter().zip(kept).filter(|(_, keep)| **keep).map(|(value, _)| *value).collect()
+        }
+        Self {
+            positions: filtered(&self.positions, &kept),
+            normals: filtered(&self.normals, &kept),
+            uvs: filtered(&self.uvs, &kept),
+            indices: self.indices.iter().map(|&vertex| places[vertex as usize]).collect(),
+            halo: Vec::new(),
         }
     }
 
@@ -55,7 +85,9 @@ impl Mesh {
         }
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
-        self.indices.extend(other.indices.iter().map(|index| first + index));
+        for (own, others) in [(&mut self.indices, &other.indices), (&mut self.halo, &other.halo)] {
+            own.extend(others.iter().map(|index| first + index));
+        }
     }
 
     /// The number of whole triangles.
@@ -90,6 +122,6 @@ impl Mesh {
     pub fn byte_size(&self) -> u64 {
         let vectors = self.positions.len() + self.normals.len();
         let uvs = self.uvs.len() * size_of::<Vec2>();
-        (vectors * size_of::<Vec3>() + uvs + self.indices.len() * size_of::<u32>()) as u64
+        (vectors * size_of::<Vec3>() + uvs + (self.indices.len() + self.halo.len()) * size_of::<u32>()) as u64
     }
 }

@@ -1,6 +1,6 @@
 use std::collections::{HashMap, HashSet};
 
-use glam::Quat;
+use glam::{DQuat, DVec3, Quat};
 
 use super::*;
 
@@ -310,4 +310,28 @@ fn bounds_hold_everything() {
     assert_eq!((bounds.centre(), bounds.max), (Vec3::ZERO, Vec3::ONE));
     assert!((bounds.radius() - 3f32.sqrt()).abs() < 1e-6);
     assert_eq!(Bounds::of([]).radius(), 0.0);
+}
+
+#[test]
+fn a_halo_goes_where_its_mesh_goes_and_stays_out_of_all_else() {
+    let bunny = Scene::named("skin_bunny").unwrap().objects.remove(0).mesh;
+    let bare = bunny.without_halo();
+    assert!(!bunny.halo.is_empty() && bare.halo.is_empty() && bare.positions.len() < bunny.positions.len());
+    assert_eq!(bunny.volume_and_area(), bare.volume_and_area());
+    let bounds = |mesh: &Mesh| Bounds::of(mesh.positions.iter().copied());
+    assert_eq!(bounds(&bunny), bounds(&bare));
+    let corners = |mesh: &Mesh, list: &[u32]| -> Vec<_> {
+        let vertex = |&k: &u32| (mesh.positions[k as usize], mesh.normals[k as usize], mesh.uvs[k as usize]);
+        list.iter().map(vertex).collect()
+    };
+    assert_eq!(corners(&bunny, &bunny.indices), corners(&bare, &bare.indices));
+    let moved = bunny.placed(DQuat::IDENTITY, DVec3::X);
+    assert_eq!(moved.halo, bunny.halo);
+    // Its vertices then stand between those of two bodies.
+    let mut both = bunny.clone();
+    both.append(&moved);
+    assert_eq!(corners(&both, &both.halo), [corners(&bunny, &bunny.halo), corners(&moved, &moved.halo)].concat());
+    let mut bare_both = bare.clone();
+    bare_both.append(&moved.without_halo());
+    assert_eq!(both.without_halo(), bare_both);
 }

@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap, HashMap};
 use super::super::normals::weld;
 use super::super::{Bounds, Mesh};
 
+mod halos;
+
 /// The least cosine between a triangle's normal and its chart's axis: that of 85°. What leans further is drawn so thin that
 /// texels say nothing of it, and at 90° turns over.
 pub(super) const LEAST_COSINE: f64 = 0.087_155_742_747_658_17;
@@ -50,14 +52,16 @@ impl Axis {
 pub(super) struct Chart {
     pub(super) axis: Axis,
     pub(super) triangles: Vec<u32>,
+    /// Triangles of other charts that are drawn about it.
+    pub(super) halo: Vec<u32>,
 }
 
 impl Chart {
-    /// Its triangles as they are drawn.
+    /// Its triangles and those of its halo as they are drawn.
     pub(super) fn drawn(&self, mesh: &Mesh) -> Vec<[DVec2; 3]> {
         let corner = |index: usize| self.axis.draw(mesh.positions[mesh.indices[index] as usize].as_dvec3());
         let triangle = |&number: &u32| [0, 1, 2].map(|k| corner(3 * number as usize + k));
-        self.triangles.iter().map(triangle).collect()
+        self.triangles.iter().chain(&self.halo).map(triangle).collect()
     }
 }
 
@@ -72,6 +76,8 @@ struct Surface {
     /// Unit; zero for a triangle without area.
     normals: Vec<DVec3>,
     areas: Vec<f64>,
+    /// The vertices of each triangle, those at one position being one.
+    vertices: Vec<[usize; 3]>,
     neighbours: Vec<Vec<u32>>,
     /// For each triangle the connected body that it belongs to.
     bodies: Vec<u32>,
@@ -88,12 +94,15 @@ impl Surface {
         let crosses = corners.iter().map(|[a, b, c]| (b - a).cross(c - a));
         let areas: Vec<f64> = crosses.clone().map(|cross| 0.5 * cross.length()).collect();
         let normals = crosses.map(DVec3::normalize_or_zero).collect();
-        let neighbours = neighbours(mesh);
+        let (welded, _) = weld(&mesh.positions);
+        let vertices = mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| welded[corners[k] as usize]));
+        let vertices: Vec<[usize; 3]> = vertices.collect();
+        let neighbours = neighbours(&vertices);
         let bodies = patches(&neighbours, |_| true);
         // Twice the side of a triangle of mean size.
         let side = 2.0 * (areas.iter().sum::<f64>() / areas.len() as f64).sqrt();
         let square = side.max(2.0 * f64::from(bounds.radius()) / MOST_SQUARES).max(f64::MIN_POSITIVE);
-        Self { corners, normals, areas, neighbours, bodies, square }
+        Self { corners, normals, areas, vertices, neighbours, bodies, square }
     }
 
     /// Where to grow these triangles from once more: from the one that faces their mean normal best.
@@ -117,19 +126,18 @@ impl Surface {
     }
 }
 
-/// For each triangle those that share an edge with it. Vertices at one position are one.
-fn neighbours(mesh: &Mesh) -> Vec<Vec<u32>> {
-    let (welded, _) = weld(&mesh.positions);
-    let mut edges: Vec<([usize; 2], u32)> = Vec::with_capacity(mesh.indices.len());
-    for (number, corners) in mesh.indices.chunks_exact(3).enumerate() {
+/// For each triangle, by its vertices, those that share an edge with it.
+fn neighbours(triangles: &[[usize; 3]]) -> Vec<Vec<u32>> {
+    let mut edges: Vec<([usize; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+    for (corners, number) in triangles.iter().zip(0..) {
         for (k, l) in [(0, 1), (1, 2), (2, 0)] {
-            let mut edge = [welded[corners[k] as usize], welded[corners[l] as usize]];
+            let mut edge = [corners[k], corners[l]];
             edge.sort_unstable();
-            edges.push((edge, number as u32));
+            edges.push((edge, number));
         }
     }
     edges.sort_unstable();
-    let mut neighbours = vec![Vec::new(); mesh.triangle_count()];
+    let mut neighbours = vec![Vec::new(); triangles.len()];
     for pair in edges.windows(2) {
         let [(edge, a), (other, b)] = [pair[0], pair[1]];
         if edge == other && a != b {
@@ -211,8 +219,8 @@ fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
     !apart(a, b) && !apart(b, a)
 }
 
-/// Cuts a mesh into charts; every triangle is in one.
-pub(super) fn charts(mesh: &Mesh) -> Vec<Chart> {
+/// Cuts a mesh into charts; every triangle is in one, and in the halos of others up to `reach` away along the surface.
+pub(super) fn charts(mesh: &Mesh, reach: f64) -> Vec<Chart> {
     let surface = Surface::of(mesh);
     let mut seeds: Vec<Seed> = Vec::new();
     let mut left_over = vec![true; surface.areas.len()];
@@ -234,8 +242,7 @@ pub(super) fn charts(mesh: &Mesh) -> Vec<Chart> {
         let grown = grow(&surface, &seeds, |chart, triangle| sheets[chart].take(&surface, triangle));
         left_over = in_none(&grown, left_over.len());
         if !left_over.contains(&true) {
-            let sheets = joined(&surface, sheets);
-            return sheets.into_iter().map(|sheet| Chart { axis: sheet.axis, triangles: sheet.triangles }).collect();
+            return halos::surrounded(&surface, joined(&surface, sheets), reach);
         }
         seeds.extend(further_seeds(&surface, &left_over));
     }

@@ -83,9 +83,9 @@ fn drawn(mesh: &Mesh) -> Vec<Vec<usize>> {
     texels
 }
 
-/// Asserts all that [`unwrap`] promises, and gives the share of the square that is used.
-fn check(name: &str, mesh: &Mesh) -> f64 {
-    let unwrapped = unwrap(mesh);
+/// Asserts all that [`unwrap`] promises, and gives the share of the square that is used, halos included.
+fn check(name: &str, mesh: &Mesh, halo: f32) -> f64 {
+    let unwrapped = unwrap(mesh, halo);
     assert_eq!(unwrapped.triangle_count(), mesh.triangle_count());
     assert_eq!(unwrapped.uvs.len(), unwrapped.positions.len());
     assert_eq!(unwrapped.normals.len(), unwrapped.positions.len());
@@ -94,11 +94,41 @@ fn check(name: &str, mesh: &Mesh) -> f64 {
         assert_eq!(corners_of(&mesh.positions, before), corners_of(&unwrapped.positions, after));
         assert_eq!(corners_of(&mesh.normals, before), corners_of(&unwrapped.normals, after));
     }
-    check_scale(&unwrapped);
-    let texels = drawn(&unwrapped);
+    check_halo(name, &unwrapped, halo);
+    let whole = with_halo_drawn(&unwrapped);
+    check_scale(&whole);
+    let texels = drawn(&whole);
     assert!(texels.iter().all(|charts| charts.len() <= 1), "{name}: a texel is drawn twice");
     check_gutters(name, &texels);
     texels.iter().filter(|charts| !charts.is_empty()).count() as f64 / (SIDE * SIDE) as f64
+}
+
+/// With the halo's triangles as its own, after all others.
+fn with_halo_drawn(mesh: &Mesh) -> Mesh {
+    Mesh { indices: [&mesh.indices[..], &mesh.halo].concat(), halo: Vec::new(), ..mesh.clone() }
+}
+
+/// A triangle of a halo is a second copy of one in another chart, and no farther from the chart that it surrounds than it may be.
+fn check_halo(name: &str, mesh: &Mesh, halo: f32) {
+    let numbers = chart_numbers(&with_halo_drawn(mesh));
+    let (own, about) = numbers.split_at(mesh.triangle_count());
+    let parts = |triangle: &[u32]| {
+        [corners_of(&mesh.positions, triangle), corners_of(&mesh.normals, triangle)]
+            .map(|part| part.map(|vector| vector.to_array().map(f32::to_bits)))
+    };
+    let mut charts_of: HashMap<_, Vec<usize>> = HashMap::new();
+    let mut corners: HashMap<usize, Vec<Vec3>> = HashMap::new();
+    for (triangle, &chart) in mesh.indices.chunks_exact(3).zip(own) {
+        charts_of.entry(parts(triangle)).or_default().push(chart);
+        corners.entry(chart).or_default().extend(corners_of(&mesh.positions, triangle));
+    }
+    for (triangle, &chart) in mesh.halo.chunks_exact(3).zip(about) {
+        assert!(charts_of[&parts(triangle)].iter().any(|&other| other != chart), "{name}: {triangle:?}");
+        // Along edges it is as far or farther; sums are rounded.
+        let nearest =
+            |position: Vec3| corners[&chart].iter().map(|&p| p.distance(position)).fold(f32::INFINITY, f32::min);
+        assert!(corners_of(&mesh.positions, triangle).into_iter().all(|p| nearest(p) <= halo * 1.00001), "{name}");
+    }
 }
 
 /// Seen along an axis, a triangle keeps its length along one direction and loses some along the other: of its map into the
@@ -152,16 +182,16 @@ fn check_gutters(name: &str, texels: &[Vec<usize>]) {
 fn the_bunny_is_drawn_once_in_few_charts_that_fill_half_the_square() {
     let mesh = mesh_of("bunny_stone");
     let start = std::time::Instant::now();
-    let count = charts::charts(&mesh).len();
+    let count = charts::charts(&mesh, 0.0).len();
     println!("{count} charts in {:?}", start.elapsed());
-    let unwrapped = unwrap(&mesh);
+    let unwrapped = unwrap(&mesh, 0.0);
     println!(
         "{} vertices of {} in {:?} with packing",
         unwrapped.positions.len(),
         mesh.positions.len(),
         start.elapsed()
     );
-    let used = check("bunny", &mesh);
+    let used = check("bunny", &mesh, 0.0);
     println!("{:.1} % of the square used", 100.0 * used);
     assert!(count <= 12 && used > 0.5, "{count} charts, {used}");
 }
@@ -169,7 +199,7 @@ fn the_bunny_is_drawn_once_in_few_charts_that_fill_half_the_square() {
 #[test]
 fn stones_are_drawn_once() {
     for name in ["octahedron", "brilliant", "brilliant_sliver", "prism_chain", "skin_ring"] {
-        let used = check(name, &mesh_of(name));
+        let used = check(name, &mesh_of(name), 0.0);
         println!("{name}: {:.1} % of the square used", 100.0 * used);
         assert!(used > 0.3, "{name}: {used}");
     }
@@ -182,32 +212,63 @@ fn a_cube_has_a_chart_for_each_side_that_one_view_hides() {
     let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
     let cube = Mesh::with_shared_normals((0..8).map(corner).collect(), indices, Averaging::Angle);
     // Along a diagonal three sides are seen at once.
-    assert_eq!(charts::charts(&cube).len(), 2);
-    check("cube", &cube);
+    assert_eq!(charts::charts(&cube, 0.0).len(), 2);
+    check("cube", &cube, 0.0);
     // As a soup of triangles too: a position is one vertex.
     let positions: Vec<Vec3> = cube.triangles().flatten().collect();
     let soup = Mesh::with_shared_normals(positions, (0..36).collect(), Averaging::Angle);
-    assert_eq!(charts::charts(&soup).len(), 2);
-    check("soup", &soup);
+    assert_eq!(charts::charts(&soup, 0.0).len(), 2);
+    check("soup", &soup, 0.0);
 }
 
 #[test]
 fn what_hides_itself_is_split() {
     let spiral = spiral();
     // Three turns over one another, and no triangle that leans.
-    assert!(charts::charts(&spiral).len() >= 3);
-    check("spiral", &spiral);
+    assert!(charts::charts(&spiral, 0.0).len() >= 3);
+    check("spiral", &spiral, 0.0);
+    check("spiral", &spiral, 0.5);
+}
+
+/// The share of a mesh's area that halos draw once more.
+fn share_in_halos(mesh: &Mesh) -> f64 {
+    let area = |mesh: &Mesh| mesh.volume_and_area().1;
+    area(&with_halo_drawn(mesh)) / area(mesh) - 1.0
+}
+
+#[test]
+fn halos_grow_with_their_reach_and_cost_little_scale() {
+    let mesh = mesh_of("bunny_stone");
+    let length = mesh.volume_and_area().1.sqrt() as f32;
+    let none = unwrap(&mesh, 0.0);
+    assert!(none.halo.is_empty() && [-1.0, f32::NAN].into_iter().all(|reach| unwrap(&mesh, reach) == none));
+    let mut shares = vec![0.0];
+    for part in [0.02, 0.05, 0.1, 0.2] {
+        let used = check("bunny", &mesh, part * length);
+        let with_halos = unwrap(&mesh, part * length);
+        // What is shown is the same, and stands first.
+        assert_eq!(with_halos.positions[..none.positions.len()], none.positions);
+        assert_eq!((&with_halos.indices, with_halos.without_halo().positions), (&none.indices, none.positions.clone()));
+        let scale = |mesh: &Mesh| {
+            let [a, b] = [mesh.indices[0], mesh.indices[1]].map(|vertex| mesh.uvs[vertex as usize]);
+            a.distance(b)
+        };
+        let (share, scale) = (share_in_halos(&with_halos), scale(&with_halos) / scale(&none));
+        println!("{part}: {share:.3} of the area once more, {:.1} % used, scale {scale:.3}", 100.0 * used);
+        assert!(share > shares[shares.len() - 1] && scale > 0.75, "{shares:?} {share}, {scale}");
+        shares.push(share);
+    }
 }
 
 #[test]
 fn texture_coordinates_do_not_depend_on_size_or_earlier_ones() {
     let mesh = mesh_of("bunny_stone");
-    let unwrapped = unwrap(&mesh);
-    assert_eq!(unwrap(&unwrapped).uvs, unwrapped.uvs);
+    let unwrapped = unwrap(&mesh, 0.0);
+    assert_eq!(unwrap(&unwrapped, 0.0).uvs, unwrapped.uvs);
     let mut larger = mesh.clone();
     larger.positions.iter_mut().for_each(|position| *position *= 1024.0);
     // By a power of two, so that every number is scaled exactly.
-    assert_eq!(unwrap(&larger).uvs, unwrapped.uvs);
+    assert_eq!(unwrap(&larger, 0.0).uvs, unwrapped.uvs);
 }
 
 #[test]
@@ -215,14 +276,14 @@ fn triangles_without_area_do_no_harm() {
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, 2.0 * Vec3::X];
     for indices in [vec![], vec![0, 0, 0], vec![0, 1, 3], vec![0, 1, 2, 0, 1, 1, 0, 1, 3], vec![0, 1, 2, 0, 2, 1]] {
         let mesh = Mesh::with_shared_normals(positions.clone(), indices.clone(), Averaging::Angle);
-        let unwrapped = unwrap(&mesh);
+        let unwrapped = unwrap(&mesh, 0.0);
         assert_eq!(unwrapped.triangle_count(), mesh.triangle_count());
         assert_eq!(unwrapped.uvs.len(), unwrapped.positions.len(), "{indices:?}");
         assert!(unwrapped.uvs.iter().all(|uv| uv.min_element() >= 0.0 && uv.max_element() <= 1.0), "{indices:?}");
     }
     let placed = vec![Vec3::splat(7.0); 3];
     let mesh = Mesh::with_shared_normals(placed, vec![0, 1, 2], Averaging::Angle);
-    assert_eq!(unwrap(&mesh).uvs.len(), 3);
+    assert_eq!(unwrap(&mesh, 0.0).uvs.len(), 3);
 }
 
 #[test]
@@ -232,7 +293,7 @@ fn more_charts_than_gutters_leave_room_for_get_none() {
         let positions = (0..count).flat_map(|k| corners.map(|corner| corner + 3.0 * k as f32 * Vec3::Z)).collect();
         Mesh::with_shared_normals(positions, (0..3 * count).collect(), Averaging::Angle)
     };
-    assert_eq!(unwrap(&many(4096)).uvs.len(), 3 * 4096);
+    assert_eq!(unwrap(&many(4096), 0.0).uvs.len(), 3 * 4096);
     let mesh = many(4097);
-    assert_eq!(unwrap(&mesh), mesh);
+    assert_eq!(unwrap(&mesh, 0.0), mesh);
 }

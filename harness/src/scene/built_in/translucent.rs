@@ -91,10 +91,15 @@ pub(super) fn ring(name: &str) -> Scene {
     Scene { lights, ..framed(name, vec![object("ring", mesh, name)], direction(48.0, 0.0)) }
 }
 
+/// How far the halos of the bunny's charts reach, in standard deviations of its widest channel: hardly less than the taps do. Wider
+/// halos cost texels, but few: of 2 and of 3 standard deviations, 42 texels of skin's, which without halos has 51.
+const HALO: f32 = 3.0;
+
 /// The Stanford bunny, 60 mm high, in one light.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     let parsed = gltf::parse(BUNNY, None)?;
-    let meshes = parsed.objects.into_iter().map(|found| sized(atlas::unwrap(&found.mesh), 60.0));
+    let reach = HALO * material(name).sigma0.unwrap_or_default().max_element();
+    let meshes = parsed.objects.into_iter().map(|found| atlas::unwrap(&sized(found.mesh, 60.0), reach));
     let objects = meshes.map(|mesh| object("bunny", mesh, name)).collect();
     Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
 }

@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
             None => shared_normals(&positions, &indices, Averaging::Angle),
         };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
-        Ok(Mesh { positions, normals, uvs, indices })
+        Ok(Mesh { positions, normals, uvs, indices, halo: Vec::new() })
     }
 
     fn attribute(&self, semantic: &Semantic, kind: Kind) -> Result<Option<Elements<'a>>, GltfError> {

@@ -1,0 +1,141 @@
+use super::*;
+use crate::gpu::AdapterChoice;
+use crate::render::{Reflectance, Rung, scene_pass};
+use crate::scene::surfaces::sphere;
+use crate::scene::{Light, Mesh, Scene, atlas};
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+
+type Half = exr::prelude::f16;
+
+/// For each position, by its bits, what the vertices there find.
+type ByPosition = HashMap<[u32; 3], Vec<f32>>;
+
+/// Of the Gaussian, as a share of the sphere's radius.
+const SIGMA0: f32 = 1.0 / 6.0;
+
+/// A sphere of radius 1, cut into charts.
+fn charted(halo: f32) -> Mesh {
+    atlas::unwrap(&Mesh { uvs: Vec::new(), ..sphere(1.0, 128) }, halo)
+}
+
+/// What shading finds in the texture: for each vertex of `mesh`, in white light from there.
+fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+    let mut scene = Scene::named("skin").expect("built in");
+    scene.objects.truncate(1);
+    scene.objects[0].mesh = mesh.clone();
+    scene.objects[0].material.sigma0 = Some(Vec3::splat(SIGMA0));
+    scene.lights = vec![Light::Directional { toward, irradiance: Vec3::ONE }];
+    let rung = Rung::Diffuse(Reflectance::Blur);
+    let settings = Settings { rung, light_from_environment: false, ..Settings::of_size(8, 8) };
+    let pass = scene_pass(gpu, &scene, &settings, &cookbook::recipe_source(rung.recipe())).expect("the recipe");
+    let row = 8 * SIDE;
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(row * SIDE),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    pass.prepare(&mut encoder).expect("the passes");
+    let diffused = &pass.diffusions[0].textures.diffused;
+    encoder.copy_texture_to_buffer(
+        diffused.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+        },
+        diffused.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let red = |texel: &[u8]| Half::from_bits(u16::from_le_bytes([texel[0], texel[1]])).to_f32();
+    let texels: Vec<f32> = gpu
+        .read_back(&buffer, u64::from(row * SIDE), |bytes| bytes.chunks_exact(8).map(red).collect())
+        .expect("read back");
+    // Bilinear, repeating.
+    let at = |place: Vec2| {
+        let place = place.as_ivec2().rem_euclid(glam::IVec2::splat(SIDE as i32));
+        texels[(place.y * SIDE as i32 + place.x) as usize]
+    };
+    let sample = |uv: &Vec2| {
+        let place = uv * SIDE as f32 - 0.5;
+        let (corner, share) = (place.floor(), place - place.floor());
+        let row = |y: f32| {
+            let [left, right] = [0.0, 1.0].map(|x| at(corner + Vec2::new(x, y)));
+            left + share.x * (right - left)
+        };
+        row(0.0) + share.y * (row(1.0) - row(0.0))
+    };
+    mesh.uvs.iter().map(sample).collect()
+}
+
+/// What halos have of their own is not looked up.
+fn by_position(mesh: &Mesh, values: &[f32]) -> ByPosition {
+    let mut found = ByPosition::new();
+    let mut seen = vec![false; mesh.positions.len()];
+    for &vertex in &mesh.indices {
+        if !std::mem::replace(&mut seen[vertex as usize], true) {
+            let position = mesh.positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
+            found.entry(position).or_default().push(values[vertex as usize]);
+        }
+    }
+    found
+}
+
+/// The largest differences of `mesh`'s values in three lights: between two charts at one place of their border, and, as far as 30° from
+/// the equator, from `unrolled`, the same sphere by longitude and latitude, whose texture repeats.
+fn differences(mesh: &Mesh, unrolled: &[(Vec3, ByPosition)]) -> [f32; 2] {
+    let mut most = [0.0f32; 2];
+    for (toward, wanted) in unrolled {
+        for (position, values) in by_position(mesh, &looked_up(mesh, *toward)) {
+            for value in &values {
+                most[0] = values.iter().map(|other| value - other).fold(most[0], f32::max);
+                if f32::from_bits(position[1]).abs() < 0.5 {
+                    most[1] = most[1].max((value - wanted[&position][0]).abs());
+                }
+            }
+        }
+    }
+    most
+}
+
+/// What is left is what drawing along an axis costs: along a Gaussian's reach the stretch is not constant.
+#[test]
+fn halos_close_the_borders_of_charts() {
+    let unrolled = sphere(1.0, 128);
+    let lights = [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.48, 0.6, 0.64)];
+    let unrolled = lights.map(|toward| (toward, by_position(&unrolled, &looked_up(&unrolled, toward))));
+    let [without, narrow, wide] = [0.0, 1.0, 3.0].map(|reach| differences(&charted(reach * SIGMA0), &unrolled));
+    println!(
+        "at borders, from the unrolled sphere: {without:?} without halos, {narrow:?} of sigma0, {wide:?} of three"
+    );
+    assert!(without[0] > 0.2 && narrow[0] < without[0] / 2.0 && wide[0] < without[0] / 7.0);
+    assert!(without[1] > 0.1 && narrow[1] < without[1] / 2.0 && wide[1] < without[1] / 6.0);
+}
+
+#[test]
+fn constant_light_stays_constant_with_halos() {
+    let mut mesh = charted(2.0 * SIGMA0);
+    mesh.normals.iter_mut().for_each(|normal| *normal = Vec3::Y);
+    let values = looked_up(&mesh, Vec3::Y);
+    assert!(!mesh.halo.is_empty());
+    for (_, values) in by_position(&mesh, &values) {
+        assert!(values.iter().all(|value| *value == 1.0), "{values:?}");
+    }
+}
+
+#[test]
+fn boxes_that_touch_are_one() {
+    let chart = |low, high| Chart { low, high };
+    let apart_already = [chart([0, 0], [4, 4]), chart([6, 0], [9, 9])];
+    assert_eq!(apart(apart_already.to_vec()).len(), 2);
+    let chained = vec![chart([0, 0], [4, 4]), chart([8, 0], [12, 4]), chart([4, 2], [8, 9])];
+    assert_eq!(apart(chained), [chart([0, 0], [12, 9])]);
+}
+
+#[test]
+fn a_box_covers_the_texels_that_it_touches() {
+    let found = texels([Vec2::new(0.5 / 1024.0, -1.0), Vec2::new(2.5 / 1024.0, 1.0)]);
+    assert_eq!(found, Chart { low: [0, 0], high: [3, 1024] });
+}
