@@ -33,11 +33,18 @@ pub struct Shot {
     pub paper_centre: bool,
     /// What scatters light is lit by the scene's lights alone.
     pub lights_alone: bool,
+    /// And its surface reflects nothing, as in the reference.
+    pub matte: bool,
+    /// Radiance is multiplied by this before the tone curve.
+    pub exposure: f32,
     /// Which curvature spreads its light.
     pub curvature: Curvature,
     /// What it shows; where empty, the scene's own description.
     pub paragraph: &'static str,
 }
+
+/// The exposure of pictures by a scene's lights alone.
+const LIGHTS_ALONE: f32 = 1.5;
 
 /// Every committed picture.
 pub const SHOTS: [Shot; 36] = [
@@ -98,42 +105,66 @@ pub const SHOTS: [Shot; 36] = [
             keep them together.",
         ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
     },
-    Shot { lights_alone: true, ..shot("skin", "Skin: spheres of falling radius", "skin", "accurate") },
     Shot {
         lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
+        ..shot("skin", "Skin: spheres of falling radius", "skin", "accurate")
+    },
+    Shot {
+        lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
         paragraph: "The same by Lambert's law: the terminator is as sharp on the smallest sphere as on the largest.",
         ..shot("skin_lambert", "Skin: spheres by Lambert's law", "skin", "lambert")
     },
-    Shot { lights_alone: true, ..shot("wax", "Wax: spheres of falling radius", "wax", "accurate") },
-    Shot { lights_alone: true, ..shot("jade", "Jade: spheres of falling radius", "jade", "accurate") },
-    shot("skin_ring", "Skin: a ring under a sun and two lamps", "skin_ring", "accurate"),
-    shot("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
-    shot("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
     Shot {
         lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
+        ..shot("wax", "Wax: spheres of falling radius", "wax", "accurate")
+    },
+    Shot {
+        lights_alone: true,
+        exposure: LIGHTS_ALONE,
+        ..shot("jade", "Jade: spheres of falling radius", "jade", "accurate")
+    },
+    bright("skin_ring", "Skin: a ring under a sun and two lamps", "skin_ring", "accurate"),
+    bright("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
+    bright("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
+    Shot {
+        lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
         paragraph: "One mesh four ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, and random \
             walks. This is Lambert's law.",
         ..shot("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
     },
     Shot {
         lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
         paragraph: "Irradiance drawn into a texture of 1024 texels a side and blurred there by a Gaussian for each channel, with the stretch of \
             the texture taken into account: what the reflectance function replaces.",
         ..shot("skin_bunny_blur", "Skin: the bunny by texture diffusion", "skin_bunny", "blur")
     },
     Shot {
         lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
         curvature: Curvature::Vertex,
         paragraph: "The curvature-dependent reflectance, with the mean curvature of the mesh at its vertices. No texture, no second pass.",
         ..shot("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
     },
     Shot {
         lights_alone: true,
+        matte: true,
+        exposure: LIGHTS_ALONE,
         paragraph: "The same with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
             as this.",
         ..shot("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
     },
-    Shot { curvature: Curvature::Vertex, ..shot("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate") },
+    Shot { curvature: Curvature::Vertex, ..bright("wax_bunny", "Wax: the bunny", "wax_bunny", "accurate") },
 ];
 
 const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
@@ -145,9 +176,16 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         from: None,
         paper_centre: false,
         lights_alone: false,
+        matte: false,
+        exposure: 1.0,
         curvature: Curvature::Mean,
         paragraph: "",
     }
+}
+
+/// Under the scene's lights and the studio's, which is made for stones: half of that is enough.
+const fn bright(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
+    Shot { exposure: 0.45, ..shot(name, title, scene, rung) }
 }
 
 const fn face_up(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
@@ -171,6 +209,8 @@ impl Shot {
             rung,
             paper_centre: self.paper_centre,
             light_from_environment: !self.lights_alone,
+            reflection: !self.matte,
+            exposure: self.exposure,
             curvature: self.curvature,
             ..Settings::of_size(side, side)
         }
@@ -190,12 +230,18 @@ impl Shot {
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
-        let light = if self.lights_alone { " --without environment" } else { "" };
+        let light = match (self.lights_alone, self.matte) {
+            (false, false) => "",
+            (true, false) => " --without environment",
+            (false, true) => " --without reflection",
+            (true, true) => " --without environment,reflection",
+        };
         let curvature = match self.curvature {
             Curvature::Mean => String::new(),
             other => format!(" --curvature {}", other.name()),
         };
-        let choices = format!("{from} --rung {}{centre}{light}{curvature}", self.rung);
+        let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
+        let choices = format!("{from} --rung {}{centre}{light}{curvature}{exposure}", self.rung);
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }
@@ -203,6 +249,56 @@ impl Shot {
 /// Where the pictures of a technique's recipes are.
 pub fn folder(technique: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots").join(technique)
+}
+
+/// A committed reference by random walks, of a scene by its lights alone.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkedReference {
+    /// Of the scene, and its file's name.
+    pub scene: &'static str,
+    /// What the gallery calls it.
+    pub title: &'static str,
+    /// Walks from each pixel.
+    pub walks: u32,
+}
+
+/// Every one.
+pub const WALKED: [WalkedReference; 3] = [
+    WalkedReference { scene: "skin", title: "Skin: spheres by random walks", walks: 1024 },
+    WalkedReference { scene: "skin_bunny", title: "Skin: the bunny by random walks", walks: 1024 },
+    WalkedReference { scene: "skin_ring", title: "Skin: the ring by random walks", walks: 576 },
+];
+
+impl WalkedReference {
+    /// Where it is kept.
+    pub fn file(&self) -> PathBuf {
+        folder("cdrf").join("reference").join(format!("{}.exr", self.scene))
+    }
+
+    /// The command that makes it again.
+    pub fn command(&self) -> String {
+        let Self { scene, walks, .. } = self;
+        format!(
+            "./cook render {scene} --rung reference --size {EXR_SIDE}x{EXR_SIDE} --walks {walks} --without environment \
+             --out snapshots/cdrf/reference/{scene}.exr"
+        )
+    }
+
+    /// As it was followed, and as it is seen.
+    pub fn picture(&self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
+        let settings = Settings { exposure: LIGHTS_ALONE, ..Settings::of_size(EXR_SIDE, EXR_SIDE) };
+        reference_picture(gpu, &self.file(), &settings)
+    }
+}
+
+/// A committed reference's linear radiance, and as it is seen with the settings' size and exposure.
+pub(crate) fn reference_picture(gpu: &Gpu, path: &Path, settings: &Settings) -> Result<Picture, SnapshotError> {
+    let (width, height) = (settings.width, settings.height);
+    let linear: Vec<[f32; 4]> = read(path, (width, height))?.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
+    let encoded = vec![[0; 4]; linear.len()];
+    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
+    render::encode(gpu, settings, &mut picture)?;
+    Ok(picture)
 }
 
 /// Why a snapshot does not hold.

@@ -1,7 +1,7 @@
 // cdrf_shading: skin, wax or jade by curvature-dependent reflectance, in one draw call, under lights and an environment.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
-// requires: cdrf, curvature, environment, fresnel
+// requires: cdrf, curvature, environment, fresnel, microfacet
 // parts: mesh, surroundings, lights, harmonics
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
@@ -21,6 +21,8 @@ override EFFECT_TEXTURE_DIFFUSION: bool = false;
 override EFFECT_ENVIRONMENT: bool = true;
 // Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
 override ENVIRONMENT_AT_VERTICES: bool = true;
+// The lights' highlights on a rough surface. Called for by KHR_materials_ior above 1 and a roughness above 0.
+override EFFECT_MICROFACET: bool = false;
 // The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
 override EFFECT_REFLECTION: bool = false;
 
@@ -48,6 +50,8 @@ struct CdrfMaterial {
     sigma0: vec3f,
     // The largest of the three: what a table that was baked for this material is looked up with.
     table_sigma0: f32,
+    // Width of the microfacets' slopes, the square of the roughness.
+    alpha: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
@@ -210,6 +214,18 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
     return received;
 }
 
+// What the surface sends of each light towards the eye, unspread.
+fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
+    var sum = vec3f(0.0f);
+    for (var index = 0u; index < arrayLength(&lights); index++) {
+        let arrival = light_arrival(lights[index], position);
+        let half = microfacet_half(arrival.direction, toward_eye);
+        let fresnel = fresnel_dielectric(dot(half, arrival.direction), material.index);
+        sum += arrival.irradiance * microfacet_reflectance(normal, arrival.direction, toward_eye, material.alpha, fresnel);
+    }
+    return sum;
+}
+
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let surface = cdrf_surface(input);
@@ -223,9 +239,16 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
         received = cdrf_received(input, surface, normal);
     }
     var radiance = 0.31830987f * material.base_color * received;
-    if (EFFECT_REFLECTION) {
-        let reflectance = fresnel_dielectric(max(dot(normal, toward_eye), 0.0f), material.index);
-        radiance = mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
+    if (EFFECT_REFLECTION || EFFECT_MICROFACET) {
+        // What the surface reflects does not come from inside.
+        let reflectance = fresnel_dielectric(dot(normal, toward_eye), material.index);
+        radiance *= 1.0f - reflectance;
+        if (EFFECT_REFLECTION) {
+            radiance += reflectance * surroundings_radiance(reflect(-toward_eye, normal));
+        }
+    }
+    if (EFFECT_MICROFACET) {
+        radiance += cdrf_highlights(input.position, normal, toward_eye);
     }
     return vec4f(radiance, 1.0f);
 }

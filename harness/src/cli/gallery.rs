@@ -5,7 +5,7 @@ use lapidary_harness::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;
-use lapidary_harness::snapshot::{self, PNG_SIDE, SHOTS};
+use lapidary_harness::snapshot::{self, EXR_SIDE, PNG_SIDE, SHOTS, WALKED};
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.
@@ -41,6 +41,21 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             size: (PNG_SIDE, PNG_SIDE),
         });
         bar.inc(1);
+    }
+    for reference in &WALKED {
+        let path = rendered.path().join(format!("{}_walked.png", reference.scene));
+        file::write(&reference.picture(gpu)?, &path)?;
+        pictures.push(Picture {
+            title: reference.title.to_owned(),
+            file: path,
+            paragraph: format!(
+                "What random walks find, {} from each pixel: light that enters anywhere, is scattered inside and leaves towards the eye. \
+                 It knows thickness and shadows, which no reflectance function does.",
+                reference.walks
+            ),
+            command: reference.command(),
+            size: (EXR_SIDE, EXR_SIDE),
+        });
     }
     bar.finish_and_clear();
     let figures = plots();

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
     from: Option<(f32, f32)>,
     /// An effect that is left out though the scene calls for it: absorption in clear stones; environment (its light) or reflection (the
-    /// polished surface's) on what scatters light.
+    /// surface's) on what scatters light.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = ["absorption", "environment", "reflection"])]
     without: Vec<String>,
     /// Which curvature spreads the light of what scatters it: from the pixel's derivatives mean, towards

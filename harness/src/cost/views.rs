@@ -88,19 +88,8 @@ impl View {
         if !self.reference_file().exists() {
             return Err(CostError::NoReference { path: self.reference_file(), command: self.command() });
         }
-        let image = snapshot::read(&self.reference_file(), (SIDE, SIDE))?.into_rgba32f();
-        let linear: Vec<[f32; 4]> = image.pixels().map(|pixel| pixel.0).collect();
-        let mut picture = Picture {
-            width: SIDE,
-            height: SIDE,
-            encoded: vec![[0; 4]; linear.len()],
-            linear,
-            lost: None,
-            walked: None,
-        };
         let settings = Settings { rung: Rung::Reference, ..Settings::of_size(SIDE, SIDE) };
-        crate::render::encode(gpu, &settings, &mut picture)?;
-        Ok(picture)
+        Ok(snapshot::reference_picture(gpu, &self.reference_file(), &settings)?)
     }
 }
 

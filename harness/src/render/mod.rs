@@ -79,7 +79,7 @@ pub struct Settings {
     pub light_from_environment: bool,
     /// The environment's light is summed for each vertex, not for each pixel.
     pub environment_at_vertices: bool,
-    /// A polished surface of what scatters light mirrors the environment.
+    /// The surface of what scatters light reflects: a polished one the environment, a rough one the lights.
     pub reflection: bool,
     /// Which curvature spreads the light of what scatters it.
     pub curvature: Curvature,

@@ -70,6 +70,7 @@ fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Ve
     let materials = || scene.objects.iter().map(|object| &object.material);
     let scatters = materials().any(|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));
     let polished = materials().any(|material| material.roughness == 0.0 && material.ior > 1.0);
+    let rough = materials().any(|material| material.roughness > 0.0 && material.ior > 1.0);
     vec![
         ("EFFECT_CDRF", flag(scatters && reflectance.form().is_some())),
         ("EFFECT_TEXTURE_DIFFUSION", flag(reflectance == Reflectance::Blur)),
@@ -77,6 +78,7 @@ fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Ve
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
         ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
         ("ENVIRONMENT_AT_VERTICES", flag(settings.environment_at_vertices)),
+        ("EFFECT_MICROFACET", flag(settings.reflection && rough)),
         ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
         ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
     ]
@@ -172,10 +174,11 @@ fn upload<'gpu>(
 }
 
 /// `CdrfMaterial` of the recipe.
-fn uniform_of(material: &Material) -> [f32; 8] {
+fn uniform_of(material: &Material) -> [f32; 12] {
     let [r, g, b] = material.base_color.to_array();
     let sigma0 = material.sigma0.unwrap_or_default();
-    [r, g, b, material.ior, sigma0.x, sigma0.y, sigma0.z, sigma0.max_element()]
+    let alpha = material.roughness * material.roughness;
+    [r, g, b, material.ior, sigma0.x, sigma0.y, sigma0.z, sigma0.max_element(), alpha, 0.0, 0.0, 0.0]
 }
 
 /// One black texel, where a recipe binds what its form does not read.

@@ -3,7 +3,6 @@
 
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
-use lapidary_harness::pixel::Viewer;
 use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::surfaces::sphere;
@@ -54,15 +53,22 @@ fn expected(scene: &Scene, position: DVec3, radius: f64, reflectance: impl Fn(f6
     material.base_color.as_dvec3() * received * FRAC_1_PI
 }
 
-/// The pixels that lie wholly on the ball, with their places on it.
+/// The pixels that lie wholly on the ball about the origin, with their places on it: where a ray through the pixel's middle meets the sphere.
 fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
-    let viewer = Viewer::new(scene, SIDE, SIDE);
+    let world_from_clip = render::clip_from_world(scene, SIDE, SIDE).as_dmat4().inverse();
+    let radius = scene.objects[0].mesh.positions[0].as_dvec3().length();
+    let eye = scene.camera.eye.as_dvec3();
     let mut found = Vec::new();
     for (index, [r, g, b, alpha]) in (0..).zip(&picture.linear) {
         let (row, column): (u32, u32) = (index / SIDE, index % SIDE);
-        let point = viewer.see(&scene.objects[0].mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
-        if let (Some(point), 1.0) = (point, *alpha) {
-            found.push((point.position.as_dvec3(), DVec3::new((*r).into(), (*g).into(), (*b).into())));
+        let clip = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIDE) - 1.0;
+        let far = world_from_clip.project_point3(DVec3::new(clip(column), -clip(row), 1.0));
+        let direction = (far - eye).normalize();
+        let (along, beside) = (-eye.dot(direction), eye.cross(direction).length());
+        // Away from the silhouette, where the mesh's outline is not the sphere's.
+        if beside < 0.99 * radius && *alpha == 1.0 {
+            let place = eye + (along - (radius * radius - beside * beside).sqrt()) * direction;
+            found.push((place, DVec3::new((*r).into(), (*g).into(), (*b).into())));
         }
     }
     assert!(found.len() > 5000, "{} pixels", found.len());
@@ -71,7 +77,7 @@ fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
 
 /// Normals interpolated over a mesh of 256 columns are off by (2 pi / 256)^2 / 8 = 7.5e-5 in length, less in direction; curvature by
 /// derivatives by .4 %, as the curvature's own test has it. Sigma times the largest slope of the function over sigma, .4, is what that does.
-const MESH: f64 = 1.5e-3;
+const MESH: f64 = 5e-4;
 
 #[test]
 fn every_rung_shows_the_convolution_on_a_sphere() {
@@ -109,21 +115,6 @@ fn every_rung_shows_the_convolution_on_a_sphere() {
             }
         }
     }
-}
-
-#[test]
-fn the_usual_curvature_depends_on_the_view() {
-    let scene = ball(10.0, Vec3::splat(6.0));
-    let worst = |curvature| {
-        let picture = draw(&scene, &Settings { curvature, ..settings("accurate") });
-        let off = |(position, found): (DVec3, DVec3)| {
-            (found - expected(&scene, position, 10.0, oracle::accurate)).abs().max_element()
-        };
-        on_the_ball(&scene, &picture).into_iter().map(off).fold(0.0, f64::max)
-    };
-    let [mean, naive] = [Curvature::Mean, Curvature::Naive].map(worst);
-    println!("mean {mean:.1e}, |dN| / |dP| {naive:.1e}");
-    assert!(naive > 5.0 * mean, "{naive} {mean}");
 }
 
 /// The smaller the sphere the further light creeps past the terminator, and red further than blue.
@@ -270,7 +261,7 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
             assert!(finite && pixel[..3].iter().any(|value| *value > 0.0), "{rung} {curvature:?}: {pixel:?}");
             seen += 1;
         }
-        assert!(seen > 8000, "{seen} pixels");
+        assert!(seen > 5000, "{seen} pixels");
     }
 }
 
@@ -279,10 +270,13 @@ fn what_is_off_leaves_no_trace() {
     let scene = ball(10.0, Vec3::ZERO);
     let bits = |settings: &Settings| draw(&scene, settings).linear;
     assert_eq!(bits(&settings("accurate")), bits(&settings("lambert")), "no width, no scattering");
-    let lit = Settings { light_from_environment: true, reflection: true, ..settings("lambert") };
+    let lit = Settings { light_from_environment: true, ..settings("lambert") };
     assert_ne!(bits(&lit), bits(&settings("lambert")));
-    let rough = Settings { light_from_environment: true, ..settings("lambert") };
-    assert_eq!(bits(&lit), bits(&rough), "only what is polished mirrors");
+    let reflecting = Settings { reflection: true, ..settings("lambert") };
+    assert_ne!(bits(&reflecting), bits(&settings("lambert")));
+    let mut matched = ball(10.0, Vec3::ZERO);
+    matched.objects[0].material.ior = 1.0;
+    assert_eq!(draw(&matched, &reflecting).linear, bits(&settings("lambert")), "an index of 1 reflects nothing");
 }
 
 #[test]
@@ -301,4 +295,77 @@ fn bad_input_is_refused() {
     scene.objects[0].material.medium = None;
     let stone = Scene::named("brilliant").expect("built in");
     assert!(matches!(refused(&stone, "cheap"), RenderError::NoSigma0 { .. }));
+}
+
+/// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
+/// walks leave open.
+#[test]
+fn the_committed_references_are_walked_again() {
+    use lapidary_harness::random_walk::mesh;
+    use lapidary_harness::snapshot::{EXR_SIDE, WALKED};
+    let readme = std::fs::read_to_string(snapshot_folder().join("README.md")).expect("the references' page");
+    for reference in &WALKED {
+        assert!(readme.contains(&reference.command()), "{}", reference.command());
+        let committed = reference.picture(super::gpu()).expect(reference.scene).linear;
+        let scene = Scene::named(reference.scene).expect("built in");
+        let side = EXR_SIDE / 4;
+        let few = mesh::Settings { width: side, height: side, samples_per_pixel: 9, seed: 99, environment: None };
+        let again = mesh::render(&scene, &few, &|_, _| {}).expect("walked");
+        let mut worst = 0.0f64;
+        for quarter in 0..4 {
+            let inside = |row: u32, column: u32, side: u32| (row / (side / 2)) * 2 + column / (side / 2) == quarter;
+            for channel in 0..3 {
+                let (mut sum, mut variance) = (0.0, 0.0);
+                for (place, (pixel, error)) in (0..).zip(again.linear.iter().zip(&again.standard_error)) {
+                    if inside(place / side, place % side, side) {
+                        sum += f64::from(pixel[channel]);
+                        variance += f64::from(error[channel]).powi(2);
+                    }
+                }
+                let expected: f64 = (0..)
+                    .zip(&committed)
+                    .filter(|(place, _)| inside(place / EXR_SIDE, place % EXR_SIDE, EXR_SIDE))
+                    .map(|(_, pixel)| f64::from(pixel[channel]) / 16.0)
+                    .sum();
+                // The committed picture's own error is small beside it: it has a hundred times the walks or more.
+                let off = (sum - expected).abs() / (variance.sqrt() + 2e-3 * expected);
+                worst = worst.max(if expected > 0.0 { off } else { 0.0 });
+            }
+        }
+        println!("{}: the quarters' means differ by {worst:.1} standard errors at most", reference.scene);
+        assert!(worst < 4.5, "{}: {worst}", reference.scene);
+    }
+}
+
+fn snapshot_folder() -> std::path::PathBuf {
+    lapidary_harness::snapshot::folder("cdrf").join("reference")
+}
+
+/// After each side's best single exposure the reflectance is nearer to the random walks than Lambert's law.
+#[test]
+fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
+    use lapidary_harness::snapshot::{EXR_SIDE, WALKED};
+    for reference in &WALKED {
+        let truth = reference.picture(super::gpu()).expect(reference.scene).linear;
+        let scene = Scene::named(reference.scene).expect("built in");
+        let distance = |rung: &str| {
+            let usual = settings(rung);
+            let settings =
+                Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, curvature: Curvature::Vertex, ..usual };
+            let found = draw(&scene, &settings).linear;
+            let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+                let pairs = found.iter().flatten().zip(truth.iter().flatten()).enumerate();
+                pairs.filter(|(place, _)| place % 4 < 3).map(|(_, (a, b))| f(f64::from(*a), f64::from(*b))).sum()
+            };
+            let (both, own, other) = (sum(&|a, b| a * b), sum(&|a, _| a * a), sum(&|_, b| b * b));
+            // The least of |k a - b|^2 over k.
+            ((other - both * both / own) / other).sqrt()
+        };
+        let [lambert, blur, accurate, spherical] = ["lambert", "blur", "accurate", "spherical"].map(distance);
+        println!(
+            "{}: root mean square from the walks, of theirs: Lambert {lambert:.3}, blur {blur:.3}, accurate {accurate:.3}, spherical {spherical:.3}",
+            reference.scene
+        );
+        assert!(accurate < lambert, "{}: {accurate} {lambert}", reference.scene);
+    }
 }
