@@ -5,6 +5,7 @@ mod dispersion;
 mod error;
 mod gem;
 mod gem_tables;
+mod labels;
 pub mod page;
 pub mod plot;
 mod profile;
