@@ -1,6 +1,6 @@
 //! The ladder as a picture: time against error, both logarithmic.
 
-use super::labels::{self, Label, stairs};
+use super::drawing::{self, Drawn, FRAME, GREY, LIGHT, Label, stairs, written};
 use super::{ALIKE, CostError, MEASURES, Report, RungReport};
 use crate::render::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
@@ -65,17 +65,10 @@ pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
     if points.is_empty() {
         return Err(CostError::Plot("no rung was timed".to_owned()));
     }
-    let mut text = String::new();
-    draw(&mut text, report, MEASURES[number], &points).map_err(|error| CostError::Plot(error.to_string()))?;
-    Ok(text)
+    written(|text| draw(text, report, MEASURES[number], &points))
 }
 
-fn draw(
-    text: &mut String,
-    report: &Report,
-    measure: &str,
-    points: &[Point<'_>],
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(text: &mut String, report: &Report, measure: &str, points: &[Point<'_>]) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let [width, height] = report.frame;
@@ -95,16 +88,16 @@ fn draw(
         .y_desc(format!("mean {measure} against the spectral reference"))
         .x_label_formatter(&|ms| if *ms >= 1.0 { format!("{ms:.0}") } else { format!("{ms:.2}") })
         .y_label_formatter(&|error| format!("{error:.3}"))
-        .light_line_style(RGBColor(0xee, 0xee, 0xee))
+        .light_line_style(LIGHT)
         .label_style(("sans-serif", 13))
         .draw()?;
 
     // What to choose from: the rungs that nothing faster betters.
     let front = points.iter().filter(|point| point.front).map(|point| (point.ms, point.error)).collect();
     chart
-        .draw_series(LineSeries::new(stairs(front), RGBColor(0x99, 0x99, 0x99).stroke_width(2)))?
+        .draw_series(LineSeries::new(stairs(front), GREY.stroke_width(2)))?
         .label("nothing faster is better")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], RGBColor(0x99, 0x99, 0x99).stroke_width(2)));
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(2)));
 
     for (name, geometry) in [
         ("surface alone", None),
@@ -139,16 +132,13 @@ fn draw(
             .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
     }
     let places: Vec<(i32, i32)> = points.iter().map(|point| chart.backend_coord(&(point.ms, point.error))).collect();
-    let labels: Vec<Label<'_>> = points
-        .iter()
-        .zip(&places)
-        .map(|(point, &at)| Label { name: point.name, at, front: point.front })
-        .collect();
-    labels::draw(&root, &labels, &places)?;
+    let labels: Vec<Label<'_>> =
+        points.iter().zip(&places).map(|(point, &at)| Label { name: point.name, at, front: point.front }).collect();
+    drawing::draw(&root, &labels, &places)?;
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::LowerLeft)
-        .border_style(RGBColor(0xcc, 0xcc, 0xcc))
+        .border_style(FRAME)
         .background_style(WHITE.mix(0.9))
         .label_font(("sans-serif", 13))
         .draw()?;

@@ -73,6 +73,9 @@ pub struct FrameTime {
 }
 
 impl<'gpu> Frame<'gpu> {
+    /// Texels along each side of the textures of rung `blur`.
+    pub const BLUR_SIDE: u32 = super::diffusion::SIDE;
+
     /// Compiles the rung and uploads the scene.
     pub fn new(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         Self::of_source(gpu, scene, settings, &cookbook::recipe_source(settings.rung.recipe()))

@@ -1,9 +1,32 @@
-//! What the plots of ladders share: labels beside points, and the line of the rungs to choose from.
+//! What plots share: their greys, the marks of an axis, labels beside points, and the line of the rungs to choose from.
 
+use super::CostError;
 use super::plot::SIZE;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Of lines that others are compared with.
+pub(super) const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
+/// Of a grid.
+pub(super) const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
+/// About a legend.
+pub(super) const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
+
+/// Whether a plot was drawn.
+pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// What `draw` draws.
+pub(super) fn written(draw: impl FnOnce(&mut String) -> Drawn) -> Result<String, CostError> {
+    let mut text = String::new();
+    draw(&mut text).map_err(|error| CostError::Plot(error.to_string()))?;
+    Ok(text)
+}
+
+/// Those of an axis's labels that lie on it.
+pub(super) fn ticks(labels: &[f64], axis: &std::ops::Range<f64>) -> Vec<f64> {
+    labels.iter().copied().filter(|label| axis.contains(label)).collect()
+}
 
 /// A point to be labelled.
 pub(super) struct Label<'a> {
@@ -95,8 +118,7 @@ mod tests {
     fn labels_lie_on_no_other_and_on_no_marker() {
         let at = |k: i32| (600 + 9 * (k % 3), 300 + 9 * (k / 3));
         let markers: Vec<(i32, i32)> = (0..6).map(at).collect();
-        let labels: Vec<Label<'_>> =
-            (0..6).map(|k| Label { name: "a rung's name", at: at(k), front: k < 2 }).collect();
+        let labels: Vec<Label<'_>> = (0..6).map(|k| Label { name: "a rung's name", at: at(k), front: k < 2 }).collect();
         let areas: Vec<Area> = placed(&labels, &markers)
             .iter()
             .map(|(label, (left, bottom))| {
