@@ -70,8 +70,8 @@ pub struct RungReport {
     pub frames: Vec<FrameReport>,
     /// Bytes of its textures for one material.
     pub texture_bytes: u64,
-    /// Bytes beside positions, normals and indices for each vertex: of curvature, where it comes from there, or of texture coordinates.
-    pub vertex_bytes: u64,
+    /// Bytes of the timed mesh beside positions, normals and indices: curvatures, where they come from there, or what its texture needs.
+    pub mesh_bytes: u64,
     /// Another rung's lit part is faster with curvature from either source, and it errs no more.
     pub dominated: bool,
 }
@@ -85,7 +85,7 @@ pub struct CdrfReport {
     pub frame: [u32; 2],
     /// Rounds of timing.
     pub rounds: u32,
-    /// Vertices of the timed mesh.
+    /// Vertices of the timed mesh, as it is shown.
     pub vertices: usize,
     /// How many spheres of random walks there are.
     pub spheres: usize,
@@ -125,7 +125,7 @@ pub fn run(
             residuals: function.as_ref().map(|function| walks::residuals(&spheres, function)),
             frames: frames::frames(&scenes, reflectance, options.frame)?,
             texture_bytes: frames::texture_bytes(reflectance),
-            vertex_bytes: frames::vertex_bytes(reflectance),
+            mesh_bytes: scenes.mesh_bytes(reflectance),
             dominated: false,
         });
     }

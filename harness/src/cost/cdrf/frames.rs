@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
 use crate::render::{Curvature, Frame, Reflectance, RenderError, Rung, Settings};
 use crate::scene::{Camera, Scene, SceneError};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// The scene that is timed.
@@ -105,9 +105,27 @@ impl Scenes {
         }
     }
 
-    /// Vertices of the mesh.
+    /// Vertices of the mesh that is shown: those of halos are in its texture alone.
     pub(super) fn vertices(&self) -> usize {
-        self.whole.objects.iter().map(|object| object.mesh.positions.len()).sum()
+        self.whole.objects.iter().map(|object| object.mesh.without_halo().positions.len()).sum()
+    }
+
+    /// Bytes that a rung needs of the mesh beside positions, normals and indices of what is shown.
+    pub(super) fn mesh_bytes(&self, reflectance: Reflectance) -> u64 {
+        let shown = self.vertices();
+        let bytes = match reflectance {
+            Reflectance::Lambert => 0,
+            // Texture coordinates, the vertices of halos, and a list of triangles with halos among them.
+            Reflectance::Blur => {
+                let meshes = || self.whole.objects.iter().map(|object| &object.mesh);
+                let vertices: usize = meshes().map(|mesh| mesh.positions.len()).sum();
+                let drawn: usize = meshes().map(|mesh| mesh.halo.len() + mesh.indices.len()).sum();
+                vertices * size_of::<Vec2>() + (vertices - shown) * 2 * size_of::<Vec3>() + drawn * size_of::<u32>()
+            }
+            // A curvature, where it comes from there.
+            _ => shown * size_of::<f32>(),
+        };
+        bytes as u64
     }
 }
 
@@ -204,15 +222,6 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
     }
 }
 
-/// Bytes that a rung needs of each vertex beside position and normal: a curvature where it comes from there, or texture coordinates.
-pub(super) fn vertex_bytes(reflectance: Reflectance) -> u64 {
-    match reflectance {
-        Reflectance::Lambert => 0,
-        Reflectance::Blur => 8,
-        _ => 4,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -243,5 +252,10 @@ mod tests {
         assert_eq!(texture_bytes(Reflectance::Table(257, Format::R32Float)), 257 * 257 * 4);
         assert_eq!(texture_bytes(Reflectance::Blur), 3 * 8 * 1024 * 1024);
         assert_eq!(texture_bytes(Reflectance::Accurate), 0);
+        let scenes = Scenes::new().expect("built in");
+        let curvatures = scenes.mesh_bytes(Reflectance::Accurate);
+        assert_eq!((scenes.mesh_bytes(Reflectance::Lambert), curvatures), (0, 4 * scenes.vertices() as u64));
+        // Two floats and an index or more for each vertex, and the halos'.
+        assert!(scenes.mesh_bytes(Reflectance::Blur) > 3 * curvatures);
     }
 }

@@ -60,7 +60,7 @@ fn ladder(report: &CdrfReport) -> String {
         "RMS error",
         "from random walks, scale free / fixed",
         "textures",
-        "a vertex",
+        "mesh",
         "fragment shader, lit: screen, vertex",
         "",
     ];
@@ -78,7 +78,7 @@ fn ladder(report: &CdrfReport) -> String {
             scientific(rung.distance.map(|distance| distance.rms)),
             residuals(rung),
             bytes(rung.texture_bytes),
-            bytes(rung.vertex_bytes),
+            bytes(rung.mesh_bytes),
             counts.join(", "),
             if rung.dominated { "dominated" } else { "" }.to_owned(),
         ];

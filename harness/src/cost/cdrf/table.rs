@@ -59,11 +59,8 @@ pub(super) fn residuals(rung: &RungReport) -> String {
 }
 
 fn errors(text: &mut String, report: &CdrfReport) {
-    let _ = writeln!(
-        text,
-        "{:20} {:>9} {:>9} {:>17} {:>10} {:>8}",
-        "rung", "largest", "rms", "walks", "textures", "vertex"
-    );
+    let _ =
+        writeln!(text, "{:20} {:>9} {:>9} {:>17} {:>10} {:>8}", "rung", "largest", "rms", "walks", "textures", "mesh");
     for rung in &report.rungs {
         let _ = writeln!(
             text,
@@ -73,7 +70,7 @@ fn errors(text: &mut String, report: &CdrfReport) {
             scientific(rung.distance.map(|distance| distance.rms)),
             residuals(rung),
             rung.texture_bytes,
-            rung.vertex_bytes,
+            rung.mesh_bytes,
             if rung.dominated { "  dominated" } else { "" }
         );
     }
@@ -81,11 +78,12 @@ fn errors(text: &mut String, report: &CdrfReport) {
         text,
         "\nlargest, rms: from the convolution, angles 0 to 180 degrees, sigma 0 to 3; spherical: from its own definition, while from the \
          circle's it is\n{} and {}. walks: what is left beside {} spheres of random walks, each with the sigma that fits it best; scale \
-         free / fixed.\ntextures: bytes for one material; vertex: bytes for each vertex, of curvature where it comes from there, or of \
-         texture coordinates.",
+         free / fixed.\ntextures: bytes for one material. mesh: bytes for its {} vertices beside positions, normals and indices: \
+         curvatures, where they come from\nthere; for the blur texture coordinates and halos.",
         scientific(Some(report.spherical_from_circular.largest)),
         scientific(Some(report.spherical_from_circular.rms)),
-        report.spheres
+        report.spheres,
+        report.vertices
     );
 }
 

@@ -20,7 +20,7 @@ fn rung(name: &str, ms: f64, error: f64) -> RungReport {
         residuals: Some(Residuals { free: 0.02, fixed: 0.03 + error }),
         frames: frames::views().map(frame).collect(),
         texture_bytes: 262_144,
-        vertex_bytes: 4,
+        mesh_bytes: 4000,
         dominated: false,
     }
 }
