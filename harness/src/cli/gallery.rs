@@ -82,6 +82,7 @@ fn plots() -> Vec<(String, Picture)> {
     };
     let gem = "./cook cost gem --out docs/measurements/lavapipe";
     let sphere = "./cook cost sphere --out docs/measurements/random_walk";
+    let cdrf = "./cook cost cdrf --out docs/measurements/lavapipe";
     vec![
         figure(
             "gem",
@@ -97,6 +98,14 @@ fn plots() -> Vec<(String, Picture)> {
             gem,
             "What accuracy costs: RMSE",
             "The same by the error in linear radiance.",
+        ),
+        figure(
+            "cdrf",
+            "lavapipe/cdrf.svg",
+            cdrf,
+            "What accuracy costs",
+            "Time of a frame that lit skin fills against the largest error of the reflectance. On the grey lines lie the rungs to choose from: \
+                nothing faster is better.",
         ),
         figure(
             "cdrf",

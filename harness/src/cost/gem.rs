@@ -145,6 +145,8 @@ pub fn run(
                 settings: Settings { width, height, samples: 1, ..entry.settings.clone() },
                 scene: &filled,
                 source: cookbook::recipe_source(entry.settings.rung.recipe()),
+                displayed: false,
+                scales: true,
             })
             .collect();
         let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;

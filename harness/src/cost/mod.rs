@@ -1,7 +1,9 @@
 //! What accuracy costs in time: every rung of a technique's ladder against its reference, and timed in one run.
 
+pub mod cdrf;
 mod choices;
 mod dispersion;
+mod drawing;
 mod error;
 mod gem;
 mod gem_tables;
@@ -33,13 +35,13 @@ pub struct Row {
     pub technique: &'static str,
     /// The rung's name.
     pub rung: String,
-    /// What was looked at; see [`views::VIEWS`].
+    /// What was looked at; of gems see [`views::VIEWS`].
     pub view: String,
-    /// The error, in the unit of its measure.
-    pub error: f64,
-    /// `flip`, `rmse` or `energy`.
+    /// The error, in the unit of its measure; none where the rung has none by this measure.
+    pub error: Option<f64>,
+    /// `flip`, `rmse` or `energy` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks.
     pub error_measure: &'static str,
-    /// Milliseconds for a frame that the stone fills; none where times were not asked for.
+    /// Milliseconds for a frame; none where times were not asked for.
     pub ms: Option<f64>,
     /// Another rung is not slower and errs less, in this view and measure.
     pub dominated: bool,
@@ -129,7 +131,7 @@ impl Report {
                         technique: "gem",
                         rung: rung.rung.clone(),
                         view: name.clone(),
-                        error,
+                        error: Some(error),
                         error_measure,
                         ms: rung.timing.map(|timing| timing.ms),
                         dominated: self.rungs.iter().enumerate().any(|(k, other)| k != index && beats(other)),
@@ -170,8 +172,19 @@ fn no_slower(other: &RungReport, rung: &RungReport) -> bool {
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// No such ladder.
-    #[error("no ladder `{0}`; there are gem and sphere")]
+    #[error("no ladder `{0}`; there are gem, cdrf and sphere")]
     Technique(String),
+    /// A record of spheres that nothing can be compared with.
+    #[error(
+        "{}: {what}; restore it from version control, or remake it: ./cook cost sphere --out docs/measurements/random_walk",
+        path.display()
+    )]
+    Record {
+        /// Where it should be.
+        path: std::path::PathBuf,
+        /// What is wrong.
+        what: String,
+    },
     /// A picture or a frame could not be rendered.
     #[error(transparent)]
     Render(#[from] crate::render::RenderError),

@@ -1,6 +1,7 @@
 //! A report's tables in the pages of `docs/`, between marks, so that no figure is copied by hand.
 
 use super::Report;
+use super::cdrf::CdrfReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
@@ -27,8 +28,10 @@ pub trait Tables: Sized + 'static {
 
 /// The names of all reports' tables.
 fn names() -> Vec<&'static str> {
-    let gem = Report::TABLES.iter().map(|(name, _)| *name);
-    gem.chain(SphereReport::TABLES.iter().map(|(name, _)| *name)).collect()
+    fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
+        R::TABLES.iter().map(|(name, _)| *name)
+    }
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).collect()
 }
 
 /// Whether a page's marks are sound.

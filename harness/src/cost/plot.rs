@@ -1,9 +1,9 @@
 //! The ladder as a picture: time against error, both logarithmic.
 
+use super::drawing::{self, Drawn, FRAME, GREY, LIGHT, Label, stairs, written};
 use super::{ALIKE, CostError, MEASURES, Report, RungReport};
 use crate::render::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Width and height of the plot.
 pub const SIZE: (u32, u32) = (1200, 760);
@@ -65,63 +65,10 @@ pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
     if points.is_empty() {
         return Err(CostError::Plot("no rung was timed".to_owned()));
     }
-    let mut text = String::new();
-    draw(&mut text, report, MEASURES[number], &points).map_err(|error| CostError::Plot(error.to_string()))?;
-    Ok(text)
+    written(|text| draw(text, report, MEASURES[number], &points))
 }
 
-/// Size and grey of a point's label; those that are no choice stand back.
-fn font(point: &Point<'_>) -> (i32, u8) {
-    if point.front { (13, 0x11) } else { (10, 0x88) }
-}
-
-/// A rectangle of the drawing: left, top, right, bottom.
-type Area = [i32; 4];
-
-fn overlap(a: &Area, b: &Area) -> bool {
-    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
-}
-
-/// Labels and the lower left corners where they go: beside their points, the choices' first, on no other label or marker. Where there is no
-/// room, a point that is no choice has none.
-fn labels<'p, 'a>(points: &'p [Point<'a>], places: &[(i32, i32)]) -> Vec<(&'p Point<'a>, (i32, i32))> {
-    let mut taken: Vec<Area> = places.iter().map(|&(x, y)| [x - 5, y - 5, x + 5, y + 5]).collect();
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by_key(|&k| !points[k].front);
-    let mut found = Vec::new();
-    for k in order {
-        let (point, (x, y)) = (&points[k], places[k]);
-        let (size, _) = font(point);
-        // A letter of the font is about 0.6 of its size wide.
-        let width = 3 * size * point.name.len() as i32 / 5;
-        // To the right or the left, above or below, and then farther up and down.
-        let sides = [x + 7, x - 7 - width, x - width / 2];
-        let mut corners: Vec<(i32, i32)> = Vec::new();
-        for away in [0, 16, 32] {
-            corners.extend(sides.map(|left| (left, y - 3 - away)));
-            corners.extend(sides.map(|left| (left, y + size + 3 + away)));
-        }
-        let area = |&(left, bottom): &(i32, i32)| [left, bottom - size, left + width, bottom];
-        let free = |corner: &(i32, i32)| {
-            let area = area(corner);
-            area[2] < SIZE.0 as i32 && !taken.iter().any(|other| overlap(&area, other))
-        };
-        let near = if point.front { corners.len() } else { 6 };
-        let place = corners[..near].iter().copied().find(free).or(point.front.then_some(corners[0]));
-        if let Some(corner) = place {
-            taken.push(area(&corner));
-            found.push((point, corner));
-        }
-    }
-    found
-}
-
-fn draw(
-    text: &mut String,
-    report: &Report,
-    measure: &str,
-    points: &[Point<'_>],
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(text: &mut String, report: &Report, measure: &str, points: &[Point<'_>]) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let [width, height] = report.frame;
@@ -141,22 +88,16 @@ fn draw(
         .y_desc(format!("mean {measure} against the spectral reference"))
         .x_label_formatter(&|ms| if *ms >= 1.0 { format!("{ms:.0}") } else { format!("{ms:.2}") })
         .y_label_formatter(&|error| format!("{error:.3}"))
-        .light_line_style(RGBColor(0xee, 0xee, 0xee))
+        .light_line_style(LIGHT)
         .label_style(("sans-serif", 13))
         .draw()?;
 
     // What to choose from: the rungs that nothing faster betters.
-    let mut front: Vec<&Point<'_>> = points.iter().filter(|point| point.front).collect();
-    front.sort_by(|a, b| a.ms.total_cmp(&b.ms));
-    let mut stairs = Vec::new();
-    for pair in front.windows(2) {
-        stairs.extend([(pair[0].ms, pair[0].error), (pair[1].ms, pair[0].error)]);
-    }
-    stairs.extend(front.last().map(|last| (last.ms, last.error)));
+    let front = points.iter().filter(|point| point.front).map(|point| (point.ms, point.error)).collect();
     chart
-        .draw_series(LineSeries::new(stairs, RGBColor(0x99, 0x99, 0x99).stroke_width(2)))?
+        .draw_series(LineSeries::new(stairs(front), GREY.stroke_width(2)))?
         .label("nothing faster is better")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], RGBColor(0x99, 0x99, 0x99).stroke_width(2)));
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(2)));
 
     for (name, geometry) in [
         ("surface alone", None),
@@ -191,15 +132,13 @@ fn draw(
             .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
     }
     let places: Vec<(i32, i32)> = points.iter().map(|point| chart.backend_coord(&(point.ms, point.error))).collect();
-    for (label, at) in labels(points, &places) {
-        let (size, shade) = font(label);
-        let style = ("sans-serif", size).into_font().color(&RGBColor(shade, shade, shade));
-        root.draw(&Text::new(label.name.to_owned(), at, style.pos(Pos::new(HPos::Left, VPos::Bottom))))?;
-    }
+    let labels: Vec<Label<'_>> =
+        points.iter().zip(&places).map(|(point, &at)| Label { name: point.name, at, front: point.front }).collect();
+    drawing::draw(&root, &labels, &places)?;
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::LowerLeft)
-        .border_style(RGBColor(0xcc, 0xcc, 0xcc))
+        .border_style(FRAME)
         .background_style(WHITE.mix(0.9))
         .label_font(("sans-serif", 13))
         .draw()?;

@@ -32,7 +32,7 @@ impl ScaleKind {
     pub const ALL: [Self; 2] = [Self::Free, Self::Fixed];
 
     /// The scale for an albedo of one scattering, where it is given.
-    fn of(self, albedo: f64) -> Option<f64> {
+    pub(super) fn of(self, albedo: f64) -> Option<f64> {
         (self == Self::Fixed).then(|| half_space::diffuse_albedo(albedo))
     }
 }

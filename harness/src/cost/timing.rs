@@ -34,6 +34,35 @@ pub struct Timed<'a> {
     pub scene: &'a Scene,
     /// The composed recipe of the settings' rung, or another text of it.
     pub source: String,
+    /// With the display recipe on top.
+    pub displayed: bool,
+    /// Whether its time goes with its pixels, so that it may be timed on fewer of them.
+    pub scales: bool,
+}
+
+impl Timed<'_> {
+    fn frame<'gpu>(&self, gpu: &'gpu Gpu, settings: &Settings) -> Result<Frame<'gpu>, RenderError> {
+        let frame = Frame::of_source(gpu, self.scene, settings, &self.source)?;
+        if self.displayed { frame.displayed(settings) } else { Ok(frame) }
+    }
+
+    /// The frame that is drawn, once drawn, and its share of the pixels.
+    fn ready<'gpu>(&self, gpu: &'gpu Gpu) -> Result<(Frame<'gpu>, f64), RenderError> {
+        if self.scales {
+            let Settings { width, height, .. } = self.settings;
+            let reduced = Settings { width: width / REDUCTION, height: height / REDUCTION, ..self.settings.clone() };
+            let small = self.frame(gpu, &reduced)?;
+            // The first frame compiles.
+            small.run()?;
+            let pixels = f64::from(width * height) / f64::from(reduced.width * reduced.height);
+            if small.run()?.total.mul_f64(pixels) > SLOW {
+                return Ok((small, 1.0 / pixels));
+            }
+        }
+        let frame = self.frame(gpu, &self.settings)?;
+        frame.run()?;
+        Ok((frame, 1.0))
+    }
 }
 
 /// Times all of them, round by round. `progress` is told how many frames of how many are done.
@@ -46,20 +75,7 @@ pub fn time(
     let total = timed.len() as u64 * (u64::from(rounds) + 1);
     let mut frames = Vec::new();
     for (done, timed) in (1..).zip(timed) {
-        let Settings { width, height, .. } = timed.settings;
-        let reduced = Settings { width: width / REDUCTION, height: height / REDUCTION, ..timed.settings.clone() };
-        let small = Frame::of_source(gpu, timed.scene, &reduced, &timed.source)?;
-        // The first frame compiles.
-        small.run()?;
-        let pixels = f64::from(width * height) / f64::from(reduced.width * reduced.height);
-        let whole = small.run()?.total.mul_f64(pixels);
-        frames.push(if whole > SLOW {
-            (small, 1.0 / pixels)
-        } else {
-            let frame = Frame::of_source(gpu, timed.scene, &timed.settings, &timed.source)?;
-            frame.run()?;
-            (frame, 1.0)
-        });
+        frames.push(timed.ready(gpu)?);
         progress(done, total);
     }
     let mut times = vec![Vec::new(); frames.len()];

@@ -28,11 +28,6 @@ impl Form {
         };
         f64::from(function(cosine as f32, sigma as f32))
     }
-
-    /// The function's mean over each interval.
-    fn values(self, sigma: f64) -> [f64; BINS] {
-        std::array::from_fn(|bin| Profile::mean(bin, |cosine| self.value(cosine, sigma)))
-    }
 }
 
 /// A reflectance function beside a profile.
@@ -47,9 +42,14 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The function of width `sigma`, multiplied by `scale`, or where there is none by what brings it nearest.
+    /// The form of width `sigma`, multiplied by `scale`, or where there is none by what brings it nearest.
     pub fn at(profile: &Profile, form: Form, sigma: f64, scale: Option<f64>) -> Self {
-        let values = form.values(sigma);
+        Self::of(profile, |cosine, sigma| form.value(cosine, sigma), sigma, scale)
+    }
+
+    /// The same of any function of a cosine and a width.
+    pub fn of(profile: &Profile, function: impl Fn(f64, f64) -> f64, sigma: f64, scale: Option<f64>) -> Self {
+        let values: [f64; BINS] = std::array::from_fn(|bin| Profile::mean(bin, |cosine| function(cosine, sigma)));
         let sum = |term: &dyn Fn(usize) -> f64| (0..BINS).map(|bin| Profile::share(bin) * term(bin)).sum::<f64>();
         let scale = scale
             .unwrap_or_else(|| sum(&|bin| values[bin] * profile.exitance[bin]) / sum(&|bin| values[bin] * values[bin]));
@@ -57,13 +57,18 @@ impl Fit {
         Self { sigma, scale, residual }
     }
 
-    /// The width that brings the function nearest, with the scale as in [`Fit::at`].
+    /// The width that brings the form nearest, with the scale as in [`Fit::at`].
     pub fn best(profile: &Profile, form: Form, scale: Option<f64>) -> Self {
         if form == Form::Lambert {
             return Self::at(profile, form, 0.0, scale);
         }
-        let sigma = best_sigma(|sigma| Self::at(profile, form, sigma, scale).residual);
-        Self::at(profile, form, sigma, scale)
+        Self::best_of(profile, |cosine, sigma| form.value(cosine, sigma), scale)
+    }
+
+    /// The same of any function of a cosine and a width.
+    pub fn best_of(profile: &Profile, function: impl Fn(f64, f64) -> f64, scale: Option<f64>) -> Self {
+        let sigma = best_sigma(|sigma| Self::of(profile, &function, sigma, scale).residual);
+        Self::of(profile, function, sigma, scale)
     }
 }
 

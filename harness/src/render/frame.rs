@@ -1,5 +1,6 @@
-//! One frame of a rung's recipe alone, to be timed: drawn again and again, nothing brought back.
+//! One frame of a rung's recipe, alone or with the display recipe, to be timed: drawn again and again, nothing brought back.
 
+use super::device::PipelineSource;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, camera, device, scene_pass};
 use crate::cookbook;
@@ -15,6 +16,51 @@ pub struct Frame<'gpu> {
     color: wgpu::TextureView,
     depth: wgpu::TextureView,
     size: [u32; 2],
+    display: Option<Display>,
+}
+
+/// The display recipe over a whole frame.
+struct Display {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    targets: [wgpu::TextureView; DISPLAY_FORMATS.len()],
+}
+
+/// Of the display's targets. The linear picture is of no use here and takes the least memory that there is; the other is a screen's.
+const DISPLAY_FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::Rgba8Unorm];
+
+impl Display {
+    fn new(gpu: &Gpu, color: &wgpu::TextureView, settings: &Settings) -> Result<Self, RenderError> {
+        let recipe = "display";
+        let source = PipelineSource {
+            recipe,
+            source: &cookbook::recipe_source(recipe),
+            entries: ["display_vertex", "display_fragment"],
+            constants: &[("SAMPLES", 1.0)],
+            formats: &DISPLAY_FORMATS,
+            depth: None,
+        };
+        let pipeline = device::pipeline(gpu, &source)?;
+        let size = [settings.width, settings.height];
+        let (group, targets) = gpu.guarded("allocating a screen", |device| {
+            let frame = device::uniform(device, &[0.0, 0.0, size[0] as f32, size[1] as f32, settings.exposure]);
+            let resources = vec![frame.as_entire_binding(), wgpu::BindingResource::TextureView(color)];
+            let target = |format| device::view(&device::target(device, size, format, wgpu::TextureUsages::empty()));
+            (device::bind_group(device, &pipeline, 0, resources), DISPLAY_FORMATS.map(target))
+        })?;
+        Ok(Self { pipeline, group, targets })
+    }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("display"),
+            color_attachments: &self.targets.each_ref().map(device::cleared),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
 }
 
 /// How long a frame took.
@@ -27,6 +73,9 @@ pub struct FrameTime {
 }
 
 impl<'gpu> Frame<'gpu> {
+    /// Texels along each side of the textures of rung `blur`.
+    pub const BLUR_SIDE: u32 = super::diffusion::SIDE;
+
     /// Compiles the rung and uploads the scene.
     pub fn new(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         Self::of_source(gpu, scene, settings, &cookbook::recipe_source(settings.rung.recipe()))
@@ -37,13 +86,20 @@ impl<'gpu> Frame<'gpu> {
         let pass = scene_pass(gpu, scene, settings, source)?;
         let size = [settings.width, settings.height];
         let [color, depth] = gpu.guarded("allocating a frame", |device| {
-            [SAMPLE_FORMAT, DEPTH_FORMAT]
-                .map(|format| device::view(&device::target(device, size, format, wgpu::TextureUsages::empty())))
+            use wgpu::TextureUsages as Usage;
+            [(SAMPLE_FORMAT, Usage::TEXTURE_BINDING), (DEPTH_FORMAT, Usage::empty())]
+                .map(|(format, usage)| device::view(&device::target(device, size, format, usage)))
         })?;
         let matrix =
             camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
         let view = pass.view(matrix, scene.camera.eye);
-        Ok(Self { gpu, pass, view, color, depth, size })
+        Ok(Self { gpu, pass, view, color, depth, size, display: None })
+    }
+
+    /// The same with the tone curve and the encoding for a screen on top.
+    pub fn displayed(self, settings: &Settings) -> Result<Self, RenderError> {
+        let display = Some(Display::new(self.gpu, &self.color, settings)?);
+        Ok(Self { display, ..self })
     }
 
     /// Draws it once and waits.
@@ -53,6 +109,9 @@ impl<'gpu> Frame<'gpu> {
         let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
         self.pass.prepare(&mut encoder)?;
         self.pass.draw(&mut encoder, &self.view, &target);
+        if let Some(display) = &self.display {
+            display.draw(&mut encoder);
+        }
         self.gpu.queue.submit([encoder.finish()]);
         let encode = start.elapsed();
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
@@ -60,7 +119,7 @@ impl<'gpu> Frame<'gpu> {
         Ok(FrameTime { total: start.elapsed(), encode })
     }
 
-    /// How many draw calls it takes.
+    /// How many draw calls the scene takes.
     pub fn draw_calls(&self) -> usize {
         self.pass.draw_calls()
     }

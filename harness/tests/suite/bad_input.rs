@@ -118,7 +118,7 @@ const CHECK: &[Row] = &[
 ];
 
 const OTHERS: &[Row] = &[
-    ("cost skin", One, &["no ladder `skin`", "gem", "sphere"]),
+    ("cost skin", One, &["no ladder `skin`", "gem", "cdrf", "sphere"]),
     ("cost gem --from {}/none.json", One, &["none.json: ", "cannot be read"]),
     ("cost gem --from {}/text.glb", One, &["text.glb: ", "not a gem.json"]),
     ("cost gem --fill {}/none.md", One, &["none.md: ", "cannot be read"]),
@@ -127,6 +127,18 @@ const OTHERS: &[Row] = &[
     ("cost gem --views briliant", Usage, &["did you mean `brilliant`"]),
     ("cost gem --walks 5", One, &["`gem` knows no --walks"]),
     ("cost gem --seed 5", One, &["`gem` knows no --seed"]),
+    ("cost gem --rungs cheap", One, &["`gem` has no rung cheap", "./cook cost cdrf"]),
+    ("cost cdrf --rungs proxy-1", One, &["`cdrf` has no rung proxy-1", "lambert"]),
+    ("cost cdrf --rungs cheep", Usage, &["did you mean `cheap`"]),
+    ("cost cdrf --views brilliant", One, &["`cdrf` knows no --views"]),
+    ("cost cdrf --walks 5", One, &["`cdrf` knows no --walks"]),
+    ("cost cdrf --seed 5", One, &["`cdrf` knows no --seed"]),
+    ("cost cdrf --profile", One, &["`cdrf` knows no --profile"]),
+    ("cost cdrf --from {}/none.json", One, &["none.json: ", "cannot be read"]),
+    ("cost cdrf --from {}/empty.json", One, &["empty.json: ", "not a cdrf.json", "measure anew"]),
+    ("cost cdrf --from {}/untimed.json --fill {}/ladder.md", One, &["ladder.md: ", "no time of `lambert`"]),
+    ("cost cdrf --fill {}/bad.md", One, &["bad.md: ", "no table `other`", "cdrf_lit"]),
+    ("cost cdrf --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
     ("cost sphere --rungs proxy-1", One, &["`sphere` knows no --rungs"]),
     ("cost sphere --views brilliant", One, &["`sphere` knows no --views"]),
     ("cost sphere --rounds 7", One, &["`sphere` knows no --rounds"]),
@@ -254,6 +266,11 @@ fn write_bad_files(folder: &Path) {
     write("other.wgsl", b"fn mine(incident: vec3f) -> vec3f {\n    return incident;\n}\n");
     let empty = json!({"walks": 1, "seed": 1, "profiles": [], "rows": [], "limits": [], "laws": [], "choices": []});
     write("empty.json", empty.to_string().as_bytes());
+    let none = json!({"largest": 0.0, "rms": 0.0});
+    let untimed = json!({"adapter": "", "frame": [1, 1], "rounds": 0, "vertices": 0, "spheres": 0, "rungs": [], "tables": [],
+        "spherical_from_circular": none});
+    write("untimed.json", untimed.to_string().as_bytes());
+    write("ladder.md", b"<!-- generated: cdrf_lit --><!-- end -->\n");
     write("page.md", b"<!-- generated: sphere_widths --><!-- end -->\n");
     write("bad.md", b"<!-- generated: other --><!-- end -->\n");
     std::fs::create_dir(folder.join("folder.png")).expect("a folder");

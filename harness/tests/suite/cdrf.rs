@@ -2,47 +2,19 @@
 //! the formats that a texture may have, against the oracle.
 
 use glam::{UVec2, Vec3};
-use lapidary_cdrf::{self as mirror, oracle};
+use lapidary_cdrf as mirror;
 use lapidary_harness::cdrf::table::{self, Format, Table};
+use lapidary_harness::cost::cdrf::error::{self, Samples};
+use lapidary_harness::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
 use std::sync::OnceLock;
 
-/// A cosine, a sigma, and the exact reflectance.
-type Sample = (f32, f32, f64);
-
-/// Angles from 0 to 180° by sigmas from 0 to 3, both uniform: what the root mean square is over.
-fn everywhere() -> &'static [Sample] {
-    static SAMPLES: OnceLock<Vec<Sample>> = OnceLock::new();
-    SAMPLES.get_or_init(|| {
-        let angles = (0..=360).map(|index| (f64::from(index) * 0.5).to_radians().cos() as f32);
-        angles.flat_map(|cosine| (0..=300).map(move |index| sample(cosine, index as f32 * 0.01))).collect()
-    })
+fn convolution() -> &'static Samples {
+    static SAMPLES: OnceLock<Samples> = OnceLock::new();
+    SAMPLES.get_or_init(Samples::of_the_convolution)
 }
 
-/// Beside the terminator at small sigmas, where tables do worst: looked at closely for the largest error.
-fn at_the_kink() -> &'static [Sample] {
-    static SAMPLES: OnceLock<Vec<Sample>> = OnceLock::new();
-    SAMPLES.get_or_init(|| {
-        let cosines = (-150..=150).map(|index| index as f32 * 0.0002);
-        cosines.flat_map(|cosine| (0..=100).map(move |index| sample(cosine, index as f32 * 0.0005))).collect()
-    })
-}
-
-fn sample(cosine: f32, sigma: f32) -> Sample {
-    (cosine, sigma, oracle::accurate(cosine.into(), sigma.into()))
-}
-
-/// Largest and root mean square error of a rung.
-fn errors(rung: impl Fn(f32, f32) -> f32) -> (f64, f64) {
-    let error = |(cosine, sigma, exact): &Sample| (f64::from(rung(*cosine, *sigma)) - exact).abs();
-    let most = everywhere().iter().chain(at_the_kink()).map(error).fold(0.0, f64::max);
-    let squares: f64 = everywhere().iter().map(|sample| error(sample).powi(2)).sum();
-    (most, (squares / everywhere().len() as f64).sqrt())
-}
-
-fn baked(width: u32, height: u32, format: Format) -> Table {
-    let size = UVec2::new(width, height);
-    let texels = table::bake(super::gpu(), size, Vec3::ONE).unwrap_or_else(|error| panic!("{error}"));
-    Table::new(size, format, &texels)
+fn baked(side: u32, format: Format) -> Table {
+    error::baked(super::gpu(), side, format).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
@@ -90,23 +62,26 @@ fn first_and_last_row_are_the_limits() {
 
 #[test]
 fn lookup_by_hand_is_the_samplers() {
-    let table = baked(65, 65, Format::R32Float);
-    for (cosine, sigma, _) in everywhere() {
-        let apart = (table.lookup(*cosine, *sigma) - table.sampled(*cosine, *sigma)).abs().max_element();
-        // Coordinates that are rounded at 65 texels.
-        assert!(apart < 2e-5, "{cosine} {sigma}: {apart:e}");
+    let table = baked(65, Format::R32Float);
+    for half_degree in 0..=360u16 {
+        let cosine = (0.5 * f32::from(half_degree)).to_radians().cos();
+        for sigma in (0..=300u16).map(|index| 0.01 * f32::from(index)) {
+            let apart = (table.lookup(cosine, sigma) - table.sampled(cosine, sigma)).abs().max_element();
+            // Coordinates that are rounded at 65 texels.
+            assert!(apart < 2e-5, "{cosine} {sigma}: {apart:e}");
+        }
     }
 }
 
 /// The claims of docs/cdrf.md about widths and texel centres.
 #[test]
 fn an_odd_width_wins_and_the_half_texel_counts() {
-    let worst = |table: &Table| errors(|c, s| table.sampled(c, s).x).0;
-    let worst_naive = |table: &Table| errors(|c, s| table.sampled_naive(c, s).x).0;
-    let paper = baked(256, 256, Format::Rgba8);
-    let even = baked(256, 256, Format::Rgba16Float);
-    let odd = baked(257, 257, Format::Rgba16Float);
-    let narrow = baked(65, 65, Format::Rgba16Float);
+    let worst = |table: &Table| convolution().distance(|c, s| table.sampled(c, s).x).largest;
+    let worst_naive = |table: &Table| convolution().distance(|c, s| table.sampled_naive(c, s).x).largest;
+    let paper = baked(256, Format::Rgba8);
+    let even = baked(256, Format::Rgba16Float);
+    let odd = baked(257, Format::Rgba16Float);
+    let narrow = baked(65, Format::Rgba16Float);
     let ratio = worst(&even) / worst(&odd);
     assert!((3.7..4.2).contains(&ratio), "256 wide is {ratio} times as bad as 257");
     let ratio = worst(&narrow) / worst(&even);
@@ -117,31 +92,33 @@ fn an_odd_width_wins_and_the_half_texel_counts() {
     }
 }
 
-/// The table of docs/cdrf.md.
+/// The record's errors, which the pages show, are those of this code, as far as the pages show them.
 #[test]
-fn rungs_are_as_the_page_says() {
-    let mut rows = String::new();
-    let mut add = |name: &str, (most, rms): (f64, f64)| rows += &format!("| {name} | {most:.1e} | {rms:.1e} |\n");
-    add("`cdrf_lambert`", errors(|c, _| mirror::lambert(c)));
-    add("`cdrf_wrap`", errors(mirror::wrap));
-    for (name, width, height, format) in [
-        ("table 256 × 256, RGBA8 (the paper's)", 256, 256, Format::Rgba8),
-        ("table 257 × 257, RGBA8", 257, 257, Format::Rgba8),
-        ("table 65 × 65, RGBA16F", 65, 65, Format::Rgba16Float),
-        ("table 256 × 256, RGBA16F", 256, 256, Format::Rgba16Float),
-        ("table 257 × 257, RGBA16F", 257, 257, Format::Rgba16Float),
-        ("table 257 × 257, R32F", 257, 257, Format::R32Float),
-        ("table 1025 × 1025, R32F", 1025, 1025, Format::R32Float),
-    ] {
-        let table = baked(width, height, format);
-        add(name, errors(|c, s| table.lookup(c, s).x));
-        if name.contains("paper") {
-            add("the same, half a texel left out", errors(|c, s| table.sampled_naive(c, s).x));
+fn the_record_has_the_rungs_errors() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/lavapipe/cdrf.json");
+    let record = std::fs::read_to_string(file).expect("the record");
+    let record: CdrfReport = serde_json::from_str(&record).expect("a report");
+    let again = "./cook cost cdrf --out docs/measurements/lavapipe";
+    let same = |name: &str, recorded: Distance, found: Distance| {
+        let shown = |distance: Distance| format!("{:.1e} {:.1e}", distance.largest, distance.rms);
+        assert_eq!(shown(recorded), shown(found), "{name}: the record is not of this code; measure anew: {again}");
+    };
+    let spherical = Samples::of(mirror::oracle::spherical);
+    for reflectance in Options::default().rungs {
+        let name = reflectance.name();
+        let function = error::function(super::gpu(), reflectance).unwrap_or_else(|error| panic!("{error}"));
+        let recorded = record.rung(name).and_then(|rung| rung.distance);
+        assert_eq!(function.is_some(), recorded.is_some(), "{name}");
+        if let Some((function, recorded)) = function.zip(recorded) {
+            let definition = if name == SPHERICAL { &spherical } else { convolution() };
+            same(name, recorded, definition.distance(function));
         }
     }
-    add("`cdrf_cheap`", errors(mirror::cheap));
-    add("`cdrf_accurate`", errors(mirror::accurate));
-    add("`cdrf_quadrature`", errors(mirror::quadrature));
-    let page = include_str!("../../../docs/cdrf.md");
-    assert!(page.contains(&rows), "docs/cdrf.md should hold:\n{rows}");
+    let tables = error::tables(super::gpu(), convolution()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(record.tables.len(), tables.len());
+    for (recorded, found) in record.tables.iter().zip(tables) {
+        assert_eq!(recorded.name, found.name);
+        same(&found.name, recorded.distance, found.distance);
+    }
+    same("spherical", record.spherical_from_circular, convolution().distance(mirror::spherical));
 }

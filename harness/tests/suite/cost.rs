@@ -1,6 +1,7 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
 use crate::program::{folder, succeeds};
+use lapidary_harness::cost::cdrf::{self, CdrfReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
 use lapidary_harness::cost::{MEASURES, Report, views};
@@ -92,6 +93,9 @@ fn a_profile_cuts_every_frame() {
 fn the_pages_show_the_record() {
     let gem: Report = record("measurements/lavapipe/gem.json");
     holds(&gem, "gem", "lavapipe", &["gem_ladder.md", "gem_proxy.md"]);
+    let cdrf: CdrfReport = record("measurements/lavapipe/cdrf.json");
+    holds(&cdrf, "cdrf", "lavapipe", &["cdrf.md", "cdrf_ladder.md"]);
+    assert_eq!(docs("measurements/lavapipe/cdrf.txt"), cdrf.text());
     let sphere: SphereReport = record("measurements/random_walk/sphere.json");
     holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
 }
@@ -164,6 +168,26 @@ fn the_record_of_spheres_is_what_walks_give() {
         let chi_squared: f64 = squares.sum();
         assert!(chi_squared < 36.0 + 4.0 * 8.5, "albedo {albedo}, radius {radius}: {chi_squared}");
     }
+}
+
+#[test]
+fn the_reflectance_is_timed_written_and_shown_again() {
+    let folder = folder();
+    let arguments = ["cost", "cdrf", "--rungs", "lambert,cheap", "--rounds", "1", "--json", "--out", "report"];
+    let rows: Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON alone");
+    let rows = rows.as_array().expect("an array");
+    assert_eq!(rows.len(), 2 * 4 * cdrf::MEASURES.len());
+    for row in rows {
+        assert!(row["technique"] == "cdrf" && row["adapter"].is_string() && row["dominated"] == false, "{row}");
+        assert!(row["ms"].as_f64().is_some_and(|ms| ms > 0.0), "{row}");
+        let error = row["error"].as_f64().expect("a number");
+        assert!((row["rung"] == "cheap") == (error < 0.05), "{row}");
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("report").join(name)).expect(name);
+    let again = succeeds(folder.path(), &["cost", "cdrf", "--from", "report/cdrf.json"]).stdout;
+    assert_eq!(again.trim_end(), read("cdrf.txt").trim_end());
+    assert!(again.contains("PlayStation 3") && again.contains("+ Lambert"), "{again}");
+    assert!(read("cdrf.svg").contains("cheap"));
 }
 
 #[test]

@@ -1,10 +1,15 @@
 //! The gem ladder.
 
-use super::{Arguments, Context, Failure, Options, Outcome, Places, Shown, behind_a_bar, file, output, refuse};
+use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output, refuse};
 use lapidary_harness::cost::{self, CostError, plot};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     refuse("gem", &[("--walks", arguments.walks.is_some()), ("--seed", arguments.seed.is_some())])?;
+    if let Some(rung) = arguments.rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_))) {
+        return Err(Failure(format!(
+            "`gem` has no rung {rung}, which draws no clear stone; `./cook cost cdrf` has it"
+        )));
+    }
     let mut options = Options::default();
     if let Some(rounds) = arguments.rounds {
         options.rounds = rounds;

@@ -2,6 +2,7 @@
 
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
 use crate::cost::CostError;
+use crate::cost::drawing::{Drawn, FRAME, GREY, LIGHT, ticks, written};
 use crate::cost::plot::{COLORS, SIZE, span};
 use crate::random_walk::{BINS, Form};
 use lapidary_cdrf as cdrf;
@@ -13,11 +14,6 @@ const ALBEDO: f64 = 0.99;
 const RADII: [f64; 3] = [2.0, 10.0, 50.0];
 /// Labels of the axis of widths times radii.
 const WIDTHS: [f64; 12] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0];
-const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
-const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
-const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
-
-type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Width times radius over the radius, a line for each albedo: level, were sigma = sigma_0 kappa true.
 ///
@@ -35,17 +31,6 @@ pub fn sigma(report: &SphereReport) -> Result<String, CostError> {
 /// A report without one of the spheres; plotters' own.
 pub fn profile(report: &SphereReport) -> Result<String, CostError> {
     written(|text| draw_profile(text, report))
-}
-
-fn written(draw: impl FnOnce(&mut String) -> Drawn) -> Result<String, CostError> {
-    let mut text = String::new();
-    draw(&mut text).map_err(|error| CostError::Plot(error.to_string()))?;
-    Ok(text)
-}
-
-/// Those of an axis's labels that lie on it.
-fn ticks(labels: &[f64], axis: &std::ops::Range<f64>) -> Vec<f64> {
-    labels.iter().copied().filter(|label| axis.contains(label)).collect()
 }
 
 /// Radius and width times radius.

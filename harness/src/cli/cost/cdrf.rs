@@ -1,0 +1,45 @@
+//! The curvature-dependent reflectance's ladder.
+
+use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use lapidary_harness::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
+use lapidary_harness::render::{Reflectance, Rung};
+
+pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let ignored = [
+        ("--views", !arguments.views.is_empty()),
+        ("--walks", arguments.walks.is_some()),
+        ("--seed", arguments.seed.is_some()),
+        ("--profile", arguments.profile),
+    ];
+    refuse(cdrf::TECHNIQUE, &ignored)?;
+    let mut options = Options::default();
+    if let Some(rounds) = arguments.rounds {
+        options.rounds = rounds;
+    }
+    if !arguments.rungs.is_empty() {
+        options.rungs = arguments.rungs.iter().map(|rung| reflectance(*rung)).collect::<Result<_, _>>()?;
+    }
+    let places = Places::new(cdrf::TECHNIQUE, arguments)?;
+    let mut report = places.report(|| {
+        let gpu = context.gpu()?;
+        behind_a_bar(|progress| cdrf::run(gpu, &options, progress))
+    })?;
+    report.mark_dominated();
+    let timed = |rung: &cdrf::RungReport| {
+        rung.distance.is_some() && CurvatureSource::ALL.iter().any(|source| rung.ms(Part::Lit, *source).is_some())
+    };
+    let mut plots = Vec::new();
+    if arguments.out.is_some() && report.rungs.iter().any(timed) {
+        plots.push(("cdrf.svg".to_owned(), plot::svg(&report)?));
+    }
+    let shown = Shown { text: report.text(), rows: serde_json::to_string_pretty(&report.rows())?, plots };
+    places.write(&report, &shown)
+}
+
+/// A rung of this ladder.
+fn reflectance(rung: Rung) -> Result<Reflectance, Failure> {
+    match rung {
+        Rung::Diffuse(reflectance) => Ok(reflectance),
+        other => Err(Failure(format!("`cdrf` has no rung {other}; there are {}", cdrf::RUNGS.join(", ")))),
+    }
+}

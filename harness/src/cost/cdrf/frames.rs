@@ -1,0 +1,261 @@
+//! The frames that a rung draws, to be timed, and the memory that they need beside mesh and material.
+
+use super::{CostError, Options, RungReport, shader};
+use crate::cookbook;
+use crate::cost::timing::{self, Timed, Timing};
+use crate::gpu::Gpu;
+use crate::render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
+use crate::render::{Curvature, Frame, Reflectance, RenderError, Rung, Settings};
+use crate::scene::{Camera, Scene, SceneError};
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// The scene that is timed.
+const SCENE: &str = "skin_bunny";
+
+/// How much of a renderer's work is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// Nothing but diffuse light: the body fills the frame, under one light.
+    Lit,
+    /// A whole frame: the body before a backdrop, in the studio and under one light, with what its surface mirrors, tone-mapped and encoded.
+    Whole,
+}
+
+impl Part {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Lit, Self::Whole];
+
+    /// In a view's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lit => "lit",
+            Self::Whole => "whole",
+        }
+    }
+}
+
+/// Where curvature comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CurvatureSource {
+    /// The pixel's derivatives.
+    Screen,
+    /// The mesh, which holds it for each vertex.
+    Vertex,
+}
+
+impl CurvatureSource {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Screen, Self::Vertex];
+
+    /// In a view's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Screen => "screen",
+            Self::Vertex => "vertex",
+        }
+    }
+
+    fn curvature(self) -> Curvature {
+        match self {
+            Self::Screen => Curvature::Mean,
+            Self::Vertex => Curvature::Vertex,
+        }
+    }
+}
+
+/// The views of the ladder.
+pub(super) fn views() -> impl Iterator<Item = (Part, CurvatureSource)> {
+    Part::ALL.into_iter().flat_map(|part| CurvatureSource::ALL.map(|source| (part, source)))
+}
+
+/// One frame of a rung.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameReport {
+    /// What is drawn.
+    pub part: Part,
+    /// Where curvature comes from; none where the rung knows no curvature.
+    pub curvature: Option<CurvatureSource>,
+    /// Instructions of the specialised vertex shader in SPIR-V.
+    pub vertex_instructions: u32,
+    /// Of the fragment shader.
+    pub fragment_instructions: u32,
+    /// The frame's time.
+    pub timing: Option<Timing>,
+}
+
+/// What is drawn.
+pub(super) struct Scenes {
+    lit: Scene,
+    whole: Scene,
+}
+
+impl Scenes {
+    pub(super) fn new() -> Result<Self, SceneError> {
+        let whole = Scene::named(SCENE)?;
+        Ok(Self { lit: filled(&whole), whole })
+    }
+
+    fn of(&self, part: Part) -> &Scene {
+        match part {
+            Part::Lit => &self.lit,
+            Part::Whole => &self.whole,
+        }
+    }
+
+    /// Vertices of the mesh that is shown: those of halos are in its texture alone.
+    pub(super) fn vertices(&self) -> usize {
+        self.whole.objects.iter().map(|object| object.mesh.without_halo().positions.len()).sum()
+    }
+
+    /// Bytes that a rung needs of the mesh beside positions, normals and indices of what is shown.
+    pub(super) fn mesh_bytes(&self, reflectance: Reflectance) -> u64 {
+        let shown = self.vertices();
+        let bytes = match reflectance {
+            Reflectance::Lambert => 0,
+            // Texture coordinates, the vertices of halos, and a list of triangles with halos among them.
+            Reflectance::Blur => {
+                let meshes = || self.whole.objects.iter().map(|object| &object.mesh);
+                let vertices: usize = meshes().map(|mesh| mesh.positions.len()).sum();
+                let drawn: usize = meshes().map(|mesh| mesh.halo.len() + mesh.indices.len()).sum();
+                vertices * size_of::<Vec2>() + (vertices - shown) * 2 * size_of::<Vec3>() + drawn * size_of::<u32>()
+            }
+            // A curvature, where it comes from there.
+            _ => shown * size_of::<f32>(),
+        };
+        bytes as u64
+    }
+}
+
+/// The bunny so near that its flank fills a frame of 16:9: where the middle of the flank is and how high the frame, in halves of the picture's height.
+const FLANK: ([f32; 2], f32) = ([0.07, -0.19], 0.22);
+
+fn filled(scene: &Scene) -> Scene {
+    let camera = scene.camera;
+    let ([right, up], half_height) = FLANK;
+    let half = (0.5 * camera.vertical_fov).tan();
+    let forward = (camera.target - camera.eye).normalize_or(Vec3::NEG_Z);
+    let across = forward.cross(camera.up);
+    let to_flank = forward + half * (right * across + up * camera.up);
+    let target = camera.eye + camera.eye.distance(camera.target) * to_flank;
+    let camera = Camera { target, vertical_fov: 2.0 * (half_height * half).atan(), ..camera };
+    Scene { camera, ..scene.clone() }
+}
+
+fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflectance, frame: [u32; 2]) -> Settings {
+    let whole = part == Part::Whole;
+    Settings {
+        samples: 1,
+        rung: Rung::Diffuse(reflectance),
+        light_from_environment: whole,
+        reflection: whole,
+        curvature: curvature.map_or(Curvature::Mean, CurvatureSource::curvature),
+        ..Settings::of_size(frame[0], frame[1])
+    }
+}
+
+/// A rung's frames, untimed.
+pub(super) fn frames(scenes: &Scenes, reflectance: Reflectance, size: [u32; 2]) -> Result<Vec<FrameReport>, CostError> {
+    let sources: &[Option<CurvatureSource>] = match reflectance {
+        Reflectance::Lambert | Reflectance::Blur => &[None],
+        _ => &CurvatureSource::ALL.map(Some),
+    };
+    let mut frames = Vec::new();
+    for part in Part::ALL {
+        for &curvature in sources {
+            let settings = settings(part, curvature, reflectance, size);
+            let counts = shader::counts(scenes.of(part), &settings, reflectance)?;
+            frames.push(FrameReport {
+                part,
+                curvature,
+                vertex_instructions: counts.vertex_instructions,
+                fragment_instructions: counts.fragment_instructions,
+                timing: None,
+            });
+        }
+    }
+    Ok(frames)
+}
+
+/// Times all frames of all rungs, interleaved. `rungs` are those of the options, in their order.
+pub(super) fn time(
+    gpu: &Gpu,
+    scenes: &Scenes,
+    options: &Options,
+    rungs: &mut [RungReport],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(), RenderError> {
+    let mut timed = Vec::new();
+    for (rung, &reflectance) in rungs.iter().zip(&options.rungs) {
+        for frame in &rung.frames {
+            let settings = settings(frame.part, frame.curvature, reflectance, options.frame);
+            timed.push(Timed {
+                source: cookbook::recipe_source(settings.rung.recipe()),
+                settings,
+                scene: scenes.of(frame.part),
+                displayed: frame.part == Part::Whole,
+                // Its texture is as large for a small picture.
+                scales: reflectance != Reflectance::Blur,
+            });
+        }
+    }
+    let timings = timing::time(gpu, &timed, options.rounds, progress)?;
+    let frames = rungs.iter_mut().flat_map(|rung| &mut rung.frames);
+    for (frame, timing) in frames.zip(timings) {
+        frame.timing = Some(timing);
+    }
+    Ok(())
+}
+
+/// Bytes of a rung's textures for one material.
+pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
+    let bytes = |format: wgpu::TextureFormat, side: u32| {
+        u64::from(format.block_copy_size(None).unwrap_or_default()) * u64::from(side).pow(2)
+    };
+    match reflectance {
+        Reflectance::Table(side, format) => bytes(format.texture(&[]).0, side),
+        // Irradiance before and after each pass of the blur, and the stretch.
+        Reflectance::Blur => 2 * bytes(IRRADIANCE_FORMAT, Frame::BLUR_SIDE) + bytes(STRETCH_FORMAT, Frame::BLUR_SIDE),
+        _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cdrf::table::Format;
+    use crate::gpu::AdapterChoice;
+    use crate::render;
+
+    #[test]
+    fn the_lit_part_fills_the_frame_and_the_whole_does_not() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let scenes = Scenes::new().expect("built in");
+        for part in Part::ALL {
+            let settings = settings(part, None, Reflectance::Lambert, [320, 180]);
+            let picture = render::render(gpu, scenes.of(part), &settings).expect("rendered");
+            let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
+            assert_eq!(covered == 320 * 180, part == Part::Lit, "{covered}");
+            // The light and its shadow side are both in sight.
+            let red: Vec<f32> = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| pixel[0]).collect();
+            let (least, most) = (red.iter().copied().fold(f32::MAX, f32::min), red.iter().copied().fold(0.0, f32::max));
+            assert!(most > 4.0 * least, "{part:?}: {least} {most}");
+        }
+    }
+
+    #[test]
+    fn memory_is_what_is_bound() {
+        assert_eq!(texture_bytes(Reflectance::Table(256, Format::Rgba8)), 256 * 256 * 4);
+        assert_eq!(texture_bytes(Reflectance::Table(257, Format::Rgba16Float)), 257 * 257 * 8);
+        assert_eq!(texture_bytes(Reflectance::Table(257, Format::R32Float)), 257 * 257 * 4);
+        assert_eq!(texture_bytes(Reflectance::Blur), 3 * 8 * 1024 * 1024);
+        assert_eq!(texture_bytes(Reflectance::Accurate), 0);
+        let scenes = Scenes::new().expect("built in");
+        let curvatures = scenes.mesh_bytes(Reflectance::Accurate);
+        assert_eq!((scenes.mesh_bytes(Reflectance::Lambert), curvatures), (0, 4 * scenes.vertices() as u64));
+        // Two floats and an index or more for each vertex, and the halos'.
+        assert!(scenes.mesh_bytes(Reflectance::Blur) > 3 * curvatures);
+    }
+}

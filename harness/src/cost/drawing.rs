@@ -1,0 +1,141 @@
+//! What plots share: their greys, the marks of an axis, labels beside points, and the line of the rungs to choose from.
+
+use super::CostError;
+use super::plot::SIZE;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Of lines that others are compared with.
+pub(super) const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
+/// Of a grid.
+pub(super) const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
+/// About a legend.
+pub(super) const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
+
+/// Whether a plot was drawn.
+pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// What `draw` draws.
+pub(super) fn written(draw: impl FnOnce(&mut String) -> Drawn) -> Result<String, CostError> {
+    let mut text = String::new();
+    draw(&mut text).map_err(|error| CostError::Plot(error.to_string()))?;
+    Ok(text)
+}
+
+/// Those of an axis's labels that lie on it.
+pub(super) fn ticks(labels: &[f64], axis: &std::ops::Range<f64>) -> Vec<f64> {
+    labels.iter().copied().filter(|label| axis.contains(label)).collect()
+}
+
+/// A point to be labelled.
+pub(super) struct Label<'a> {
+    pub(super) name: &'a str,
+    /// Of the point, in pixels of the drawing.
+    pub(super) at: (i32, i32),
+    /// It is one to choose from; the others stand back.
+    pub(super) front: bool,
+}
+
+impl Label<'_> {
+    /// Size and grey.
+    fn font(&self) -> (i32, u8) {
+        if self.front { (13, 0x11) } else { (10, 0x88) }
+    }
+}
+
+/// A rectangle of the drawing: left, top, right, bottom.
+type Area = [i32; 4];
+
+fn overlap(a: &Area, b: &Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+/// Labels and the lower left corners where they go: beside their points, the choices' first, on no other label and on none of the
+/// `markers`. Where there is no room, a point that is no choice has none.
+fn placed<'l, 'a>(labels: &'l [Label<'a>], markers: &[(i32, i32)]) -> Vec<(&'l Label<'a>, (i32, i32))> {
+    let mut taken: Vec<Area> = markers.iter().map(|&(x, y)| [x - 5, y - 5, x + 5, y + 5]).collect();
+    let mut order: Vec<&Label<'a>> = labels.iter().collect();
+    order.sort_by_key(|label| !label.front);
+    let mut found = Vec::new();
+    for label in order {
+        let (x, y) = label.at;
+        let (size, _) = label.font();
+        // A letter of the font is about 0.6 of its size wide.
+        let width = 3 * size * label.name.len() as i32 / 5;
+        // To the right or the left, above or below, and then farther up and down.
+        let sides = [x + 7, x - 7 - width, x - width / 2];
+        let mut corners: Vec<(i32, i32)> = Vec::new();
+        for away in [0, 16, 32] {
+            corners.extend(sides.map(|left| (left, y - 3 - away)));
+            corners.extend(sides.map(|left| (left, y + size + 3 + away)));
+        }
+        let area = |&(left, bottom): &(i32, i32)| [left, bottom - size, left + width, bottom];
+        let free = |corner: &(i32, i32)| {
+            let area = area(corner);
+            area[2] < SIZE.0 as i32 && !taken.iter().any(|other| overlap(&area, other))
+        };
+        let near = if label.front { corners.len() } else { 6 };
+        let place = corners[..near].iter().copied().find(free).or(label.front.then_some(corners[0]));
+        if let Some(corner) = place {
+            taken.push(area(&corner));
+            found.push((label, corner));
+        }
+    }
+    found
+}
+
+/// Draws the labels. `markers` are the middles of all points.
+pub(super) fn draw<'a>(
+    root: &DrawingArea<SVGBackend<'a>, Shift>,
+    labels: &[Label<'_>],
+    markers: &[(i32, i32)],
+) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
+    for (label, at) in placed(labels, markers) {
+        let (size, shade) = label.font();
+        let style = ("sans-serif", size).into_font().color(&RGBColor(shade, shade, shade));
+        root.draw(&Text::new(label.name.to_owned(), at, style.pos(Pos::new(HPos::Left, VPos::Bottom))))?;
+    }
+    Ok(())
+}
+
+/// The line below which nothing lies, through points of time and error to choose from: what is best with the time that there is.
+pub(super) fn stairs(mut front: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut stairs = Vec::new();
+    for pair in front.windows(2) {
+        stairs.extend([pair[0], (pair[1].0, pair[0].1)]);
+    }
+    stairs.extend(front.last());
+    stairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_lie_on_no_other_and_on_no_marker() {
+        let at = |k: i32| (600 + 9 * (k % 3), 300 + 9 * (k / 3));
+        let markers: Vec<(i32, i32)> = (0..6).map(at).collect();
+        let labels: Vec<Label<'_>> = (0..6).map(|k| Label { name: "a rung's name", at: at(k), front: k < 2 }).collect();
+        let areas: Vec<Area> = placed(&labels, &markers)
+            .iter()
+            .map(|(label, (left, bottom))| {
+                let (size, _) = label.font();
+                [*left, bottom - size, left + 3 * size * label.name.len() as i32 / 5, *bottom]
+            })
+            .collect();
+        assert!(areas.len() >= 2, "the choices have labels");
+        for (index, area) in areas.iter().enumerate() {
+            assert!(areas[..index].iter().all(|other| !overlap(area, other)), "{areas:?}");
+            assert!(markers.iter().all(|&(x, y)| !overlap(area, &[x - 5, y - 5, x + 5, y + 5])), "{areas:?}");
+        }
+    }
+
+    #[test]
+    fn stairs_go_right_before_they_go_down() {
+        assert_eq!(stairs(vec![(3.0, 1.0), (1.0, 5.0)]), [(1.0, 5.0), (3.0, 5.0), (3.0, 1.0)]);
+        assert!(stairs(Vec::new()).is_empty());
+    }
+}
