@@ -32,6 +32,7 @@ pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 use std::sync::Mutex;
 pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
+pub(crate) use translucent::constants as translucent_constants;
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;

@@ -65,7 +65,7 @@ pub(super) fn pass<'gpu>(
 }
 
 /// The overrides of the recipe for these settings.
-fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
+pub(crate) fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
     let flag = |on: bool| f64::from(u8::from(on));
     let materials = || scene.objects.iter().map(|object| &object.material);
     let scatters = materials().any(|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));

@@ -1,14 +1,12 @@
 //! A rung's shaders, specialised to what it uses and counted in SPIR-V.
 
 use super::CostError;
-use crate::cdrf::table::Format;
 use crate::cookbook;
 use crate::dispatch;
-use crate::render::{self, Curvature, Environment, Reflectance, Settings};
+use crate::render::{self, Reflectance, Settings};
 use crate::scene::Scene;
 use crate::specialise::specialise;
 use crate::spirv_counts::{SpirvCounts, spirv_counts};
-use glam::Vec3;
 
 /// The recipe's entry points.
 const ENTRIES: [&str; 2] = ["cdrf_vertex", "cdrf_fragment"];
@@ -17,51 +15,16 @@ const ENTRIES: [&str; 2] = ["cdrf_vertex", "cdrf_fragment"];
 pub(super) fn counts(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Result<SpirvCounts, CostError> {
     let recipe = settings.rung.recipe();
     let (ir, _) = dispatch::parse(&cookbook::recipe_source(recipe), recipe).map_err(render::RenderError::from)?;
-    let constants = overrides(scene, settings, reflectance);
+    let constants = render::translucent_constants(scene, settings, reflectance);
     let (ir, info) = specialise(ir, &constants, &ENTRIES)?;
     Ok(spirv_counts(&ir, &info, ENTRIES[0], ENTRIES[1])?)
-}
-
-/// The value of each of the recipe's overrides, by the numbers that its comments give.
-fn overrides(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
-    let flag = |on: bool| f64::from(u8::from(on));
-    let any =
-        |what: &dyn Fn(&crate::scene::Material) -> bool| scene.objects.iter().any(|object| what(&object.material));
-    let scatters = any(&|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));
-    let polished = any(&|material| material.roughness == 0.0 && material.ior > 1.0);
-    let form = match reflectance {
-        Reflectance::Lambert | Reflectance::Blur => None,
-        Reflectance::Wrap => Some(0.0),
-        Reflectance::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1.0),
-        Reflectance::Table(_, Format::R32Float) => Some(2.0),
-        Reflectance::Cheap => Some(3.0),
-        Reflectance::Accurate => Some(4.0),
-        Reflectance::Quadrature => Some(5.0),
-        Reflectance::Spherical => Some(6.0),
-    };
-    let curvature = match settings.curvature {
-        Curvature::Mean => 0.0,
-        Curvature::Towards => 1.0,
-        Curvature::Naive => 2.0,
-        Curvature::Vertex => 3.0,
-    };
-    vec![
-        ("EFFECT_CDRF", flag(scatters && form.is_some())),
-        ("CDRF_FORM", form.unwrap_or(0.0)),
-        ("CURVATURE_FORM", curvature),
-        ("EFFECT_TEXTURE_DIFFUSION", flag(reflectance == Reflectance::Blur)),
-        ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
-        ("ENVIRONMENT_AT_VERTICES", flag(settings.environment_at_vertices)),
-        ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
-        ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
-    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cost::cdrf::{Options, RUNGS};
-    use crate::render::Rung;
+    use crate::render::{Curvature, Rung};
 
     #[test]
     fn every_override_of_the_recipe_has_a_value() {
@@ -70,7 +33,7 @@ mod tests {
         let recipe = settings.rung.recipe();
         let (ir, _) = dispatch::parse(&cookbook::recipe_source(recipe), recipe).expect("the recipe");
         let mut declared: Vec<&str> = ir.overrides.iter().filter_map(|(_, over)| over.name.as_deref()).collect();
-        let constants = overrides(&scene, &settings, Reflectance::Cheap);
+        let constants = render::translucent_constants(&scene, &settings, Reflectance::Cheap);
         let mut given: Vec<&str> = constants.iter().map(|(name, _)| *name).collect();
         declared.sort_unstable();
         given.sort_unstable();
