@@ -247,25 +247,25 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
 // The convolution, cheap: no angle, no loop, one exponential and one division.
 // It is Lambert's law, damped, and a bump about the terminator. While the Gaussian is narrow the bump is sigma h(|c| / sigma, sigma^2) with an
 // h that falls as a Gaussian does, and its fourth root is nearly a polynomial: a least largest error fit of degrees 5, 3 and 2. When it is wide, four terms
-// of the series, whose orders are powers of one exponential.
+// of the series, whose weights are powers of one another.
 // Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate; max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; any sigma, negative ones count as 0.
-// Outside: none is.
+// Domain: cosine in [-1, 1], beyond by rounding too; any sigma, negative ones count as 0.
+// Outside: finite for cosines up to 1e3.
 // Accuracy: lavapipe 1.5e-5 abs; portable 1.7e-5 abs
 fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
-    let c = clamp(cosine, -1.0f, 1.0f);
+    let c = cosine;
     let s = clamp(sigma, 0.0f, CDRF_WIDEST);
     let v = s * s;
     let decay = exp(-0.5f * v);
-    // |c| / sigma, but 0 for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
-    let u = abs(c) * s / (v + 1e-14f);
+    // |c| / sigma, finite for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    let u = abs(c) / (s + 1e-7f);
     let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
     let first = -0.063232761f + u * (0.033584461f + u * (0.0047414034f - u * 0.037048171f));
     let second = -0.014675331f + u * (0.19972939f - u * 0.2402912f);
-    let root = max(still + v * (first + v * second), 0.0f);
-    let root_squared = root * root;
-    let narrow = decay * max(c, 0.0f) + s * root_squared * root_squared;
+    let root = still + v * (first + v * second);
+    let root_squared = select(0.0f, root * root, root > 0.0f);
+    let narrow = decay * select(0.0f, c, c > 0.0f) + s * root_squared * root_squared;
     // Weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;

@@ -46,7 +46,7 @@ struct CdrfMaterial {
     base_color: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
-    // In units of length, one for each channel. Anything that is not a positive number counts as 0.
+    // In units of length, one for each channel; made safe by the host, once, as cdrf_sigma(sigma0, 1) makes it.
     sigma0: vec3f,
     // The largest of the three: what a table that was baked for this material is looked up with.
     table_sigma0: f32,
@@ -137,13 +137,9 @@ fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 }
 
-// Width of the Gaussian for each channel.
+// Width of the Gaussian for each channel: cdrf_sigma, of which sigma0's half is done.
 fn cdrf_sigmas(curvature: f32) -> vec3f {
-    return vec3f(
-        cdrf_sigma(material.sigma0.x, curvature),
-        cdrf_sigma(material.sigma0.y, curvature),
-        cdrf_sigma(material.sigma0.z, curvature),
-    );
+    return material.sigma0 * abs(cdrf_finite(curvature));
 }
 
 // The table by hand, blended between four texels.
@@ -164,7 +160,7 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
         return vec3f(cdrf_lambert(cosine));
     }
     if (CDRF_FORM == CDRF_FORM_TABLE) {
-        let coordinates = cdrf_table_coordinates(cosine, cdrf_sigma(material.table_sigma0, curvature));
+        let coordinates = cdrf_table_coordinates(cosine, material.table_sigma0 * abs(cdrf_finite(curvature)));
         return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
     }
     let sigma = cdrf_sigmas(curvature);

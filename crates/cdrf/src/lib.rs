@@ -159,18 +159,18 @@ pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
 /// The convolution, cheap: no angle, no loop, one exponential and one division.
 #[rustfmt::skip] // lines of coefficients, as in the shader
 pub fn cheap(cosine: f32, sigma: f32) -> f32 {
-    let c = cosine.clamp(-1.0, 1.0);
+    let c = cosine;
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let v = s * s;
     let decay = (-0.5 * v).exp();
-    // |c| / sigma, but 0 for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
-    let u = c.abs() * s / (v + 1e-14);
+    // |c| / sigma, finite for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    let u = c.abs() / (s + 1e-7);
     let still = 0.79465324 + u * (-0.24850852 + u * (-0.017153223 + u * (0.0062746328 + u * (0.0022976348 - u * 0.00039362809))));
     let first = -0.063232761 + u * (0.033584461 + u * (0.0047414034 - u * 0.037048171));
     let second = -0.014675331 + u * (0.19972939 - u * 0.2402912);
-    let root = (still + v * (first + v * second)).max(0.0);
-    let root_squared = root * root;
-    let narrow = decay * c.max(0.0) + s * root_squared * root_squared;
+    let root = still + v * (first + v * second);
+    let root_squared = if root > 0.0 { root * root } else { 0.0 };
+    let narrow = decay * (if c > 0.0 { c } else { 0.0 }) + s * root_squared * root_squared;
     // Weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;

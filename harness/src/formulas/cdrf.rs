@@ -231,13 +231,16 @@ fn rungs() -> Vec<Formula> {
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
             .invariant("Lambert's law without blur", lambert_at_zero)
             .build(),
-        formula(M, "cdrf_cheap", mirror::cheap, oracle::cheap, shading)
-            .edge("no blur", |(_, s)| s == 0.0)
-            .edge("just below the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH.next_down())
-            .edge("at the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH)
-            .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-            .invariant("Lambert's law without blur", lambert_at_zero)
-            .build(),
+        formula(M, "cdrf_cheap", mirror::cheap, oracle::cheap, |draws| {
+            let (cosine, sigma) = shading(draws);
+            (cosine.clamp(-1.0, 1.0f32.next_up()), sigma)
+        })
+        .edge("no blur", |(_, s)| s == 0.0)
+        .edge("just below the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH.next_down())
+        .edge("at the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH)
+        .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
+        .invariant("Lambert's law without blur", lambert_at_zero)
+        .build(),
         formula(M, "cdrf_quadrature", mirror::quadrature, oracle::quadrature, |draws| {
             let (cosine, sigma) = shading(draws);
             // The wider the Gaussian the more there is to sum.

@@ -176,9 +176,15 @@ fn upload<'gpu>(
 /// `CdrfMaterial` of the recipe.
 fn uniform_of(material: &Material) -> [f32; 12] {
     let [r, g, b] = material.base_color.to_array();
-    let sigma0 = material.sigma0.unwrap_or_default();
+    let sigma0 = safe_sigma0(material);
     let alpha = material.roughness * material.roughness;
     [r, g, b, material.ior, sigma0.x, sigma0.y, sigma0.z, sigma0.max_element(), alpha, 0.0, 0.0, 0.0]
+}
+
+/// The material's widths, made safe.
+fn safe_sigma0(material: &Material) -> Vec3 {
+    let sigma0 = material.sigma0.unwrap_or_default();
+    Vec3::from_array(sigma0.to_array().map(|sigma0| lapidary_cdrf::sigma(sigma0, 1.0)))
 }
 
 /// One black texel, where a recipe binds what its form does not read.
@@ -188,7 +194,7 @@ fn empty(gpu: &Gpu) -> Result<wgpu::TextureView, RenderError> {
 
 /// The table of a material's channels.
 fn baked(gpu: &Gpu, material: &Material, side: u32, format: Format) -> Result<wgpu::TextureView, RenderError> {
-    let sigma0 = material.sigma0.unwrap_or_default();
+    let sigma0 = safe_sigma0(material);
     let tint = match format {
         // Its one channel serves every material.
         Format::R32Float => Vec3::ONE,
