@@ -250,8 +250,8 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
 // of the series, whose weights are powers of one another.
 // Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate; max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
-// Domain: cosine in [-1, 1], beyond by rounding too; any sigma, negative ones count as 0.
-// Outside: finite for cosines up to 1e3.
+// Domain: cosine in [-1, 1]; any sigma, negative ones count as 0.
+// Outside: past the light or the shadow as the formula goes on: by rounding for a cosine that is, finite up to 1e3.
 // Accuracy: lavapipe 1.5e-5 abs; portable 1.7e-5 abs
 fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let c = cosine;

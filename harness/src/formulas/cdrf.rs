@@ -233,7 +233,7 @@ fn rungs() -> Vec<Formula> {
             .build(),
         formula(M, "cdrf_cheap", mirror::cheap, oracle::cheap, |draws| {
             let (cosine, sigma) = shading(draws);
-            (cosine.clamp(-1.0, 1.0f32.next_up()), sigma)
+            (cosine.clamp(-1.0, 1.0), sigma)
         })
         .edge("no blur", |(_, s)| s == 0.0)
         .edge("just below the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH.next_down())
