@@ -124,11 +124,7 @@ pub const SHOTS: [Shot; 36] = [
         exposure: LIGHTS_ALONE,
         ..shot("wax", "Wax: spheres of falling radius", "wax", "accurate")
     },
-    Shot {
-        lights_alone: true,
-        exposure: LIGHTS_ALONE,
-        ..shot("jade", "Jade: spheres of falling radius", "jade", "accurate")
-    },
+    bright("jade", "Jade: polished spheres of falling radius", "jade", "accurate"),
     bright("skin_ring", "Skin: a ring under a sun and two lamps", "skin_ring", "accurate"),
     bright("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
     bright("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),

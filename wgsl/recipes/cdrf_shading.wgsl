@@ -50,7 +50,7 @@ struct CdrfMaterial {
     sigma0: vec3f,
     // The largest of the three: what a table that was baked for this material is looked up with.
     table_sigma0: f32,
-    // Width of the microfacets' slopes, the square of the roughness.
+    // Width of the microfacets' slopes, the square of the roughness; 0 for a polished surface.
     alpha: f32,
 }
 
@@ -97,7 +97,7 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     }
     var around = HarmonicsAround(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
     if (EFFECT_ENVIRONMENT && ENVIRONMENT_AT_VERTICES) {
-        around = harmonics_around(normal);
+        around = harmonics_around(normal * inverseSqrt(max(dot(normal, normal), 1e-12f)));
     }
     var uv = vec2f(0.0f);
     if (EFFECT_TEXTURE_DIFFUSION) {
@@ -235,16 +235,18 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
         received = cdrf_received(input, surface, normal);
     }
     var radiance = 0.31830987f * material.base_color * received;
-    if (EFFECT_REFLECTION || EFFECT_MICROFACET) {
-        // What the surface reflects does not come from inside.
-        let reflectance = fresnel_dielectric(dot(normal, toward_eye), material.index);
-        radiance *= 1.0f - reflectance;
-        if (EFFECT_REFLECTION) {
-            radiance += reflectance * surroundings_radiance(reflect(-toward_eye, normal));
+    // Effects are a scene's, roughness is a material's.
+    if (EFFECT_REFLECTION) {
+        if (material.alpha == 0.0f) {
+            // What the surface reflects does not come from inside.
+            let reflectance = fresnel_dielectric(dot(normal, toward_eye), material.index);
+            radiance = mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
         }
     }
     if (EFFECT_MICROFACET) {
-        radiance += cdrf_highlights(input.position, normal, toward_eye);
+        if (material.alpha > 0.0f) {
+            radiance += cdrf_highlights(input.position, normal, toward_eye);
+        }
     }
     return vec4f(radiance, 1.0f);
 }

@@ -40,8 +40,10 @@ fn texture_irradiance_vertex(@builtin(vertex_index) vertex: u32) -> TextureIrrad
 @fragment
 fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradianceTexel {
     let stretch = texture_diffusion_stretch(dpdx(input.position), dpdy(input.position));
-    // Interpolation between opposite normals may leave none: nothing arrives there but what comes from all around.
-    let normal = input.normal * inverseSqrt(max(dot(input.normal, input.normal), 1e-12f));
+    // Interpolation between opposite normals may leave none: the triangle's own, since texels run to the right and down as seen from outside.
+    let flat = cross(dpdy(input.position), dpdx(input.position));
+    let given = select(flat, input.normal, dot(input.normal, input.normal) > 1e-12f);
+    let normal = given * inverseSqrt(max(dot(given, given), 1.1754944e-38f));
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);

@@ -144,7 +144,7 @@ impl Report {
     }
 
     /// Marks the rungs that another one beats: faster, and in the mean over the views no worse by FLIP nor by RMSE, as near as
-    /// [`ALIKE`] tells.
+    /// rounding tells.
     pub fn mark_dominated(&mut self) {
         let beats = |other: &RungReport, rung: &RungReport| {
             let faster = matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms < rung.ms);

@@ -206,6 +206,14 @@ pub enum RenderError {
         /// Which rung.
         rung: Rung,
     },
+    /// Texture coordinates that a blur cannot use.
+    #[error(
+        "object `{object}` has texture coordinates outside 0 to 1, where rung `blur` draws nothing; unwrap it anew, or take another rung"
+    )]
+    TextureCoordinatesOutside {
+        /// The object's name.
+        object: String,
+    },
     /// A mesh that a blur in its texture cannot draw.
     #[error(
         "object `{object}` has no texture coordinates, which rung `blur` needs; add TEXCOORD_0, or take another rung"
@@ -325,7 +333,7 @@ fn scene_pass<'gpu>(
 
 /// Whether a body of `scene` scatters light.
 pub fn scatters(scene: &Scene) -> bool {
-    scene.objects.iter().any(|object| object.material.medium.is_some())
+    scene.objects.iter().any(|object| object.material.medium.is_some() || object.material.sigma0.is_some())
 }
 
 /// What random walks see of `scene`.
@@ -356,7 +364,7 @@ fn mean_error(linear: &[[f32; 4]], standard_error: &[[f32; 3]]) -> f64 {
     let squares: f64 = covered().flat_map(|(_, error)| error).map(|error| f64::from(*error).powi(2)).sum();
     let sum: f64 = covered().flat_map(|(pixel, _)| &pixel[..3]).map(|value| f64::from(*value)).sum();
     let count = 3.0 * covered().count() as f64;
-    (squares / count).sqrt() / (sum / count)
+    if sum > 0.0 { (squares / count).sqrt() / (sum / count) } else { 0.0 }
 }
 
 /// What the reference sees of `scene`, by the settings' size, samples and environment.

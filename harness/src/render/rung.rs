@@ -103,7 +103,7 @@ impl Rung {
 
     /// The rung for a scene where none is asked for: the accurate reflectance where something scatters light, else the proxy.
     pub fn usual(scene: &Scene) -> Self {
-        if super::scatters(scene) || scene.objects.iter().any(|object| object.material.sigma0.is_some()) {
+        if super::scatters(scene) {
             return Self::Diffuse(Reflectance::Accurate);
         }
         Self::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker }

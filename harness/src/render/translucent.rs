@@ -8,7 +8,7 @@ use crate::cdrf::table::{self, Format};
 use crate::gpu::Gpu;
 use crate::scene::curvatures::vertex_curvatures;
 use crate::scene::{Light, Material, Object, Scene};
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt as _;
 
 /// Compiles `source`, the composed recipe, and uploads the scene.
@@ -22,6 +22,10 @@ pub(super) fn pass<'gpu>(
     for Object { name, material, mesh } in &scene.objects {
         if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
             return Err(RenderError::NoTextureCoordinates { object: name.clone() });
+        }
+        let inside = |uv: &Vec2| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all();
+        if reflectance == Reflectance::Blur && !mesh.uvs.iter().all(inside) {
+            return Err(RenderError::TextureCoordinatesOutside { object: name.clone() });
         }
         if material.sigma0.is_none() {
             return Err(RenderError::NoSigma0 {
