@@ -320,7 +320,7 @@ fn a_polished_and_a_rough_body_do_not_mix() {
 /// The forms that are nearer to one another than a mesh is to its sphere are still told apart.
 #[test]
 fn near_forms_are_as_near_as_their_errors() {
-    let scene = ball(10.0, Vec3::new(8.0, 4.0, 1.0));
+    let scene = ball(10.0, Vec3::new(3.4, 2.5, 1.0));
     let [cheap, accurate, quadrature] =
         ["cheap", "accurate", "quadrature"].map(|rung| draw(&scene, &settings(rung)).linear);
     let apart = |other: &[[f32; 4]]| {
@@ -329,7 +329,8 @@ fn near_forms_are_as_near_as_their_errors() {
     };
     let (cheap, quadrature) = (apart(&cheap), apart(&quadrature));
     println!("from the accurate form: cheap {cheap:.1e}, quadrature {quadrature:.1e}");
-    assert!((2e-6..3e-5).contains(&cheap), "{cheap}");
+    // The cheap form may be off by 1.5e-5 times what the albedo leaves of both lights, the accurate one by a hundredth of that.
+    assert!((1e-6..2e-5).contains(&cheap), "{cheap}");
     assert!(quadrature > 0.0 && quadrature < 2e-6, "{quadrature}");
 }
 
