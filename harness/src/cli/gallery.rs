@@ -1,7 +1,7 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cost::plot::SIZE as PLOT_SIZE;
+use lapidary_harness::cost::drawing::SIZE as PLOT_SIZE;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;

@@ -1,26 +1,88 @@
-//! What plots share: their greys, the marks of an axis, labels beside points, and the line of the rungs to choose from.
+//! What plots share: their size and colours, the frame and the legend, the marks of an axis, labels beside points, and the line of the
+//! rungs to choose from.
 
 use super::CostError;
-use super::plot::SIZE;
-use plotters::coord::Shift;
+use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Width and height of a plot.
+pub const SIZE: (u32, u32) = (1200, 760);
+/// Of a series: colour-blind safe (Okabe and Ito 2008).
+pub(super) const COLORS: [RGBColor; 5] = [
+    RGBColor(0x00, 0x00, 0x00),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+];
 /// Of lines that others are compared with.
 pub(super) const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
 /// Of a grid.
 pub(super) const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
 /// About a legend.
-pub(super) const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
+const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
 
 /// Whether a plot was drawn.
 pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// What `draw` draws.
-pub(super) fn written(draw: impl FnOnce(&mut String) -> Drawn) -> Result<String, CostError> {
+/// What is drawn on.
+pub(super) type Root<'text> = DrawingArea<SVGBackend<'text>, Shift>;
+
+/// What `draw` draws on white, as SVG.
+pub(super) fn written(draw: impl FnOnce(&Root<'_>) -> Drawn) -> Result<String, CostError> {
     let mut text = String::new();
-    draw(&mut text).map_err(|error| CostError::Plot(error.to_string()))?;
+    let drawn = || -> Drawn {
+        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        draw(&root)?;
+        root.present()?;
+        Ok(())
+    };
+    drawn().map_err(|error| CostError::Plot(error.to_string()))?;
     Ok(text)
+}
+
+/// A chart's caption, and room for its axes.
+pub(super) fn captioned<'root, 'text>(
+    root: &'root Root<'text>,
+    caption: impl AsRef<str>,
+) -> ChartBuilder<'root, 'text, SVGBackend<'text>> {
+    let mut builder = ChartBuilder::on(root);
+    builder.caption(caption, ("sans-serif", 18)).margin(16).x_label_area_size(44).y_label_area_size(64);
+    builder
+}
+
+/// A line in a legend.
+pub(super) fn line(color: RGBColor, width: u32) -> impl Fn((i32, i32)) -> PathElement<(i32, i32)> {
+    move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(width))
+}
+
+/// A disc in a legend.
+pub(super) fn disc(color: RGBColor) -> impl Fn((i32, i32)) -> Circle<(i32, i32), i32> {
+    move |(x, y)| Circle::new((x + 9, y), 5, color.filled())
+}
+
+/// Draws the legend of all series that have a label.
+pub(super) fn legend<'text, C: CoordTranslate>(
+    chart: &mut ChartContext<'text, SVGBackend<'text>, C>,
+    position: SeriesLabelPosition,
+) -> Drawn {
+    chart
+        .configure_series_labels()
+        .position(position)
+        .border_style(FRAME)
+        .background_style(WHITE.mix(0.9))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    Ok(())
+}
+
+/// Limits of a logarithmic axis about `values`, with a margin.
+pub(super) fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(0.0, f64::max);
+    low / margin..high * margin
 }
 
 /// Those of an axis's labels that lie on it.
@@ -86,11 +148,7 @@ fn placed<'l, 'a>(labels: &'l [Label<'a>], markers: &[(i32, i32)]) -> Vec<(&'l L
 }
 
 /// Draws the labels. `markers` are the middles of all points.
-pub(super) fn draw<'a>(
-    root: &DrawingArea<SVGBackend<'a>, Shift>,
-    labels: &[Label<'_>],
-    markers: &[(i32, i32)],
-) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
+pub(super) fn draw(root: &Root<'_>, labels: &[Label<'_>], markers: &[(i32, i32)]) -> Drawn {
     for (label, at) in placed(labels, markers) {
         let (size, shade) = label.font();
         let style = ("sans-serif", size).into_font().color(&RGBColor(shade, shade, shade));

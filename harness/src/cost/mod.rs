@@ -3,7 +3,7 @@
 pub mod cdrf;
 mod choices;
 mod dispersion;
-mod drawing;
+pub mod drawing;
 mod error;
 mod gem;
 mod gem_tables;

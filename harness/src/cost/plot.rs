@@ -1,20 +1,11 @@
 //! The ladder as a picture: time against error, both logarithmic.
 
-use super::drawing::{self, Drawn, FRAME, GREY, LIGHT, Label, stairs, written};
+use super::drawing::{
+    self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, written,
+};
 use super::{ALIKE, CostError, MEASURES, Report, RungReport};
 use crate::render::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
-
-/// Width and height of the plot.
-pub const SIZE: (u32, u32) = (1200, 760);
-/// Of a series: colour-blind safe (Okabe and Ito 2008).
-pub(super) const COLORS: [RGBColor; 5] = [
-    RGBColor(0x00, 0x00, 0x00),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-];
 
 struct Point<'a> {
     name: &'a str,
@@ -51,13 +42,6 @@ fn color(rung: Option<Rung>) -> RGBColor {
     }
 }
 
-/// Limits of a logarithmic axis about `values`, with a margin.
-pub(super) fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
-    let low = values.clone().fold(f64::INFINITY, f64::min);
-    let high = values.fold(0.0, f64::max);
-    low / margin..high * margin
-}
-
 /// The ladder as SVG, by the measure of that name.
 pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
     let number = MEASURES.iter().position(|name| *name == measure).unwrap_or(0);
@@ -65,23 +49,16 @@ pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
     if points.is_empty() {
         return Err(CostError::Plot("no rung was timed".to_owned()));
     }
-    written(|text| draw(text, report, MEASURES[number], &points))
+    written(|root| draw(root, report, MEASURES[number], &points))
 }
 
-fn draw(text: &mut String, report: &Report, measure: &str, points: &[Point<'_>]) -> Drawn {
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
+fn draw(root: &Root<'_>, report: &Report, measure: &str, points: &[Point<'_>]) -> Drawn {
     let [width, height] = report.frame;
     let caption = format!("Gem ladder: error ({measure}) against time, {width}x{height}, {}", report.adapter);
-    let mut chart = ChartBuilder::on(&root)
-        .caption(caption, ("sans-serif", 18))
-        .margin(16)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(
-            span(points.iter().map(|point| point.ms), 1.5).log_scale(),
-            span(points.iter().map(|point| point.error), 1.3).log_scale(),
-        )?;
+    let mut chart = captioned(root, caption).build_cartesian_2d(
+        span(points.iter().map(|point| point.ms), 1.5).log_scale(),
+        span(points.iter().map(|point| point.error), 1.3).log_scale(),
+    )?;
     chart
         .configure_mesh()
         .x_desc("milliseconds a frame filled by the stone (least of interleaved rounds)")
@@ -97,7 +74,7 @@ fn draw(text: &mut String, report: &Report, measure: &str, points: &[Point<'_>])
     chart
         .draw_series(LineSeries::new(stairs(front), GREY.stroke_width(2)))?
         .label("nothing faster is better")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(2)));
+        .legend(line(GREY, 2));
 
     for (name, geometry) in [
         ("surface alone", None),
@@ -126,22 +103,11 @@ fn draw(text: &mut String, report: &Report, measure: &str, points: &[Point<'_>])
                 _ => chart.draw_series([Circle::new(at, size, color.filled())])?,
             };
         }
-        chart
-            .draw_series([Circle::new((first.ms, first.error), 1, color.filled())])?
-            .label(name)
-            .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
+        chart.draw_series([Circle::new((first.ms, first.error), 1, color.filled())])?.label(name).legend(disc(color));
     }
     let places: Vec<(i32, i32)> = points.iter().map(|point| chart.backend_coord(&(point.ms, point.error))).collect();
     let labels: Vec<Label<'_>> =
         points.iter().zip(&places).map(|(point, &at)| Label { name: point.name, at, front: point.front }).collect();
-    drawing::draw(&root, &labels, &places)?;
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
-        .border_style(FRAME)
-        .background_style(WHITE.mix(0.9))
-        .label_font(("sans-serif", 13))
-        .draw()?;
-    root.present()?;
-    Ok(())
+    drawing::draw(root, &labels, &places)?;
+    legend(&mut chart, SeriesLabelPosition::LowerLeft)
 }

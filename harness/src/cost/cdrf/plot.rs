@@ -2,8 +2,9 @@
 
 use super::{BLUR, CdrfReport, CurvatureSource, Part, RungReport, SPHERICAL};
 use crate::cost::CostError;
-use crate::cost::drawing::{self, Drawn, FRAME, GREY, LIGHT, Label, stairs, ticks, written};
-use crate::cost::plot::{COLORS, SIZE, span};
+use crate::cost::drawing::{
+    self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, ticks, written,
+};
 use plotters::prelude::*;
 
 /// Labels of the axis of times.
@@ -55,10 +56,10 @@ fn points(report: &CdrfReport, source: CurvatureSource) -> Vec<Point<'_>> {
 ///
 /// A report without times; plotters' own.
 pub fn svg(report: &CdrfReport) -> Result<String, CostError> {
-    written(|text| draw(text, report))
+    written(|root| draw(root, report))
 }
 
-fn draw(text: &mut String, report: &CdrfReport) -> Drawn {
+fn draw(root: &Root<'_>, report: &CdrfReport) -> Drawn {
     let series = CurvatureSource::ALL.map(|source| points(report, source));
     let all = || series.iter().flatten();
     if all().next().is_none() {
@@ -68,19 +69,12 @@ fn draw(text: &mut String, report: &CdrfReport) -> Drawn {
     let times: Vec<f64> = all().map(|point| point.ms).chain(blur).collect();
     let across = span(times.into_iter(), 1.3);
     let up = span(all().map(|point| point.error), 3.0);
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
     let [width, height] = report.frame;
     let caption = format!("Reflectance ladder: largest error against time, {width}x{height}, {}", report.adapter);
-    let mut chart = ChartBuilder::on(&root)
-        .caption(caption, ("sans-serif", 18))
-        .margin(16)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(
-            across.clone().log_scale().with_key_points(ticks(&TIMES, &across)),
-            up.clone().log_scale(),
-        )?;
+    let mut chart = captioned(root, caption).build_cartesian_2d(
+        across.clone().log_scale().with_key_points(ticks(&TIMES, &across)),
+        up.clone().log_scale(),
+    )?;
     chart
         .configure_mesh()
         .x_desc("milliseconds a frame filled by the lit body (least of interleaved rounds)")
@@ -96,14 +90,14 @@ fn draw(text: &mut String, report: &CdrfReport) -> Drawn {
         chart
             .draw_series(LineSeries::new(stairs(front), GREY.stroke_width(thick)))?
             .label(format!("nothing faster is better, with curvature from {name}"))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(thick)));
+            .legend(line(GREY, thick));
     }
     if let Some(ms) = blur {
         let color = COLORS[4];
         chart
             .draw_series(LineSeries::new([(ms, up.start), (ms, up.end)], color.stroke_width(2)))?
             .label("time of the texture's blur")
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+            .legend(line(color, 2));
     }
     // A disc where curvature comes from the screen, a ring where it comes from vertices.
     for point in all() {
@@ -123,7 +117,7 @@ fn draw(text: &mut String, report: &CdrfReport) -> Drawn {
             chart
                 .draw_series([Circle::new((point.ms, point.error), 1, color.filled())])?
                 .label(name)
-                .legend(move |(x, y)| Circle::new((x + 9, y), 5, color.filled()));
+                .legend(disc(color));
         }
     }
     let places: Vec<(i32, i32)> = all().map(|point| chart.backend_coord(&(point.ms, point.error))).collect();
@@ -131,14 +125,6 @@ fn draw(text: &mut String, report: &CdrfReport) -> Drawn {
     let [screen, _] = &series;
     let labels: Vec<Label<'_>> =
         screen.iter().zip(&places).map(|(point, &at)| Label { name: &point.rung.rung, at, front: true }).collect();
-    drawing::draw(&root, &labels, &places)?;
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .border_style(FRAME)
-        .background_style(WHITE.mix(0.9))
-        .label_font(("sans-serif", 13))
-        .draw()?;
-    root.present()?;
-    Ok(())
+    drawing::draw(root, &labels, &places)?;
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
 }

@@ -2,8 +2,7 @@
 
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
 use crate::cost::CostError;
-use crate::cost::drawing::{Drawn, FRAME, GREY, LIGHT, ticks, written};
-use crate::cost::plot::{COLORS, SIZE, span};
+use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Root, captioned, legend, line, span, ticks, written};
 use crate::random_walk::{BINS, Form};
 use lapidary_cdrf as cdrf;
 use plotters::prelude::*;
@@ -21,7 +20,7 @@ const WIDTHS: [f64; 12] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 
 ///
 /// A report without widths; plotters' own.
 pub fn sigma(report: &SphereReport) -> Result<String, CostError> {
-    written(|text| draw_sigma(text, report))
+    written(|root| draw_sigma(root, report))
 }
 
 /// Exitance over the angle from the light, with the best circular form with a free scale beside it, and Lambert's law.
@@ -30,13 +29,13 @@ pub fn sigma(report: &SphereReport) -> Result<String, CostError> {
 ///
 /// A report without one of the spheres; plotters' own.
 pub fn profile(report: &SphereReport) -> Result<String, CostError> {
-    written(|text| draw_profile(text, report))
+    written(|root| draw_profile(root, report))
 }
 
 /// Radius and width times radius.
 type Point = (f64, f64);
 
-fn draw_sigma(text: &mut String, report: &SphereReport) -> Drawn {
+fn draw_sigma(root: &Root<'_>, report: &SphereReport) -> Drawn {
     // Neither has a place on a logarithmic axis.
     let visible = |&(radius, width): &Point| radius > 0.0 && width > 0.0;
     let lines = ALBEDOS.map(|albedo| -> Vec<Point> {
@@ -49,18 +48,11 @@ fn draw_sigma(text: &mut String, report: &SphereReport) -> Drawn {
     }
     let across = span(points.iter().map(|point| point.0), 1.15);
     let up = span(points.iter().map(|point| point.1), 1.15);
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
     let caption = "Best width times radius: level lines, were σ = σ₀κ true";
-    let mut chart = ChartBuilder::on(&root)
-        .caption(caption, ("sans-serif", 18))
-        .margin(16)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(
-            across.clone().log_scale().with_key_points(ticks(&ALL_RADII, &across)),
-            up.clone().log_scale().with_key_points(ticks(&WIDTHS, &up)),
-        )?;
+    let mut chart = captioned(root, caption).build_cartesian_2d(
+        across.clone().log_scale().with_key_points(ticks(&ALL_RADII, &across)),
+        up.clone().log_scale().with_key_points(ticks(&WIDTHS, &up)),
+    )?;
     chart
         .configure_mesh()
         .x_desc("radius in mean free paths")
@@ -71,45 +63,30 @@ fn draw_sigma(text: &mut String, report: &SphereReport) -> Drawn {
         .label_style(("sans-serif", 13))
         .draw()?;
     if let Some(law) = report.laws.iter().find(|law| law.form == Form::Circular && law.albedo.is_none()) {
-        let line = law.radii.map(|radius| (radius, radius * law.sigma(radius)));
+        let law_line = law.radii.map(|radius| (radius, radius * law.sigma(radius)));
         chart
-            .draw_series(LineSeries::new(line, GREY.stroke_width(6)))?
+            .draw_series(LineSeries::new(law_line, GREY.stroke_width(6)))?
             .label(format!("σR = {:.2} R^{:.2}", law.factor, law.exponent))
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(6)));
+            .legend(line(GREY, 6));
     }
-    for ((albedo, line), color) in ALBEDOS.into_iter().zip(lines).zip(COLORS) {
-        chart.draw_series(line.iter().map(|&at| Circle::new(at, 4, color.filled())))?;
+    for ((albedo, points), color) in ALBEDOS.into_iter().zip(lines).zip(COLORS) {
+        chart.draw_series(points.iter().map(|&at| Circle::new(at, 4, color.filled())))?;
         chart
-            .draw_series(LineSeries::new(line, color.stroke_width(2)))?
+            .draw_series(LineSeries::new(points, color.stroke_width(2)))?
             .label(format!("albedo {albedo}"))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+            .legend(line(color, 2));
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .border_style(FRAME)
-        .background_style(WHITE.mix(0.9))
-        .label_font(("sans-serif", 13))
-        .draw()?;
-    root.present()?;
-    Ok(())
+    legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }
 
-fn draw_profile(text: &mut String, report: &SphereReport) -> Drawn {
+fn draw_profile(root: &Root<'_>, report: &SphereReport) -> Drawn {
     let mut spheres = Vec::new();
     for radius in RADII {
         let sphere = report.profile(ALBEDO, radius).zip(report.row(ALBEDO, radius, Form::Circular, ScaleKind::Free));
         spheres.push(sphere.ok_or_else(|| format!("the report has no sphere of albedo {ALBEDO} and radius {radius}"))?);
     }
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
     let caption = format!("Spheres of albedo {ALBEDO}: random walks and the best of the reflectance function");
-    let mut chart = ChartBuilder::on(&root)
-        .caption(caption, ("sans-serif", 18))
-        .margin(16)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(0.0..180.0, 0.0..0.9)?;
+    let mut chart = captioned(root, caption).build_cartesian_2d(0.0..180.0, 0.0..0.9)?;
     chart
         .configure_mesh()
         .x_desc("angle between the normal and the light, degrees")
@@ -128,7 +105,7 @@ fn draw_profile(text: &mut String, report: &SphereReport) -> Drawn {
         chart
             .draw_series(LineSeries::new(lambert, GREY.stroke_width(2)))?
             .label("Lambert, the half space's albedo")
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY.stroke_width(2)));
+            .legend(line(GREY, 2));
     }
     for ((profile, row), color) in spheres.into_iter().zip(&COLORS[1..]) {
         let color = *color;
@@ -136,7 +113,7 @@ fn draw_profile(text: &mut String, report: &SphereReport) -> Drawn {
         chart
             .draw_series(LineSeries::new(best, color.stroke_width(1)))?
             .label(format!("R = {}: σ = {:.3}, residual {:.3}", row.radius, row.sigma, row.residual))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+            .legend(line(color, 2));
         let points: Vec<(f64, f64, f64)> = (0..BINS)
             .map(|bin| {
                 let angle = 180.0 * (bin as f64 + 0.5) / BINS as f64;
@@ -148,15 +125,7 @@ fn draw_profile(text: &mut String, report: &SphereReport) -> Drawn {
             PathElement::new([(angle, value - error), (angle, value + error)], color.stroke_width(2))
         }))?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .border_style(FRAME)
-        .background_style(WHITE.mix(0.9))
-        .label_font(("sans-serif", 13))
-        .draw()?;
-    root.present()?;
-    Ok(())
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
 #[cfg(test)]
