@@ -178,10 +178,18 @@ fn the_reflectance_is_timed_written_and_shown_again() {
     let rows = rows.as_array().expect("an array");
     assert_eq!(rows.len(), 2 * 4 * cdrf::MEASURES.len());
     for row in rows {
-        assert!(row["technique"] == "cdrf" && row["adapter"].is_string() && row["dominated"] == false, "{row}");
-        assert!(row["ms"].as_f64().is_some_and(|ms| ms > 0.0), "{row}");
-        let error = row["error"].as_f64().expect("a number");
-        assert!((row["rung"] == "cheap") == (error < 0.05), "{row}");
+        assert!(row["technique"] == "cdrf" && row["adapter"].is_string(), "{row}");
+        let number = |row: &Value, of: &str| row[of].as_f64().expect("a number");
+        assert!(number(row, "ms") > 0.0, "{row}");
+        // Which of the two is faster in one frame on a busy machine is chance; what the row makes of its time is not.
+        let beats = |other: &Value| {
+            other["view"] == row["view"]
+                && other["error_measure"] == row["error_measure"]
+                && number(other, "ms") <= number(row, "ms")
+                && number(other, "error") < number(row, "error")
+        };
+        assert!(row["dominated"] == rows.iter().any(beats), "{row}");
+        assert!((row["rung"] == "cheap") == (number(row, "error") < 0.05), "{row}");
     }
     let read = |name: &str| std::fs::read_to_string(folder.path().join("report").join(name)).expect(name);
     let again = succeeds(folder.path(), &["cost", "cdrf", "--from", "report/cdrf.json"]).stdout;
