@@ -22,3 +22,4 @@ pub mod scene;
 pub mod snapshot;
 pub mod specialise;
 pub mod spirv_counts;
+pub mod voxel_grid;

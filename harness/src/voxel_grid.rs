@@ -1,0 +1,91 @@
+//! A cube of cubic voxels about a body: what the passes over voxels agree on.
+
+use crate::scene::Bounds;
+use glam::{UVec3, Vec3};
+
+/// Voxels along an edge of the smallest grid.
+pub const LEAST_CELLS: u32 = 16;
+/// Voxels along an edge of the largest grid.
+pub const MOST_CELLS: u32 = 256;
+/// Voxels along an edge of a tile, of which a grid has a whole number.
+pub const TILE: u32 = 8;
+
+/// A cube of `cells`³ voxels. Voxel (x, y, z) has the number x + `cells` (y + `cells` z).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoxelGrid {
+    /// The corner with the least coordinates, in world units.
+    pub origin: Vec3,
+    /// A voxel's edge in world units, above 0.
+    pub spacing: f32,
+    /// Voxels along each edge: a multiple of [`TILE`] from [`LEAST_CELLS`] to [`MOST_CELLS`].
+    pub cells: u32,
+}
+
+impl VoxelGrid {
+    /// The grid in whose middle a body in `bounds` stands, with one voxel free on each side of its longest extent.
+    ///
+    /// # Panics
+    /// Where `cells` is none that [`VoxelGrid::cells`] allows.
+    #[must_use]
+    pub fn about(bounds: Bounds, cells: u32) -> Self {
+        assert!((LEAST_CELLS..=MOST_CELLS).contains(&cells) && cells.is_multiple_of(TILE), "{cells} voxels");
+        let extent = (bounds.max - bounds.min).max_element();
+        // A point, or nothing at all, still has voxels of some size.
+        let extent = if extent > 0.0 { extent } else { 1.0 };
+        let spacing = extent / (cells - 2) as f32;
+        Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
+    }
+
+    /// How many voxels there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        (self.cells as usize).pow(3)
+    }
+
+    /// A voxel's number.
+    #[must_use]
+    pub fn index(&self, voxel: UVec3) -> usize {
+        let [x, y, z] = voxel.to_array().map(|part| part as usize);
+        x + self.cells as usize * (y + self.cells as usize * z)
+    }
+
+    /// The voxel with this number.
+    #[must_use]
+    pub fn voxel(&self, index: usize) -> UVec3 {
+        let index = index as u32;
+        UVec3::new(index % self.cells, index / self.cells % self.cells, index / self.cells / self.cells)
+    }
+
+    /// A voxel's centre, in world units.
+    #[must_use]
+    pub fn centre(&self, voxel: UVec3) -> Vec3 {
+        self.origin + (voxel.as_vec3() + 0.5) * self.spacing
+    }
+
+    /// The words of a row along x, a bit for each voxel, the least first: row (y, z) begins at this times (y + `cells` z).
+    #[must_use]
+    pub fn words_per_row(&self) -> u32 {
+        self.cells.div_ceil(u32::BITS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_has_a_voxel_free_about_it() {
+        let bounds = Bounds { min: Vec3::new(-1.0, 2.0, 3.0), max: Vec3::new(6.0, 4.0, 3.5) };
+        let grid = VoxelGrid::about(bounds, 16);
+        assert_eq!((grid.spacing, grid.count(), grid.words_per_row()), (0.5, 4096, 1));
+        assert_eq!(grid.origin, Vec3::new(-1.5, -1.0, -0.75));
+        let voxel = UVec3::new(3, 14, 9);
+        assert_eq!(grid.voxel(grid.index(voxel)), voxel);
+        assert_eq!(grid.centre(UVec3::ZERO), Vec3::new(-1.25, -0.75, -0.5));
+    }
+
+    #[test]
+    fn a_point_has_a_grid() {
+        assert!(VoxelGrid::about(Bounds { min: Vec3::ONE, max: Vec3::ONE }, 64).spacing > 0.0);
+    }
+}
