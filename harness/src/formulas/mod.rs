@@ -12,6 +12,7 @@ mod environment;
 mod fresnel;
 mod microfacet;
 mod proxy_geometry;
+mod reflective_shadow_map;
 mod refraction;
 mod srgb;
 mod texture_diffusion;
@@ -35,6 +36,7 @@ pub fn all() -> &'static [Formula] {
             fresnel::formulas(),
             microfacet::formulas(),
             proxy_geometry::formulas(),
+            reflective_shadow_map::formulas(),
             refraction::formulas(),
             srgb::formulas(),
             texture_diffusion::formulas(),

@@ -1,0 +1,94 @@
+//! Rust mirror of `wgsl/reflective_shadow_map.wgsl`, line by line: a light's view of a scene. Units, domain and accuracy stand
+//! above the WGSL functions.
+
+pub mod oracle;
+
+use glam::{Vec2, Vec3, Vec4};
+
+/// N·L of a texel that sees nothing.
+pub const REFLECTIVE_SHADOW_MAP_NOTHING: f32 = -1.0;
+
+/// What a map sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReflectiveShadowMapView {
+    /// The middle of what a sun's map covers, or where a lamp stands; in world units.
+    pub origin: Vec3,
+    /// 0 for a sun, whose rays are parallel, 1 for a lamp.
+    pub lamp: u32,
+    /// The way that light goes in the map's middle, unit.
+    pub axis: Vec3,
+    /// Half the map's width: for a sun in world units, for a lamp the tangent of half its angle.
+    pub extent: f32,
+    /// The least depth along the axis, in world units; for a lamp above 0.
+    pub near: f32,
+    /// The greatest.
+    pub far: f32,
+}
+
+/// Two unit vectors, at right angles to an axis and to one another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReflectiveShadowMapBasis {
+    /// Towards the map's right.
+    pub right: Vec3,
+    /// Towards its upper edge.
+    pub up: Vec3,
+}
+
+/// The map's axes, by Duff et al.
+pub fn basis(axis: Vec3) -> ReflectiveShadowMapBasis {
+    let side = if axis.z >= 0.0 { 1.0 } else { -1.0 };
+    let a = -1.0 / (side + axis.z);
+    let b = axis.x * axis.y * a;
+    let right = Vec3::new(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    let up = Vec3::new(b, side + axis.y * axis.y * a, -axis.y);
+    ReflectiveShadowMapBasis { right, up }
+}
+
+/// The axes by a cross product with the vertical, a naive form.
+pub fn basis_naive(axis: Vec3) -> ReflectiveShadowMapBasis {
+    let right = Vec3::Y.cross(axis).normalize();
+    ReflectiveShadowMapBasis { right, up: axis.cross(right) }
+}
+
+/// Where a point appears in a map: clip coordinates as WebGPU has them.
+pub fn clip(view: ReflectiveShadowMapView, position: Vec3) -> Vec4 {
+    let basis = basis(view.axis);
+    let way = position - view.origin;
+    let depth = way.dot(view.axis);
+    let across = Vec2::new(way.dot(basis.right), way.dot(basis.up)) / view.extent;
+    if view.lamp == 0 {
+        return across.extend((depth - view.near) / (view.far - view.near)).extend(1.0);
+    }
+    across.extend((depth - view.near) * view.far / (view.far - view.near)).extend(depth)
+}
+
+/// The texel of a point's clip coordinates, in texels from the upper left corner; (-1, -1) behind a lamp.
+pub fn texel(clip: Vec4, size: f32) -> Vec2 {
+    if clip.w <= 0.0 {
+        return Vec2::splat(-1.0);
+    }
+    (Vec2::splat(0.5) + Vec2::new(0.5, -0.5) * (Vec2::new(clip.x, clip.y) / clip.w)) * size
+}
+
+/// N·L, of a normal of any length.
+pub fn cosine(normal: Vec3, toward_light: Vec3) -> f32 {
+    let squared = normal.dot(normal);
+    if squared < f32::MIN_POSITIVE {
+        return 0.0;
+    }
+    (normal.dot(toward_light) * (1.0 / squared.sqrt())).clamp(0.0, 1.0)
+}
+
+/// How far what the light sees stands out of the plane that touches the surface at a point.
+pub fn height(seen: Vec3, position: Vec3, normal: Vec3) -> f32 {
+    let squared = normal.dot(normal);
+    if squared < f32::MIN_POSITIVE {
+        return 0.0;
+    }
+    (seen - position).dot(normal) * (1.0 / squared.sqrt())
+}
+
+/// How much nearer to the light the seen point is, a naive form.
+pub fn height_naive(seen: Vec3, position: Vec3, toward_light: Vec3) -> f32 {
+    seen.dot(toward_light) - position.dot(toward_light)
+}
