@@ -66,6 +66,7 @@ pub const MODULES: &[Module] = modules![
     "fresnel",
     "microfacet",
     "proxy_geometry",
+    "reflective_shadow_map",
     "refraction",
     "srgb",
     "texture_diffusion"
@@ -86,4 +87,13 @@ pub const RECIPES: &[Recipe] = recipes![
 ];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading", "harmonics", "lights", "mesh", "surroundings", "trace_nearest"];
+pub const PARTS: &[Part] = parts![
+    "gem_shading",
+    "harmonics",
+    "lights",
+    "mesh",
+    "mesh_normals",
+    "reflection",
+    "surroundings",
+    "trace_nearest"
+];

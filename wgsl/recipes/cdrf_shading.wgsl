@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel, microfacet
-// parts: mesh, surroundings, lights, harmonics
+// parts: mesh, mesh_normals, surroundings, lights, harmonics, reflection
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
 // applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
@@ -21,10 +21,6 @@ override EFFECT_TEXTURE_DIFFUSION: bool = false;
 override EFFECT_ENVIRONMENT: bool = true;
 // Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
 override ENVIRONMENT_AT_VERTICES: bool = true;
-// The lights' highlights on a rough surface. Called for by KHR_materials_ior above 1 and a roughness above 0.
-override EFFECT_MICROFACET: bool = false;
-// The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
-override EFFECT_REFLECTION: bool = false;
 
 const CDRF_FORM_WRAP: u32 = 0u;
 const CDRF_FORM_TABLE: u32 = 1u;
@@ -90,7 +86,7 @@ struct CdrfVertex {
 fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     let index = indices[vertex];
     let position = mesh_position(index);
-    let normal = vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
+    let normal = mesh_normal(index);
     var curvature = 0.0f;
     if (CURVATURE_FORM == CURVATURE_FORM_VERTEX) {
         curvature = curvatures[index];
@@ -215,9 +211,7 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
-        let half = microfacet_half(arrival.direction, toward_eye);
-        let fresnel = fresnel_dielectric(dot(half, arrival.direction), material.index);
-        sum += arrival.irradiance * microfacet_reflectance(normal, arrival.direction, toward_eye, material.alpha, fresnel);
+        sum += reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
     }
     return sum;
 }
@@ -234,15 +228,8 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     } else {
         received = cdrf_received(input, surface, normal);
     }
-    var radiance = 0.31830987f * material.base_color * received;
-    // Effects are a scene's, roughness is a material's.
-    if (EFFECT_REFLECTION) {
-        if (material.alpha == 0.0f) {
-            // What the surface reflects does not come from inside.
-            let reflectance = fresnel_dielectric(dot(normal, toward_eye), material.index);
-            radiance = mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
-        }
-    }
+    let inside = 0.31830987f * material.base_color * received;
+    var radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
             radiance += cdrf_highlights(input.position, normal, toward_eye);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: mesh, surroundings, gem_shading
+// parts: mesh, mesh_normals, surroundings, gem_shading
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh itself is read from storage buffers, so that
 // each vertex sees its whole triangle and the proxy needs no further data and no further pass.
@@ -26,19 +26,15 @@ struct GemVertex {
     @location(5) @interpolate(flat, either) edge_second: vec3f,
 }
 
-fn gem_normal(index: u32) -> vec3f {
-    return vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
-}
-
 // The proxy's centre, from the three vertex normals.
 fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     let position_a = mesh_position(a);
     let position_b = mesh_position(b);
     let position_c = mesh_position(c);
     if (CENTRE_PAPER) {
-        return closest_point_centre_paper(position_a, gem_normal(a), position_b, gem_normal(b), position_c, gem_normal(c));
+        return closest_point_centre_paper(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
     }
-    return closest_point_centre(position_a, gem_normal(a), position_b, gem_normal(b), position_c, gem_normal(c));
+    return closest_point_centre(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
 }
 
 @vertex

@@ -3,7 +3,7 @@
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
 // requires: cdrf, environment, texture_diffusion
-// parts: mesh, lights, harmonics
+// parts: mesh, mesh_normals, lights, harmonics
 //
 // Draw 3 vertices per triangle, without culling or depth test, into two targets that were cleared to 0: rgba16float and rg32float.
 
@@ -32,9 +32,8 @@ struct TextureIrradianceTexel {
 @vertex
 fn texture_irradiance_vertex(@builtin(vertex_index) vertex: u32) -> TextureIrradianceVertex {
     let index = indices[vertex];
-    let normal = vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
     let clip = texture_diffusion_clip(vec2f(uvs[2u * index], uvs[2u * index + 1u]));
-    return TextureIrradianceVertex(clip, mesh_position(index), normal);
+    return TextureIrradianceVertex(clip, mesh_position(index), mesh_normal(index));
 }
 
 @fragment

@@ -390,7 +390,7 @@ fn the_gem_without_its_inside_is_a_mirror() {
     assert!(globals(&whole).contains(&"environment_map"));
     let (module, text) = special_module(&source, &[("EFFECT_PROXY_GEOMETRY", 0.0)], &entry_points);
     let left = functions(&module);
-    for gone in ["closest_point_", "refraction_refract", "gem_centre", "gem_normal", "gem_internal"] {
+    for gone in ["closest_point_", "refraction_refract", "gem_centre", "mesh_normal", "gem_internal"] {
         assert!(!left.iter().any(|name| name.starts_with(gone)), "`{gone}` in {left:?}");
     }
     for gone in ["proxy_geometry_intersect", "proxy_geometry_cell", "proxy_geometry_facet_normal"] {

@@ -1,0 +1,71 @@
+// optical_path_seed: where light enters a body: each lit texel of the lights' maps puts its cost into the voxel that it lies in.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.1.
+// requires: optical_path, reflective_shadow_map, voxelization
+// parts: lights
+//
+// Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed with an invocation for each texel of each map. One channel at a
+// time: costs are those of red, green or blue.
+
+// Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
+override EFFECT_DENSITY: bool = false;
+
+struct OpticalPathSeeding {
+    grid: VoxelizationGrid,
+    // Per unit of length, in this channel, where the density is 1.
+    extinction: f32,
+    // The irradiance whose cost is 0: at least as much as arrives anywhere.
+    largest: f32,
+    // 0 red, 1 green, 2 blue.
+    channel: u32,
+}
+
+@group(0) @binding(0) var<uniform> seeding: OpticalPathSeeding;
+// The recipe reflective_shadow_map's, a layer for each view.
+@group(0) @binding(1) var maps: texture_2d_array<f32>;
+// Which light each layer is a view of. The part lights has binding 2.
+@group(0) @binding(3) var<storage, read> light_of_map: array<u32>;
+@group(1) @binding(0) var<storage, read_write> costs: array<atomic<u32>>;
+// A bit for each voxel, as the recipe voxelization leaves them.
+@group(1) @binding(1) var<storage, read> matter: array<u32>;
+@group(1) @binding(2) var<storage, read> density: array<f32>;
+
+// Nothing is reached as yet.
+@compute @workgroup_size(64)
+fn optical_path_clear(@builtin(local_invocation_index) invocation: u32, @builtin(workgroup_id) row: vec3u) {
+    for (var x = invocation; x < seeding.grid.cells; x += 64u) {
+        let voxel = voxelization_index(seeding.grid, vec3u(x, row.yz));
+        atomicStore(&costs[voxel], optical_path_encode(OPTICAL_PATH_UNREACHED));
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
+    if (any(texel.xy >= textureDimensions(maps))) {
+        return;
+    }
+    let seen = textureLoad(maps, texel.xy, texel.z, 0);
+    if (seen.w <= 0.0f) {
+        return;
+    }
+    // The map shows other bodies too.
+    let inside = (seen.xyz - seeding.grid.origin) / seeding.grid.spacing;
+    if (any(inside < vec3f(0.0f)) || any(inside > vec3f(f32(seeding.grid.cells)))) {
+        return;
+    }
+    let voxel = voxelization_voxel(seeding.grid, seen.xyz);
+    let words = (seeding.grid.cells + 31u) / 32u;
+    let word = matter[words * (voxel.y + seeding.grid.cells * voxel.z) + voxel.x / 32u];
+    if ((word >> (voxel.x % 32u) & 1u) == 0u) {
+        return;
+    }
+    let index = voxelization_index(seeding.grid, voxel);
+    var extinction = seeding.extinction;
+    if (EFFECT_DENSITY) {
+        extinction *= density[index];
+    }
+    let arrival = light_arrival(lights[light_of_map[texel.z]], seen.xyz);
+    let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
+    let offset = distance(seen.xyz, voxelization_centre(seeding.grid, voxel));
+    atomicMin(&costs[index], optical_path_encode(optical_path_seed(share, extinction, offset)));
+}

@@ -1,0 +1,161 @@
+// optical_path_shading: translucent stone: the light that comes along the cheapest way through the body, in one draw call.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.2.
+// requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
+// parts: mesh, mesh_normals, surroundings, lights, harmonics, reflection
+//
+// Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes voxelization, reflective_shadow_map,
+// optical_path_seed and a solver have filled the costs.
+
+// Light through the body; off, only what falls on the surface itself is sent back. Called for by extras.lapidary.scattering and absorption.
+override EFFECT_OPTICAL_PATH: bool = true;
+// Red, green and blue each have costs of their own; off, the first serves all three. Called for by an extinction or a light that is not grey.
+override EFFECT_COLOR: bool = true;
+// Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
+override EFFECT_DENSITY: bool = false;
+// Diffuse light from all around, beside the lights. It goes no way through the body. Called for by an environment.
+override EFFECT_ENVIRONMENT: bool = true;
+
+struct OpticalPathView {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+}
+
+// One view of a light.
+struct OpticalPathMap {
+    view: ReflectiveShadowMapView,
+    light: u32,
+}
+
+struct OpticalPathBody {
+    grid: VoxelizationGrid,
+    // Linear RGB: what the surface sends back of diffuse light.
+    base_color: vec3f,
+    // Index of refraction, relative to the medium outside.
+    index: f32,
+    // Per unit of length, where the density is 1; with the scale in it.
+    extinction: vec3f,
+    // Width of the microfacets' slopes, the square of the roughness; 0 for a polished surface.
+    alpha: f32,
+    // The irradiance whose cost is 0, for each channel.
+    largest: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> view: OpticalPathView;
+// Bindings 1, 2 and 3 are the parts'.
+@group(0) @binding(4) var<storage, read> views: array<OpticalPathMap>;
+@group(0) @binding(5) var maps: texture_2d_array<f32>;
+@group(1) @binding(0) var<uniform> body: OpticalPathBody;
+// Three floats a vertex.
+@group(1) @binding(1) var<storage, read> positions: array<f32>;
+@group(1) @binding(2) var<storage, read> indices: array<u32>;
+@group(1) @binding(3) var<storage, read> normals: array<f32>;
+@group(1) @binding(4) var<storage, read> costs_red: array<u32>;
+@group(1) @binding(5) var<storage, read> costs_green: array<u32>;
+@group(1) @binding(6) var<storage, read> costs_blue: array<u32>;
+@group(1) @binding(7) var<storage, read> density: array<f32>;
+
+struct OpticalPathVertex {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+}
+
+@vertex
+fn optical_path_vertex(@builtin(vertex_index) vertex: u32) -> OpticalPathVertex {
+    let index = indices[vertex];
+    let position = mesh_position(index);
+    return OpticalPathVertex(view.clip_from_world * vec4f(position, 1.0f), position, mesh_normal(index));
+}
+
+// The share of a texel's neighbours, weighted by nearness, that nothing keeps from the light; 0 beside the map.
+fn optical_path_lit(layer: u32, position: vec3f, normal: vec3f) -> f32 {
+    let size = textureDimensions(maps).x;
+    let clip = reflective_shadow_map_clip(views[layer].view, position);
+    let place = reflective_shadow_map_texel(clip, f32(size));
+    if (any(place < vec2f(0.0f)) || any(place > vec2f(f32(size)))) {
+        return 0.0f;
+    }
+    // As high as a texel is wide: w is the depth of a lamp's map, whose texels grow with it, and 1 for a sun's.
+    let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);
+    let corner = place - 0.5f;
+    let weight = fract(corner);
+    let last = i32(size) - 1i;
+    let lower = clamp(vec2i(floor(corner)), vec2i(0i), vec2i(last));
+    let upper = min(vec2i(floor(corner)) + 1i, vec2i(last));
+    let lower_left = optical_path_texel_lit(vec2i(lower.x, lower.y), layer, position, normal, bias);
+    let lower_right = optical_path_texel_lit(vec2i(upper.x, lower.y), layer, position, normal, bias);
+    let upper_left = optical_path_texel_lit(vec2i(lower.x, upper.y), layer, position, normal, bias);
+    let upper_right = optical_path_texel_lit(vec2i(upper.x, upper.y), layer, position, normal, bias);
+    return mix(mix(lower_left, lower_right, weight.x), mix(upper_left, upper_right, weight.x), weight.y);
+}
+
+fn optical_path_texel_lit(texel: vec2i, layer: u32, position: vec3f, normal: vec3f, bias: f32) -> f32 {
+    let seen = textureLoad(maps, texel, layer, 0);
+    let height = reflective_shadow_map_height(seen.xyz, position, normal);
+    return select(0.0f, 1.0f, seen.w < 0.0f || height <= bias);
+}
+
+// What is left of the largest irradiance along the cheapest way from the 27 voxels about a point.
+fn optical_path_along(position: vec3f) -> vec3f {
+    let around = vec3i(voxelization_voxel(body.grid, position));
+    let last = i32(body.grid.cells) - 1i;
+    var least = vec3f(OPTICAL_PATH_UNREACHED);
+    for (var neighbour = 0i; neighbour < 27i; neighbour++) {
+        let step = vec3i(neighbour % 3i, (neighbour / 3i) % 3i, neighbour / 9i) - 1i;
+        let voxel = vec3u(clamp(around + step, vec3i(0i), vec3i(last)));
+        let index = voxelization_index(body.grid, voxel);
+        let offset = distance(position, voxelization_centre(body.grid, voxel));
+        var extinction = body.extinction;
+        if (EFFECT_DENSITY) {
+            extinction *= density[index];
+        }
+        least.x = min(least.x, optical_path_through(optical_path_decode(costs_red[index]), extinction.x, offset));
+        if (EFFECT_COLOR) {
+            least.y = min(least.y, optical_path_through(optical_path_decode(costs_green[index]), extinction.y, offset));
+            least.z = min(least.z, optical_path_through(optical_path_decode(costs_blue[index]), extinction.z, offset));
+        }
+    }
+    let red = optical_path_luminance(least.x);
+    if (!EFFECT_COLOR) {
+        return vec3f(red);
+    }
+    return vec3f(red, optical_path_luminance(least.y), optical_path_luminance(least.z));
+}
+
+@fragment
+fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
+    let toward_eye = normalize(view.eye - input.position);
+    let squared = dot(input.normal, input.normal);
+    let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
+
+    var received = vec3f(0.0f);
+    var highlights = vec3f(0.0f);
+    for (var layer = 0u; layer < arrayLength(&views); layer++) {
+        let arrival = light_arrival(lights[views[layer].light], input.position);
+        let cosine = reflective_shadow_map_cosine(normal, arrival.direction);
+        if (cosine > 0.0f) {
+            let lit = optical_path_lit(layer, input.position, normal);
+            received += lit * cosine * arrival.irradiance;
+            if (EFFECT_MICROFACET) {
+                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
+            }
+        }
+    }
+    if (EFFECT_OPTICAL_PATH) {
+        // What falls on the point itself is one of the ways, of no length.
+        received = max(received, body.largest * optical_path_along(input.position));
+    }
+    if (EFFECT_ENVIRONMENT) {
+        let weights = cdrf_harmonic_weights(0.0f);
+        received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
+    }
+    let inside = 0.31830987f * body.base_color * received;
+    var radiance = reflection_over(inside, normal, toward_eye, body.index, body.alpha);
+    if (EFFECT_MICROFACET) {
+        if (body.alpha > 0.0f) {
+            radiance += highlights;
+        }
+    }
+    return vec4f(radiance, 1.0f);
+}
