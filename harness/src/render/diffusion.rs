@@ -32,13 +32,21 @@ pub(super) struct MeshBuffers<'a> {
     pub(super) uvs: &'a wgpu::Buffer,
 }
 
+/// What shines on all objects.
+pub(super) struct Lighting<'a> {
+    pub(super) lights: &'a wgpu::Buffer,
+    pub(super) harmonics: &'a wgpu::Buffer,
+    /// The override of the part `lights`.
+    pub(super) spot: (&'static str, f64),
+}
+
 impl<'gpu> Diffusion<'gpu> {
     /// For `object`, which has texture coordinates, under these lights and harmonics.
     pub(super) fn new(
         gpu: &'gpu Gpu,
         object: &Object,
         settings: &Settings,
-        [lights, harmonics]: [&wgpu::Buffer; 2],
+        &Lighting { lights, harmonics, spot }: &Lighting<'_>,
         mesh: &MeshBuffers<'_>,
     ) -> Result<Self, RenderError> {
         let environment = f64::from(u8::from(settings.light_from_environment));
@@ -48,7 +56,7 @@ impl<'gpu> Diffusion<'gpu> {
                 recipe: RECIPE,
                 source: &cookbook::recipe_source(RECIPE),
                 entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
-                constants: &[("EFFECT_ENVIRONMENT", environment)],
+                constants: &[("EFFECT_ENVIRONMENT", environment), spot],
                 formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
                 depth: None,
             },

@@ -1,12 +1,13 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, under the scene's lights and the environment.
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices, uniform};
-use super::diffusion::{Diffusion, MeshBuffers};
+use super::diffusion::{Diffusion, Lighting, MeshBuffers};
 use super::pass::{Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
 use super::{Curvature, Environment, Reflectance, RenderError, Settings, harmonics};
 use crate::cdrf::table::{self, Format};
 use crate::gpu::Gpu;
 use crate::scene::curvatures::vertex_curvatures;
+use crate::scene::light::Falloff;
 use crate::scene::{Light, Material, Object, Scene};
 use glam::{UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt as _;
@@ -59,8 +60,9 @@ pub(super) fn pass<'gpu>(
         [lights, uniform(device, &coefficients)]
     })?;
     let (mut bodies, mut diffusions) = (Vec::new(), Vec::new());
+    let lighting = Lighting { lights: &lights, harmonics: &coefficients, spot: spot_constant(scene) };
     for object in &scene.objects {
-        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, [&lights, &coefficients])?;
+        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, &lighting)?;
         bodies.push(body);
         diffusions.extend(diffusion);
     }
@@ -85,25 +87,41 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings, reflectance: Reflect
         ("EFFECT_MICROFACET", flag(settings.reflection && rough)),
         ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
         ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
+        spot_constant(scene),
     ]
 }
 
-/// `Light` of the recipe, 8 floats each; one black light where there is none.
+/// The override of the part `lights`.
+fn spot_constant(scene: &Scene) -> (&'static str, f64) {
+    let spots = scene.lights.iter().any(|light| matches!(light, Light::Spot { .. }));
+    ("EFFECT_SPOT", f64::from(u8::from(spots)))
+}
+
+/// `Light` of the recipe, 12 floats each; one black light where there is none.
 fn lights(scene: &Scene) -> Vec<f32> {
-    let entry =
-        |place: Vec3, point: f32, power: Vec3| [place.x, place.y, place.z, point, power.x, power.y, power.z, 0.0];
-    let mut entries: Vec<[f32; 8]> = scene
+    // No axis, and all directions within the edge.
+    let everywhere = (Vec3::ZERO, Falloff { edge: -1.0, slope: 1.0 });
+    let entry = |place: Vec3, point: f32, power: Vec3, (axis, falloff): (Vec3, Falloff)| {
+        // Of the narrowest cones the slope is beyond f32.
+        let [edge, slope] = [falloff.edge as f32, falloff.slope.min(f32::MAX.into()) as f32];
+        let (place, power, axis) = (place.extend(point), power.extend(edge), axis.extend(slope));
+        [place.to_array(), power.to_array(), axis.to_array()]
+    };
+    let mut entries: Vec<[[f32; 4]; 3]> = scene
         .lights
         .iter()
         .map(|light| match *light {
-            Light::Directional { toward, irradiance } => entry(toward, 0.0, irradiance),
-            Light::Point { position, intensity } => entry(position, 1.0, intensity),
+            Light::Directional { toward, irradiance } => entry(toward, 0.0, irradiance, everywhere),
+            Light::Point { position, intensity } => entry(position, 1.0, intensity, everywhere),
+            Light::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+                entry(position, 1.0, intensity, (direction, Falloff::between(inner_angle, outer_angle)))
+            }
         })
         .collect();
     if entries.is_empty() {
-        entries.push(entry(Vec3::Y, 0.0, Vec3::ZERO));
+        entries.push(entry(Vec3::Y, 0.0, Vec3::ZERO, everywhere));
     }
-    entries.concat()
+    entries.as_flattened().concat()
 }
 
 /// Sends an object to the device.
@@ -113,7 +131,7 @@ fn upload<'gpu>(
     object: &Object,
     settings: &Settings,
     reflectance: Reflectance,
-    lights_and_harmonics: [&wgpu::Buffer; 2],
+    lighting: &Lighting<'_>,
 ) -> Result<(Body, Option<Diffusion<'gpu>>), RenderError> {
     let Object { mesh, material, .. } = object;
     let curvatures = if settings.curvature == Curvature::Vertex { vertex_curvatures(mesh) } else { vec![0.0] };
@@ -140,7 +158,7 @@ fn upload<'gpu>(
     let diffusion = match reflectance {
         Reflectance::Blur => {
             let mesh = MeshBuffers { positions: &positions, normals: &normals, uvs: &uvs };
-            Some(Diffusion::new(gpu, object, settings, lights_and_harmonics, &mesh)?)
+            Some(Diffusion::new(gpu, object, settings, lighting, &mesh)?)
         }
         _ => None,
     };

@@ -65,18 +65,19 @@ pub const HOSTILE_NUMBERS: [&str; 18] = [
 
 /// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
 /// indices, no normals, texture coordinates as floats and as bytes, a hierarchy with a matrix and with translation,
-/// rotation and scale, two lights, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
+/// rotation and scale, three lights, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
 /// and one with a medium.
 const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior",
 "KHR_materials_volume","KHR_materials_dispersion","KHR_lights_punctual"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":3},
-{"type":"point","intensity":40}]}},
+{"type":"point","intensity":40},{"type":"spot","intensity":40,"spot":{"innerConeAngle":0.25,"outerConeAngle":0.5}}]}},
 "scene":0,"scenes":[{"nodes":[0,3,4]}],
 "nodes":[{"children":[1,2],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
 {"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},{"mesh":0},
 {"camera":0,"translation":[0,0,9]},
 {"rotation":[0.6,0,0,0.8],"extensions":{"KHR_lights_punctual":{"light":0}},"children":[5]},
-{"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":1}}}],
+{"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":1}},"children":[6]},
+{"translation":[1,0,2],"rotation":[0,0.6,0,0.8],"extensions":{"KHR_lights_punctual":{"light":2}}}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0},
 {"attributes":{"POSITION":0,"TEXCOORD_0":2},"mode":6,"material":1},

@@ -4,6 +4,7 @@ use super::super::isotropic;
 use crate::reference::geometry::{Bodies, Geometry, Hit, Place};
 use crate::reference::surroundings;
 use crate::render::Environment;
+use crate::scene::light::Arrival;
 use crate::scene::{Light, Medium, Object, Scene};
 use glam::DVec3;
 use rand::RngExt as _;
@@ -142,10 +143,14 @@ impl<'scene> Matter<'scene> {
         let least = extinction.min_element();
         let mut sum = DVec3::ZERO;
         for light in &self.lights {
-            let (direction, distance, irradiance) = arrival(light, position);
+            let Arrival { direction, distance, irradiance } = light.arrival(position);
             // A longer way is looked for with the probability that makes up for its gain below: most of a search's time goes
             // into ways that bring next to nothing.
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
+            // Outside of a spot's cone.
+            if irradiance == DVec3::ZERO {
+                continue;
+            }
             let out = self.bodies.leave_body(position, direction, body, None, limit.min(distance));
             let (way, beyond) = match out {
                 Some(out) => {
@@ -179,20 +184,6 @@ impl<'scene> Matter<'scene> {
             distance -= out.distance;
         }
         Some(depth)
-    }
-}
-
-/// The unit direction to a light from a point, the light's distance and its irradiance there.
-fn arrival(light: &Light, position: DVec3) -> (DVec3, f64, DVec3) {
-    match *light {
-        Light::Directional { toward, irradiance } => {
-            (toward.as_dvec3().normalize(), f64::INFINITY, irradiance.as_dvec3())
-        }
-        Light::Point { position: place, intensity } => {
-            let way = place.as_dvec3() - position;
-            let distance = way.length();
-            (way / distance, distance, intensity.as_dvec3() / (distance * distance))
-        }
     }
 }
 

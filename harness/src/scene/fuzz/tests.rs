@@ -7,7 +7,7 @@ use crate::scene::Light;
 fn the_hand_written_seed_reaches_what_it_says() {
     let [_, document] = seeds().unwrap();
     let scene = gltf::parse(&document, None).unwrap();
-    assert_eq!(scene.lights.len(), 2);
+    assert_eq!(scene.lights.len(), 3);
     let textured = scene.objects.iter().filter(|object| !object.mesh.uvs.is_empty());
     // Two of the mesh's three primitives, at two nodes.
     assert_eq!((scene.objects.len(), textured.count()), (6, 4));

@@ -158,6 +158,16 @@ fn every_kind_of_light_survives_writing_and_loading() {
     for radiometric in lights {
         scene.lights.extend(directions.map(|toward| Light::Directional { toward, irradiance: radiometric }));
         scene.lights.extend(directions.map(|place| Light::Point { position: 1e5 * place, intensity: radiometric }));
+        let cones = [(0.0, 1e-7), (0.0, std::f32::consts::FRAC_PI_2), (0.1, 0.3)];
+        for (inner_angle, outer_angle) in cones {
+            scene.lights.extend(directions.map(|direction| Light::Spot {
+                position: 1e5 * Vec3::new(0.1, 0.7, -0.3),
+                direction,
+                intensity: radiometric,
+                inner_angle,
+                outer_angle,
+            }));
+        }
     }
     let again = gltf::parse(&write(&scene).unwrap(), None).unwrap();
     assert_eq!(again.lights, scene.lights);
@@ -171,8 +181,8 @@ fn every_kind_of_light_survives_writing_and_loading() {
     }
     for node in json["nodes"].as_array().unwrap().iter().filter(|node| node["matrix"].is_array()) {
         let matrix: Vec<f32> = node["matrix"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap() as f32).collect();
-        let turn = glam::Mat4::from_cols_slice(&matrix);
-        assert!((turn * turn.transpose()).abs_diff_eq(glam::Mat4::IDENTITY, 1e-6), "{node}");
+        let turn = glam::Mat3::from_mat4(glam::Mat4::from_cols_slice(&matrix));
+        assert!((turn * turn.transpose()).abs_diff_eq(glam::Mat3::IDENTITY, 1e-6), "{node}");
         assert!((turn.determinant() - 1.0).abs() < 1e-6, "{node}");
     }
 }
@@ -220,7 +230,22 @@ fn what_gltf_forbids_is_refused() {
     let uvs = |s: &mut Scene| s.objects[0].mesh.uvs = vec![Vec2::INFINITY; s.objects[0].mesh.positions.len()];
     assert!(refused(uvs).contains("texture coordinate is not finite"));
     let sound = Light::Point { position: Vec3::ZERO, intensity: Vec3::ONE };
+    let spot = |direction, position, intensity, inner_angle, outer_angle| Light::Spot {
+        position,
+        direction,
+        intensity,
+        inner_angle,
+        outer_angle,
+    };
     for (light, says) in [
+        (spot(2.0 * Vec3::X, Vec3::ZERO, Vec3::ONE, 0.1, 0.2), "unit length"),
+        (spot(Vec3::X, Vec3::NAN, Vec3::ONE, 0.1, 0.2), "position"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::NEG_X, 0.1, 0.2), "not finite and at least 0"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::ONE, 0.2, 0.2), "angles"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::ONE, -0.1, 0.2), "angles"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::ONE, 0.1, 1.6), "angles"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::ONE, f32::NAN, 0.2), "angles"),
+        (spot(Vec3::X, Vec3::ZERO, Vec3::ONE, 0.1, f32::NAN), "angles"),
         (Light::Directional { toward: 2.0 * Vec3::X, irradiance: Vec3::ONE }, "unit length"),
         (Light::Directional { toward: Vec3::X, irradiance: Vec3::NAN }, "not finite and at least 0"),
         (Light::Point { position: Vec3::INFINITY, intensity: Vec3::ONE }, "position"),

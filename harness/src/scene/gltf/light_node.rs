@@ -1,19 +1,21 @@
 //! The lights of a file: `KHR_lights_punctual`, placed by the nodes that refer to them.
 //!
-//! Read are directional and point lights. glTF states them in lux and candela; here the numbers are taken as
+//! Read are directional, point and spot lights. glTF states them in lux and candela; here the numbers are taken as
 //! radiometric, without a luminous efficacy: W/m² and W/sr, as the environment's are W/(m² sr). `range`, at which a
-//! renderer may cut a point light off, is not read: the light falls off by the square of the distance alone. As glTF has
+//! renderer may cut a point or spot light off, is not read: the light falls off by the square of the distance alone. As glTF has
 //! it, the scale of a node changes no intensity.
 
 use ::gltf::json::Root;
 use glam::{DMat4, DVec3, Vec3};
 use serde_json::Value;
+use std::f64::consts::FRAC_PI_4;
 
 use super::MAX_COORDINATE;
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::nodes::ShownNode;
 use crate::scene::Light;
+use crate::scene::light::are_cone_angles;
 
 const NAME: &str = "KHR_lights_punctual";
 
@@ -59,6 +61,7 @@ fn reference(node: &ShownNode<'_>) -> Result<Option<usize>, String> {
 enum Kind {
     Directional(Vec3),
     Point(Vec3),
+    Spot { intensity: Vec3, inner_angle: f32, outer_angle: f32 },
 }
 
 fn read(json: &Value) -> Result<Kind, String> {
@@ -79,12 +82,29 @@ fn read(json: &Value) -> Result<Kind, String> {
     match kind.as_str() {
         Some("directional") => Ok(Kind::Directional(product)),
         Some("point") => Ok(Kind::Point(product)),
-        Some("spot") => Err("spot lights are not read; use point or directional lights".to_owned()),
+        Some("spot") => {
+            let (inner_angle, outer_angle) = cone(json)?;
+            Ok(Kind::Spot { intensity: product, inner_angle, outer_angle })
+        }
         _ => {
             let found = excerpt(&kind.to_string());
-            Err(format!("its type is {found}, but must be \"directional\" or \"point\""))
+            Err(format!("its type is {found}, but must be \"directional\", \"point\" or \"spot\""))
         }
     }
+}
+
+/// A spot's inner and outer angle.
+fn cone(json: &Value) -> Result<(f32, f32), String> {
+    let spot = Extension::of(json.as_object(), "spot")?;
+    let inner = spot.number("innerConeAngle")?.unwrap_or(0.0);
+    let outer = spot.number("outerConeAngle")?.unwrap_or(FRAC_PI_4);
+    if !are_cone_angles(inner as f32, outer as f32) {
+        return Err(format!(
+            "its cone angles are {inner:?} and {outer:?}, but the inner must be at least 0, less than the outer in single precision, and \
+             the outer at most pi/2"
+        ));
+    }
+    Ok((inner as f32, outer as f32))
 }
 
 /// A glTF light shines along its node's -z. Nothing where the node has no such direction or is nowhere.
@@ -93,12 +113,18 @@ fn place(kind: Kind, world: DMat4) -> Option<Light> {
         Kind::Directional(irradiance) => {
             Some(Light::Directional { toward: unit(world.z_axis.truncate())?, irradiance })
         }
-        Kind::Point(intensity) => {
-            let position = world.w_axis.truncate().as_vec3();
-            let in_reach = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
-            in_reach.then_some(Light::Point { position, intensity })
+        Kind::Point(intensity) => Some(Light::Point { position: origin(world)?, intensity }),
+        Kind::Spot { intensity, inner_angle, outer_angle } => {
+            let direction = -unit(world.z_axis.truncate())?;
+            Some(Light::Spot { position: origin(world)?, direction, intensity, inner_angle, outer_angle })
         }
     }
+}
+
+fn origin(world: DMat4) -> Option<Vec3> {
+    let position = world.w_axis.truncate().as_vec3();
+    let in_reach = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
+    in_reach.then_some(position)
 }
 
 fn unit(direction: DVec3) -> Option<Vec3> {

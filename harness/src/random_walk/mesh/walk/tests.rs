@@ -209,7 +209,16 @@ fn layers() -> Vec<(Mesh, Medium)> {
 fn light_is_weakened_by_all_matter_on_its_way() {
     let [first, second] = [DVec3::new(0.11, 0.2, 0.35), DVec3::new(0.3, 0.1, 0.0)];
     let at = |z: f32| Light::Point { position: Vec3::new(0.125, 0.25, z), intensity: Vec3::ONE };
+    // On its axis a spot is a point.
+    let spot = |direction| Light::Spot {
+        position: Vec3::new(0.125, 0.25, 5.0),
+        direction,
+        intensity: Vec3::ONE,
+        inner_angle: 0.1,
+        outer_angle: 0.2,
+    };
     let cases = [
+        (spot(Vec3::NEG_Z), 4.75, 1.75 * first + second),
         (sun(DVec3::Z), 1.0, 2.75 * first + second),
         (sun(-DVec3::Z), 1.0, 0.25 * first),
         (at(10.0), 9.75, 2.75 * first + second),
@@ -227,6 +236,10 @@ fn light_is_weakened_by_all_matter_on_its_way() {
         let expected = (-depth).exp() / (4.0 * PI * distance * distance);
         assert!((found / expected - 1.0).abs().max_element() < 1e-6, "{light:?}: {found}, expected {expected}");
     }
+    let away = scene(layers(), vec![spot(Vec3::Z)]);
+    let from = DVec3::new(0.125, 0.25, 0.25);
+    let found = Matter::new(&away, None).expect("media").direct(from, 0, &mut generator(1, 0));
+    assert_eq!(found, Some(DVec3::ZERO));
 }
 
 /// Beyond the depth to which a way out is always looked for the mean is the same.

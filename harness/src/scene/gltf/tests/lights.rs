@@ -54,9 +54,42 @@ fn a_point_light_stands_where_its_node_is() {
 }
 
 #[test]
+fn a_spot_light_stands_where_its_node_is_and_shines_along_its_negative_z() {
+    let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(-0.9);
+    let cone = json!({"innerConeAngle": 0.25, "outerConeAngle": 0.5});
+    let found = light_of(
+        json!({"type": "spot", "color": [1, 0.5, 0], "intensity": 3, "range": 7, "spot": cone}),
+        // The scale says nothing.
+        json!({"rotation": turn.to_array(), "scale": [1, 2, 30], "translation": [1, 2, 3]}),
+    );
+    let Light::Spot { position, direction, intensity, inner_angle, outer_angle } = found else { panic!("{found:?}") };
+    assert_eq!((position, inner_angle, outer_angle), (Vec3::new(1.0, 2.0, 3.0), 0.25, 0.5));
+    assert!(direction.distance(turn * Vec3::NEG_Z) < 1e-6);
+    assert_eq!(intensity, Vec3::new(3.0, 1.5, 0.0));
+}
+
+#[test]
+fn cones_have_gltfs_default_angles() {
+    use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+    for (cone, angles) in [
+        (json!({}), (0.0, FRAC_PI_4)),
+        (json!({"innerConeAngle": 0.5}), (0.5, FRAC_PI_4)),
+        (json!({"outerConeAngle": 0.5}), (0.0, 0.5)),
+        // The f32 next to pi/2 lies a little beyond it.
+        (json!({"outerConeAngle": f64::from(FRAC_PI_2)}), (0.0, FRAC_PI_2)),
+    ] {
+        let found = light_of(json!({"type": "spot", "spot": cone}), json!({}));
+        let Light::Spot { inner_angle, outer_angle, .. } = found else { panic!("{found:?}") };
+        assert_eq!((inner_angle, outer_angle), angles);
+    }
+    let bare = light_of(json!({"type": "spot"}), json!({}));
+    assert_eq!(bare, light_of(json!({"type": "spot", "spot": {}}), json!({})));
+}
+
+#[test]
 fn lights_that_no_node_shows_are_not_lit() {
     let scene = load_changed(|d| {
-        add_light(d, &json!({"type": "spot"}), &json!({}));
+        add_light(d, &json!({"type": "area"}), &json!({}));
         d["scenes"][0]["nodes"] = json!([0]);
     });
     assert_eq!(scene.unwrap().lights, []);
@@ -65,8 +98,19 @@ fn lights_that_no_node_shows_are_not_lit() {
 #[test]
 fn lights_that_cannot_be_read() {
     for (light, says) in [
-        (json!({"type": "spot", "spot": {}}), "spot lights are not read; use point or directional lights"),
-        (json!({"type": "area"}), "its type is \"area\", but must be \"directional\" or \"point\""),
+        (json!({"type": "spot", "spot": 7}), "its spot is a number, but must be an object"),
+        (json!({"type": "spot", "spot": {"innerConeAngle": "wide"}}), "its innerConeAngle is a string"),
+        (json!({"type": "spot", "spot": {"outerConeAngle": null}}), "its outerConeAngle is null"),
+        (
+            json!({"type": "spot", "spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.5}}),
+            "are 0.5 and 0.5, but the inner",
+        ),
+        (json!({"type": "spot", "spot": {"innerConeAngle": 0.8}}), "less than the outer"),
+        (json!({"type": "spot", "spot": {"innerConeAngle": -0.1}}), "must be at least 0"),
+        (json!({"type": "spot", "spot": {"outerConeAngle": 1.571}}), "the outer at most pi/2"),
+        (json!({"type": "spot", "spot": {"outerConeAngle": 1e-50}}), "less than the outer"),
+        (json!({"type": "spot", "spot": {"outerConeAngle": 1e39}}), "the outer at most pi/2"),
+        (json!({"type": "area"}), "its type is \"area\", but must be \"directional\", \"point\" or \"spot\""),
         (json!({}), "its type is null, but must be"),
         (json!(7), "its type is null, but must be"),
         (json!({"type": "x".repeat(100_000)}), "but must be \"directional\""),
@@ -85,14 +129,16 @@ fn lights_that_cannot_be_read() {
         let message = message(|d| add_light(d, &light, &json!({})));
         assert!(message.starts_with("light 0: ") && message.contains(says) && message.len() < 300, "{message}");
     }
-    let message = message(|d| add_light(d, &json!({"type": "spot", "name": "desk"}), &json!({})));
-    assert!(message.starts_with("light 0 \"desk\": spot lights"), "{message}");
+    let message = message(|d| add_light(d, &json!({"type": "area", "name": "desk"}), &json!({})));
+    assert!(message.starts_with("light 0 \"desk\": its type"), "{message}");
 }
 
 #[test]
 fn lights_that_are_nowhere() {
     for (kind, transform) in [
         ("directional", json!({"scale": [1, 1, 0]})),
+        ("spot", json!({"scale": [1, 1, 0]})),
+        ("spot", json!({"translation": [0, 2e9, 0]})),
         ("point", json!({"translation": [2e9, 0, 0]})),
         ("point", json!({"translation": [1e39, 0, 0]})),
     ] {
