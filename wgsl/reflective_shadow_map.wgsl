@@ -98,11 +98,8 @@ fn reflective_shadow_map_texel(clip: vec4f, size: f32) -> vec2f {
 // Outside: finite as long as the squared length of the normal is.
 // Accuracy: lavapipe 5 ulp + 1 backward; portable 12 ulp + 2 backward
 fn reflective_shadow_map_cosine(normal: vec3f, toward_light: vec3f) -> f32 {
-    let squared = dot(normal, normal);
-    if (squared < 1.1754944e-38f) {
-        return 0.0f;
-    }
-    return clamp(dot(normal, toward_light) * inverseSqrt(squared), 0.0f, 1.0f);
+    let unit = normal * inverseSqrt(max(dot(normal, normal), 1e-30f));
+    return clamp(dot(unit, toward_light), 0.0f, 1.0f);
 }
 
 // How far what the light sees at a point's texel stands out of the plane that touches the surface at the point. What is higher than a texel
@@ -114,11 +111,8 @@ fn reflective_shadow_map_cosine(normal: vec3f, toward_light: vec3f) -> f32 {
 // Outside: finite as long as the squared length of the normal is.
 // Accuracy: lavapipe 8 ulp + 2 backward; portable 16 ulp + 4 backward
 fn reflective_shadow_map_height(seen: vec3f, position: vec3f, normal: vec3f) -> f32 {
-    let squared = dot(normal, normal);
-    if (squared < 1.1754944e-38f) {
-        return 0.0f;
-    }
-    return dot(seen - position, normal) * inverseSqrt(squared);
+    let unit = normal * inverseSqrt(max(dot(normal, normal), 1e-30f));
+    return dot(seen - position, unit);
 }
 
 // The usual test: how much nearer to the light the seen point is than the point itself. Kept to show where it fails: on a plane that light

@@ -72,20 +72,14 @@ pub fn texel(clip: Vec4, size: f32) -> Vec2 {
 
 /// N·L, of a normal of any length.
 pub fn cosine(normal: Vec3, toward_light: Vec3) -> f32 {
-    let squared = normal.dot(normal);
-    if squared < f32::MIN_POSITIVE {
-        return 0.0;
-    }
-    (normal.dot(toward_light) * (1.0 / squared.sqrt())).clamp(0.0, 1.0)
+    let unit = normal * (1.0 / normal.dot(normal).max(1e-30).sqrt());
+    unit.dot(toward_light).clamp(0.0, 1.0)
 }
 
 /// How far what the light sees stands out of the plane that touches the surface at a point.
 pub fn height(seen: Vec3, position: Vec3, normal: Vec3) -> f32 {
-    let squared = normal.dot(normal);
-    if squared < f32::MIN_POSITIVE {
-        return 0.0;
-    }
-    (seen - position).dot(normal) * (1.0 / squared.sqrt())
+    let unit = normal * (1.0 / normal.dot(normal).max(1e-30).sqrt());
+    (seen - position).dot(unit)
 }
 
 /// How much nearer to the light the seen point is, a naive form.

@@ -103,6 +103,9 @@ fn basis() -> Formula {
         .edge("just below the equator", |(axis,)| axis.z < 0.0 && axis.z > -1e-6)
         .edge("next to -z", |(axis,)| axis.z == -1.0 && (axis.x != 0.0 || axis.y != 0.0))
         .invariant("unit, square, right-handed", |(axis,), basis| square(&basis, axis))
+        .invariant("on the equator as above it", |(axis,), basis: ReflectiveShadowMapBasis| {
+            if axis.z != 0.0 || basis.right.z == -axis.x { Ok(()) } else { Err(format!("{}", basis.right)) }
+        })
         .hard_case("straight up", (Vec3::Y,), (&[1.0, 0.0, 0.0, 0.0, 0.0, -1.0], 0.0), (NAIVE, f64::INFINITY))
         .hard_case("straight down", (Vec3::NEG_Y,), (&[1.0, 0.0, 0.0, 0.0, 0.0, 1.0], 0.0), (NAIVE, f64::INFINITY))
         .build()
