@@ -65,6 +65,7 @@ pub const MODULES: &[Module] = modules![
     "environment",
     "fresnel",
     "microfacet",
+    "optical_path",
     "proxy_geometry",
     "refraction",
     "srgb",
@@ -80,10 +81,12 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_bvh",
     "gem_composite",
     "gem_convex",
+    "optical_path_sweep",
+    "optical_path_tiles",
     "texture_diffusion",
     "texture_irradiance",
     "trace"
 ];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading", "harmonics", "lights", "mesh", "surroundings", "trace_nearest"];
+pub const PARTS: &[Part] = parts!["gem_shading", "harmonics", "lights", "mesh", "optical_path_grid", "surroundings", "trace_nearest"];

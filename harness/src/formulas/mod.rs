@@ -11,6 +11,7 @@ mod dispersion;
 mod environment;
 mod fresnel;
 mod microfacet;
+mod optical_path;
 mod proxy_geometry;
 mod refraction;
 mod srgb;
@@ -34,6 +35,7 @@ pub fn all() -> &'static [Formula] {
             environment::formulas(),
             fresnel::formulas(),
             microfacet::formulas(),
+            optical_path::formulas(),
             proxy_geometry::formulas(),
             refraction::formulas(),
             srgb::formulas(),
