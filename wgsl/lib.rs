@@ -65,6 +65,7 @@ pub const MODULES: &[Module] = modules![
     "environment",
     "fresnel",
     "microfacet",
+    "optical_path",
     "proxy_geometry",
     "reflective_shadow_map",
     "refraction",
@@ -81,6 +82,11 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_bvh",
     "gem_composite",
     "gem_convex",
+    "optical_path_seed",
+    "optical_path_shading",
+    "optical_path_sweep",
+    "optical_path_tiles",
+    "reflective_shadow_map",
     "texture_diffusion",
     "texture_irradiance",
     "trace"
@@ -93,6 +99,7 @@ pub const PARTS: &[Part] = parts![
     "lights",
     "mesh",
     "mesh_normals",
+    "optical_path_grid",
     "reflection",
     "surroundings",
     "trace_nearest"

@@ -13,6 +13,7 @@ pub mod golden_section;
 pub mod gpu;
 pub mod mutation;
 pub mod nearest;
+pub mod optical_path;
 pub mod pixel;
 pub mod property;
 pub mod random_walk;

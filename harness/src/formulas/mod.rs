@@ -11,6 +11,7 @@ mod dispersion;
 mod environment;
 mod fresnel;
 mod microfacet;
+mod optical_path;
 mod proxy_geometry;
 mod reflective_shadow_map;
 mod refraction;
@@ -35,6 +36,7 @@ pub fn all() -> &'static [Formula] {
             environment::formulas(),
             fresnel::formulas(),
             microfacet::formulas(),
+            optical_path::formulas(),
             proxy_geometry::formulas(),
             reflective_shadow_map::formulas(),
             refraction::formulas(),

@@ -16,6 +16,7 @@ mod formulas;
 mod furnace;
 mod gem;
 mod hard_cases;
+mod optical_path;
 mod parity;
 mod program;
 mod reference;

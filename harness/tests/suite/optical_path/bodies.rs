@@ -1,0 +1,126 @@
+//! Bodies of voxels with seeds, made on the CPU.
+
+use glam::{UVec3, Vec3};
+use lapidary_harness::gpu::Gpu;
+use lapidary_harness::scene::{Bounds, Scene};
+use lapidary_harness::voxel_grid::VoxelGrid;
+use lapidary_optical_path::kernels::Body;
+use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};
+use wgpu::util::DeviceExt as _;
+
+/// A body in a grid, with its seeds.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub grid: VoxelGrid,
+    /// By voxel.
+    pub matter: Vec<bool>,
+    /// By voxel, a factor on the extinction.
+    pub density: Vec<f32>,
+    /// By voxel.
+    pub seeds: Vec<f32>,
+    pub extinction: f32,
+}
+
+/// A case on the device.
+#[derive(Debug)]
+pub struct Uploaded {
+    pub matter: wgpu::Buffer,
+    pub density: wgpu::Buffer,
+    pub cost: wgpu::Buffer,
+    seeds: Vec<f32>,
+}
+
+impl Uploaded {
+    /// Puts the seeds back.
+    pub fn reset(&self, gpu: &Gpu) {
+        gpu.queue.write_buffer(&self.cost, 0, bytemuck::cast_slice(&self.seeds));
+        gpu.queue.submit([]);
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    }
+}
+
+impl Case {
+    /// A cube of `cells` voxels 1 wide, with matter where `is_matter` says and no seeds.
+    pub fn of(cells: u32, extinction: f32, is_matter: impl Fn(UVec3) -> bool) -> Self {
+        let grid = VoxelGrid { origin: Vec3::ZERO, spacing: 1.0, cells };
+        let matter: Vec<bool> = (0..grid.count()).map(|index| is_matter(grid.voxel(index))).collect();
+        let (density, seeds) = (vec![1.0; matter.len()], vec![OPTICAL_PATH_UNREACHED; matter.len()]);
+        Self { grid, matter, density, seeds, extinction }
+    }
+
+    /// The bunny, lit along x, `depth` optical depths wide.
+    pub fn bunny(cells: u32, depth: f32) -> Self {
+        let scene = Scene::named("skin_bunny").expect("a built-in scene");
+        let mesh = &scene.objects[0].mesh;
+        let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
+        let side = cells as usize;
+        let mut matter = vec![false; grid.count()];
+        // Each triangle flips the voxels behind it. Rays pass voxels' middles by a hair, so that they meet no edge.
+        for corners in mesh.triangles() {
+            let [a, b, c] = corners.map(|corner| ((corner - grid.origin) / grid.spacing).as_dvec3());
+            let least = a.min(b).min(c).floor().max(glam::DVec3::ZERO);
+            let most = a.max(b).max(c).ceil().min(glam::DVec3::splat(f64::from(cells)));
+            for z in least.z as usize..most.z as usize {
+                for y in least.y as usize..most.y as usize {
+                    let (py, pz) = (y as f64 + 0.5 + 1.234e-7, z as f64 + 0.5 + 3.21e-8);
+                    let area = |p: glam::DVec3, q: glam::DVec3| (q.y - p.y) * (pz - p.z) - (q.z - p.z) * (py - p.y);
+                    let [u, v, w] = [area(b, c), area(c, a), area(a, b)];
+                    if (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0) {
+                        let x = (u * a.x + v * b.x + w * c.x) / (u + v + w);
+                        let first = (x - 0.5).ceil().max(0.0) as usize;
+                        for x in first..side {
+                            let index = x + side * (y + side * z);
+                            matter[index] = !matter[index];
+                        }
+                    }
+                }
+            }
+        }
+        let mut case = Self {
+            grid,
+            density: vec![1.0; matter.len()],
+            seeds: vec![OPTICAL_PATH_UNREACHED; matter.len()],
+            extinction: depth / (grid.spacing * cells as f32),
+            matter,
+        };
+        for row in 0..side * side {
+            if let Some(x) = (0..side).find(|x| case.matter[x + side * row]) {
+                case.seeds[x + side * row] = seed(0.25 + 0.5 * (row % 7) as f32 / 7.0, case.extinction, 0.3 * grid.spacing);
+            }
+        }
+        case
+    }
+
+    /// As the mirrors of the kernels take it, with these extinctions.
+    pub fn body<'a>(&'a self, extinction: &'a [f32]) -> Body<'a> {
+        Body { cells: self.grid.cells, spacing: self.grid.spacing, matter: &self.matter, extinction }
+    }
+
+    /// Each voxel's extinction.
+    pub fn extinctions(&self) -> Vec<f32> {
+        self.density.iter().map(|density| self.extinction * density).collect()
+    }
+
+    /// Buffers for a solver.
+    pub fn upload(&self, gpu: &Gpu) -> Uploaded {
+        let words = self.grid.words_per_row() as usize;
+        let side = self.grid.cells as usize;
+        let mut bits = vec![0u32; words * side * side];
+        for (index, _) in self.matter.iter().enumerate().filter(|(_, matter)| **matter) {
+            bits[words * (index / side) + index % side / 32] |= 1 << (index % side % 32);
+        }
+        let buffer = |contents: &[u8]| {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: None,
+                contents,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            })
+        };
+        Uploaded {
+            matter: buffer(bytemuck::cast_slice(&bits)),
+            density: buffer(bytemuck::cast_slice(&self.density)),
+            cost: buffer(bytemuck::cast_slice(&self.seeds)),
+            seeds: self.seeds.clone(),
+        }
+    }
+}

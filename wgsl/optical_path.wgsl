@@ -1,0 +1,170 @@
+// optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", sections 2 and 3;
+//   Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29 (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal
+//   Equations", SIAM J. Sci. Comput. 30 (2008).
+//
+// A cost is the optical depth of a path with -ln of the light that enters it. Costs are at least 0: irradiance is counted in shares of the largest
+// that any node may have. Luminance is e^-cost, so that the greatest contribution is the least cost.
+
+// Cost of a node that no light has reached. A cost that grows to this counts as unreached as well: WGSL may assume that there are no infinities.
+const OPTICAL_PATH_UNREACHED: f32 = 1e30f;
+// Shares below this count as none: 2^-126, the smallest number that an implementation may not flush to zero.
+const OPTICAL_PATH_DARKEST: f32 = 1.1754943508222875e-38f;
+// From this cost on luminance is 0: e^-87.3 is 1.2e-38, next to the smallest that f32 holds with all its digits.
+const OPTICAL_PATH_DEEPEST: f32 = 87.3f;
+
+// Cost of the edge between two nodes: the mean of their extinctions times its length. Symmetric, to the bit.
+// Returns: (extinction_a + extinction_b) length / 2; 0 where nothing is scattered or absorbed.
+// Units: none; extinctions in the inverse of the length's unit.
+// Domain: extinctions in [0, 1e15], length in [0, 1e14].
+// Outside: finite while products stay below 3e38.
+// Accuracy: lavapipe 2 ulp; portable 3 ulp
+fn optical_path_edge(extinction_a: f32, extinction_b: f32, length: f32) -> f32 {
+    return 0.5f * (extinction_a + extinction_b) * length;
+}
+
+// Cost of an edge as it stands in the paper: the extinction, whatever the edge's length. So it depends on the grid how deep a body is.
+// Returns: (extinction_a + extinction_b) / 2.
+// Units: that of the extinctions.
+// Domain: extinctions in [0, 1e15].
+// Outside: finite while the sum is.
+// Accuracy: naive
+fn optical_path_edge_paper(extinction_a: f32, extinction_b: f32) -> f32 {
+    return 0.5f * (extinction_a + extinction_b);
+}
+
+// Cost of a node once the way through one neighbour is known: the step that every solver on a graph repeats.
+// Returns: the lesser of `cost` and neighbour + edge; `cost` where the neighbour is unreached, but never more than unreached by way of it.
+// Units: none.
+// Domain: cost and neighbour in [0, 3e38], edge in [0, 1e30].
+// Outside: finite while the sum is.
+// Accuracy: lavapipe 1 ulp; portable 1 ulp
+fn optical_path_relax(cost: f32, neighbour: f32, edge: f32) -> f32 {
+    let through = select(OPTICAL_PATH_UNREACHED, neighbour + edge, neighbour < OPTICAL_PATH_UNREACHED);
+    return select(cost, through, through < cost);
+}
+
+// Cost of a node as the Eikonal equation |grad T| = extinction has it, by Godunov's upwind differences: the T with
+//   sum over the axes of max(T - least, 0)^2 = slowness^2.
+// With the least of the three subtracted and in units of the slowness, the radicands lie between 1 and 3: nothing cancels, overflows or
+// goes negative, whatever the costs. An axis whose neighbour lies too far ahead to count is moved to where it just does not, which
+// changes nothing; so there is one formula and no case.
+// Returns: T, at most least + slowness and at most unreached; unreached where all neighbours are.
+// Units: none.
+// Domain: least, the lesser of both neighbours on each axis, in [0, 1e30]; slowness, extinction times spacing, 0 or in [1e-30, 1e15].
+// Outside: a slowness below 2^-126 counts as 0 or as itself.
+// Accuracy: lavapipe 4 ulp; portable 12 ulp
+fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {
+    let low = min(least.x, least.y);
+    let high = max(least.x, least.y);
+    let rest = max(low, least.z);
+    let first = min(low, least.z);
+    let divisor = max(slowness, OPTICAL_PATH_DARKEST);
+    let second = min(min(rest, high) - first, slowness) / divisor;
+    let third = min(max(rest, high) - first, slowness) / divisor;
+    // With two axes; 1 where the second is moved.
+    let two = 0.5f * (second + sqrt(2.0f - second * second));
+    let last = min(third, two);
+    let radicand = 3.0f - 2.0f * (second * second - second * last + last * last);
+    let three = 0.33333334f * (second + last + sqrt(radicand));
+    let cost = first + slowness * three;
+    return select(OPTICAL_PATH_UNREACHED, cost, cost < OPTICAL_PATH_UNREACHED);
+}
+
+// The same by the quadratic formula in T itself, case by case, as one writes it.
+// Returns: optical_path_godunov(...).
+// Units: none.
+// Domain: least in [0, 2], slowness in [0.5, 2].
+// Outside: the digits of the slowness cancel where costs are large beside it; not a number where the radicand becomes negative, or for costs above 1e19.
+// Accuracy: naive
+fn optical_path_godunov_naive(least: vec3f, slowness: f32) -> f32 {
+    let low = min(least.x, least.y);
+    let high = max(least.x, least.y);
+    let rest = max(low, least.z);
+    let first = min(low, least.z);
+    let second = min(rest, high);
+    let third = max(rest, high);
+    let one = first + slowness;
+    if one <= second {
+        return one;
+    }
+    let pair = first + second;
+    let two = 0.5f * (pair + sqrt(pair * pair - 2.0f * (first * first + second * second - slowness * slowness)));
+    if two <= third {
+        return two;
+    }
+    let sum = pair + third;
+    let squares = first * first + second * second + third * third;
+    return (sum + sqrt(sum * sum - 3.0f * (squares - slowness * slowness))) / 3.0f;
+}
+
+// A cost as bits that are ordered as costs are, for atomicMin, which WGSL has for integers only.
+// Returns: the bits of `cost`; those of +0 for negative numbers and -0; those of unreached from there on, for infinity and for every NaN.
+// Units: none.
+// Domain: any bits.
+// Outside: none is.
+// Accuracy: lavapipe 0 ulp; portable 0 ulp
+fn optical_path_encode(cost: f32) -> u32 {
+    let bits = bitcast<u32>(cost);
+    // 0x7149f2ca are the bits of 1e30. As integers NaNs lie above it, and what is negative above them.
+    let reached = min(bits, 0x7149f2cau);
+    let negative = bits > 0x7fffffffu && bits <= 0xff800000u;
+    return select(reached, 0u, negative);
+}
+
+// The cost that was encoded.
+// Returns: cost in [0, 1e30].
+// Units: none.
+// Domain: any bits; what encodes no cost is unreached.
+// Outside: none is.
+// Accuracy: lavapipe 0 ulp; portable 0 ulp
+fn optical_path_decode(bits: u32) -> f32 {
+    return bitcast<f32>(min(bits, 0x7149f2cau));
+}
+
+// Cost of a node that light enters near: what is lost at the surface, and the way from the lit point to the node.
+// Returns: -ln(irradiance_share) + extinction offset, at least 0 and at most unreached; unreached where there is no light.
+// Units: none; `irradiance_share` is E N.L over the largest that any node may have; extinction in the inverse of the offset's unit.
+// Domain: share in [0, 1], larger ones count as 1; extinction in [0, 1e15]; offset, the distance from the lit point to the node, in [0, 1e14].
+// Outside: a negative share is no light.
+// Accuracy: lavapipe 3 ulp + 3e-7 abs; portable 5 ulp + 6e-7 abs
+fn optical_path_seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
+    if irradiance_share < OPTICAL_PATH_DARKEST {
+        return OPTICAL_PATH_UNREACHED;
+    }
+    return max(-log(min(irradiance_share, 1.0f)), 0.0f) + extinction * offset;
+}
+
+// The same as one writes it.
+// Returns: -ln(irradiance_share) + extinction offset.
+// Units: as optical_path_seed.
+// Domain: share in [0.01, 0.9], extinction and offset in [0, 10].
+// Outside: infinite or not a number without light, and negative above 1, where atomicMin takes it for the largest of costs.
+// Accuracy: naive
+fn optical_path_seed_naive(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
+    return -log(irradiance_share) + extinction * offset;
+}
+
+// Cost of a point by way of a node: a shaded point asks all nodes about it, and itself if it is lit, and takes the least.
+// Returns: cost + extinction offset, at most unreached; unreached where the node is.
+// Units: none; extinction in the inverse of the offset's unit.
+// Domain: cost in [0, 3e38]; extinction in [0, 1e15]; offset, the distance between point and node, in [0, 1e14].
+// Outside: finite while the product is.
+// Accuracy: lavapipe 1 ulp; portable 2 ulp
+fn optical_path_through(cost: f32, extinction: f32, offset: f32) -> f32 {
+    return min(min(cost, OPTICAL_PATH_UNREACHED) + extinction * offset, OPTICAL_PATH_UNREACHED);
+}
+
+// Light that comes along the path, as a share of the largest irradiance.
+// Returns: e^-cost in [0, 1]; exactly 1 for a cost of 0; 0 from a cost of 87.3 on, for what is unreached too.
+// Units: none.
+// Domain: cost in [0, 3e38].
+// Outside: 1 for a negative cost.
+// Accuracy: lavapipe 3 ulp + 2 backward; portable 4 ulp + 3 backward
+fn optical_path_luminance(cost: f32) -> f32 {
+    if cost <= 0.0f {
+        return 1.0f;
+    }
+    return select(min(exp(-cost), 1.0f), 0.0f, cost >= OPTICAL_PATH_DEEPEST);
+}
