@@ -3,6 +3,7 @@
 
 pub mod cdrf;
 pub mod check;
+pub mod compute;
 pub mod cookbook;
 pub mod cost;
 pub mod dispatch;

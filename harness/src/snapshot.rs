@@ -214,7 +214,11 @@ impl Shot {
 
     /// Where its pictures are.
     pub fn folder(&self) -> PathBuf {
-        folder(if matches!(self.settings(1).rung, Rung::Diffuse(_)) { "cdrf" } else { "gem" })
+        folder(match self.settings(1).rung {
+            Rung::Diffuse(_) => "cdrf",
+            Rung::OpticalPath(_) => "optical_path",
+            _ => "gem",
+        })
     }
 
     /// The composed recipe that draws it.

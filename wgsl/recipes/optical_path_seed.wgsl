@@ -8,7 +8,7 @@
 // time: costs are those of red, green or blue.
 
 // Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
-override EFFECT_DENSITY: bool = false;
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 
 struct OpticalPathSeeding {
     grid: VoxelizationGrid,
@@ -61,7 +61,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
     let index = voxelization_index(seeding.grid, voxel);
     var extinction = seeding.extinction;
-    if (EFFECT_DENSITY) {
+    if (EFFECT_EXTINCTION_PER_VOXEL) {
         extinction *= density[index];
     }
     let arrival = light_arrival(lights[light_of_map[texel.z]], seen.xyz);

@@ -12,7 +12,7 @@ override EFFECT_OPTICAL_PATH: bool = true;
 // Red, green and blue each have costs of their own; off, the first serves all three. Called for by an extinction or a light that is not grey.
 override EFFECT_COLOR: bool = true;
 // Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
-override EFFECT_DENSITY: bool = false;
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 // Diffuse light from all around, beside the lights. It goes no way through the body. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;
 
@@ -107,7 +107,7 @@ fn optical_path_along(position: vec3f) -> vec3f {
         let index = voxelization_index(body.grid, voxel);
         let offset = distance(position, voxelization_centre(body.grid, voxel));
         var extinction = body.extinction;
-        if (EFFECT_DENSITY) {
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
             extinction *= density[index];
         }
         least.x = min(least.x, optical_path_through(optical_path_decode(costs_red[index]), extinction.x, offset));

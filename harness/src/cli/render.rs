@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     #[arg(
         long,
         value_parser = |text: &str| text.parse::<Rung>(),
-        help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out: proxy-4+tracker, or accurate")
+        help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out: proxy-4+tracker, accurate or godunov-64, by what the materials say")
     )]
     rung: Option<Rung>,
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
@@ -43,6 +43,9 @@ pub(super) struct Arguments {
     /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
     #[arg(long, value_name = "FORM", default_value = "mean", value_parser = parse_curvature)]
     curvature: Curvature,
+    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.25 where left out.
+    #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
+    extinction_scale: Option<f32>,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
     strength: f32,
@@ -110,20 +113,23 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> 
     // Nothing of the recipes' way inside.
     let outside = reference || rung == Rung::Surface;
     let diffuse = matches!(rung, Rung::Diffuse(_));
+    let paths = matches!(rung, Rung::OpticalPath(_));
+    let scattered = diffuse || paths;
     let blurs = diffuse && rung != Rung::Diffuse(Reflectance::Lambert);
     let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
     let ignored = [
         ("--wavelengths", (!reference || scatters) && arguments.wavelengths.is_some()),
         ("--energy-bound", (!reference || scatters) && arguments.energy_bound.is_some()),
         ("--walks", !(reference && scatters) && arguments.walks.is_some()),
-        ("--without absorption", (outside || diffuse) && without("absorption")),
-        ("--without environment", !(diffuse || reference && scatters) && without("environment")),
-        ("--without reflection", !diffuse && without("reflection")),
+        ("--without absorption", (outside || scattered) && without("absorption")),
+        ("--without environment", !(scattered || reference && scatters) && without("environment")),
+        ("--without reflection", !scattered && without("reflection")),
         ("--curvature", !blurs && arguments.curvature != Curvature::Mean),
-        ("--rest dropped", (outside || diffuse) && arguments.rest == "dropped"),
-        ("--distance-limit", (outside || diffuse) && arguments.distance_limit.is_some()),
-        ("--deferred", (reference || diffuse) && arguments.deferred),
+        ("--rest dropped", (outside || scattered) && arguments.rest == "dropped"),
+        ("--distance-limit", (outside || scattered) && arguments.distance_limit.is_some()),
+        ("--deferred", (reference || scattered) && arguments.deferred),
         ("--centre paper", !proxy && arguments.centre == "paper"),
+        ("--extinction-scale", !paths && arguments.extinction_scale.is_some()),
         ("--strength", rung.spectrum() != Spectrum::Paper && arguments.strength != 1.0),
     ];
     match ignored.iter().find(|(_, ignored)| *ignored) {
@@ -156,6 +162,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         light_from_environment: !without("environment"),
         reflection: !without("reflection"),
         curvature: arguments.curvature,
+        extinction_scale: arguments.extinction_scale.unwrap_or(usual.extinction_scale),
         dispersion_strength: arguments.strength,
         rest_from_environment: arguments.rest == "environment",
         distance_limit: arguments.distance_limit,

@@ -19,12 +19,21 @@ pub(super) struct PipelineSource<'a> {
     pub(super) constants: &'a [(&'a str, f64)],
     /// Formats of its colour targets.
     pub(super) formats: &'a [wgpu::TextureFormat],
-    /// The depth buffer's format, for solids; their backs are culled.
+    /// The depth buffer's format, for solids.
     pub(super) depth: Option<wgpu::TextureFormat>,
 }
 
-/// Compiles a pass.
+/// Compiles a pass. A closed body shows its front; a full-screen triangle has no back to speak of.
 pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::RenderPipeline, RenderError> {
+    pipeline_culling(gpu, from, from.depth.map(|_| wgpu::Face::Back))
+}
+
+/// The same with the faces that are not drawn, if any.
+pub(super) fn pipeline_culling(
+    gpu: &Gpu,
+    from: &PipelineSource<'_>,
+    cull_mode: Option<wgpu::Face>,
+) -> Result<wgpu::RenderPipeline, RenderError> {
     let name = from.recipe;
     let (module, _) = dispatch::parse(from.source, &format!("recipe {name}"))?;
     let constants = dispatch::declared(&module, from.constants);
@@ -51,11 +60,7 @@ pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::Ren
                 compilation_options: compilation_options(),
                 buffers: &[],
             },
-            primitive: wgpu::PrimitiveState {
-                // A closed stone shows its front; a full-screen triangle has no back to speak of.
-                cull_mode: from.depth.map(|_| wgpu::Face::Back),
-                ..wgpu::PrimitiveState::default()
-            },
+            primitive: wgpu::PrimitiveState { cull_mode, ..wgpu::PrimitiveState::default() },
             depth_stencil: from.depth.map(|format| wgpu::DepthStencilState {
                 format,
                 depth_write_enabled: Some(true),
@@ -167,4 +172,13 @@ pub(super) fn cleared(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorA
         resolve_target: None,
         ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
     })
+}
+
+/// A depth attachment that starts at the greatest depth.
+pub(super) fn cleared_depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store }),
+        stencil_ops: None,
+    }
 }

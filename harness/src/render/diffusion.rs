@@ -2,7 +2,8 @@
 
 use super::device::{self, PipelineSource, bind_group, bind_group_from};
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
-use super::{RenderError, Settings};
+use super::RenderError;
+use super::lighting::Lighting;
 use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::scene::Object;
@@ -32,31 +33,21 @@ pub(super) struct MeshBuffers<'a> {
     pub(super) uvs: &'a wgpu::Buffer,
 }
 
-/// What shines on all objects.
-pub(super) struct Lighting<'a> {
-    pub(super) lights: &'a wgpu::Buffer,
-    pub(super) harmonics: &'a wgpu::Buffer,
-    /// The override of the part `lights`.
-    pub(super) spot: (&'static str, f64),
-}
-
 impl<'gpu> Diffusion<'gpu> {
-    /// For `object`, which has texture coordinates, under these lights and harmonics.
+    /// For `object`, which has texture coordinates, under these lights and harmonics, with the overrides that go with them.
     pub(super) fn new(
         gpu: &'gpu Gpu,
         object: &Object,
-        settings: &Settings,
-        &Lighting { lights, harmonics, spot }: &Lighting<'_>,
+        (lighting, constants): (&Lighting, &[(&str, f64)]),
         mesh: &MeshBuffers<'_>,
     ) -> Result<Self, RenderError> {
-        let environment = f64::from(u8::from(settings.light_from_environment));
         let pipeline = device::pipeline(
             gpu,
             &PipelineSource {
                 recipe: RECIPE,
                 source: &cookbook::recipe_source(RECIPE),
                 entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
-                constants: &[("EFFECT_ENVIRONMENT", environment), spot],
+                constants,
                 formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
                 depth: None,
             },
@@ -68,7 +59,7 @@ impl<'gpu> Diffusion<'gpu> {
         let vertices = device::mesh_vertices(gpu, object, &drawn, [bytemuck::cast_slice(&drawn)])?;
         let groups = gpu.guarded("uploading a mesh", |device| {
             let indices = device::buffer(device, bytemuck::cast_slice(&drawn), wgpu::BufferUsages::STORAGE);
-            let shared = [lights, harmonics].map(wgpu::Buffer::as_entire_binding);
+            let shared = [&lighting.lights, &lighting.harmonics].map(wgpu::Buffer::as_entire_binding);
             let own = [mesh.positions, &indices, mesh.normals, mesh.uvs].map(wgpu::Buffer::as_entire_binding);
             [bind_group_from(device, &pipeline, 0, 2, shared.into()), bind_group(device, &pipeline, 1, own.into())]
         })?;

@@ -58,5 +58,5 @@ pub(super) fn pass<'gpu>(
     let shared = vec![Shared::Texture(super::environment::texture(gpu, &settings.environment)?)];
     let bodies: Result<Vec<Body>, RenderError> =
         scene.objects.iter().map(|object| stone::upload(gpu, &pipeline, object, settings)).collect();
-    Ok(ScenePass { gpu, pipeline, shared, bodies: bodies?, diffusions: Vec::new() })
+    Ok(ScenePass { gpu, pipeline, shared, bodies: bodies?, before: Vec::new() })
 }

@@ -10,8 +10,12 @@ pub mod file;
 mod frame;
 mod gem;
 mod harmonics;
+mod light_views;
+mod lighting;
+mod optical_path;
 mod pass;
 mod reflectance;
+mod reflective_shadow_map;
 mod rung;
 mod stone;
 pub mod texture_diffusion;
@@ -28,6 +32,7 @@ use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
 pub(crate) use gem::constants;
 use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+pub use optical_path::Paths;
 pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 use std::sync::Mutex;
@@ -43,6 +48,10 @@ pub const SAMPLES: u32 = 4;
 
 /// Walks from each pixel, where nothing else is asked for.
 pub const WALKS: u32 = 256;
+
+/// The share of a body's extinction that light loses along its way, where nothing else is asked for: scattering takes light from the way, but
+/// much of it goes on beside it.
+pub const EXTINCTION_SCALE: f32 = 0.25;
 
 /// The light around the scene.
 #[derive(Clone, Debug)]
@@ -84,6 +93,8 @@ pub struct Settings {
     pub reflection: bool,
     /// Which curvature spreads the light of what scatters it.
     pub curvature: Curvature,
+    /// What light loses along its way through a body is that which scattering and absorption take together, times this.
+    pub extinction_scale: f32,
     /// The light around the scene.
     pub environment: Environment,
     /// Radiance is multiplied by this before the tone curve.
@@ -114,6 +125,7 @@ impl Settings {
             environment_at_vertices: true,
             reflection: true,
             curvature: Curvature::Mean,
+            extinction_scale: EXTINCTION_SCALE,
             environment: Environment::Studio,
             exposure: 1.0,
             wavelengths: reference::WAVELENGTHS,
@@ -193,12 +205,36 @@ pub enum RenderError {
         /// What the driver allows.
         limit: u64,
     },
+    /// More lights than maps.
+    #[error("the lights need {views} shadow maps, and this device offers {limit}; take fewer lights, or move lamps out of the scene")]
+    TooManyViews {
+        /// How many.
+        views: usize,
+        /// What is possible.
+        limit: u32,
+    },
+    /// Ways of light could not be found.
+    #[error(transparent)]
+    OpticalPath(#[from] crate::optical_path::OpticalPathError),
     /// A material that a rung for scattering cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \
          rung for clear stones"
     )]
     NoSigma0 {
+        /// The object's name.
+        object: String,
+        /// The material's.
+        material: String,
+        /// The rung.
+        rung: Rung,
+    },
+    /// A material through which no light can be followed.
+    #[error(
+        "object `{object}`: its material `{material}` has no scattering and absorption, which rung `{rung}` needs; add \
+         extras.lapidary.scattering and .absorption, or take another rung"
+    )]
+    NoMedium {
         /// The object's name.
         object: String,
         /// The material's.
@@ -269,16 +305,15 @@ fn render_from(
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
-    if settings.rung == Rung::Reference && scatters(scene) {
-        let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
-        picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });
-        picture.linear = linear;
-        encode(gpu, settings, &mut picture)?;
-        return Ok(picture);
-    }
     if settings.rung == Rung::Reference {
-        let Rendering { linear, lost, .. } = follow(scene, settings, progress)?;
-        (picture.linear, picture.lost) = (linear, Some(lost));
+        if scatters(scene) {
+            let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
+            picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });
+            picture.linear = linear;
+        } else {
+            let Rendering { linear, lost, .. } = follow(scene, settings, progress)?;
+            (picture.linear, picture.lost) = (linear, Some(lost));
+        }
         encode(gpu, settings, &mut picture)?;
         return Ok(picture);
     }
@@ -327,6 +362,7 @@ fn scene_pass<'gpu>(
 ) -> Result<ScenePass<'gpu>, RenderError> {
     match settings.rung {
         Rung::Diffuse(reflectance) => translucent::pass(gpu, scene, settings, reflectance, source),
+        Rung::OpticalPath(paths) => optical_path::pass(gpu, scene, settings, paths, source),
         _ => gem::pass(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT]),
     }
 }
@@ -349,13 +385,17 @@ fn walk(
         seed: 1,
         environment: settings.light_from_environment.then_some(&settings.environment),
     };
+    Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)
+}
+
+/// A progress that several threads may tell.
+fn from_any_thread(progress: &mut (dyn FnMut(u64, u64) + Send)) -> impl Fn(u64, u64) + Sync {
     let progress = Mutex::new(progress);
-    let tell = |done, total| {
+    move |done, total| {
         if let Ok(mut progress) = progress.lock() {
             progress(done, total);
         }
-    };
-    Ok(mesh::render(scene, &of_walks, &tell)?)
+    }
 }
 
 /// The root mean square of the standard errors of what is covered, over its mean brightness.
@@ -380,13 +420,7 @@ fn follow(
         environment: &settings.environment,
         ..reference::Settings::of_size(settings.width, settings.height)
     };
-    let progress = Mutex::new(progress);
-    let tell = |done, total| {
-        if let Ok(mut progress) = progress.lock() {
-            progress(done, total);
-        }
-    };
-    Ok(reference::render(scene, &of_reference, &tell)?)
+    Ok(reference::render(scene, &of_reference, &from_any_thread(progress))?)
 }
 
 /// Fills in `encoded` from `linear`, as the display recipe shows it.

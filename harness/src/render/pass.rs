@@ -1,6 +1,7 @@
 //! A scene on the device under one compiled recipe, and drawing it.
 
 use super::diffusion::Diffusion;
+use super::optical_path::OpticalPaths;
 use super::{RenderError, device};
 use crate::gpu::Gpu;
 use glam::{Mat4, Vec3};
@@ -42,8 +43,15 @@ pub(super) struct ScenePass<'gpu> {
     /// Group 0 from binding 1 on.
     pub(super) shared: Vec<Shared>,
     pub(super) bodies: Vec<Body>,
-    /// What is drawn and blurred before, once a frame.
-    pub(super) diffusions: Vec<Diffusion<'gpu>>,
+    pub(super) before: Vec<Before<'gpu>>,
+}
+
+/// What is done before, once a frame, for the objects to look up.
+pub(super) enum Before<'gpu> {
+    /// Irradiance, drawn into an object's texture and blurred.
+    Diffusion(Diffusion<'gpu>),
+    /// Paths of light through the objects.
+    Paths(OpticalPaths<'gpu>),
 }
 
 /// What a pass draws to.
@@ -71,9 +79,12 @@ impl ScenePass<'_> {
         device::bind_group(device, &self.pipeline, 0, resources)
     }
 
-    /// Draws what the objects look up, in passes of its own.
+    /// Does what comes before, in passes of its own.
     pub(super) fn prepare(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
-        self.diffusions.iter().try_for_each(|diffusion| diffusion.encode(encoder))
+        self.before.iter().try_for_each(|before| match before {
+            Before::Diffusion(diffusion) => diffusion.encode(encoder),
+            Before::Paths(paths) => paths.encode(encoder),
+        })
     }
 
     /// Draws the objects: one draw call for each.
@@ -83,11 +94,7 @@ impl ScenePass<'_> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &colors,
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: target.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(device::cleared_depth(target.depth, store)),
             ..wgpu::RenderPassDescriptor::default()
         });
         let [width, height] = target.size;
@@ -101,6 +108,10 @@ impl ScenePass<'_> {
 
     /// How many draw calls a frame takes.
     pub(super) fn draw_calls(&self) -> usize {
-        self.bodies.len() + self.diffusions.iter().map(Diffusion::draw_calls).sum::<usize>()
+        let before = self.before.iter().map(|before| match before {
+            Before::Diffusion(diffusion) => diffusion.draw_calls(),
+            Before::Paths(paths) => paths.draw_calls(),
+        });
+        self.bodies.len() + before.sum::<usize>()
     }
 }

@@ -1,8 +1,11 @@
 //! The ladder's rungs: how much of the light's way is followed.
 
 use super::reflectance::{REFLECTANCES, Reflectance};
+use super::optical_path::Paths;
 use crate::nearest;
+use crate::optical_path::Method;
 use crate::scene::Scene;
+use crate::voxel_grid::{LEAST_CELLS, MOST_CELLS, TILE};
 use std::fmt;
 use std::str::FromStr;
 
@@ -22,6 +25,8 @@ pub enum Rung {
     },
     /// Light scattered below the surface, by what the surface sends back.
     Diffuse(Reflectance),
+    /// Light along the cheapest ways through a body, by voxels.
+    OpticalPath(Paths),
     /// The reference, on the CPU in f64: spectral for clear stones, random walks for what scatters.
     Reference,
 }
@@ -57,7 +62,7 @@ pub const MOST_HITS: u32 = 64;
 /// Most wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs that are offered when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 26] = [
+pub const NAMES: [&str; 30] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -83,12 +88,17 @@ pub const NAMES: [&str; 26] = [
     "quadrature",
     "spherical",
     "blur",
+    "paper-64",
+    "ping-pong-26-64",
+    "tiled-26-64",
+    "godunov-64",
     "reference",
 ];
 /// How a rung is written, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
-     quadrature, spherical, blur; for both reference";
+     quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
+     cells, such as godunov-64; for both reference";
 
 const GEOMETRIES: [(&str, Geometry); 4] = [
     ("proxy", Geometry::Proxy),
@@ -101,10 +111,14 @@ impl Rung {
     /// The paper's rung: the proxy, one internal hit, no dispersion.
     pub const PAPER: Self = Self::Inside { geometry: Geometry::Proxy, hits: 1, spectrum: Spectrum::One };
 
-    /// The rung for a scene where none is asked for: the accurate reflectance where something scatters light, else the proxy.
+    /// The rung for a scene where none is asked for: the accurate reflectance where bodies say how widely they spread light, ways through
+    /// them where they only say how they scatter it, else the proxy.
     pub fn usual(scene: &Scene) -> Self {
-        if super::scatters(scene) {
+        if scene.objects.iter().any(|object| object.material.sigma0.is_some()) {
             return Self::Diffuse(Reflectance::Accurate);
+        }
+        if super::scatters(scene) {
+            return Self::OpticalPath(Paths { cells: 64, method: Method::Godunov });
         }
         Self::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker }
     }
@@ -115,6 +129,7 @@ impl Rung {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
             Self::Diffuse(_) => "cdrf_shading",
+            Self::OpticalPath(_) => "optical_path_shading",
             Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => "gem",
         }
     }
@@ -141,6 +156,7 @@ impl fmt::Display for Rung {
             Self::Inside { geometry, hits, spectrum } => (geometry, hits, spectrum),
             Self::Surface => return f.write_str("surface"),
             Self::Diffuse(reflectance) => return f.write_str(reflectance.name()),
+            Self::OpticalPath(Paths { cells, method }) => return write!(f, "{method}-{cells}"),
             Self::Reference => return f.write_str("reference"),
         };
         let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);
@@ -165,6 +181,13 @@ impl FromStr for Rung {
         }
         if let Some((_, reflectance)) = REFLECTANCES.iter().find(|(name, _)| *name == text) {
             return Ok(Self::Diffuse(*reflectance));
+        }
+        if let Some((Ok(method), cells)) = text.rsplit_once('-').map(|(method, cells)| (method.parse::<Method>(), cells)) {
+            let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(TILE);
+            let cells = whole(cells).filter(is_grid).ok_or_else(|| {
+                format!("`{cells}` cells; a grid has a multiple of {TILE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")
+            })?;
+            return Ok(Self::OpticalPath(Paths { cells, method }));
         }
         let unknown = || format!("no such rung{}; a rung is {GRAMMAR}", nearest::suggest(text, &NAMES));
         let (way, spectrum) = text.split_once('+').map_or((text, None), |(way, spectrum)| (way, Some(spectrum)));
@@ -214,6 +237,10 @@ mod tests {
             ("proxy-1+2", "3 to 61"),
             ("proxy-1+", "a rung is"),
             ("", "a rung is"),
+            ("godunov-65", "a multiple of 8"),
+            ("godunov-8", "16 to 256"),
+            ("tiled-26", "a rung is"),
+            ("ping-pong-26-x", "`x` cells"),
         ] {
             let message = text.parse::<Rung>().expect_err(text);
             assert!(message.contains(expected), "{text}: {message}");

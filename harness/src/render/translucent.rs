@@ -1,14 +1,14 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, under the scene's lights and the environment.
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices, uniform};
-use super::diffusion::{Diffusion, Lighting, MeshBuffers};
-use super::pass::{Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
-use super::{Curvature, Environment, Reflectance, RenderError, Settings, harmonics};
+use super::diffusion::{Diffusion, MeshBuffers};
+use super::lighting::{self, Lighting};
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass};
+use super::{Curvature, Reflectance, RenderError, Settings};
 use crate::cdrf::table::{self, Format};
 use crate::gpu::Gpu;
 use crate::scene::curvatures::vertex_curvatures;
-use crate::scene::light::Falloff;
-use crate::scene::{Light, Material, Object, Scene};
+use crate::scene::{Material, Object, Scene};
 use glam::{UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt as _;
 
@@ -28,7 +28,7 @@ pub(super) fn pass<'gpu>(
         if reflectance == Reflectance::Blur && !mesh.uvs.iter().all(inside) {
             return Err(RenderError::TextureCoordinatesOutside { object: name.clone() });
         }
-        if material.sigma0.is_none() {
+        if material.sigma0.is_none() && reflectance != Reflectance::Lambert {
             return Err(RenderError::NoSigma0 {
                 object: name.clone(),
                 material: material.name.clone(),
@@ -47,27 +47,15 @@ pub(super) fn pass<'gpu>(
             depth: Some(DEPTH_FORMAT),
         },
     )?;
-    let environment = super::environment::texture(gpu, &settings.environment)?;
-    let coefficients = if settings.light_from_environment {
-        harmonics::project(&settings.environment)
-    } else {
-        [glam::DVec3::ZERO; harmonics::COUNT]
-    };
-    let coefficients: Vec<f32> =
-        coefficients.iter().flat_map(|coefficient| coefficient.as_vec3().extend(0.0).to_array()).collect();
-    let [lights, coefficients] = gpu.guarded("uploading lights", |device| {
-        let lights = buffer(device, bytemuck::cast_slice(&lights(scene)), wgpu::BufferUsages::STORAGE);
-        [lights, uniform(device, &coefficients)]
-    })?;
-    let (mut bodies, mut diffusions) = (Vec::new(), Vec::new());
-    let lighting = Lighting { lights: &lights, harmonics: &coefficients, spot: spot_constant(scene) };
+    let lighting = Lighting::upload(gpu, scene, settings)?;
+    let irradiance = lighting::constants(scene, settings);
+    let (mut bodies, mut before) = (Vec::new(), Vec::new());
     for object in &scene.objects {
-        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, &lighting)?;
+        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, (&lighting, &irradiance))?;
         bodies.push(body);
-        diffusions.extend(diffusion);
+        before.extend(diffusion.map(Before::Diffusion));
     }
-    let shared = vec![Shared::Texture(environment), Shared::Buffer(lights), Shared::Buffer(coefficients)];
-    Ok(ScenePass { gpu, pipeline, shared, bodies, diffusions })
+    Ok(ScenePass { gpu, pipeline, shared: lighting.shared(), bodies, before })
 }
 
 /// The overrides of the recipe for these settings.
@@ -75,53 +63,15 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings, reflectance: Reflect
     let flag = |on: bool| f64::from(u8::from(on));
     let materials = || scene.objects.iter().map(|object| &object.material);
     let scatters = materials().any(|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));
-    let polished = materials().any(|material| material.roughness == 0.0 && material.ior > 1.0);
-    let rough = materials().any(|material| material.roughness > 0.0 && material.ior > 1.0);
-    vec![
+    let mut constants = vec![
         ("EFFECT_CDRF", flag(scatters && reflectance.form().is_some())),
         ("EFFECT_TEXTURE_DIFFUSION", flag(reflectance == Reflectance::Blur)),
         ("CDRF_FORM", f64::from(reflectance.form().unwrap_or_default())),
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
-        ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
         ("ENVIRONMENT_AT_VERTICES", flag(settings.environment_at_vertices)),
-        ("EFFECT_MICROFACET", flag(settings.reflection && rough)),
-        ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
-        ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
-        spot_constant(scene),
-    ]
-}
-
-/// The override of the part `lights`.
-fn spot_constant(scene: &Scene) -> (&'static str, f64) {
-    let spots = scene.lights.iter().any(|light| matches!(light, Light::Spot { .. }));
-    ("EFFECT_SPOT", f64::from(u8::from(spots)))
-}
-
-/// `Light` of the recipe, 12 floats each; one black light where there is none.
-fn lights(scene: &Scene) -> Vec<f32> {
-    // No axis, and all directions within the edge.
-    let everywhere = (Vec3::ZERO, Falloff { edge: -1.0, slope: 1.0 });
-    let entry = |place: Vec3, point: f32, power: Vec3, (axis, falloff): (Vec3, Falloff)| {
-        // Of the narrowest cones the slope is beyond f32.
-        let [edge, slope] = [falloff.edge as f32, falloff.slope.min(f32::MAX.into()) as f32];
-        let (place, power, axis) = (place.extend(point), power.extend(edge), axis.extend(slope));
-        [place.to_array(), power.to_array(), axis.to_array()]
-    };
-    let mut entries: Vec<[[f32; 4]; 3]> = scene
-        .lights
-        .iter()
-        .map(|light| match *light {
-            Light::Directional { toward, irradiance } => entry(toward, 0.0, irradiance, everywhere),
-            Light::Point { position, intensity } => entry(position, 1.0, intensity, everywhere),
-            Light::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                entry(position, 1.0, intensity, (direction, Falloff::between(inner_angle, outer_angle)))
-            }
-        })
-        .collect();
-    if entries.is_empty() {
-        entries.push(entry(Vec3::Y, 0.0, Vec3::ZERO, everywhere));
-    }
-    entries.as_flattened().concat()
+    ];
+    constants.extend(lighting::constants(scene, settings));
+    constants
 }
 
 /// Sends an object to the device.
@@ -131,7 +81,7 @@ fn upload<'gpu>(
     object: &Object,
     settings: &Settings,
     reflectance: Reflectance,
-    lighting: &Lighting<'_>,
+    lighting: (&Lighting, &[(&str, f64)]),
 ) -> Result<(Body, Option<Diffusion<'gpu>>), RenderError> {
     let Object { mesh, material, .. } = object;
     let curvatures = if settings.curvature == Curvature::Vertex { vertex_curvatures(mesh) } else { vec![0.0] };
@@ -158,7 +108,7 @@ fn upload<'gpu>(
     let diffusion = match reflectance {
         Reflectance::Blur => {
             let mesh = MeshBuffers { positions: &positions, normals: &normals, uvs: &uvs };
-            Some(Diffusion::new(gpu, object, settings, lighting, &mesh)?)
+            Some(Diffusion::new(gpu, object, lighting, &mesh)?)
         }
         _ => None,
     };

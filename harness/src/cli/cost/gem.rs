@@ -5,9 +5,10 @@ use lapidary_harness::cost::{self, CostError, plot};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     refuse("gem", &[("--walks", arguments.walks.is_some()), ("--seed", arguments.seed.is_some())])?;
-    if let Some(rung) = arguments.rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_))) {
+    if let Some(rung) = arguments.rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))) {
+        let ladder = if matches!(rung, Rung::Diffuse(_)) { "cdrf" } else { "optical_path" };
         return Err(Failure(format!(
-            "`gem` has no rung {rung}, which draws no clear stone; `./cook cost cdrf` has it"
+            "`gem` has no rung {rung}, which draws no clear stone; `./cook cost {ladder}` has it"
         )));
     }
     let mut options = Options::default();

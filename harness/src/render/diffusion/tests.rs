@@ -1,3 +1,4 @@
+use super::super::pass::Before;
 use super::*;
 use crate::gpu::AdapterChoice;
 use crate::render::{Reflectance, Rung, scene_pass};
@@ -39,7 +40,8 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     pass.prepare(&mut encoder).expect("the passes");
-    let diffused = &pass.diffusions[0].textures.diffused;
+    let Before::Diffusion(diffusion) = &pass.before[0] else { panic!("a diffusion") };
+    let diffused = &diffusion.textures.diffused;
     encoder.copy_texture_to_buffer(
         diffused.as_image_copy(),
         wgpu::TexelCopyBufferInfo {

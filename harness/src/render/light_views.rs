@@ -1,0 +1,145 @@
+//! From where reflective shadow maps look: one view for a sun, a spot or a lamp that stands off, six for a lamp amid what it shines at.
+
+use crate::scene::{Bounds, Light};
+use glam::Vec3;
+use lapidary_reflective_shadow_map::ReflectiveShadowMapView;
+
+/// One view of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LightView {
+    pub(super) view: ReflectiveShadowMapView,
+    /// The light's number.
+    pub(super) light: u32,
+}
+
+/// A lamp that sees the scene's sphere under a greater angle than this has six views: the tangent of half the angle.
+const WIDEST: f32 = 1.5;
+/// The nearest that a lamp sees of the scene, over the farthest.
+const NEAREST: f32 = 1e-3;
+/// Room about what a view must hold, so that rounding puts nothing beyond its edge.
+const MARGIN: f32 = 1.0 + 1e-4;
+
+/// The views of all lights, light after light, on what stands in `bounds`.
+pub(super) fn views(lights: &[Light], bounds: Bounds) -> Vec<LightView> {
+    (0..).zip(lights).flat_map(|(light, of)| views_of(of, bounds).into_iter().map(move |view| LightView { view, light })).collect()
+}
+
+fn views_of(light: &Light, bounds: Bounds) -> Vec<ReflectiveShadowMapView> {
+    let (centre, radius) = (bounds.centre(), bounds.radius().max(f32::MIN_POSITIVE) * MARGIN);
+    match *light {
+        Light::Directional { toward, .. } => {
+            vec![ReflectiveShadowMapView { origin: centre, lamp: 0, axis: -toward, extent: radius, near: -radius, far: radius }]
+        }
+        Light::Point { position, .. } => lamp(position, centre, radius, None),
+        Light::Spot { position, direction, outer_angle, .. } => lamp(position, centre, radius, Some((direction, outer_angle.tan()))),
+    }
+}
+
+/// The views of a lamp, whose light is bounded by a cone or not.
+fn lamp(position: Vec3, centre: Vec3, radius: f32, cone: Option<(Vec3, f32)>) -> Vec<ReflectiveShadowMapView> {
+    let way = centre - position;
+    let distance = way.length();
+    let far = (distance + radius) * MARGIN;
+    let near = (distance - radius).max(NEAREST * far);
+    let view = |axis, extent, near| ReflectiveShadowMapView { origin: position, lamp: 1, axis, extent, near, far };
+    // The cone that touches the sphere about the scene.
+    let about = (distance > radius).then(|| (way / distance, radius / ((distance - radius) * (distance + radius)).sqrt()));
+    let narrowest = [about, cone].into_iter().flatten().filter(|(_, tangent)| (0.0..=WIDEST).contains(tangent));
+    match narrowest.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        // Along the axis of a spot the scene may come nearer than its sphere.
+        Some((axis, tangent)) => {
+            let near = if about.is_some_and(|about| about.0 == axis) { near } else { NEAREST * far };
+            vec![view(axis, (tangent * MARGIN).max(NEAREST), near)]
+        }
+        None => {
+            let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+            axes.into_iter().flat_map(|axis| [axis, -axis]).map(|axis| view(axis, 1.0, NEAREST * far)).collect()
+        }
+    }
+}
+
+/// The most that arrives at what stands in `bounds` from any one of the lights, on a surface square to it, linear RGB. Nearer to a lamp
+/// than a hundredth of the bounds' radius counts as that far.
+pub(super) fn largest_irradiance(lights: &[Light], bounds: Bounds) -> Vec3 {
+    let least = 0.01 * bounds.radius();
+    let of = |light: &Light| match *light {
+        Light::Directional { irradiance, .. } => irradiance,
+        Light::Point { position, intensity } | Light::Spot { position, intensity, .. } => {
+            let distance = position.distance(position.clamp(bounds.min, bounds.max)).max(least);
+            intensity / (distance * distance)
+        }
+    };
+    lights.iter().map(of).fold(Vec3::ZERO, Vec3::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lapidary_reflective_shadow_map::clip;
+
+    const BOUNDS: Bounds = Bounds { min: Vec3::new(99.0, -1.0, -2.0), max: Vec3::new(101.0, 1.0, 2.0) };
+
+    fn corners() -> impl Iterator<Item = Vec3> {
+        let Bounds { min, max } = BOUNDS;
+        (0..8).map(move |corner| Vec3::select(glam::BVec3::new(corner & 1 == 0, corner & 2 == 0, corner & 4 == 0), min, max))
+    }
+
+    /// How many of a light's views hold a point.
+    fn holding(light: Light, point: Vec3) -> usize {
+        let seen = |from: &LightView| {
+            let clip = clip(from.view, point);
+            clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && (0.0..=clip.w).contains(&clip.z)
+        };
+        views(&[light], BOUNDS).iter().filter(|view| seen(view)).count()
+    }
+
+    fn lamp_at(position: Vec3) -> Light {
+        Light::Point { position, intensity: Vec3::ONE }
+    }
+
+    #[test]
+    fn every_light_sees_all_of_the_scene() {
+        let sun = Light::Directional { toward: Vec3::new(0.6, 0.8, 0.0), irradiance: Vec3::ONE };
+        let lamps = [Vec3::new(110.0, 0.0, 0.0), Vec3::new(100.0, 2.6, 0.0), Vec3::new(100.1, 0.2, 0.3), Vec3::ZERO];
+        for light in [sun].into_iter().chain(lamps.map(lamp_at)) {
+            for corner in corners() {
+                assert_eq!(holding(light, corner), 1, "{light:?} {corner}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_a_lamp_that_is_near_has_six_views() {
+        let count = |position| views(&[lamp_at(position)], BOUNDS).len();
+        assert_eq!([Vec3::new(100.0, 0.0, 0.0), Vec3::new(103.0, 0.0, 0.0), Vec3::new(103.2, 0.0, 0.0)].map(count), [6, 1, 1]);
+        assert_eq!(count(Vec3::new(102.0, 0.0, 0.0)), 6);
+    }
+
+    #[test]
+    fn a_spot_sees_its_cone_or_the_scene_whichever_is_less() {
+        let spot = |outer_angle| Light::Spot {
+            position: Vec3::new(120.0, 0.0, 0.0),
+            direction: Vec3::NEG_X,
+            intensity: Vec3::ONE,
+            inner_angle: 0.0,
+            outer_angle,
+        };
+        let extent = |light| views(&[light], BOUNDS)[0].view.extent;
+        assert!((extent(spot(0.05)) / 0.05f32.tan() - 1.0).abs() < 1e-3);
+        assert!(extent(spot(1.5)) < 0.13);
+        // Within its cone.
+        assert_eq!(holding(spot(0.05), Vec3::new(100.0, 0.9, 0.0)), 1);
+        assert_eq!(holding(spot(0.05), Vec3::new(100.0, 0.0, 1.5)), 0);
+    }
+
+    #[test]
+    fn the_largest_irradiance_is_that_of_the_nearest_corner() {
+        let lights = [
+            Light::Directional { toward: Vec3::Y, irradiance: Vec3::new(1.0, 0.2, 0.2) },
+            Light::Point { position: Vec3::new(103.0, 0.0, 0.0), intensity: Vec3::new(0.4, 4.0, 0.0) },
+        ];
+        assert!(largest_irradiance(&lights, BOUNDS).distance(Vec3::new(1.0, 1.0, 0.2)) < 1e-6);
+        assert!(largest_irradiance(&[lamp_at(BOUNDS.centre())], BOUNDS).is_finite());
+        assert_eq!(largest_irradiance(&[], BOUNDS), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,267 @@
+//! Translucent stone: the recipe `optical_path_shading`'s pass, and what fills its costs each frame: voxels, reflective shadow maps,
+//! seeds and a solver, all of them on the device.
+
+use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
+use super::light_views::{self, LightView};
+use super::lighting::{self, Lighting};
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
+use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
+use super::{RenderError, Settings};
+use crate::compute::Kernel;
+use crate::cookbook;
+use crate::gpu::Gpu;
+use crate::optical_path::{Method, Solver};
+use crate::scene::{Bounds, Light, Material, Medium, Object, Scene};
+use crate::voxel_grid::VoxelGrid;
+use crate::voxelization::Voxelizer;
+use glam::Vec3;
+
+const SEED: &str = "optical_path_seed";
+/// Texels of a map along a side for each voxel of a grid: the sphere about a body is up to 1.7 grids wide.
+const TEXELS_PER_VOXEL: u32 = 4;
+/// Invocations of a workgroup of the seeds along each side of a map.
+const SEED_GROUP: u32 = 8;
+
+/// How light's ways through bodies are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paths {
+    /// Voxels along each edge of a body's grid, as [`VoxelGrid::cells`] has them.
+    pub cells: u32,
+    /// The solver.
+    pub method: Method,
+}
+
+/// The passes of a frame before the bodies are drawn.
+pub(super) struct OpticalPaths<'gpu> {
+    gpu: &'gpu Gpu,
+    maps: ReflectiveShadowMaps<'gpu>,
+    clear: Kernel,
+    seed: Kernel,
+    bodies: Vec<BodyPaths<'gpu>>,
+}
+
+/// Of one body.
+struct BodyPaths<'gpu> {
+    grid: VoxelGrid,
+    voxelizer: Voxelizer<'gpu>,
+    solver: Solver<'gpu>,
+    positions: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    channels: Vec<Channel>,
+}
+
+/// Of one of a body's channels.
+struct Channel {
+    extinction: f32,
+    costs: wgpu::Buffer,
+    /// Of clearing and of seeding.
+    groups: [[Option<wgpu::BindGroup>; 2]; 2],
+}
+
+/// Compiles `source`, the composed recipe, and uploads the scene.
+pub(super) fn pass<'gpu>(
+    gpu: &'gpu Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    paths: Paths,
+    source: &str,
+) -> Result<ScenePass<'gpu>, RenderError> {
+    let extinctions = extinctions(scene, settings)?;
+    let bounds = scene.bounds();
+    // A sun without light stands in where there is no light.
+    let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
+    let lights = if scene.lights.is_empty() { &dark[..] } else { &scene.lights };
+    let views = light_views::views(lights, bounds);
+    let largest = light_views::largest_irradiance(lights, bounds);
+    let color = is_colored(&extinctions, lights);
+    let constants = constants(scene, settings, color);
+    let pipeline = device::pipeline(
+        gpu,
+        &PipelineSource {
+            recipe: settings.rung.recipe(),
+            source,
+            entries: ["optical_path_vertex", "optical_path_fragment"],
+            constants: &constants,
+            formats: &[SAMPLE_FORMAT],
+            depth: Some(DEPTH_FORMAT),
+        },
+    )?;
+    let lighting = Lighting::upload(gpu, scene, settings)?;
+    let side = (TEXELS_PER_VOXEL * paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
+    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
+    let [clear, seed] = {
+        let source = cookbook::recipe_source(SEED);
+        let kernel = |entry: &str| Kernel::new(gpu, &source, entry, &constants);
+        [kernel("optical_path_clear")?, kernel("optical_path_seed_texel")?]
+    };
+    let (views_buffer, light_of_map) = gpu.guarded("uploading views", |device| {
+        let lights: Vec<u32> = views.iter().map(|view| view.light).collect();
+        let storage = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::STORAGE);
+        (storage(&map_bytes(&views)), storage(bytemuck::cast_slice(&lights)))
+    })?;
+    let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
+    for (object, extinction) in scene.objects.iter().zip(&extinctions) {
+        let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), paths.cells);
+        let Object { mesh, material, .. } = object;
+        let parts: [&[u8]; 3] = [
+            bytemuck::cast_slice(&mesh.positions),
+            bytemuck::cast_slice(&mesh.indices),
+            bytemuck::cast_slice(&mesh.normals),
+        ];
+        let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
+        let [positions, indices, normals] = gpu
+            .guarded("uploading a mesh", |device| parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE)))?;
+        maps.add([&positions, &indices, &normals], vertices)?;
+        let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
+        let solver = Solver::new(gpu, grid, paths.method, false, None)?;
+        let channels = (0..if color { 3 } else { 1 })
+            .map(|channel| {
+                gpu.guarded("allocating costs", |device| {
+                    let costs = device.create_buffer(&wgpu::BufferDescriptor {
+                        label: Some(SEED),
+                        size: 4 * grid.count() as u64,
+                        usage: wgpu::BufferUsages::STORAGE,
+                        mapped_at_creation: false,
+                    });
+                    let extinction = extinction[channel];
+                    let seeding = seeding_bytes(grid, extinction, largest[channel], channel as u32);
+                    let seeding = buffer(device, &seeding, wgpu::BufferUsages::UNIFORM);
+                    let resources = [
+                        vec![
+                            (0, seeding.as_entire_binding()),
+                            (1, wgpu::BindingResource::TextureView(&maps.view())),
+                            (2, lighting.lights.as_entire_binding()),
+                            (3, light_of_map.as_entire_binding()),
+                        ],
+                        vec![(0, costs.as_entire_binding()), (1, voxelizer.matter.as_entire_binding())],
+                    ];
+                    let groups = [&clear, &seed].map(|kernel| {
+                        [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize]))
+                    });
+                    Channel { extinction, costs, groups }
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let group = gpu.guarded("uploading a material", |device| {
+            let uniform = buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
+            let costs = |channel: usize| channels.get(channel).unwrap_or(&channels[0]).costs.as_entire_binding();
+            let unread = buffer(device, &[0; 4], wgpu::BufferUsages::STORAGE);
+            let resources = vec![
+                uniform.as_entire_binding(),
+                positions.as_entire_binding(),
+                indices.as_entire_binding(),
+                normals.as_entire_binding(),
+                costs(0),
+                costs(1),
+                costs(2),
+                unread.as_entire_binding(),
+            ];
+            bind_group(device, &pipeline, 1, resources)
+        })?;
+        bodies.push(Body { groups: vec![group], vertices });
+        of_bodies.push(BodyPaths { grid, voxelizer, solver, positions, indices, channels });
+    }
+    let mut shared = lighting.shared();
+    shared.extend([Shared::Buffer(views_buffer), Shared::Texture(maps.view())]);
+    let before = vec![Before::Paths(OpticalPaths { gpu, maps, clear, seed, bodies: of_bodies })];
+    Ok(ScenePass { gpu, pipeline, shared, bodies, before })
+}
+
+/// The overrides of the recipes for these settings.
+pub(crate) fn constants(scene: &Scene, settings: &Settings, color: bool) -> Vec<(&'static str, f64)> {
+    let mut constants = vec![
+        ("EFFECT_OPTICAL_PATH", 1.0),
+        ("EFFECT_COLOR", f64::from(u8::from(color))),
+        ("EFFECT_EXTINCTION_PER_VOXEL", 0.0),
+    ];
+    constants.extend(lighting::constants(scene, settings));
+    constants
+}
+
+/// What each object takes from light on its way, per unit of length: what scattering and absorption take together, times the settings' scale.
+fn extinctions(scene: &Scene, settings: &Settings) -> Result<Vec<Vec3>, RenderError> {
+    let of = |object: &Object| {
+        let Some(Medium { scattering, absorption, .. }) = object.material.medium else {
+            return Err(RenderError::NoMedium {
+                object: object.name.clone(),
+                material: object.material.name.clone(),
+                rung: settings.rung,
+            });
+        };
+        Ok(settings.extinction_scale * (scattering + absorption))
+    };
+    scene.objects.iter().map(of).collect()
+}
+
+/// Whether red, green and blue differ in any body's extinction or any light.
+fn is_colored(extinctions: &[Vec3], lights: &[Light]) -> bool {
+    let grey = |color: Vec3| color.x == color.y && color.y == color.z;
+    let power = |light: &Light| match *light {
+        Light::Directional { irradiance: power, .. }
+        | Light::Point { intensity: power, .. }
+        | Light::Spot { intensity: power, .. } => power,
+    };
+    !(extinctions.iter().copied().all(grey) && lights.iter().map(power).all(grey))
+}
+
+/// `VoxelizationGrid` as WGSL lays it out, in 32 bytes.
+fn grid_words(grid: VoxelGrid) -> [f32; 8] {
+    let VoxelGrid { origin, spacing, cells } = grid;
+    [origin.x, origin.y, origin.z, spacing, f32::from_bits(cells), 0.0, 0.0, 0.0]
+}
+
+/// `OpticalPathSeeding` of the recipe.
+fn seeding_bytes(grid: VoxelGrid, extinction: f32, largest: f32, channel: u32) -> Vec<u8> {
+    // No light has a share of nothing.
+    let tail = [extinction, largest.max(f32::MIN_POSITIVE), f32::from_bits(channel), 0.0];
+    bytemuck::cast_slice(&[&grid_words(grid)[..], &tail].concat()).to_vec()
+}
+
+/// `OpticalPathBody` of the recipe.
+fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Vec<u8> {
+    let tail = [
+        material.base_color.extend(material.ior),
+        extinction.extend(material.roughness * material.roughness),
+        largest.extend(0.0),
+    ];
+    let tail = tail.map(|row| row.to_array()).concat();
+    bytemuck::cast_slice(&[&grid_words(grid)[..], &tail].concat()).to_vec()
+}
+
+/// `array<OpticalPathMap>` of the recipe.
+fn map_bytes(views: &[LightView]) -> Vec<u8> {
+    let entry = |from: &LightView| [reflective_shadow_map::bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat();
+    views.iter().flat_map(entry).collect()
+}
+
+impl OpticalPaths<'_> {
+    /// Everything that the frame's picture looks up, from the meshes and lights alone.
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+        self.gpu.guarded("drawing reflective shadow maps", |_| self.maps.encode(encoder))?;
+        let [width, height, layers] = self.maps.size();
+        for body in &self.bodies {
+            body.voxelizer.encode(encoder, &body.positions, &body.indices)?;
+            for channel in &body.channels {
+                let cells = body.grid.cells;
+                let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
+                self.gpu.guarded("seeding costs", |_| {
+                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                    for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes) {
+                        pass.set_pipeline(&kernel.pipeline);
+                        for (index, group) in (0..).zip(groups) {
+                            pass.set_bind_group(index, group, &[]);
+                        }
+                        pass.dispatch_workgroups(x, y, z);
+                    }
+                })?;
+                body.solver.encode(encoder, &body.voxelizer.matter, None, &channel.costs, channel.extinction)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// How many draw calls it takes.
+    pub(super) fn draw_calls(&self) -> usize {
+        self.maps.draw_calls()
+    }
+}

@@ -1,0 +1,131 @@
+//! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
+
+use super::RenderError;
+use super::device::{self, PipelineSource, bind_group, buffer};
+use super::light_views::LightView;
+use super::pass::DEPTH_FORMAT;
+use crate::cookbook;
+use crate::gpu::Gpu;
+use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
+
+const RECIPE: &str = "reflective_shadow_map";
+/// World position and N·L: neither can do with f16.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// The maps and how they are drawn.
+pub(super) struct ReflectiveShadowMaps<'gpu> {
+    gpu: &'gpu Gpu,
+    pipeline: wgpu::RenderPipeline,
+    texture: wgpu::Texture,
+    depth: wgpu::TextureView,
+    /// One for each view, in order.
+    views: Vec<wgpu::BindGroup>,
+    /// Each object's mesh, and how many vertices draw it.
+    meshes: Vec<(wgpu::BindGroup, u32)>,
+}
+
+impl<'gpu> ReflectiveShadowMaps<'gpu> {
+    /// Maps of `side` texels a side for `views`, of which there is at least one.
+    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32) -> Result<Self, RenderError> {
+        let limit = gpu.device.limits().max_texture_array_layers;
+        if views.len() > limit as usize {
+            return Err(RenderError::TooManyViews { views: views.len(), limit });
+        }
+        let pipeline = device::pipeline_culling(
+            gpu,
+            &PipelineSource {
+                recipe: RECIPE,
+                source: &cookbook::recipe_source(RECIPE),
+                entries: ["reflective_shadow_map_vertex", "reflective_shadow_map_fragment"],
+                constants: &[],
+                formats: &[FORMAT],
+                depth: Some(DEPTH_FORMAT),
+            },
+            None,
+        )?;
+        let (texture, depth, views) = gpu.guarded("allocating reflective shadow maps", |device| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(RECIPE),
+                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: views.len() as u32 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            let depth = device::view(&device::target(device, [side; 2], DEPTH_FORMAT, wgpu::TextureUsages::empty()));
+            let group = |view: &LightView| {
+                let uniform = buffer(device, &bytes(view.view), wgpu::BufferUsages::UNIFORM);
+                bind_group(device, &pipeline, 0, vec![uniform.as_entire_binding()])
+            };
+            (texture, depth, views.iter().map(group).collect())
+        })?;
+        Ok(Self { gpu, pipeline, texture, depth, views, meshes: Vec::new() })
+    }
+
+    /// Adds an object: its positions, indices and normals, and how many vertices draw it.
+    pub(super) fn add(&mut self, mesh: [&wgpu::Buffer; 3], vertices: u32) -> Result<(), RenderError> {
+        let group = self.gpu.guarded("binding a mesh", |device| {
+            bind_group(device, &self.pipeline, 1, mesh.map(wgpu::Buffer::as_entire_binding).into())
+        })?;
+        self.meshes.push((group, vertices));
+        Ok(())
+    }
+
+    /// All layers.
+    pub(super) fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..wgpu::TextureViewDescriptor::default()
+        })
+    }
+
+    /// Width, height and layers.
+    pub(super) fn size(&self) -> [u32; 3] {
+        let size = self.texture.size();
+        [size.width, size.height, size.depth_or_array_layers]
+    }
+
+    /// Draws all maps.
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        for (layer, group) in (0..).zip(&self.views) {
+            let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            });
+            let nothing = wgpu::Color { a: REFLECTIVE_SHADOW_MAP_NOTHING.into(), ..wgpu::Color::TRANSPARENT };
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(RECIPE),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store },
+                })],
+                depth_stencil_attachment: Some(device::cleared_depth(&self.depth, wgpu::StoreOp::Discard)),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, group, &[]);
+            for (mesh, vertices) in &self.meshes {
+                pass.set_bind_group(1, mesh, &[]);
+                pass.draw(0..*vertices, 0..1);
+            }
+        }
+    }
+
+    /// How many draw calls it takes.
+    pub(super) fn draw_calls(&self) -> usize {
+        self.views.len() * self.meshes.len()
+    }
+}
+
+/// `ReflectiveShadowMapView` as WGSL lays it out in a uniform.
+pub(super) fn bytes(view: ReflectiveShadowMapView) -> Vec<u8> {
+    let ReflectiveShadowMapView { origin, lamp, axis, extent, near, far } = view;
+    let words = [origin.x, origin.y, origin.z, f32::from_bits(lamp), axis.x, axis.y, axis.z, extent, near, far, 0.0, 0.0];
+    bytemuck::cast_slice(&words).to_vec()
+}
