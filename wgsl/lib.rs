@@ -68,7 +68,8 @@ pub const MODULES: &[Module] = modules![
     "proxy_geometry",
     "refraction",
     "srgb",
-    "texture_diffusion"
+    "texture_diffusion",
+    "voxelization"
 ];
 
 /// Every recipe, in the order of their names.
@@ -82,7 +83,8 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_convex",
     "texture_diffusion",
     "texture_irradiance",
-    "trace"
+    "trace",
+    "voxelization"
 ];
 
 /// Every part, in the order of their names.

@@ -15,6 +15,7 @@ mod proxy_geometry;
 mod refraction;
 mod srgb;
 mod texture_diffusion;
+mod voxelization;
 
 use crate::formula::Formula;
 use std::sync::OnceLock;
@@ -38,6 +39,7 @@ pub fn all() -> &'static [Formula] {
             refraction::formulas(),
             srgb::formulas(),
             texture_diffusion::formulas(),
+            voxelization::formulas(),
         ]
         .into_iter()
         .flatten()
