@@ -70,7 +70,8 @@ pub const MODULES: &[Module] = modules![
     "reflective_shadow_map",
     "refraction",
     "srgb",
-    "texture_diffusion"
+    "texture_diffusion",
+    "voxelization"
 ];
 
 /// Every recipe, in the order of their names.
@@ -89,7 +90,8 @@ pub const RECIPES: &[Recipe] = recipes![
     "reflective_shadow_map",
     "texture_diffusion",
     "texture_irradiance",
-    "trace"
+    "trace",
+    "voxelization"
 ];
 
 /// Every part, in the order of their names.

@@ -25,3 +25,4 @@ pub mod snapshot;
 pub mod specialise;
 pub mod spirv_counts;
 pub mod voxel_grid;
+pub mod voxelization;

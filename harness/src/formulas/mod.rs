@@ -17,6 +17,7 @@ mod reflective_shadow_map;
 mod refraction;
 mod srgb;
 mod texture_diffusion;
+mod voxelization;
 
 use crate::formula::Formula;
 use std::sync::OnceLock;
@@ -42,6 +43,7 @@ pub fn all() -> &'static [Formula] {
             refraction::formulas(),
             srgb::formulas(),
             texture_diffusion::formulas(),
+            voxelization::formulas(),
         ]
         .into_iter()
         .flatten()

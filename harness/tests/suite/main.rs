@@ -24,6 +24,7 @@ mod snapshots;
 mod specialise;
 mod text;
 mod texture_diffusion;
+mod voxelization;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
 

@@ -1,0 +1,219 @@
+//! The truth in f64. Faces and centres are counted, edges are met by lines in homogeneous coordinates, a column is inside by signed areas and its
+//! depth by the plane, and a triangle touches a voxel if something is left of it once the voxel's six faces have clipped it.
+
+use glam::{DVec2, DVec3, UVec2, UVec3};
+
+/// A cube of voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoxelizationGrid {
+    /// The corner with the least coordinates, in world units.
+    pub origin: DVec3,
+    /// A voxel's edge in world units.
+    pub spacing: f64,
+    /// Voxels along each edge.
+    pub cells: u32,
+}
+
+/// Where an edge crosses a plane across y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoxelizationCrossing {
+    /// Whether it does.
+    pub crossed: bool,
+    /// x and z of the place; 0 where there is none.
+    pub at: DVec2,
+}
+
+/// Where a triangle crosses a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoxelizationColumn {
+    /// Whether it does.
+    pub inside: bool,
+    /// x of the place; 0 where there is none.
+    pub depth: f64,
+}
+
+/// Slices, rows and voxels before this one.
+pub fn index(grid: VoxelizationGrid, voxel: UVec3) -> u32 {
+    let row = grid.cells;
+    let slice = row * grid.cells;
+    voxel.z * slice + voxel.y * row + voxel.x
+}
+
+/// The middle of the voxel's two corners.
+pub fn centre(grid: VoxelizationGrid, voxel: UVec3) -> DVec3 {
+    let corner = |voxel: UVec3| grid.origin + grid.spacing * voxel.as_dvec3();
+    0.5 * (corner(voxel) + corner(voxel + 1))
+}
+
+/// By the reciprocal.
+pub fn local(grid: VoxelizationGrid, position: DVec3) -> DVec3 {
+    let density = grid.spacing.recip();
+    position * density - grid.origin * density
+}
+
+/// Faces between voxels that lie at the position or before it, counted.
+pub fn voxel(grid: VoxelizationGrid, position: DVec3) -> UVec3 {
+    UVec3::from_array([0, 1, 2].map(|axis| {
+        let faces = (1..grid.cells).map(|face| grid.origin[axis] + f64::from(face) * grid.spacing);
+        faces.filter(|face| *face <= position[axis]).count() as u32
+    }))
+}
+
+/// From one point on, by the share of the way.
+pub fn between(from_point: DVec2, to_point: DVec2, before: f64, after: f64) -> DVec2 {
+    from_point + (to_point - from_point) * (before / (before + after))
+}
+
+/// Where the line through two points of a plane has this first coordinate, in homogeneous coordinates.
+fn on_line(one: DVec2, other: DVec2, first: f64) -> f64 {
+    let line = one.extend(1.0).cross(other.extend(1.0));
+    -(line.x * first + line.z) / line.y
+}
+
+/// In the planes of (y, x) and of (y, z).
+pub fn crossing(a: DVec3, b: DVec3, y: f64) -> VoxelizationCrossing {
+    if (a.y <= y) == (b.y <= y) {
+        return VoxelizationCrossing { crossed: false, at: DVec2::ZERO };
+    }
+    let across = |axis: usize| {
+        let place = on_line(DVec2::new(a.y, a[axis]), DVec2::new(b.y, b[axis]), y);
+        place.clamp(a[axis].min(b[axis]), a[axis].max(b[axis]))
+    };
+    VoxelizationCrossing { crossed: true, at: DVec2::new(across(0), across(2)) }
+}
+
+/// Twice the signed area of a triangle in the plane of y and z.
+fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+fn across(point: DVec3) -> DVec2 {
+    DVec2::new(point.y, point.z)
+}
+
+/// By the signs of areas; ties as if the column lay a little higher in y, and in z by less than that.
+pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
+    let beside = |from: DVec3, to: DVec3| {
+        let (lower, upper) = if from.y <= to.y { (from, to) } else { (to, from) };
+        lower.y <= column.x && column.x < upper.y && area(across(lower), across(upper), column) >= 0.0
+    };
+    let count = [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| beside(*from, *to)).count();
+    if count % 2 == 0 {
+        return VoxelizationColumn { inside: false, depth: 0.0 };
+    }
+    VoxelizationColumn { inside: true, depth: on_plane(a, b, c, column) }
+}
+
+/// x of the plane over a column, within the triangle's extent.
+fn on_plane(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let depth = a.x - (normal.y * (column.x - a.y) + normal.z * (column.y - a.z)) / normal.x;
+    depth.clamp(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x))
+}
+
+/// Not outside of any edge, by the signs of areas.
+pub fn column_naive(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
+    let whole = area(across(a), across(b), across(c));
+    let outside = |from: DVec3, to: DVec3| area(across(from), across(to), column) * whole < 0.0;
+    if outside(a, b) || outside(b, c) || outside(c, a) {
+        return VoxelizationColumn { inside: false, depth: 0.0 };
+    }
+    VoxelizationColumn { inside: true, depth: on_plane(a, b, c, column) }
+}
+
+/// Centres before the coordinate, counted.
+pub fn first(coordinate: f64, cells: u32) -> u32 {
+    (0..cells).filter(|voxel| f64::from(*voxel) + 0.5 < coordinate).count() as u32
+}
+
+/// Bit by bit.
+pub fn prefix(bits: u32) -> u32 {
+    let mut inside = 0;
+    (0..u32::BITS).fold(0, |result, bit| {
+        inside ^= bits >> bit & 1;
+        result | inside << bit
+    })
+}
+
+/// The largest of the sums with all signs.
+pub fn taxicab(vector: DVec3) -> f64 {
+    let signs = [1.0, -1.0];
+    let sums = signs.map(|x| signs.map(|y| signs.map(|z| vector.dot(DVec3::new(x, y, z)))));
+    sums.into_iter().flatten().flatten().fold(0.0, f64::max)
+}
+
+/// 2⁻²⁰ of the largest coordinate, of one at least as large as a voxel added.
+pub fn margin(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let all = [a, b, c].map(|corner| corner.to_array());
+    let largest = all.into_iter().flatten().fold(0.0, |largest: f64, x| largest.max(x).max(-x));
+    (largest + 1.0) / f64::from(1 << 20)
+}
+
+/// Voxels that end before the interval, and those that begin in it or before it, counted.
+pub fn range(low: f64, high: f64, cells: u32) -> UVec2 {
+    let before = (0..cells).filter(|voxel| f64::from(voxel + 1) <= low).count() as u32;
+    let begun = (0..cells).filter(|voxel| f64::from(*voxel) <= high).count() as u32;
+    UVec2::new(before.min(begun), begun)
+}
+
+/// The plane at the corners of the square, moved along x by what its distance may be off.
+pub fn span(a: DVec3, b: DVec3, c: DVec3, corner: DVec2) -> DVec2 {
+    let margin = margin(a, b, c);
+    let xs = [a.x, b.x, c.x];
+    let low = xs.into_iter().fold(f64::INFINITY, f64::min) - margin;
+    let high = xs.into_iter().fold(f64::NEG_INFINITY, f64::max) + margin;
+    let normal = (b - a).cross(c - a);
+    let slack = margin * taxicab(b - a) * taxicab(c - a);
+    let across_square = taxicab(DVec3::new(0.0, normal.y, normal.z)) * (0.5 + margin);
+    if normal.x.abs() <= (across_square + slack) / f64::from(1 << 20) {
+        return DVec2::new(low, high);
+    }
+    let corners = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)].map(|(y, z)| {
+        let widened = corner + DVec2::new(y, z) + margin * DVec2::new(2.0 * y - 1.0, 2.0 * z - 1.0);
+        let offset = widened - across(a);
+        a.x - (normal.y * offset.x + normal.z * offset.y) / normal.x
+    });
+    let [least, most] =
+        [corners.into_iter().fold(f64::INFINITY, f64::min), corners.into_iter().fold(-f64::INFINITY, f64::max)];
+    let beyond = slack / normal.x.abs();
+    let more = beyond + (0.5 * (most - least) + beyond) / f64::from(1 << 20) + margin;
+    DVec2::new(low.max(least - more), high.min(most + more))
+}
+
+/// What is left of a polygon on one side of a face across an axis.
+fn clipped(polygon: &[DVec3], axis: usize, side: f64, face: f64) -> Vec<DVec3> {
+    let height = |point: DVec3| side * (point[axis] - face);
+    let mut left = Vec::new();
+    for (place, &point) in polygon.iter().enumerate() {
+        let next = polygon[(place + 1) % polygon.len()];
+        let (here, there) = (height(point), height(next));
+        if here <= 0.0 {
+            left.push(point);
+        }
+        if (here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0) {
+            let mut met = point + (next - point) * (here / (here - there));
+            met[axis] = face;
+            left.push(met);
+        }
+    }
+    left
+}
+
+/// Whether anything of the triangle is left within a voxel that is larger by `margin` on all sides.
+pub fn touches([a, b, c]: [DVec3; 3], corner: DVec3, margin: f64) -> bool {
+    let mut polygon = vec![a, b, c];
+    for axis in 0..3 {
+        for (side, face) in [(-1.0, corner[axis] - margin), (1.0, corner[axis] + 1.0 + margin)] {
+            polygon = clipped(&polygon, axis, side, face);
+            if polygon.is_empty() {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// By clipping, with the margin.
+pub fn overlaps(a: DVec3, b: DVec3, c: DVec3, corner: DVec3) -> bool {
+    touches([a, b, c], corner, margin(a, b, c))
+}

@@ -1,0 +1,405 @@
+//! `wgsl/voxelization.wgsl`.
+
+use super::near;
+use crate::formula::{Formula, formula};
+use crate::mirror_struct;
+use crate::property::draws::Draws;
+use glam::{DVec3, UVec3, Vec2, Vec3};
+use lapidary_voxelization::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
+
+mirror_struct!(lapidary_voxelization, VoxelizationGrid { origin, spacing, cells });
+mirror_struct!(lapidary_voxelization, VoxelizationCrossing { crossed, at });
+mirror_struct!(lapidary_voxelization, VoxelizationColumn { inside, depth });
+
+const M: &str = "voxelization";
+
+type Triangle = (Vec3, Vec3, Vec3);
+
+fn cells(draws: &mut Draws<'_>) -> u32 {
+    8 * (2 + draws.below(31))
+}
+
+/// A grid anywhere, or one whose faces f32 holds exactly.
+fn grid(draws: &mut Draws<'_>) -> VoxelizationGrid {
+    let cells = cells(draws);
+    if draws.below(2) == 0 {
+        let origin = Vec3::new(whole(draws, 64), whole(draws, 64), whole(draws, 64));
+        return VoxelizationGrid { origin, spacing: draws.pick(&[1.0, 0.5, 0.125, 4.0]), cells };
+    }
+    let spacing = draws.magnitude(-20, 10);
+    VoxelizationGrid { origin: cells as f32 * spacing * draws.in_cube(), spacing, cells }
+}
+
+/// A whole number from -n to n.
+fn whole(draws: &mut Draws<'_>, n: u32) -> f32 {
+    draws.below(2 * n + 1) as f32 - n as f32
+}
+
+fn in_grid(draws: &mut Draws<'_>, cells: u32) -> UVec3 {
+    let mut number = || if draws.below(4) == 0 { draws.pick(&[0, cells - 1]) } else { draws.below(cells) };
+    UVec3::new(number(), number(), number())
+}
+
+/// Halves of small whole numbers, of which f32 makes sums of products exactly.
+fn step(draws: &mut Draws<'_>) -> f32 {
+    0.5 * whole(draws, 6)
+}
+
+fn steps(draws: &mut Draws<'_>) -> Vec3 {
+    Vec3::new(step(draws), step(draws), step(draws))
+}
+
+fn is_step(value: f32) -> bool {
+    (2.0 * value).fract() == 0.0 && value.abs() <= 8.0
+}
+
+fn all_steps(points: &[Vec3]) -> bool {
+    points.iter().all(|point| point.to_array().into_iter().all(is_step))
+}
+
+/// A triangle at least 1/8 as thick as long, of this size, about a place.
+fn fat_triangle(draws: &mut Draws<'_>, middle: DVec3, size: f64) -> Triangle {
+    let first = draws.unit_vector().as_dvec3().normalize();
+    let second = draws.perpendicular(first);
+    let thickness = 0.25 + 0.75 * draws.unit();
+    let lean = draws.unit() - 0.5;
+    let corners = [-0.5 * first, 0.5 * first, lean * first + thickness * second];
+    let shift = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let [a, b, c] = corners.map(|corner| (middle + size * (corner - shift)).as_vec3());
+    if draws.below(2) == 0 { (a, b, c) } else { (a, c, b) }
+}
+
+/// A place in a grid, away from its origin, where a coordinate's last place says how exact all of them are.
+fn place(draws: &mut Draws<'_>) -> DVec3 {
+    150.0 + 80.0 * draws.in_cube().as_dvec3()
+}
+
+/// A triangle and a column: of the steps, or aimed at the inside, an edge, a corner or beside.
+fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
+    if draws.below(2) == 0 {
+        return (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws)));
+    }
+    let middle = place(draws);
+    let size = f64::from(draws.magnitude(-3, 6));
+    let (a, b, c) = fat_triangle(draws, middle, size);
+    let (v, w) = match draws.below(4) {
+        0 => draws.pick(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5)]),
+        1 => (2.0 * draws.unit() - 0.5, 2.0 * draws.unit() - 0.5),
+        _ => {
+            let (v, w) = (draws.unit(), draws.unit());
+            if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) }
+        }
+    };
+    let [p, q, r] = [a, b, c].map(Vec3::as_dvec3);
+    let at = (p + v * (q - p) + w * (r - p)).as_vec3();
+    (a, b, c, Vec2::new(at.y, at.z))
+}
+
+/// Away from edges, or of the steps, with an area as seen along x.
+fn benign_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
+    if draws.below(2) == 0 {
+        let (a, b, c, at) = (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws)));
+        let flat = |v: Vec3| Vec2::new(v.y, v.z);
+        if flat(b - a).perp_dot(flat(c - a)) != 0.0 && a.min_element() > 0.0 && b.x > 0.0 && c.x > 0.0 {
+            return (a, b, c, at);
+        }
+    }
+    let mut corner = |y: f32, z: f32| Vec3::new(draws.between(1.0, 2.0), y, z);
+    let (a, b, c) = (corner(0.0, 0.0), corner(4.0, 1.0), corner(-1.0, 3.0));
+    (a, b, c, Vec2::new(draws.between(0.5, 1.5), draws.between(1.0, 1.5)))
+}
+
+/// A triangle and a voxel: of the steps, aimed at the voxel's corners and faces, or anywhere near.
+fn overlap_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
+    if draws.below(2) == 0 {
+        let corner = Vec3::new(whole(draws, 1), whole(draws, 1), whole(draws, 1));
+        let (a, b, c) = (steps(draws), steps(draws), steps(draws));
+        return match draws.below(16) {
+            0 => (a, a, a, corner),
+            1 => (a, b, b, corner),
+            _ => (a, b, c, corner),
+        };
+    }
+    let corner = place(draws).floor();
+    let share = |draws: &mut Draws<'_>| if draws.below(2) == 0 { draws.pick(&[0.0, 1.0]) } else { draws.unit() };
+    let target = corner + DVec3::new(share(draws), share(draws), share(draws));
+    let size = f64::from(draws.magnitude(-3, 4));
+    let (a, b, c) = fat_triangle(draws, DVec3::ZERO, size);
+    // One of its corners, or a point of an edge, or of the inside, comes to lie there, or not far from there.
+    let (v, w) = match draws.below(4) {
+        0 => (0.0, 0.0),
+        1 => (draws.unit(), 0.0),
+        _ => (0.5 * draws.unit(), 0.5 * draws.unit()),
+    };
+    let [p, q, r] = [a, b, c].map(Vec3::as_dvec3);
+    let aside = if draws.below(3) == 0 { draws.in_cube().as_dvec3() } else { DVec3::ZERO };
+    let shift = target + aside - (p + v * (q - p) + w * (r - p));
+    ((p + shift).as_vec3(), (q + shift).as_vec3(), (r + shift).as_vec3(), corner.as_vec3())
+}
+
+fn exact_triangle((a, b, c): Triangle) -> [DVec3; 3] {
+    [a, b, c].map(Vec3::as_dvec3)
+}
+
+pub(super) fn formulas() -> Vec<Formula> {
+    [grid_formulas(), column_formulas(), row_formulas(), surface_formulas()].into_iter().flatten().collect()
+}
+
+fn grid_formulas() -> Vec<Formula> {
+    vec![
+        formula(M, "voxelization_index", mirror::index, oracle::index, |draws| {
+            let grid = grid(draws);
+            (grid, in_grid(draws, grid.cells))
+        })
+        .edge("the first", |(_, voxel)| voxel == UVec3::ZERO)
+        .edge("the last of the largest grid", |(grid, voxel)| grid.cells == 256 && voxel.min_element() == 255)
+        .build(),
+        formula(M, "voxelization_centre", mirror::centre, oracle::centre, |draws| {
+            let grid = grid(draws);
+            (grid, in_grid(draws, grid.cells))
+        })
+        .edge("the first", |(_, voxel)| voxel == UVec3::ZERO)
+        .edge("near the world's origin", |(grid, voxel)| {
+            mirror::centre(grid, voxel).abs().max_element() < 2.0 * grid.spacing
+        })
+        .build(),
+        formula(M, "voxelization_local", mirror::local, oracle::local, |draws| {
+            let grid = grid(draws);
+            (grid, grid.origin + 2.0 * grid.cells as f32 * grid.spacing * draws.in_cube())
+        })
+        .edge("before the grid", |(grid, position)| position.cmplt(grid.origin).all())
+        .build(),
+        formula(M, "voxelization_voxel", mirror::voxel, oracle::voxel, |draws| {
+            let grid = grid(draws);
+            if grid.origin.fract() == Vec3::ZERO {
+                // A face, an edge or a corner between voxels, exactly.
+                let face = |draws: &mut Draws<'_>| whole(draws, grid.cells + 4) * 0.5 * grid.spacing;
+                return (grid, grid.origin + Vec3::new(face(draws), face(draws), face(draws)));
+            }
+            let extent = grid.cells as f32 * grid.spacing;
+            (grid, grid.origin + extent * (Vec3::splat(0.5) + 0.6 * draws.in_cube()))
+        })
+        .edge("outside on both sides", |(grid, position)| {
+            let local = mirror::local(grid, position);
+            local.min_element() < 0.0 && local.max_element() > grid.cells as f32
+        })
+        .edge("on a face", |(grid, position)| mirror::local(grid, position).x.fract() == 0.0)
+        .invariant("on faces that f32 holds all is exact", |(grid, position), voxel: UVec3| {
+            if grid.origin.fract() != Vec3::ZERO {
+                return Ok(());
+            }
+            let exact = oracle::VoxelizationGrid {
+                origin: grid.origin.as_dvec3(),
+                spacing: grid.spacing.into(),
+                cells: grid.cells,
+            };
+            let wanted = oracle::voxel(exact, position.as_dvec3());
+            if voxel == wanted { Ok(()) } else { Err(format!("{voxel}, not {wanted}")) }
+        })
+        .build(),
+    ]
+}
+
+fn column_formulas() -> Vec<Formula> {
+    // Two triangles over the square from (0, 0) to (4, 4), parted by the diagonal from (0, 0) to (4, 4).
+    let corner = |y: f32, z: f32| Vec3::new(2.0, y, z);
+    let under = (corner(0.0, 0.0), corner(4.0, 0.0), corner(4.0, 4.0), Vec2::splat(1.5));
+    let closed_end = (corner(0.0, 0.0), corner(4.0, 0.0), corner(4.0, 4.0), Vec2::new(4.0, 1.5));
+    let apex = (corner(1.5, 2.5), corner(0.0, 0.0), corner(3.0, 0.0), Vec2::new(1.5, 2.5));
+    let edge_on = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 1.0), Vec3::new(3.0, 2.0, 2.0), Vec2::splat(0.5));
+    let naive = "voxelization_column_naive";
+    vec![
+        formula(M, "voxelization_between", mirror::between, oracle::between, |draws| {
+            let (one, other) = (draws.in_square() - 0.5, draws.in_square() - 0.5);
+            let size = draws.magnitude(-10, 10);
+            let before = if draws.below(8) == 0 { 0.0 } else { draws.magnitude(-20, 10) };
+            (size * one, if draws.below(8) == 0 { size * one } else { size * other }, before, draws.magnitude(-20, 10))
+        })
+        .edge("at the first", |(.., before, _)| before == 0.0)
+        .edge("both alike", |(one, other, ..)| one == other)
+        .invariant("an end where it has no distance", |(one, _, before, _), found: Vec2| {
+            if before > 0.0 || found == one { Ok(()) } else { Err(format!("{found}, not {one}")) }
+        })
+        .invariant("between them", |(one, other, ..), found: Vec2| {
+            let inside = found.cmpge(one.min(other)).all() && found.cmple(one.max(other)).all();
+            if inside { Ok(()) } else { Err(format!("{found}")) }
+        })
+        .build(),
+        formula(M, "voxelization_crossing", mirror::crossing, oracle::crossing, |draws| {
+            let (a, b, _, column) = column_case(draws);
+            (a, b, column.x)
+        })
+        .edge("crossed", |(a, b, y)| mirror::crossing(a, b, y).crossed)
+        .edge("at the lower end", |(a, b, y)| a.y == y && b.y > y)
+        .edge("at the upper end", |(a, b, y)| a.y == y && b.y < y)
+        .edge("along the plane", |(a, b, y)| a.y == y && b.y == y)
+        .pair(
+            "either end may be named first",
+            |(a, b, y)| (b, a, y),
+            |_, one: VoxelizationCrossing, other: VoxelizationCrossing| {
+                if one == other { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
+            },
+        )
+        .build(),
+        formula(M, "voxelization_column", mirror::column, oracle::column, column_case)
+            .edge("inside", |(a, b, c, at)| mirror::column(a, b, c, at).inside)
+            .edge("outside", |(a, b, c, at)| !mirror::column(a, b, c, at).inside)
+            .edge("at a corner", |(a, _, _, at)| a.y == at.x && a.z == at.y)
+            .edge("seen edge-on", |(a, b, c, _)| {
+                let (p, q) = (b - a, c - a);
+                p.y * q.z == p.z * q.y && p.y != q.y
+            })
+            .edge("across x", |(a, b, c, at)| a.x == b.x && b.x == c.x && mirror::column(a, b, c, at).inside)
+            .invariant("on a grid of steps the side is exact", |(a, b, c, at), found: VoxelizationColumn| {
+                if !all_steps(&[a, b, c]) || !all_steps(&[at.extend(0.0)]) {
+                    return Ok(());
+                }
+                let [p, q, r] = exact_triangle((a, b, c));
+                let wanted = oracle::column(p, q, r, at.as_dvec2());
+                if found.inside != wanted.inside {
+                    return Err(format!("{found:?}, not {wanted:?}"));
+                }
+                near("depth", found.depth.into(), wanted.depth, 2e-6)
+            })
+            .invariant("the depth is the triangle's", |(a, b, c, _), found: VoxelizationColumn| {
+                let extent = a.x.min(b.x).min(c.x)..=a.x.max(b.x).max(c.x);
+                if !found.inside || extent.contains(&found.depth) { Ok(()) } else { Err(format!("{found:?}")) }
+            })
+            .pair(
+                "the corners may be named in any order",
+                |(a, b, c, at)| (c, b, a, at),
+                |_, one: VoxelizationColumn, other: VoxelizationColumn| {
+                    if one == other { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
+                },
+            )
+            .hard_case("on a shared edge: the other triangle's", under, (&[0.0, 0.0], 0.0), (naive, 1.0))
+            .hard_case("on an edge at the upper end", closed_end, (&[0.0, 0.0], 0.0), (naive, 1.0))
+            .hard_case("at a corner that points up in z", apex, (&[0.0, 0.0], 0.0), (naive, 1.0))
+            .hard_case("seen edge-on", edge_on, (&[0.0, 0.0], 0.0), (naive, f64::INFINITY))
+            .build(),
+        formula(M, "voxelization_column_naive", mirror::column_naive, oracle::column_naive, benign_case)
+            .benign(1e-6)
+            .build(),
+    ]
+}
+
+fn row_formulas() -> Vec<Formula> {
+    vec![
+        formula(M, "voxelization_first", mirror::first, oracle::first, |draws| {
+            let cells = cells(draws);
+            let coordinate = match draws.below(4) {
+                0 => {
+                    let half = whole(draws, cells + 2) * 0.5 + 0.5 * cells as f32;
+                    draws.nudged(half, 1)
+                }
+                1 => draws.signed(-30, 40),
+                _ => draws.between(-1.0, cells as f32 + 1.0),
+            };
+            (coordinate, cells)
+        })
+        .edge("at a centre", |(x, _)| x > 0.0 && x.fract() == 0.5)
+        .edge("just behind a centre", |(x, _)| x > 1.0 && x.next_down().fract() == 0.5)
+        .edge("just before the last centre", |(x, cells)| x.next_up() == cells as f32 - 0.5)
+        .edge("behind the last centre", |(x, cells)| x > cells as f32 - 0.5)
+        .edge("far before", |(x, _)| x < -1e9)
+        .edge("just before the first centre", |(x, _)| x == 0.5f32.next_down())
+        .build(),
+        formula(M, "voxelization_prefix", mirror::prefix, oracle::prefix, |draws| {
+            let all = draws.bits();
+            (if draws.below(4) == 0 { 1 << (all % 32) } else { all },)
+        })
+        .edge("the least bit alone", |(bits,)| bits == 1)
+        .edge("the last bit alone", |(bits,)| bits == 1 << 31)
+        .build(),
+        formula(M, "voxelization_range", mirror::range, oracle::range, |draws| {
+            let cells = cells(draws);
+            let end = |draws: &mut Draws<'_>| match draws.below(4) {
+                0 => 0.5 * whole(draws, cells) + 0.5 * cells as f32,
+                1 => draws.signed(-30, 40),
+                _ => draws.between(-2.0, cells as f32 + 2.0),
+            };
+            let (one, other) = (end(draws), end(draws));
+            let other = if draws.below(4) == 0 { one } else { other };
+            (one.min(other), one.max(other), cells)
+        })
+        .edge("before the grid", |(_, high, _)| high < 0.0)
+        .edge("behind the grid", |(low, _, cells)| low > cells as f32)
+        .edge("ends at a face", |(_, high, _)| high > 0.0 && high.fract() == 0.0)
+        .edge("begins at a face", |(low, high, cells)| {
+            low > 0.0 && low < cells as f32 && low.fract() == 0.0 && high > low
+        })
+        .edge("a point", |(low, high, cells)| low == high && low > 0.0 && low < cells as f32)
+        .edge("all of it", |(low, high, cells)| low < 0.0 && high > cells as f32)
+        .build(),
+    ]
+}
+
+fn surface_formulas() -> Vec<Formula> {
+    vec![
+        formula(M, "voxelization_taxicab", mirror::taxicab, oracle::taxicab, |draws| {
+            (draws.magnitude(-20, 20) * draws.in_cube(),)
+        })
+        .build(),
+        formula(M, "voxelization_margin", mirror::margin, oracle::margin, |draws| {
+            let size = draws.magnitude(-10, 10);
+            (size * draws.in_cube(), size * draws.in_cube(), size * draws.in_cube())
+        })
+        .edge("within a voxel", |(a, b, c)| a.abs().max(b.abs()).max(c.abs()).max_element() < 0.1)
+        .edge("a large negative coordinate", |(a, b, c)| {
+            -a.min(b).min(c).min_element() > 100.0 && a.max(b).max(c).max_element() < 50.0
+        })
+        .build(),
+        formula(M, "voxelization_span", mirror::span, oracle::span, |draws| {
+            let (a, b, c, corner) = overlap_case(draws);
+            (a, b, c, Vec2::new(corner.y, corner.z))
+        })
+        .edge("seen edge-on", |(a, b, c, _)| (b - a).cross(c - a).x == 0.0 && (b - a).cross(c - a) != Vec3::ZERO)
+        .edge("no area", |(a, b, c, _)| (b - a).cross(c - a) == Vec3::ZERO)
+        .edge("passed by", |(a, b, c, corner)| {
+            let span = mirror::span(a, b, c, corner);
+            span.x > span.y
+        })
+        .edge("shorter than the extent", |(a, b, c, corner)| {
+            let span = mirror::span(a, b, c, corner);
+            span.x > a.x.min(b.x).min(c.x) && span.y < a.x.max(b.x).max(c.x) && span.x < span.y
+        })
+        .invariant("no voxel that the triangle touches is left out", |(a, b, c, corner), span: Vec2| {
+            let low = a.x.min(b.x).min(c.x).floor() - 1.0;
+            let voxels = (0..40).map(|step| low + step as f32);
+            let missed = voxels.filter(|x| x + 1.0 < span.x || *x > span.y).find(|x| {
+                let voxel = DVec3::new(f64::from(*x), corner.x.into(), corner.y.into());
+                oracle::touches(exact_triangle((a, b, c)), voxel, 0.0)
+            });
+            missed.map_or(Ok(()), |x| Err(format!("the voxel at {x}")))
+        })
+        .build(),
+        formula(M, "voxelization_overlaps", mirror::overlaps, oracle::overlaps, overlap_case)
+            .edge("touched", |(a, b, c, corner)| mirror::overlaps(a, b, c, corner))
+            .edge("not touched", |(a, b, c, corner)| !mirror::overlaps(a, b, c, corner))
+            .edge("no area", |(a, b, c, _)| (b - a).cross(c - a) == Vec3::ZERO)
+            .edge("a point", |(a, b, c, _)| a == b && b == c)
+            .edge("touched, but not as f64 sees it without a margin", |(a, b, c, corner)| {
+                let without = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.0);
+                mirror::overlaps(a, b, c, corner) && !without
+            })
+            .invariant("what is touched in exact arithmetic is never missed", |(a, b, c, corner), found: bool| {
+                let touched = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.0);
+                if found || !touched { Ok(()) } else { Err("missed".to_owned()) }
+            })
+            .invariant("on a grid of steps all is exact", |(a, b, c, corner), found: bool| {
+                let touched = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 1e-4);
+                if !all_steps(&[a, b, c, corner]) || found == touched { Ok(()) } else { Err(format!("{found}")) }
+            })
+            .pair(
+                "the corners may be named in any order",
+                |(a, b, c, corner)| (b, c, a, corner),
+                |(a, b, c, corner), one: bool, other: bool| {
+                    // Within the margin rounding decides.
+                    let wide = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.01);
+                    let narrow = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.0);
+                    if one == other || wide != narrow { Ok(()) } else { Err(format!("{one}, {other}")) }
+                },
+            )
+            .build(),
+    ]
+}

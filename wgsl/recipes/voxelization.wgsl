@@ -1,0 +1,174 @@
+// voxelization: a mesh that changes from frame to frame, as bits of a grid: solid inside, and nothing of its surface lost.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010.
+// requires: voxelization
+// parts: mesh
+//
+// A frame: the host sets `matter`, `surface`, `beyond`, `large` and `status` to 0; then
+// 1. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the bit of the first voxel behind it changes;
+//    what it touches is set in `surface`. Triangles over many columns are put on a list.
+// 2. `voxelization_large`, any number of workgroups, which share the triangles of that list among them.
+// 3. `voxelization_finish`, a thread for each row along x. From each bit that changed, all behind it change. A row whose column was crossed an odd
+//    number of times belongs to an open mesh: nothing of it is filled, so that no streak runs through the grid, and it is counted.
+// A voxel is filled if its centre is inside or if the surface touches it.
+//
+// No position makes it write elsewhere than in its buffers. What lies outside of the grid is cut off; a body that begins before it is solid from the
+// first voxel on.
+
+// The surface is set too: parts thinner than a voxel, and bodies that are one's size, hold on to their voxels. Without it there is what has its
+// centre inside, whose number goes with the volume.
+override EFFECT_SURFACE: bool = true;
+
+// A triangle over more columns than this is shared among threads.
+const VOXELIZATION_LARGE: u32 = 64u;
+const VOXELIZATION_WORKGROUP: u32 = 64u;
+
+struct VoxelizationList {
+    count: atomic<u32>,
+    triangles: array<u32>,
+}
+
+struct VoxelizationStatus {
+    // Voxels whose centre is inside.
+    solid: atomic<u32>,
+    // Voxels that the surface touches.
+    surface: atomic<u32>,
+    // Columns that the mesh crosses an odd number of times.
+    odd_columns: atomic<u32>,
+}
+
+@group(0) @binding(0) var<uniform> grid: VoxelizationGrid;
+@group(0) @binding(1) var<storage, read> positions: array<f32>;
+@group(0) @binding(2) var<storage, read> indices: array<u32>;
+// Voxels along x, 32 a word, the least bit first. A row begins at a word.
+@group(0) @binding(3) var<storage, read_write> matter: array<atomic<u32>>;
+@group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;
+// A bit for each column: whether it is crossed an odd number of times behind its last centre.
+@group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
+@group(0) @binding(7) var<storage, read_write> status: VoxelizationStatus;
+
+// A triangle in the grid's coordinates, and the columns that it may touch.
+struct VoxelizationTriangle {
+    a: vec3f,
+    b: vec3f,
+    c: vec3f,
+    // In y and z.
+    lower: vec2u,
+    size: vec2u,
+}
+
+fn voxelization_words() -> u32 {
+    return (grid.cells + 31u) / 32u;
+}
+
+fn voxelization_load(triangle: u32) -> VoxelizationTriangle {
+    let a = voxelization_local(grid, mesh_position(indices[3u * triangle]));
+    let b = voxelization_local(grid, mesh_position(indices[3u * triangle + 1u]));
+    let c = voxelization_local(grid, mesh_position(indices[3u * triangle + 2u]));
+    let margin = voxelization_margin(a, b, c);
+    let low = min(a, min(b, c)) - margin;
+    let high = max(a, max(b, c)) + margin;
+    let y = voxelization_range(low.y, high.y, grid.cells);
+    let z = voxelization_range(low.z, high.z, grid.cells);
+    return VoxelizationTriangle(a, b, c, vec2u(y.x, z.x), vec2u(y.y - y.x, z.y - z.x));
+}
+
+// Every `step`th of a triangle's columns, from the one numbered `first` on.
+fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
+    let a = triangle.a;
+    let b = triangle.b;
+    let c = triangle.c;
+    for (var number = first; number < triangle.size.x * triangle.size.y; number += step) {
+        let place = triangle.lower + vec2u(number % triangle.size.x, number / triangle.size.x);
+        let row = place.x + grid.cells * place.y;
+        let column = voxelization_column(a, b, c, vec2f(place) + 0.5f);
+        if column.inside {
+            let x = voxelization_first(column.depth, grid.cells);
+            if x < grid.cells {
+                atomicXor(&matter[row * voxelization_words() + x / 32u], 1u << (x % 32u));
+            } else {
+                atomicXor(&beyond[row / 32u], 1u << (row % 32u));
+            }
+        }
+        if EFFECT_SURFACE {
+            let span = voxelization_span(a, b, c, vec2f(place));
+            let range = voxelization_range(span.x, span.y, grid.cells);
+            var bits = 0u;
+            for (var x = range.x; x < range.y; x++) {
+                if voxelization_overlaps(a, b, c, vec3f(f32(x), vec2f(place))) {
+                    bits |= 1u << (x % 32u);
+                }
+                if bits != 0u && (x % 32u == 31u || x + 1u == range.y) {
+                    atomicOr(&surface[row * voxelization_words() + x / 32u], bits);
+                    bits = 0u;
+                }
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(VOXELIZATION_WORKGROUP)
+fn voxelization_triangles(@builtin(global_invocation_id) invocation: vec3u) {
+    if invocation.x >= arrayLength(&indices) / 3u {
+        return;
+    }
+    let triangle = voxelization_load(invocation.x);
+    if triangle.size.x * triangle.size.y > VOXELIZATION_LARGE {
+        large.triangles[atomicAdd(&large.count, 1u)] = invocation.x;
+    } else {
+        voxelization_walk(triangle, 0u, 1u);
+    }
+}
+
+// As many workgroups take a triangle together as there are for each; with more triangles than workgroups each takes several in turn.
+@compute @workgroup_size(VOXELIZATION_WORKGROUP)
+fn voxelization_large(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let count = atomicLoad(&large.count);
+    let together = max(groups.x / max(count, 1u), 1u);
+    for (var place = group.x / together; place < count; place += groups.x / together) {
+        let triangle = voxelization_load(large.triangles[place]);
+        let first = (group.x % together) * VOXELIZATION_WORKGROUP + lane;
+        voxelization_walk(triangle, first, together * VOXELIZATION_WORKGROUP);
+    }
+}
+
+@compute @workgroup_size(VOXELIZATION_WORKGROUP)
+fn voxelization_finish(@builtin(global_invocation_id) invocation: vec3u) {
+    let row = invocation.x;
+    if row >= grid.cells * grid.cells {
+        return;
+    }
+    let words = voxelization_words();
+    var crossings = (atomicLoad(&beyond[row / 32u]) >> (row % 32u)) & 1u;
+    for (var word = 0u; word < words; word++) {
+        crossings += countOneBits(atomicLoad(&matter[row * words + word]));
+    }
+    let odd = crossings % 2u == 1u;
+    var inside = 0u;
+    var solid = 0u;
+    var touched = 0u;
+    for (var word = 0u; word < words; word++) {
+        let within = select(0xffffffffu, (1u << (grid.cells % 32u)) - 1u, word + 1u == words && grid.cells % 32u != 0u);
+        let all = voxelization_prefix(atomicLoad(&matter[row * words + word])) ^ inside;
+        inside = select(0u, 0xffffffffu, all >> 31u == 1u);
+        let filled = select(all & within, 0u, odd);
+        let skin = atomicLoad(&surface[row * words + word]);
+        atomicStore(&matter[row * words + word], filled | skin);
+        solid += countOneBits(filled);
+        touched += countOneBits(skin);
+    }
+    if solid > 0u {
+        atomicAdd(&status.solid, solid);
+    }
+    if touched > 0u {
+        atomicAdd(&status.surface, touched);
+    }
+    if odd {
+        atomicAdd(&status.odd_columns, 1u);
+    }
+}
