@@ -67,7 +67,8 @@ fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
 // Outside: finite as long as products of coordinates and 1 / extent are.
 // Accuracy: lavapipe 16 ulp + 2 backward; portable 40 ulp + 4 backward
 fn reflective_shadow_map_clip(view: ReflectiveShadowMapView, position: vec3f) -> vec4f {
-    let basis = reflective_shadow_map_basis(view.axis);
+    // Seen against the axis: so fronts are fronts.
+    let basis = reflective_shadow_map_basis(-view.axis);
     let way = position - view.origin;
     let depth = dot(way, view.axis);
     let across = vec2f(dot(way, basis.right), dot(way, basis.up)) / view.extent;

@@ -1,9 +1,23 @@
 //! A compute entry point of a recipe, specialised, and bound by what is left of its bindings.
 
 use crate::dispatch::{self, DispatchError};
-use crate::gpu::Gpu;
-use crate::specialise::specialise;
+use crate::gpu::{Gpu, GpuError};
+use crate::specialise::{SpecialiseError, specialise};
 use std::borrow::Cow;
+
+/// Why an entry point was not compiled.
+#[derive(Debug, thiserror::Error)]
+pub enum KernelError {
+    /// The text is not valid.
+    #[error(transparent)]
+    Dispatch(#[from] DispatchError),
+    /// It does not specialise.
+    #[error(transparent)]
+    Specialise(#[from] SpecialiseError),
+    /// The device refused.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
 
 /// A compiled entry point.
 #[derive(Debug)]
@@ -19,7 +33,7 @@ impl Kernel {
     ///
     /// # Errors
     /// Where the text is not valid or the device refuses it.
-    pub fn new(gpu: &Gpu, source: &str, entry: &str, constants: &[(&str, f64)]) -> Result<Self, DispatchError> {
+    pub fn new(gpu: &Gpu, source: &str, entry: &str, constants: &[(&str, f64)]) -> Result<Self, KernelError> {
         let (module, _) = dispatch::parse(source, entry)?;
         let constants = dispatch::declared(&module, constants);
         let (module, _) = specialise(module, &constants, &[entry])?;
@@ -50,8 +64,9 @@ impl Kernel {
         resources: &[(u32, wgpu::BindingResource<'_>)],
     ) -> Option<wgpu::BindGroup> {
         let used = resources.iter().filter(|(binding, _)| self.bindings.contains(&(group, *binding)));
-        let entries: Vec<wgpu::BindGroupEntry<'_>> =
-            used.map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() }).collect();
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = used
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
         if entries.is_empty() {
             return None;
         }

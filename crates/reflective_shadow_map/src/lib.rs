@@ -52,7 +52,7 @@ pub fn basis_naive(axis: Vec3) -> ReflectiveShadowMapBasis {
 
 /// Where a point appears in a map: clip coordinates as WebGPU has them.
 pub fn clip(view: ReflectiveShadowMapView, position: Vec3) -> Vec4 {
-    let basis = basis(view.axis);
+    let basis = basis(-view.axis);
     let way = position - view.origin;
     let depth = way.dot(view.axis);
     let across = Vec2::new(way.dot(basis.right), way.dot(basis.up)) / view.extent;

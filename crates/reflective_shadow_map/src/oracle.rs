@@ -53,7 +53,7 @@ pub fn basis_naive(axis: DVec3) -> ReflectiveShadowMapBasis {
 
 /// By the point's way in the turned frame, and by where depths lie between near and far: for a lamp, in inverse depth.
 pub fn clip(view: ReflectiveShadowMapView, position: DVec3) -> DVec4 {
-    let ReflectiveShadowMapBasis { right, up } = basis(view.axis);
+    let ReflectiveShadowMapBasis { right, up } = basis(-view.axis);
     let way = position - view.origin;
     let [x, y, depth] = [right, up, view.axis].map(|axis| way.length() * cosine_between(way, axis) * axis.length());
     let [x, y] = [x, y].map(|across| across / view.extent);

@@ -175,7 +175,10 @@ pub(super) fn cleared(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorA
 }
 
 /// A depth attachment that starts at the greatest depth.
-pub(super) fn cleared_depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+pub(super) fn cleared_depth(
+    view: &wgpu::TextureView,
+    store: wgpu::StoreOp,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store }),

@@ -1,9 +1,9 @@
 //! Texture diffusion of one object: the recipe `texture_irradiance` draws what arrives, the recipe `texture_diffusion` blurs it.
 
-use super::device::{self, PipelineSource, bind_group, bind_group_from};
-use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use super::RenderError;
+use super::device::{self, PipelineSource, bind_group, bind_group_from};
 use super::lighting::Lighting;
+use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::scene::Object;

@@ -21,17 +21,29 @@ const MARGIN: f32 = 1.0 + 1e-4;
 
 /// The views of all lights, light after light, on what stands in `bounds`.
 pub(super) fn views(lights: &[Light], bounds: Bounds) -> Vec<LightView> {
-    (0..).zip(lights).flat_map(|(light, of)| views_of(of, bounds).into_iter().map(move |view| LightView { view, light })).collect()
+    (0..)
+        .zip(lights)
+        .flat_map(|(light, of)| views_of(of, bounds).into_iter().map(move |view| LightView { view, light }))
+        .collect()
 }
 
 fn views_of(light: &Light, bounds: Bounds) -> Vec<ReflectiveShadowMapView> {
     let (centre, radius) = (bounds.centre(), bounds.radius().max(f32::MIN_POSITIVE) * MARGIN);
     match *light {
         Light::Directional { toward, .. } => {
-            vec![ReflectiveShadowMapView { origin: centre, lamp: 0, axis: -toward, extent: radius, near: -radius, far: radius }]
+            vec![ReflectiveShadowMapView {
+                origin: centre,
+                lamp: 0,
+                axis: -toward,
+                extent: radius,
+                near: -radius,
+                far: radius,
+            }]
         }
         Light::Point { position, .. } => lamp(position, centre, radius, None),
-        Light::Spot { position, direction, outer_angle, .. } => lamp(position, centre, radius, Some((direction, outer_angle.tan()))),
+        Light::Spot { position, direction, outer_angle, .. } => {
+            lamp(position, centre, radius, Some((direction, outer_angle.tan())))
+        }
     }
 }
 
@@ -43,7 +55,8 @@ fn lamp(position: Vec3, centre: Vec3, radius: f32, cone: Option<(Vec3, f32)>) ->
     let near = (distance - radius).max(NEAREST * far);
     let view = |axis, extent, near| ReflectiveShadowMapView { origin: position, lamp: 1, axis, extent, near, far };
     // The cone that touches the sphere about the scene.
-    let about = (distance > radius).then(|| (way / distance, radius / ((distance - radius) * (distance + radius)).sqrt()));
+    let about =
+        (distance > radius).then(|| (way / distance, radius / ((distance - radius) * (distance + radius)).sqrt()));
     let narrowest = [about, cone].into_iter().flatten().filter(|(_, tangent)| (0.0..=WIDEST).contains(tangent));
     match narrowest.min_by(|a, b| a.1.total_cmp(&b.1)) {
         // Along the axis of a spot the scene may come nearer than its sphere.
@@ -81,7 +94,9 @@ mod tests {
 
     fn corners() -> impl Iterator<Item = Vec3> {
         let Bounds { min, max } = BOUNDS;
-        (0..8).map(move |corner| Vec3::select(glam::BVec3::new(corner & 1 == 0, corner & 2 == 0, corner & 4 == 0), min, max))
+        (0..8).map(move |corner| {
+            Vec3::select(glam::BVec3::new(corner & 1 == 0, corner & 2 == 0, corner & 4 == 0), min, max)
+        })
     }
 
     /// How many of a light's views hold a point.
@@ -108,10 +123,28 @@ mod tests {
         }
     }
 
+    /// A triangle that runs counter-clockwise as its light sees it does so in clip space too.
+    #[test]
+    fn what_faces_the_light_is_a_front() {
+        let toward = Vec3::new(0.48, 0.6, 0.64);
+        let centre = BOUNDS.centre();
+        for light in [Light::Directional { toward, irradiance: Vec3::ONE }, lamp_at(centre + 10.0 * toward)] {
+            let right = Vec3::Y.cross(toward).normalize();
+            let corners = [Vec3::ZERO, right, toward.cross(right)].map(|corner| {
+                let clip = clip(views(&[light], BOUNDS)[0].view, centre + corner);
+                clip.truncate().truncate() / clip.w
+            });
+            assert!((corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) > 0.0, "{corners:?}");
+        }
+    }
+
     #[test]
     fn only_a_lamp_that_is_near_has_six_views() {
         let count = |position| views(&[lamp_at(position)], BOUNDS).len();
-        assert_eq!([Vec3::new(100.0, 0.0, 0.0), Vec3::new(103.0, 0.0, 0.0), Vec3::new(103.2, 0.0, 0.0)].map(count), [6, 1, 1]);
+        assert_eq!(
+            [Vec3::new(100.0, 0.0, 0.0), Vec3::new(103.0, 0.0, 0.0), Vec3::new(103.2, 0.0, 0.0)].map(count),
+            [6, 1, 1]
+        );
         assert_eq!(count(Vec3::new(102.0, 0.0, 0.0)), 6);
     }
 

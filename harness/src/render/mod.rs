@@ -31,8 +31,8 @@ use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
 pub(crate) use gem::constants;
-use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use optical_path::Paths;
+use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
 use std::sync::Mutex;
@@ -206,13 +206,18 @@ pub enum RenderError {
         limit: u64,
     },
     /// More lights than maps.
-    #[error("the lights need {views} shadow maps, and this device offers {limit}; take fewer lights, or move lamps out of the scene")]
+    #[error(
+        "the lights need {views} shadow maps, and this device offers {limit}; take fewer lights, or move lamps out of the scene"
+    )]
     TooManyViews {
         /// How many.
         views: usize,
         /// What is possible.
         limit: u32,
     },
+    /// A compute pass is not valid.
+    #[error(transparent)]
+    Kernel(#[from] crate::compute::KernelError),
     /// Ways of light could not be found.
     #[error(transparent)]
     OpticalPath(#[from] crate::optical_path::OpticalPathError),

@@ -99,6 +99,7 @@ pub(super) fn pass<'gpu>(
         let storage = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::STORAGE);
         (storage(&map_bytes(&views)), storage(bytemuck::cast_slice(&lights)))
     })?;
+    let all_maps = maps.view();
     let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
     for (object, extinction) in scene.objects.iter().zip(&extinctions) {
         let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), paths.cells);
@@ -109,8 +110,9 @@ pub(super) fn pass<'gpu>(
             bytemuck::cast_slice(&mesh.normals),
         ];
         let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
-        let [positions, indices, normals] = gpu
-            .guarded("uploading a mesh", |device| parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE)))?;
+        let [positions, indices, normals] = gpu.guarded("uploading a mesh", |device| {
+            parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE))
+        })?;
         maps.add([&positions, &indices, &normals], vertices)?;
         let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
         let solver = Solver::new(gpu, grid, paths.method, false, None)?;
@@ -129,21 +131,21 @@ pub(super) fn pass<'gpu>(
                     let resources = [
                         vec![
                             (0, seeding.as_entire_binding()),
-                            (1, wgpu::BindingResource::TextureView(&maps.view())),
+                            (1, wgpu::BindingResource::TextureView(&all_maps)),
                             (2, lighting.lights.as_entire_binding()),
                             (3, light_of_map.as_entire_binding()),
                         ],
                         vec![(0, costs.as_entire_binding()), (1, voxelizer.matter.as_entire_binding())],
                     ];
-                    let groups = [&clear, &seed].map(|kernel| {
-                        [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize]))
-                    });
+                    let groups = [&clear, &seed]
+                        .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
                     Channel { extinction, costs, groups }
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
         let group = gpu.guarded("uploading a material", |device| {
-            let uniform = buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
+            let uniform =
+                buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
             let costs = |channel: usize| channels.get(channel).unwrap_or(&channels[0]).costs.as_entire_binding();
             let unread = buffer(device, &[0; 4], wgpu::BufferUsages::STORAGE);
             let resources = vec![
@@ -162,7 +164,7 @@ pub(super) fn pass<'gpu>(
         of_bodies.push(BodyPaths { grid, voxelizer, solver, positions, indices, channels });
     }
     let mut shared = lighting.shared();
-    shared.extend([Shared::Buffer(views_buffer), Shared::Texture(maps.view())]);
+    shared.extend([Shared::Buffer(views_buffer), Shared::Texture(all_maps)]);
     let before = vec![Before::Paths(OpticalPaths { gpu, maps, clear, seed, bodies: of_bodies })];
     Ok(ScenePass { gpu, pipeline, shared, bodies, before })
 }
@@ -230,7 +232,9 @@ fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: V
 
 /// `array<OpticalPathMap>` of the recipe.
 fn map_bytes(views: &[LightView]) -> Vec<u8> {
-    let entry = |from: &LightView| [reflective_shadow_map::bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat();
+    let entry = |from: &LightView| {
+        [reflective_shadow_map::bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat()
+    };
     views.iter().flat_map(entry).collect()
 }
 
@@ -246,7 +250,9 @@ impl OpticalPaths<'_> {
                 let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
                 self.gpu.guarded("seeding costs", |_| {
                     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                    for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes) {
+                    for ((kernel, groups), [x, y, z]) in
+                        [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes)
+                    {
                         pass.set_pipeline(&kernel.pipeline);
                         for (index, group) in (0..).zip(groups) {
                             pass.set_bind_group(index, group, &[]);

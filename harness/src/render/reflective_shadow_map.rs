@@ -126,6 +126,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
 /// `ReflectiveShadowMapView` as WGSL lays it out in a uniform.
 pub(super) fn bytes(view: ReflectiveShadowMapView) -> Vec<u8> {
     let ReflectiveShadowMapView { origin, lamp, axis, extent, near, far } = view;
-    let words = [origin.x, origin.y, origin.z, f32::from_bits(lamp), axis.x, axis.y, axis.z, extent, near, far, 0.0, 0.0];
+    let words =
+        [origin.x, origin.y, origin.z, f32::from_bits(lamp), axis.x, axis.y, axis.z, extent, near, far, 0.0, 0.0];
     bytemuck::cast_slice(&words).to_vec()
 }

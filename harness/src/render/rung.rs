@@ -1,7 +1,7 @@
 //! The ladder's rungs: how much of the light's way is followed.
 
-use super::reflectance::{REFLECTANCES, Reflectance};
 use super::optical_path::Paths;
+use super::reflectance::{REFLECTANCES, Reflectance};
 use crate::nearest;
 use crate::optical_path::Method;
 use crate::scene::Scene;
@@ -182,7 +182,9 @@ impl FromStr for Rung {
         if let Some((_, reflectance)) = REFLECTANCES.iter().find(|(name, _)| *name == text) {
             return Ok(Self::Diffuse(*reflectance));
         }
-        if let Some((Ok(method), cells)) = text.rsplit_once('-').map(|(method, cells)| (method.parse::<Method>(), cells)) {
+        if let Some((Ok(method), cells)) =
+            text.rsplit_once('-').map(|(method, cells)| (method.parse::<Method>(), cells))
+        {
             let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(TILE);
             let cells = whole(cells).filter(is_grid).ok_or_else(|| {
                 format!("`{cells}` cells; a grid has a multiple of {TILE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")

@@ -85,7 +85,8 @@ impl Case {
         };
         for row in 0..side * side {
             if let Some(x) = (0..side).find(|x| case.matter[x + side * row]) {
-                case.seeds[x + side * row] = seed(0.25 + 0.5 * (row % 7) as f32 / 7.0, case.extinction, 0.3 * grid.spacing);
+                case.seeds[x + side * row] =
+                    seed(0.25 + 0.5 * (row % 7) as f32 / 7.0, case.extinction, 0.3 * grid.spacing);
             }
         }
         case
