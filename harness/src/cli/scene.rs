@@ -17,7 +17,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let bytes = glb::write(&Scene::named(&arguments.name)?)?;
+    let bytes = glb::write(&Scene::made(&arguments.name)?)?;
     file::replace(&arguments.out, &bytes)?;
     output::line(&arguments.out.display().to_string())?;
     Ok(Outcome::Passed)

@@ -10,6 +10,7 @@ use super::{Averaging, Camera, Material, Mesh, Object, Scene, SceneError, gltf, 
 
 mod materials;
 mod prisms;
+mod stone;
 mod translucent;
 
 /// A scene that needs no file.
@@ -22,7 +23,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 24] = [
+pub const BUILT_IN: [BuiltIn; 27] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -128,6 +129,21 @@ pub const BUILT_IN: [BuiltIn; 24] = [
         name: "jade_bunny",
         description: "The Stanford bunny, 60 mm high, of polished green jade, in one light.",
     },
+    BuiltIn {
+        name: "bunny",
+        description: "The Stanford bunny of marble, 60 mm high, with parallel light from the left: through the ears it passes, the body \
+            stops it.",
+    },
+    BuiltIn {
+        name: "dragon",
+        description: "The Stanford dragon of jade, 50 mm high and 71 mm long, with parallel light from behind, which passes claws, crest and \
+            tail.",
+    },
+    BuiltIn {
+        name: "figure",
+        description: "A winged figure of marble on a plinth, 117 mm high, who raises a wreath; parallel light from behind at the left passes \
+            wings, arms and wreath. Made of smooth joins of simple bodies.",
+    },
 ];
 
 /// The names of all built-in scenes, as a list for a message.
@@ -144,6 +160,11 @@ const BRILLIANT_ANGLES: (f32, f32) = (27.0, 11.0);
 
 /// The bunny of the Stanford 3D Scanning Repository, decimated and closed.
 const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
+
+/// The scene called `name`, nothing of it from a file that it could be made without.
+pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
+    if name == "figure" { Ok(stone::made_figure(name)) } else { build(name) }
+}
 
 /// The scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
@@ -164,7 +185,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "prism_chain" => Ok(scene(name, prisms::chain()?, materials::quartz(), (78.0, 12.0))),
         // From a little below, as one looks up at it, so that the inner rings show below the outer.
         "chandelier" => Ok(scene(name, prisms::chandelier()?, materials::flint_glass(), (105.0, 9.0))),
-        "bunny_stone" => bunny(name),
+        "bunny_stone" => bunny_stone(name),
         "brilliant_fan" => diamond(name, Averaging::default(), Triangulation::Fan),
         "brilliant_strip" => diamond(name, Averaging::default(), Triangulation::Strip),
         "brilliant_sliver" => diamond(name, Averaging::default(), Triangulation::Sliver),
@@ -172,6 +193,9 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "skin" | "wax" | "jade" => Ok(translucent::spheres(name)),
         "skin_ring" | "wax_ring" | "jade_ring" => Ok(translucent::ring(name)),
         "skin_bunny" | "wax_bunny" | "jade_bunny" => translucent::bunny(name),
+        "bunny" => stone::bunny(name),
+        "dragon" => stone::dragon(name),
+        "figure" => stone::figure(name),
         "brilliant_plain" => diamond(name, Averaging::Plain, Triangulation::Centroid),
         _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }
@@ -198,7 +222,7 @@ fn scene(name: &str, mesh: Mesh, material: Material, (polar, azimuth): (f32, f32
     framed(name, vec![object], direction(polar, azimuth))
 }
 
-fn bunny(name: &str) -> Result<Scene, SceneError> {
+fn bunny_stone(name: &str) -> Result<Scene, SceneError> {
     let mut scene = gltf::parse(BUNNY, None)?;
     for object in &mut scene.objects {
         object.material = materials::crown_glass();

@@ -15,11 +15,14 @@ mod camera;
 pub mod convex;
 pub mod curvatures;
 pub mod cuts;
+pub mod deform;
 pub mod environment_map;
 mod error;
+pub mod figure;
 pub mod fuzz;
 pub mod glb;
 pub mod gltf;
+pub mod implicit;
 pub mod layout;
 pub mod light;
 pub mod material;
@@ -115,6 +118,14 @@ impl Scene {
     /// [`SceneError::UnknownName`] with the nearest built-in name if there is none called `name`.
     pub fn named(name: &str) -> Result<Self, SceneError> {
         built_in::build(name)
+    }
+
+    /// The same scene with all that this program can make made anew, where [`Scene::named`] reads a stored copy of what takes long.
+    ///
+    /// # Errors
+    /// As [`Scene::named`].
+    pub fn made(name: &str) -> Result<Self, SceneError> {
+        built_in::make(name)
     }
 
     /// The box about all vertices; without size at the origin if there are none.

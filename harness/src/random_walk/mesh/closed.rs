@@ -64,10 +64,28 @@ mod tests {
                     && p.abs().min_element() < 1e-10)
             );
         }
-        for name in ["skin", "jade_ring", "wax_bunny", "brilliant", "chandelier"] {
+        for name in ["skin", "jade_ring", "wax_bunny", "brilliant", "chandelier", "bunny", "dragon", "figure"] {
             let scene = Scene::named(name).expect("built in");
             assert!(scene.objects.iter().all(|object| open_edges(&object.mesh) == 0), "{name}");
         }
+    }
+
+    /// At some of the dragon's edges four or more triangles meet, always as many on one side as on the other.
+    #[test]
+    fn an_edge_with_an_even_number_of_triangles_is_no_opening() {
+        let mesh = &Scene::named("dragon").expect("built in").objects[0].mesh;
+        let mut triangles: HashMap<(u32, u32), u32> = HashMap::new();
+        for triangle in mesh.indices.chunks_exact(3) {
+            for k in 0..3 {
+                let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+                *triangles.entry((from.min(to), from.max(to))).or_default() += 1;
+            }
+        }
+        assert!(triangles.values().any(|&count| count > 2) && triangles.values().all(|count| count % 2 == 0));
+        assert_eq!(open_edges(mesh), 0);
+        let mut opened = mesh.clone();
+        opened.indices.truncate(mesh.indices.len() - 3);
+        assert_eq!(open_edges(&opened), 3);
     }
 
     #[test]

@@ -30,7 +30,7 @@ fn wax() -> Material {
 }
 
 /// Green jade (jadeite), polished. Its coefficients are chosen by eye.
-fn jade() -> Material {
+pub(super) fn jade() -> Material {
     scattering(
         "jade",
         Medium { scattering: Vec3::new(0.8, 1.2, 0.9), absorption: Vec3::new(0.12, 0.02, 0.08) },
@@ -42,7 +42,13 @@ fn jade() -> Material {
 
 /// `base_color` is what a half space of the medium reflects of diffuse light, and `sigma0` the width that random walks through
 /// spheres of ten mean free paths give: docs/cdrf.md.
-fn scattering(name: &str, medium: Medium, base_color: Vec3, sigma0: Vec3, (ior, roughness): (f32, f32)) -> Material {
+pub(super) fn scattering(
+    name: &str,
+    medium: Medium,
+    base_color: Vec3,
+    sigma0: Vec3,
+    (ior, roughness): (f32, f32),
+) -> Material {
     Material {
         name: name.to_owned(),
         base_color,
@@ -114,7 +120,7 @@ fn object(name: &str, mesh: Mesh, scene: &str) -> Object {
 }
 
 /// The mesh scaled to this height.
-fn sized(mut mesh: Mesh, height: f32) -> Mesh {
+pub(super) fn sized(mut mesh: Mesh, height: f32) -> Mesh {
     let bounds = Bounds::of(mesh.positions.iter().copied());
     let scale = height / (bounds.max.y - bounds.min.y);
     for position in &mut mesh.positions {

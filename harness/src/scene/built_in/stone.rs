@@ -1,0 +1,70 @@
+//! Translucent stone with light from behind or from the side: the bunny, the dragon and the figure. Lengths are in millimetres.
+
+use glam::Vec3;
+use std::f32::consts::PI;
+
+use super::translucent::{jade, scattering, sized};
+use super::{BUNNY, direction, framed};
+use crate::scene::{Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+
+/// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
+const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
+
+/// What [`crate::scene::figure::mesh`] makes, in a second or two.
+const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
+
+/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble. Its `sigma0` is that of wax by the
+/// same number of mean free paths: both absorb next to nothing.
+fn marble() -> Material {
+    scattering(
+        "marble",
+        Medium { scattering: Vec3::new(2.19, 2.62, 3.0), absorption: Vec3::new(0.0021, 0.0041, 0.0071) },
+        Vec3::new(0.931, 0.913, 0.894),
+        Vec3::new(2.2, 1.8, 1.6),
+        (1.5, 0.3),
+    )
+}
+
+/// The Stanford bunny, 60 mm high, with parallel light from the left.
+pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
+    let mesh = sized(stored(BUNNY)?, 60.0);
+    Ok(stone(name, mesh, marble(), sun(Vec3::new(-1.0, 0.3, 0.0), 1.0), (80.0, 10.0)))
+}
+
+/// The Stanford dragon, 50 mm high and 71 mm long, with parallel light from behind.
+pub(super) fn dragon(name: &str) -> Result<Scene, SceneError> {
+    let mesh = sized(stored(DRAGON)?, 50.0);
+    Ok(stone(name, mesh, jade(), sun(Vec3::new(0.3, 0.5, -1.0), 2.0), (80.0, 15.0)))
+}
+
+/// The winged figure, 117 mm high, with parallel light from behind at the left.
+pub(super) fn figure(name: &str) -> Result<Scene, SceneError> {
+    Ok(figure_of(name, stored(FIGURE)?))
+}
+
+/// The same with its mesh made anew.
+pub(super) fn made_figure(name: &str) -> Scene {
+    figure_of(name, crate::scene::figure::mesh())
+}
+
+fn figure_of(name: &str, mesh: Mesh) -> Scene {
+    stone(name, mesh, marble(), sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), (82.0, 12.0))
+}
+
+/// One body in one light, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
+fn stone(name: &str, mesh: Mesh, material: Material, light: Light, (polar, azimuth): (f32, f32)) -> Scene {
+    let object = Object { name: name.to_owned(), mesh, material };
+    Scene { lights: vec![light], ..framed(name, vec![object], direction(polar, azimuth)) }
+}
+
+/// The bodies of a stored file as one mesh.
+fn stored(file: &[u8]) -> Result<Mesh, SceneError> {
+    let mut all = Mesh::default();
+    gltf::parse(file, None)?.objects.iter().for_each(|object| all.append(&object.mesh));
+    Ok(all)
+}
+
+/// A directional light under which a white, facing surface has this radiance.
+fn sun(toward: Vec3, radiance: f32) -> Light {
+    Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(radiance * PI) }
+}
