@@ -89,4 +89,5 @@ pub const RECIPES: &[Recipe] = recipes![
 ];
 
 /// Every part, in the order of their names.
-pub const PARTS: &[Part] = parts!["gem_shading", "harmonics", "lights", "mesh", "optical_path_grid", "surroundings", "trace_nearest"];
+pub const PARTS: &[Part] =
+    parts!["gem_shading", "harmonics", "lights", "mesh", "optical_path_grid", "surroundings", "trace_nearest"];

@@ -1,5 +1,6 @@
 //! Times of the optical path's solvers beside each other: `cargo bench --profile dev --bench optical_path`.
 
+#![allow(dead_code)]
 #[path = "../tests/suite/optical_path/bodies.rs"]
 mod bodies;
 
@@ -27,11 +28,13 @@ fn main() {
     for cells in sizes.split(',').map(|size| size.parse().unwrap()) {
         let case = Case::bunny(cells, 10.0);
         println!("{cells}: {} voxels of matter", case.matter.iter().filter(|m| **m).count());
-        let methods: Vec<Method> = Method::ALL.into_iter().filter(|m| only.is_empty() || only.split(',').any(|o| o == m.name())).collect();
+        let methods: Vec<Method> =
+            Method::ALL.into_iter().filter(|m| only.is_empty() || only.split(',').any(|o| o == m.name())).collect();
         let mut solvers = Vec::new();
         for method in methods {
             let start = Instant::now();
-            let solver = Solver::of_source(gpu, case.grid, method, het, None, &source(method)).unwrap_or_else(|e| panic!("{e}"));
+            let solver =
+                Solver::of_source(gpu, case.grid, method, het, None, &source(method)).unwrap_or_else(|e| panic!("{e}"));
             let uploaded = case.upload(gpu);
             solver_run(gpu, &solver, &uploaded, het, case.extinction);
             println!("  {method}: compiled in {:.2} s", start.elapsed().as_secs_f64());
@@ -54,7 +57,9 @@ fn main() {
 
 fn solver_run(gpu: &Gpu, solver: &Solver<'_>, uploaded: &bodies::Uploaded, het: bool, extinction: f32) {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    solver.encode(&mut encoder, &uploaded.matter, het.then_some(&uploaded.density), &uploaded.cost, extinction).unwrap_or_else(|e| panic!("{e}"));
+    solver
+        .encode(&mut encoder, &uploaded.matter, het.then_some(&uploaded.density), &uploaded.cost, extinction)
+        .unwrap_or_else(|e| panic!("{e}"));
     gpu.queue.submit([encoder.finish()]);
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
 }

@@ -104,10 +104,8 @@ impl FromStr for Method {
     type Err = UnknownMethod;
 
     fn from_str(text: &str) -> Result<Self, UnknownMethod> {
-        let unknown = || UnknownMethod {
-            name: text.to_owned(),
-            suggestion: nearest::suggest(text, &Self::ALL.map(Self::name)),
-        };
+        let unknown =
+            || UnknownMethod { name: text.to_owned(), suggestion: nearest::suggest(text, &Self::ALL.map(Self::name)) };
         Self::ALL.into_iter().find(|method| method.name() == text).ok_or_else(unknown)
     }
 }

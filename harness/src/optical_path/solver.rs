@@ -216,8 +216,7 @@ impl<'gpu> Solver<'gpu> {
                 contents: bytemuck::cast_slice(&words),
                 usage: wgpu::BufferUsages::UNIFORM,
             });
-            let mut buffers =
-                vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];
+            let mut buffers = vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];
             buffers.extend(density.map(|density| (5, density)));
             buffers.extend((6..).zip(&self.own));
             let groups = [&self.begin, &self.next, &self.pass].map(|kernel| kernel.bind(device, &buffers));
