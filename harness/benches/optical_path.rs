@@ -1,5 +1,6 @@
 //! Times of the optical path's solvers beside each other: `cargo bench --profile dev --bench optical_path`.
 
+#![allow(dead_code)]
 #[path = "../tests/suite/optical_path/bodies.rs"]
 mod bodies;
 

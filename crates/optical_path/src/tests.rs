@@ -1,1 +1,131 @@
-//! Mirror against oracle.
+//! The oracles against each other and against known values, and the whole buffers' mirrors.
+
+use super::kernels::{self, Body};
+use super::*;
+
+/// A cube full of matter, one spacing and extinction throughout.
+fn whole(cells: u32) -> (Vec<bool>, Vec<f32>) {
+    let count = (cells as usize).pow(3);
+    (vec![true; count], vec![1.0; count])
+}
+
+#[test]
+fn bits_are_ordered_as_costs_are() {
+    let costs = [0.0, 1e-45, 1e-38, 1e-8, 0.5, 1.0, 87.3, 1e8, 1e29, OPTICAL_PATH_UNREACHED];
+    assert!(costs.windows(2).all(|pair| encode(pair[0]) < encode(pair[1])));
+    for cost in costs {
+        assert_eq!(decode(encode(cost)).to_bits(), cost.to_bits());
+        assert_eq!(encode(cost), oracle::encode(f64::from(cost)), "{cost:e}");
+    }
+    for cost in [f32::NAN, -f32::NAN, f32::INFINITY, 3e38] {
+        assert_eq!(decode(encode(cost)), OPTICAL_PATH_UNREACHED);
+    }
+    for cost in [-0.0, -1.0, -1e-45, f32::NEG_INFINITY] {
+        assert_eq!(encode(cost), 0);
+    }
+}
+
+#[test]
+fn godunov_adds_a_step_along_one_two_or_three_axes() {
+    let far = OPTICAL_PATH_UNREACHED;
+    assert_eq!(godunov(Vec3::new(2.0, far, far), 0.5), 2.5);
+    let near = |cost: f32, wanted: f32| assert!((cost - wanted).abs() < 2e-7 * wanted, "{cost} {wanted}");
+    near(godunov(Vec3::new(2.0, far, 2.0), 0.5), 2.0 + 0.5 / 2f32.sqrt());
+    near(godunov(Vec3::splat(2.0), 0.5), 2.0 + 0.5 / 3f32.sqrt());
+    assert_eq!(godunov(Vec3::splat(7.0), 0.0), 7.0);
+    assert_eq!(godunov(Vec3::splat(far), 1.0), far);
+    assert!(godunov_naive(Vec3::splat(1e20), 1e18).is_nan());
+}
+
+#[test]
+fn the_ball_is_as_deep_as_it_is_wide_up_to_an_optical_radius_of_two() {
+    use std::f64::consts::PI;
+    for radius in [0.1, 1.0, 2.0] {
+        assert!((oracle::ball(radius, radius, PI) - 2.0 * radius).abs() < 1e-9, "{radius}");
+    }
+    // Beyond, light that enters aside has less of a way.
+    assert!(oracle::ball(8.0, 8.0, PI) < 16.0 - 1.0);
+    // Where light falls in square, and in the middle.
+    assert!(oracle::ball(8.0, 8.0, 0.0).abs() < 1e-9);
+    assert!((oracle::ball(8.0, 0.0, 1.0) - 8.0).abs() < 1e-9);
+    // As written for the surface: T(θ) = min over α of [2τ sin(|θ-α|/2) - ln cos α].
+    for angle in [0.3, 1.2, 2.0, 3.0] {
+        let direct = (0..200_000)
+            .map(|place| {
+                let alpha = (f64::from(place) / 100_000.0 - 1.0) * 0.5 * PI;
+                16.0 * (0.5 * (angle - alpha).abs()).sin() - alpha.cos().ln()
+            })
+            .fold(f64::INFINITY, f64::min);
+        // At the kink, half a step beside which the nearest place may lie, the slope is τ.
+        let above = direct - oracle::ball(8.0, 8.0, angle);
+        assert!((-1e-9..7e-5).contains(&above), "{angle}: {above:e}");
+    }
+}
+
+#[test]
+fn dijkstra_measures_the_stencils() {
+    let cells = 16;
+    let (matter, extinction) = whole(cells);
+    let body = Body { cells, spacing: 0.5, matter: &matter, extinction: &extinction };
+    let mut seeds = vec![f64::from(OPTICAL_PATH_UNREACHED); matter.len()];
+    seeds[0] = 0.0;
+    // Along the diagonal of the cube and of a face.
+    for (stencil, cube, face) in [(6, 3.0, 2.0), (18, 1.5 * 2f64.sqrt(), 2f64.sqrt()), (26, 3f64.sqrt(), 2f64.sqrt())] {
+        let costs = oracle::dijkstra(&body, stencil, &seeds);
+        let at = |x: usize, y: usize, z: usize| costs[x + 16 * (y + 16 * z)] / 0.5;
+        assert!((at(15, 0, 0) - 15.0).abs() < 1e-6);
+        assert!((at(0, 14, 14) - 14.0 * face).abs() < 1e-5, "{stencil}");
+        assert!((at(14, 14, 14) - 14.0 * cube).abs() < 1e-5, "{stencil}");
+    }
+}
+
+#[test]
+fn the_kernels_end_where_dijkstra_does() {
+    let cells = 8;
+    let (mut matter, mut extinction) = whole(cells);
+    for index in 0..matter.len() {
+        matter[index] = index % 7 != 3;
+        extinction[index] = 0.25 + (index % 5) as f32;
+    }
+    let mut seeds = vec![OPTICAL_PATH_UNREACHED; matter.len()];
+    (seeds[5], seeds[300], seeds[3]) = (0.5, -0.0, 0.1);
+    let body = Body { cells, spacing: 0.5, matter: &matter, extinction: &extinction };
+    let seeds = kernels::seeded(&body, &seeds);
+    assert_eq!(seeds[3], OPTICAL_PATH_UNREACHED, "no matter");
+    for stencil in [6, 18, 26] {
+        let mut costs = seeds.clone();
+        for _ in 0..40 {
+            costs = kernels::pull(&body, stencil, &costs);
+        }
+        assert_eq!(costs, oracle::dijkstra(&body, stencil, &seeds));
+    }
+    let (mut costs, mut written) = (seeds.clone(), vec![5, 300]);
+    while !written.is_empty() {
+        written = kernels::push(&body, &mut costs, &written);
+    }
+    // An edge one long costs what the paper's does.
+    assert_eq!(costs, oracle::dijkstra(&Body { spacing: 1.0, ..body }, 6, &seeds));
+}
+
+#[test]
+fn godunov_is_round_where_stencils_have_corners() {
+    let cells = 24;
+    let (matter, extinction) = whole(cells);
+    let body = Body { cells, spacing: 1.0, matter: &matter, extinction: &extinction };
+    let mut seeds = vec![OPTICAL_PATH_UNREACHED; matter.len()];
+    let middle = glam::IVec3::splat(12);
+    let distance = |index: usize| (body.voxel(index) - middle).as_vec3().length();
+    // Exact in a ball of 3, so that it is the front's error that is seen and not the point's.
+    (0..seeds.len()).filter(|index| distance(*index) <= 3.0).for_each(|index| seeds[index] = distance(index));
+    let mut costs = seeds.clone();
+    let mut sweeps = 0;
+    while kernels::upwind(&body, &mut costs, sweeps % 2 == 1) > 1e-5 {
+        sweeps += 1;
+    }
+    let rms = |costs: &[f32]| {
+        let squares = (0..costs.len()).map(|index| (costs[index] - distance(index)).powi(2));
+        (squares.sum::<f32>() / costs.len() as f32).sqrt()
+    };
+    let [round, angular] = [&costs, &oracle::dijkstra(&body, 26, &seeds)].map(|costs| rms(costs));
+    assert!(sweeps < 40 && round < 0.6 * angular, "{round} after {sweeps} sweeps, {angular} along edges");
+}

@@ -1,1 +1,154 @@
-//! Solvers.
+//! The optical path's solvers: against Dijkstra's algorithm, against the ball, against each other, and where bodies are hard.
+
+mod ball;
+mod bodies;
+mod hard;
+mod properties;
+
+use bodies::Case;
+use lapidary_harness::optical_path::{Method, Solver, Status, Stencil};
+use lapidary_optical_path::oracle::{Number, dijkstra};
+
+const STENCILS: [Stencil; 3] = [Stencil::Faces, Stencil::Edges, Stencil::Corners];
+
+/// Enough for any path of a small body, however it winds.
+const ENOUGH: u32 = 4096;
+
+/// The costs of a case, with a density by voxel where it has one, and how far the solve came.
+fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f32>, Status) {
+    let gpu = super::gpu();
+    let heterogeneous = case.density.iter().any(|density| *density != 1.0);
+    let solver = Solver::new(gpu, case.grid, method, heterogeneous, most_passes).expect("the recipe compiles");
+    let uploaded = case.upload(gpu);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let density = heterogeneous.then_some(&uploaded.density);
+    solver.encode(&mut encoder, &uploaded.matter, density, &uploaded.cost, case.extinction).expect("recorded");
+    gpu.queue.submit([encoder.finish()]);
+    let costs = uploaded.costs(gpu);
+    (costs, solver.status().expect("a device"))
+}
+
+/// The same by default, and ended at the fixpoint.
+fn solve(case: &Case, method: Method) -> Vec<f32> {
+    let (costs, status) = solve_within(case, method, None);
+    assert_eq!(status.active, 0, "{method}: {status:?}");
+    costs
+}
+
+/// Dijkstra's, from the same seeds.
+fn truth<N: Number>(case: &Case, stencil: Stencil, seeds: &[N]) -> Vec<N> {
+    let extinctions = case.extinctions();
+    dijkstra(&case.body(&extinctions), stencil.neighbours(), seeds)
+}
+
+/// The first voxel at which two lists of costs differ by more than `share` of the cost, or of 1 where that is more.
+fn differs(one: &[f32], other: &[f32], share: f32) -> Option<String> {
+    let apart = |(one, other): (&f32, &f32)| {
+        let near = (one - other).abs() <= share * one.abs().max(1.0);
+        one.to_bits() != other.to_bits() && (share == 0.0 || !near)
+    };
+    assert_eq!(one.len(), other.len());
+    let index = one.iter().zip(other).position(apart)?;
+    Some(format!("voxel {index}: {} and {}", one[index], other[index]))
+}
+
+fn assert_same(what: &str, one: &[f32], other: &[f32], share: f32) {
+    if let Some(difference) = differs(one, other, share) {
+        panic!("{what}: {difference}");
+    }
+}
+
+#[test]
+fn min_plus_is_dijkstras_to_the_bit() {
+    for (seed, cells) in [(1, 16), (2, 24), (3, 40)] {
+        for heterogeneous in [false, true] {
+            let case = Case::random(seed, cells, heterogeneous);
+            for stencil in STENCILS {
+                let wanted = truth(&case, stencil, &case.seeds);
+                for method in [Method::PingPong(stencil), Method::Tiled(stencil)] {
+                    let what = format!("{method}, body {seed}, heterogeneous {heterogeneous}");
+                    assert_same(&what, &solve(&case, method), &wanted, 0.0);
+                }
+            }
+        }
+    }
+}
+
+/// Each step rounds once, and the edge, a sum times a length, twice more, of itself.
+#[test]
+fn rounding_grows_with_the_steps_of_a_path_at_most() {
+    let case = Case::random(4, 32, true);
+    let exact: Vec<f64> = case.seeds.iter().map(|seed| f64::from(*seed)).collect();
+    for stencil in STENCILS {
+        let exact = truth(&case, stencil, &exact);
+        let (costs, status) = solve_within(&case, Method::PingPong(stencil), None);
+        // A pass carries costs one step on.
+        let share = f64::from(status.passes + 2) * 2f64.powi(-24);
+        let mut worst: f64 = 0.0;
+        for (cost, exact) in costs.iter().zip(&exact).filter(|(_, exact)| **exact < 1e29) {
+            let error = (f64::from(*cost) - exact).abs();
+            worst = worst.max(error / exact.max(1e-30));
+            assert!(error <= share * exact, "{cost} for {exact}");
+        }
+        assert!(worst > 0.0 && costs.iter().zip(&exact).all(|(cost, exact)| (*cost < 1e29) == (*exact < 1e29)));
+    }
+}
+
+#[test]
+fn the_papers_solver_is_dijkstras_with_edges_of_length_one() {
+    for heterogeneous in [false, true] {
+        let mut case = Case::random(5, 24, heterogeneous);
+        let wanted = truth(&case, Stencil::Faces, &case.seeds);
+        // How fine the grid is does not matter to it: what the paper leaves out.
+        for spacing in [1.0, 0.125] {
+            case.grid.spacing = spacing;
+            assert_same("paper", &solve(&case, Method::Paper), &wanted, 0.0);
+        }
+        let other = solve(&case, Method::Tiled(Stencil::Faces));
+        assert!(differs(&other, &wanted, 0.0).is_some(), "all others ask for the length");
+    }
+}
+
+#[test]
+fn passes_are_the_mirrors() {
+    use lapidary_optical_path::kernels;
+    let case = Case::random(6, 16, true);
+    let extinctions = case.extinctions();
+    let body = case.body(&extinctions);
+    for stencil in STENCILS {
+        let mut wanted = kernels::seeded(&body, &case.seeds);
+        for passes in [2, 4, 6] {
+            for _ in 0..2 {
+                wanted = kernels::pull(&body, stencil.neighbours(), &wanted);
+            }
+            let (costs, status) = solve_within(&case, Method::PingPong(stencil), Some(passes));
+            assert_eq!(status.passes, passes, "a body of more passes");
+            assert_same("pull", &costs, &wanted, 0.0);
+        }
+    }
+    let mut wanted = kernels::seeded(&body, &case.seeds);
+    let mut written: Vec<usize> = (0..wanted.len()).filter(|index| wanted[*index] < 1e29).collect();
+    while !written.is_empty() {
+        written = kernels::push(&body, &mut wanted, &written);
+    }
+    assert_same("push", &solve(&case, Method::Paper), &wanted, 0.0);
+    let mut wanted = kernels::seeded(&body, &case.seeds);
+    let mut sweeps = 0;
+    while kernels::upwind(&body, &mut wanted, sweeps % 2 == 1) > 1e-6 {
+        sweeps += 1;
+    }
+    // What falls short of the tolerance is not passed on; it adds up along a path, over a tenth of the steps at most.
+    assert_same("upwind", &solve(&case, Method::Godunov), &wanted, 5e-5);
+}
+
+#[test]
+fn the_bunny_by_tiles_is_the_bunny_untiled() {
+    let case = Case::bunny(64, 10.0);
+    let filled = case.matter.iter().filter(|matter| **matter).count() as f32 / case.matter.len() as f32;
+    assert!((0.1..0.3).contains(&filled), "the bunny fills {filled}");
+    let stencil = Stencil::Corners;
+    let wanted = solve(&case, Method::PingPong(stencil));
+    assert_same("64", &solve(&case, Method::Tiled(stencil)), &wanted, 0.0);
+    let reached = wanted.iter().zip(&case.matter).filter(|(cost, matter)| **matter && **cost < 1e29).count();
+    assert!(reached as f32 > 0.99 * filled * wanted.len() as f32);
+}

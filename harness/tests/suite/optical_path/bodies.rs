@@ -2,6 +2,7 @@
 
 use glam::{UVec3, Vec3};
 use lapidary_harness::gpu::Gpu;
+use lapidary_harness::property::draws::Draws;
 use lapidary_harness::scene::{Bounds, Scene};
 use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_optical_path::kernels::Body;
@@ -31,6 +32,21 @@ pub struct Uploaded {
 }
 
 impl Uploaded {
+    /// The costs as they stand.
+    pub fn costs(&self, gpu: &Gpu) -> Vec<f32> {
+        let size = self.cost.size();
+        let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(&self.cost, 0, &readback, 0, size);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.read_back(&readback, size, |bytes| bytemuck::cast_slice(bytes).to_vec()).expect("a device")
+    }
+
     /// Puts the seeds back.
     pub fn reset(&self, gpu: &Gpu) {
         gpu.queue.write_buffer(&self.cost, 0, bytemuck::cast_slice(&self.seeds));
@@ -46,6 +62,29 @@ impl Case {
         let matter: Vec<bool> = (0..grid.count()).map(|index| is_matter(grid.voxel(index))).collect();
         let (density, seeds) = (vec![1.0; matter.len()], vec![OPTICAL_PATH_UNREACHED; matter.len()]);
         Self { grid, matter, density, seeds, extinction }
+    }
+
+    /// A union of balls with holes, voxels 1 wide, extinctions up to 1 and a seed here and there. `heterogeneous`: with a density by voxel.
+    pub fn random(seed: u64, cells: u32, heterogeneous: bool) -> Self {
+        let mut draws = Draws::of_row(seed, 0);
+        let side = cells as f32;
+        let balls: Vec<(Vec3, f32)> =
+            (0..6).map(|_| (0.5 * side * (draws.in_cube() + 1.0), side * draws.between(0.15, 0.4))).collect();
+        let holes: Vec<u32> = (0..(cells as usize).pow(3)).map(|_| draws.below(12)).collect();
+        let mut case = Self::of(cells, 0.5, |voxel| {
+            let at = voxel.as_vec3() + 0.5;
+            let index = voxel.x + cells * (voxel.y + cells * voxel.z);
+            holes[index as usize] > 0 && balls.iter().any(|(middle, radius)| at.distance(*middle) < *radius)
+        });
+        for index in 0..case.matter.len() {
+            if heterogeneous {
+                case.density[index] = draws.between(0.0, 2.0) * draws.pick(&[1.0, 1.0, 0.0]);
+            }
+            if draws.below(200) == 0 {
+                case.seeds[index] = draws.between(0.0, 3.0);
+            }
+        }
+        case
     }
 
     /// The bunny, lit along x, `depth` optical depths wide.

@@ -1,0 +1,100 @@
+//! A homogeneous ball under parallel light, whose costs have a closed form.
+
+use super::bodies::Case;
+use super::solve;
+use glam::{UVec3, Vec3};
+use lapidary_harness::optical_path::{Method, Stencil};
+use lapidary_optical_path::oracle;
+use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, relax, seed, through};
+
+/// Voxels along the ball's radius.
+const RADIUS: f32 = 30.0;
+/// Optical depths along it.
+const DEPTH: f32 = 8.0;
+/// Points along an edge of the shadow map.
+const MAP: u32 = 512;
+
+/// The ball in 64³ voxels, lit along -z by the points of a shadow map: each seeds the voxel that it lies in, with its distance to the middle.
+fn lit() -> Case {
+    let middle = Vec3::splat(32.0);
+    let inside = |voxel: UVec3| (voxel.as_vec3() + 0.5 - middle).length() <= RADIUS;
+    let mut case = Case::of(64, DEPTH / RADIUS, inside);
+    for index in 0..MAP * MAP {
+        let across = (UVec3::new(index % MAP, index / MAP, 0).as_vec3() + 0.5) * (2.0 / MAP as f32) - 1.0;
+        let height = 1.0 - across.x * across.x - across.y * across.y;
+        if height <= 0.0 {
+            continue;
+        }
+        let normal = Vec3::new(across.x, across.y, height.sqrt());
+        // A hair inside, so that the point lies in matter where the voxel of its middle does.
+        let point = middle + (RADIUS - 0.5) * normal;
+        let voxel = case.grid.index(point.floor().as_uvec3());
+        if case.matter[voxel] {
+            let offset = (middle + RADIUS * normal - case.grid.centre(case.grid.voxel(voxel))).length();
+            let cost = seed(normal.z, case.extinction, offset);
+            case.seeds[voxel] = case.seeds[voxel].min(cost);
+        }
+    }
+    case
+}
+
+/// What a shaded point at the surface sees: itself, where it is lit, and the voxels about it.
+fn looked_up(case: &Case, costs: &[f32], normal: Vec3) -> f32 {
+    let point = Vec3::splat(32.0) + RADIUS * normal;
+    let own = seed(normal.z, case.extinction, 0.0);
+    let first = point.floor().as_ivec3() - 1;
+    (0..27).fold(own, |least, place| {
+        let voxel = (first + glam::IVec3::new(place % 3, place / 3 % 3, place / 9)).as_uvec3();
+        let offset = (point - case.grid.centre(voxel)).length();
+        relax(least, through(costs[case.grid.index(voxel)], case.extinction, offset), 0.0)
+    })
+}
+
+/// Root mean square error of the costs at the ball's surface, in nats.
+fn rms(case: &Case, method: Method) -> f64 {
+    let costs = solve(case, method);
+    let count = 4000;
+    let squares = (0..count).map(|index| {
+        // Evenly over the sphere: a Fibonacci lattice.
+        let z = 1.0 - (2.0 * f64::from(index) + 1.0) / f64::from(count);
+        let azimuth = f64::from(index) * std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        let radius = (1.0 - z * z).sqrt();
+        let normal = glam::DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z);
+        let exact = oracle::ball(f64::from(DEPTH), f64::from(DEPTH), z.acos());
+        (f64::from(looked_up(case, &costs, normal.as_vec3())) - exact).powi(2)
+    });
+    (squares.sum::<f64>() / f64::from(count)).sqrt()
+}
+
+#[test]
+fn godunov_finds_the_balls_costs_and_stencils_their_own() {
+    let case = lit();
+    for (method, low, high) in [
+        (Method::Tiled(Stencil::Faces), 1.25, 1.55),
+        (Method::Tiled(Stencil::Edges), 0.26, 0.36),
+        (Method::Tiled(Stencil::Corners), 0.24, 0.34),
+        (Method::Godunov, 0.0, 0.1),
+    ] {
+        let rms = rms(&case, method);
+        println!("{method}: {rms:.3} nats");
+        assert!(rms > low && rms < high, "{method}: {rms} nats");
+    }
+}
+
+/// Without the way between voxel and lit point the far side is too bright.
+#[test]
+fn offsets_count() {
+    let case = lit();
+    let far = |case: &Case| looked_up(case, &solve(case, Method::Godunov), Vec3::NEG_Z);
+    let mut naive = case.clone();
+    for index in 0..naive.seeds.len() {
+        if naive.seeds[index] < OPTICAL_PATH_UNREACHED {
+            let normal = (naive.grid.centre(naive.grid.voxel(index)) - 32.0).normalize();
+            naive.seeds[index] = seed(normal.z.max(1e-6), naive.extinction, 0.0);
+        }
+    }
+    let exact = oracle::ball(f64::from(DEPTH), f64::from(DEPTH), std::f64::consts::PI) as f32;
+    let [with, without] = [far(&case), far(&naive)];
+    println!("far pole: {exact} exact, {with} with offsets, {without} without");
+    assert!((with - exact).abs() < (without - exact).abs(), "{exact}: {with} with, {without} without");
+}
