@@ -154,6 +154,9 @@ impl<'gpu> Voxelizer<'gpu> {
         }
         // What the list held does not matter, only how much.
         encoder.clear_buffer(&self.large, 0, Some(4));
+        if triangles == 0 {
+            return Ok(());
+        }
         self.gpu.guarded("making voxels of a mesh", |device| {
             let [grid, matter] = [&self.grid, &self.matter];
             let buffers = [grid, positions, indices, matter, &self.surface, &self.beyond, &self.large, &self.status];

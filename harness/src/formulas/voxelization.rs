@@ -98,7 +98,10 @@ fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
 /// Away from edges, or of the steps, with an area as seen along x.
 fn benign_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
     if draws.below(2) == 0 {
-        let (a, b, c, at) = (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws)));
+        // Small ones, so that areas are small too.
+        let scale = draws.pick(&[1.0, 1.0 / 16.0]);
+        let (a, b, c) = (scale * steps(draws), scale * steps(draws), scale * steps(draws));
+        let at = scale * Vec2::new(step(draws), step(draws));
         let flat = |v: Vec3| Vec2::new(v.y, v.z);
         if flat(b - a).perp_dot(flat(c - a)) != 0.0 && a.min_element() > 0.0 && b.x > 0.0 && c.x > 0.0 {
             return (a, b, c, at);

@@ -1,6 +1,6 @@
 //! Voxels of meshes on the device, against volumes, winding numbers in f64, the mirror, and one another.
 
-use glam::{DVec3, UVec3, Vec3};
+use glam::{DQuat, DVec3, UVec3, Vec3};
 use lapidary_harness::scene::surfaces::{sphere, torus};
 use lapidary_harness::scene::{Bounds, Mesh, Scene};
 use lapidary_harness::voxel_grid::VoxelGrid;
@@ -37,19 +37,19 @@ impl Voxels {
     }
 }
 
+/// Positions and indices on the device.
+fn buffers(mesh: &Mesh) -> [wgpu::Buffer; 2] {
+    let contents: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
+    let usage = wgpu::BufferUsages::STORAGE;
+    let buffer = |contents| wgpu::util::BufferInitDescriptor { label: None, contents, usage };
+    contents.map(|contents| super::gpu().device.create_buffer_init(&buffer(contents)))
+}
+
 fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
     let gpu = super::gpu();
     let effects = [("EFFECT_SURFACE", f64::from(u8::from(surface)))];
     let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &effects).expect("the recipe");
-    let buffer = |contents: &[u8]| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents,
-            usage: wgpu::BufferUsages::STORAGE,
-        })
-    };
-    let positions = buffer(bytemuck::cast_slice(&mesh.positions));
-    let indices = buffer(bytemuck::cast_slice(&mesh.indices));
+    let [positions, indices] = buffers(mesh);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     // Twice: a frame must not see the one before.
     for _ in 0..2 {
@@ -197,13 +197,17 @@ fn counts_are_those_of_the_bits() {
 }
 
 /// Only voxels that the surface touches can be wrong, each by its share outside or inside: a sum of as many numbers between -1 and 1 with mean 0
-/// and a standard deviation of at most 1/2, which stays within 4 times the root of their number but by chance of 1e-15.
+/// and a standard deviation of at most 1/2, which is off by 4 times the root of their number but by a chance of 1e-15. The grid stands askew, so that
+/// of a body's two halves not both are wrong alike.
 #[test]
 fn volumes_are_the_meshes() {
-    for mesh in [sphere(1.0, 96), torus(20.0, 7.0, 160, 64), bunny()] {
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7);
+    for mesh in [sphere(1.0, 96), torus(20.0, 7.0, 160, 64), bunny(), cuboid(Vec3::NEG_ONE, Vec3::new(0.5, 1.0, 0.2))] {
+        let mesh = mesh.placed(turn, DVec3::ZERO);
         let (volume, _) = mesh.volume_and_area();
         for cells in [16, 24, 64, 128, 256] {
             let grid = about(&mesh, cells);
+            let grid = VoxelGrid { origin: grid.origin + grid.spacing * Vec3::new(0.13, 0.29, 0.41), ..grid };
             let Status { solid, surface, odd_columns } = voxels(&mesh, grid).status;
             let wanted = volume / f64::from(grid.spacing).powi(3);
             let bound = 4.0 * f64::from(surface).sqrt();
@@ -429,5 +433,38 @@ fn bodies_that_meet() {
         let whole = cuboid(low, high + 8.0 * axis);
         let both = joined(&[&one, &moved(&one, 8.0 * axis)]);
         assert_eq!(solid(&both, grid).matter, solid(&whole, grid).matter, "{axis}");
+    }
+}
+
+/// What docs/voxelization.md says of times.
+#[test]
+#[ignore = "measures times"]
+fn how_long_a_frame_takes() {
+    let gpu = super::gpu();
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7);
+    let straight = cuboid(Vec3::NEG_ONE, Vec3::ONE);
+    for (name, mesh) in
+        [("bunny", bunny()), ("box", straight.clone()), ("turned box", straight.placed(turn, DVec3::ZERO))]
+    {
+        for cells in [16, 32, 64, 128, 256] {
+            for surface in [1.0, 0.0] {
+                let grid = about(&mesh, cells);
+                let count = mesh.triangle_count() as u32;
+                let voxelizer = Voxelizer::new(gpu, grid, count, &[("EFFECT_SURFACE", surface)]).expect("the recipe");
+                let [positions, indices] = buffers(&mesh);
+                let mut times: Vec<f64> = (0..40)
+                    .map(|_| {
+                        let start = std::time::Instant::now();
+                        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                        voxelizer.encode(&mut encoder, &positions, &indices).expect("the passes");
+                        gpu.queue.submit([encoder.finish()]);
+                        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
+                        start.elapsed().as_secs_f64() * 1e3
+                    })
+                    .collect();
+                times.sort_by(f64::total_cmp);
+                println!("{name} {cells} surface {surface}: least {:.2} ms, median {:.2} ms", times[0], times[20]);
+            }
+        }
     }
 }
