@@ -1,5 +1,7 @@
 //! A triangle mesh in world space.
 
+use std::collections::HashMap;
+
 use glam::{DQuat, DVec3, Vec2, Vec3};
 
 use super::normals::{Averaging, shared_normals};
@@ -88,6 +90,29 @@ impl Mesh {
         for (own, others) in [(&mut self.indices, &other.indices), (&mut self.halo, &other.halo)] {
             own.extend(others.iter().map(|index| first + index));
         }
+    }
+
+    /// Without pairs of triangles that have the same three corners and face opposite ways, as simplified scans have them: they enclose nothing,
+    /// and a ray that meets one leaves where it enters.
+    #[must_use]
+    pub fn without_folds(&self) -> Self {
+        // Both zeros are one place.
+        let place = |index: u32| (self.positions[index as usize] + 0.0).to_array().map(f32::to_bits);
+        let mut waiting: HashMap<[[u32; 3]; 3], Vec<usize>> = HashMap::new();
+        let mut kept = vec![true; self.indices.len() / 3];
+        for (number, triangle) in self.indices.chunks_exact(3).enumerate() {
+            let mut corners = [place(triangle[0]), place(triangle[1]), place(triangle[2])];
+            // From the least corner on: what is left is the sense of rotation.
+            let least = (0..3).min_by_key(|&corner| corners[corner]).unwrap_or_default();
+            corners.rotate_left(least);
+            let [first, second, third] = corners;
+            match waiting.get_mut(&[first, third, second]).and_then(Vec::pop) {
+                Some(other) => (kept[number], kept[other]) = (false, false),
+                None => waiting.entry(corners).or_default().push(number),
+            }
+        }
+        let whole = self.indices.chunks_exact(3).zip(kept).filter(|(_, kept)| *kept);
+        Self { indices: whole.flat_map(|(triangle, _)| triangle).copied().collect(), ..self.clone() }
     }
 
     /// The number of whole triangles.

@@ -372,3 +372,31 @@ fn a_halo_goes_where_its_mesh_goes_and_stays_out_of_all_else() {
     bare_both.append(&moved.without_halo());
     assert_eq!(both.without_halo(), bare_both);
 }
+
+/// A tetrahedron, and on one of its corners a triangle and its other side.
+#[test]
+fn folds_are_taken_away_and_nothing_else() {
+    let tetrahedron = vec![0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];
+    let places = [
+        Vec3::ZERO,
+        Vec3::X,
+        Vec3::Y,
+        Vec3::Z,
+        Vec3::new(0.0, 0.0, 2.0),
+        Vec3::new(0.0, 1.0, 2.0),
+        Vec3::new(-0.0, 0.0, 1.0),
+    ];
+    let folded = [&tetrahedron[..6], &[4, 5, 6], &tetrahedron[6..], &[5, 4, 3]].concat();
+    let mesh = Mesh::with_shared_normals(places.to_vec(), folded, Averaging::Angle);
+    assert_eq!(mesh.without_folds().indices, tetrahedron);
+    let twice = [&tetrahedron[..], &tetrahedron[..3]].concat();
+    let mesh = Mesh::with_shared_normals(places.to_vec(), twice.clone(), Averaging::Angle);
+    assert_eq!(mesh.without_folds().indices, twice);
+}
+
+#[test]
+fn the_dragon_has_no_folds() {
+    let scene = Scene::named("dragon").expect("built in");
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!((mesh.without_folds() == *mesh, mesh.triangle_count() > 10_000), (true, true));
+}
