@@ -48,7 +48,7 @@ fn between_triangles_back_to_back_there_is_nothing() {
     let (scene, bodies) = bodies("dragon", Geometry::Triangles);
     let mesh = &scene.objects[0].mesh;
     let left_out = mesh.triangle_count() - bounding(mesh).len();
-    assert!(left_out > 500 && left_out % 2 == 0, "{left_out}");
+    assert!(left_out > 500 && left_out.is_multiple_of(2), "{left_out}");
     for (mut origin, direction) in rays(&scene, 5000) {
         let (mut left, mut passes) = (None, 0);
         while let Some(hit) = bodies.enter(origin, direction, left) {
