@@ -42,6 +42,31 @@ fn through_a_closed_surface_ways_in_and_out_alternate() {
     assert!(entered > 2000, "{entered}");
 }
 
+/// Of the dragon's triangles some hundreds lie back to back.
+#[test]
+fn between_triangles_back_to_back_there_is_nothing() {
+    let (scene, bodies) = bodies("dragon", Geometry::Triangles);
+    let mesh = &scene.objects[0].mesh;
+    let left_out = mesh.triangle_count() - bounding(mesh).len();
+    assert!(left_out > 500 && left_out.is_multiple_of(2), "{left_out}");
+    for (mut origin, direction) in rays(&scene, 5000) {
+        let (mut left, mut passes) = (None, 0);
+        while let Some(hit) = bodies.enter(origin, direction, left) {
+            origin += hit.distance * direction;
+            let out = bodies.leave(origin, direction, hit.place).expect("a way out");
+            origin += out.distance * direction;
+            left = Some(out.place);
+            passes += 1;
+            assert!(passes < 30, "to and fro");
+        }
+    }
+    let mut folded = Scene::named("bunny_stone").unwrap().objects.remove(0).mesh;
+    let before = bounding(&folded);
+    assert_eq!(before.len(), folded.triangle_count());
+    folded.indices.extend([5, 70, 900, 70, 5, 900, 900, 5, 70, 900, 70, 5]);
+    assert_eq!(bounding(&folded), before);
+}
+
 #[test]
 fn the_tree_finds_what_a_search_of_all_triangles_finds() {
     let (scene, _) = bodies("bunny_stone", Geometry::Triangles);
