@@ -66,9 +66,11 @@ pub const MODULES: &[Module] = modules![
     "fresnel",
     "microfacet",
     "proxy_geometry",
+    "random_walk",
     "refraction",
     "srgb",
-    "texture_diffusion"
+    "texture_diffusion",
+    "veins"
 ];
 
 /// Every recipe, in the order of their names.
@@ -80,6 +82,7 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_bvh",
     "gem_composite",
     "gem_convex",
+    "random_walk_slab",
     "texture_diffusion",
     "texture_irradiance",
     "trace"

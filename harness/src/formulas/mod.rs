@@ -12,9 +12,11 @@ mod environment;
 mod fresnel;
 mod microfacet;
 mod proxy_geometry;
+mod random_walk;
 mod refraction;
 mod srgb;
 mod texture_diffusion;
+mod veins;
 
 use crate::formula::Formula;
 use std::sync::OnceLock;
@@ -35,9 +37,11 @@ pub fn all() -> &'static [Formula] {
             fresnel::formulas(),
             microfacet::formulas(),
             proxy_geometry::formulas(),
+            random_walk::formulas(),
             refraction::formulas(),
             srgb::formulas(),
             texture_diffusion::formulas(),
+            veins::formulas(),
         ]
         .into_iter()
         .flatten()

@@ -18,6 +18,7 @@ mod gem;
 mod hard_cases;
 mod parity;
 mod program;
+mod random_walk;
 mod reference;
 mod snapshots;
 mod specialise;
