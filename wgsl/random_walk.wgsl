@@ -118,7 +118,8 @@ fn random_walk_collision(u: f32, scattering: f32, absorption: f32, majorant: f32
 // Outside: a smaller majorant counts as 1e-30.
 // Accuracy: lavapipe 3 ulp; portable 5 ulp
 fn random_walk_ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
-    return transmittance * (max(majorant - density, 0.0f) / max(majorant, RANDOM_WALK_THINNEST));
+    let most = max(majorant, RANDOM_WALK_THINNEST);
+    return transmittance * (max(most - density, 0.0f) / most);
 }
 
 // The same with the quotient taken first. Kept to show where it fails: for a density near the majorant.

@@ -88,7 +88,8 @@ pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32
 
 /// What a tentative collision leaves of a transmittance: ratio tracking.
 pub fn ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
-    transmittance * ((majorant - density).max(0.0) / majorant.max(RANDOM_WALK_THINNEST))
+    let most = majorant.max(RANDOM_WALK_THINNEST);
+    transmittance * ((most - density).max(0.0) / most)
 }
 
 /// The same with the quotient taken first, a naive form.

@@ -1,6 +1,8 @@
 //! Mirror of the recipe `random_walk_slab`: whole walks through a slab. The recipe says what each member means.
 
-use crate::{RANDOM_WALK_ABSORBED, RANDOM_WALK_SCATTERED, azimuth, boundary, collision, deflection, free_path, random, turn};
+use crate::{
+    RANDOM_WALK_ABSORBED, RANDOM_WALK_SCATTERED, azimuth, boundary, collision, deflection, free_path, random, turn,
+};
 use glam::{UVec4, Vec3, Vec3Swizzles as _};
 
 /// How a walk ended: absorbed.

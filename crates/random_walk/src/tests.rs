@@ -52,9 +52,7 @@ fn random_numbers_are_uniform_and_unrelated() {
         .collect();
     let error = 1.0 / f64::from(count).sqrt();
     for a in 0..4 {
-        let sum = |term: &dyn Fn(usize) -> f64| {
-            (0..numbers.len()).map(term).sum::<f64>() / f64::from(count)
-        };
+        let sum = |term: &dyn Fn(usize) -> f64| (0..numbers.len()).map(term).sum::<f64>() / f64::from(count);
         assert!(sum(&|k| numbers[k][a]).abs() < 4.0 * error);
         // A uniform number's square, so scaled, has the variance 4/5.
         assert!((sum(&|k| numbers[k][a].powi(2)) - 1.0).abs() < 4.0 * error);
@@ -132,7 +130,6 @@ fn isotropic_directions_favour_none() {
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side);
     let directions = || (0..side * side).map(|k| oracle::isotropic(DVec2::new(place(k % side), place(k / side))));
     let count = f64::from(side * side);
-    let (sum, squares) =
-        directions().fold((DVec3::ZERO, DVec3::ZERO), |(sum, squares), v| (sum + v, squares + v * v));
+    let (sum, squares) = directions().fold((DVec3::ZERO, DVec3::ZERO), |(sum, squares), v| (sum + v, squares + v * v));
     assert!((sum / count).length() < 1e-12 && (squares / count - 1.0 / 3.0).length() < 1e-4);
 }

@@ -53,11 +53,8 @@ pub fn cell_naive(position: Vec3) -> VeinsCell {
 
 /// Random bits of a corner of the grid, by pcg4d.
 pub fn hash(corner: IVec3, seed: u32) -> u32 {
-    let mut v = corner
-        .as_uvec3()
-        .extend(seed)
-        .wrapping_mul(UVec4::splat(1664525))
-        .wrapping_add(UVec4::splat(1013904223));
+    let mut v =
+        corner.as_uvec3().extend(seed).wrapping_mul(UVec4::splat(1664525)).wrapping_add(UVec4::splat(1013904223));
     v.x = v.x.wrapping_add(v.y.wrapping_mul(v.w));
     v.y = v.y.wrapping_add(v.z.wrapping_mul(v.x));
     v.z = v.z.wrapping_add(v.x.wrapping_mul(v.y));

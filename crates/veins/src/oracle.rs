@@ -39,7 +39,10 @@ pub fn cell(position: DVec3) -> VeinsCell {
         let x = x.clamp(-FARTHEST, FARTHEST);
         (x.div_euclid(1.0) as i32, x.rem_euclid(1.0))
     });
-    VeinsCell { corner: IVec3::from_array(parts.map(|part| part.0)), offset: DVec3::from_array(parts.map(|part| part.1)) }
+    VeinsCell {
+        corner: IVec3::from_array(parts.map(|part| part.0)),
+        offset: DVec3::from_array(parts.map(|part| part.1)),
+    }
 }
 
 /// Cut towards 0, which is another function.
@@ -51,8 +54,7 @@ pub fn cell_naive(position: DVec3) -> VeinsCell {
 pub fn hash(corner: IVec3, seed: u32) -> u32 {
     let rest = |value: u64| value % (1 << 32);
     let corner = corner.to_array().map(|part| i64::from(part).rem_euclid(1 << 32) as u64);
-    let mut words =
-        [corner[0], corner[1], corner[2], seed.into()].map(|word| rest(word * 1_664_525 + 1_013_904_223));
+    let mut words = [corner[0], corner[1], corner[2], seed.into()].map(|word| rest(word * 1_664_525 + 1_013_904_223));
     for (to, a, b) in [(0, 1, 3), (1, 2, 0), (2, 0, 1), (3, 1, 2)] {
         words[to] = rest(words[to] + rest(words[a] * words[b]));
     }

@@ -11,7 +11,8 @@ fn value_slope_and_curvature_go_on_across_borders() {
         let step = 1e-4;
         // One-sided differences of the second order, on either side of x = 3.
         let slope = |side: f64| {
-            (-3.0 * at(3.0 + side * 1e-12) + 4.0 * at(3.0 + side * step) - at(3.0 + 2.0 * side * step)) / (2.0 * side * step)
+            (-3.0 * at(3.0 + side * 1e-12) + 4.0 * at(3.0 + side * step) - at(3.0 + 2.0 * side * step))
+                / (2.0 * side * step)
         };
         let bend = |side: f64| {
             (at(3.0 + side * 1e-12) - 2.0 * at(3.0 + side * step) + at(3.0 + 2.0 * side * step)) / (step * step)
@@ -57,6 +58,7 @@ fn noise_keeps_its_bounds_and_has_no_mean() {
 fn density_keeps_its_bounds_and_reaches_them() {
     let pattern = VeinsPattern { frequency: 0.3, width: 0.1, least: 0.25, greatest: 2.0, octaves: 4, seed: 9 };
     let densities = (0..20_000).map(|k| density(Vec3::new(0.37 * k as f32, 0.21 * (k % 97) as f32, 1.5), pattern));
-    let (least, greatest) = densities.fold((f32::MAX, 0.0f32), |(least, greatest), value| (least.min(value), greatest.max(value)));
+    let (least, greatest) =
+        densities.fold((f32::MAX, 0.0f32), |(least, greatest), value| (least.min(value), greatest.max(value)));
     assert!(least >= 0.25 && least < 0.35 && greatest <= 2.0 && greatest > 1.99, "{least} {greatest}");
 }

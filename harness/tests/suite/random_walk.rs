@@ -243,7 +243,11 @@ fn forward_scattering_is_like_less_scattering() {
     println!("{isotropic} {forwards}");
     assert!((forwards / isotropic - 1.0).abs() < 0.04);
     let without = share(
-        &walked(&Slab { scattering: 1.0, absorption, anisotropy: 0.8, entry_cosine: 0.6, ..deep(0.5) }, UNIFORM, 100_000),
+        &walked(
+            &Slab { scattering: 1.0, absorption, anisotropy: 0.8, entry_cosine: 0.6, ..deep(0.5) },
+            UNIFORM,
+            100_000,
+        ),
         slab::REFLECTED,
     );
     assert!(without.0 < 0.85 * isotropic);
