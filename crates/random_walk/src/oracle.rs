@@ -98,6 +98,9 @@ pub fn deflection(u: f64, g: f64) -> DVec2 {
         return DVec2::new(-mirrored.x, mirrored.y);
     }
     let t = 2.0 * u - 1.0;
+    if t.abs() == 1.0 {
+        return DVec2::new(t, 0.0);
+    }
     if g < 1e-5 {
         // The slope in g of the cosine at 0, and what it takes from the sine.
         let sine = 2.0 * (u * (1.0 - u)).sqrt();

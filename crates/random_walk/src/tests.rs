@@ -26,7 +26,7 @@ fn the_phase_function_is_a_density_whose_mean_cosine_is_g() {
 /// The share of deflections below a cosine is the integral of the phase function up to it.
 #[test]
 fn deflections_follow_the_phase_function() {
-    for g in [-0.95, -0.2, 1e-4, 1e-7, 0.0, 0.4, 0.9] {
+    for g in [-0.8, -0.2, 1e-4, 1e-7, 0.0, 0.4, 0.7] {
         for u in [0.01, 0.3, 0.77, 0.999] {
             let cosine = oracle::deflection(u, g).x;
             let share = TAU * (cosine + 1.0) * mean(100_000, |t| oracle::phase((cosine + 1.0) * t - 1.0, g));
