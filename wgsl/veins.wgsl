@@ -79,9 +79,10 @@ fn veins_hash(corner: vec3i, seed: u32) -> u32 {
 // Outside: none is.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn veins_gradient(bits: u32) -> vec3f {
-    let first = select(1.0f, -1.0f, (bits & 1u) != 0u);
-    let second = select(1.0f, -1.0f, (bits & 2u) != 0u);
-    let axis = (bits >> 2u) % 3u;
+    // The highest bits are the best mixed.
+    let first = select(1.0f, -1.0f, (bits & 0x80000000u) != 0u);
+    let second = select(1.0f, -1.0f, (bits & 0x40000000u) != 0u);
+    let axis = bits % 3u;
     if axis == 0u {
         return vec3f(0.0f, first, second);
     }

@@ -65,9 +65,9 @@ pub fn hash(corner: IVec3, seed: u32) -> u32 {
 
 /// One of the twelve directions from a cube's middle to its edges' middles.
 pub fn gradient(bits: u32) -> Vec3 {
-    let first = if (bits & 1) != 0 { -1.0 } else { 1.0 };
-    let second = if (bits & 2) != 0 { -1.0 } else { 1.0 };
-    let axis = (bits >> 2) % 3;
+    let first = if (bits & 0x80000000) != 0 { -1.0 } else { 1.0 };
+    let second = if (bits & 0x40000000) != 0 { -1.0 } else { 1.0 };
+    let axis = bits % 3;
     if axis == 0 {
         return Vec3::new(0.0, first, second);
     }

@@ -62,11 +62,11 @@ pub fn hash(corner: IVec3, seed: u32) -> u32 {
     rest(x + rest(y * w)) as u32
 }
 
-/// By the two lowest bits, and the rest of what is above them by 3.
+/// By a table of the quarter that the bits lie in, and their rest by 3.
 pub fn gradient(bits: u32) -> DVec3 {
-    const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
-    let mut parts = SIGNS[bits as usize % 4].to_vec();
-    parts.insert(bits as usize / 4 % 3, 0.0);
+    const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let mut parts = SIGNS[bits as usize / (1 << 30)].to_vec();
+    parts.insert(bits as usize - bits as usize / 3 * 3, 0.0);
     DVec3::new(parts[0], parts[1], parts[2])
 }
 
