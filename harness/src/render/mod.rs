@@ -348,6 +348,7 @@ fn walk(
         samples_per_pixel: settings.walks,
         seed: 1,
         environment: settings.light_from_environment.then_some(&settings.environment),
+        boundary: mesh::Boundary::Matched,
     };
     let progress = Mutex::new(progress);
     let tell = |done, total| {
