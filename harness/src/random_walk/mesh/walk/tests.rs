@@ -26,7 +26,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
 
 /// Matter whose lengths are in mean free paths.
 pub(super) fn grey(albedo: f32) -> Medium {
-    Medium { scattering: Vec3::splat(albedo), absorption: Vec3::splat(1.0 - albedo) }
+    Medium::isotropic(Vec3::splat(albedo), Vec3::splat(1.0 - albedo))
 }
 
 pub(super) fn sun(toward: DVec3) -> Light {
@@ -263,7 +263,7 @@ fn what_goes_straight_through_is_weakened_and_no_more() {
     assert!((mean - expected).abs().cmplt(4.0 * error).all());
 
     let absorbing = Medium::isotropic(Vec3::ZERO, Vec3::new(0.0, 1.0, 0.2));
-    let bodies = vec![(cuboid(Vec3::NEG_ONE, Vec3::ONE), absorbing)];
+    let bodies = vec![(cuboid(Vec3::NEG_ONE, Vec3::ONE), absorbing.clone())];
     let scene = self::scene(bodies, vec![sun(DVec3::X)]);
     let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
     let (mean, error) = estimate(40_000, 4, |random| {
@@ -282,7 +282,7 @@ fn channels_do_not_mix() {
     let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 2.0));
     let body = torus(4.0, 1.5, 64, 32).placed(DQuat::from_rotation_x(0.7), DVec3::ZERO);
     let lamp = Light::Point { position: Vec3::new(0.0, 0.0, 0.5), intensity: Vec3::splat(10.0) };
-    let mean = |medium| {
+    let mean = |medium: &Medium| {
         let scene = scene(vec![(body.clone(), medium.clone())], vec![sun(DVec3::new(0.6, 0.8, 0.0)), lamp]);
         let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
         estimate(100_000, 17, |random| {
@@ -290,10 +290,10 @@ fn channels_do_not_mix() {
             seen(&matter, DVec3::new(6.0 * x, 6.0 * y, 20.0), DVec3::NEG_Z, random).radiance
         })
     };
-    let (all, all_error) = mean(medium);
+    let (all, all_error) = mean(&medium);
     for channel in 0..3 {
         let only = |color: Vec3| Vec3::splat(color[channel]);
-        let (one, error) = mean(Medium::isotropic(only(medium.scattering), only(medium.absorption)));
+        let (one, error) = mean(&Medium::isotropic(only(medium.scattering), only(medium.absorption)));
         println!(
             "channel {channel}: {:.5} ± {:.5}, alone {:.5} ± {:.5}",
             all[channel], all_error[channel], one[channel], error[channel]
