@@ -67,10 +67,12 @@ pub const MODULES: &[Module] = modules![
     "microfacet",
     "optical_path",
     "proxy_geometry",
+    "random_walk",
     "reflective_shadow_map",
     "refraction",
     "srgb",
     "texture_diffusion",
+    "veins",
     "voxelization"
 ];
 
@@ -87,6 +89,7 @@ pub const RECIPES: &[Recipe] = recipes![
     "optical_path_shading",
     "optical_path_sweep",
     "optical_path_tiles",
+    "random_walk_slab",
     "reflective_shadow_map",
     "texture_diffusion",
     "texture_irradiance",

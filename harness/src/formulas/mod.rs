@@ -13,10 +13,12 @@ mod fresnel;
 mod microfacet;
 mod optical_path;
 mod proxy_geometry;
+mod random_walk;
 mod reflective_shadow_map;
 mod refraction;
 mod srgb;
 mod texture_diffusion;
+mod veins;
 mod voxelization;
 
 use crate::formula::Formula;
@@ -39,10 +41,12 @@ pub fn all() -> &'static [Formula] {
             microfacet::formulas(),
             optical_path::formulas(),
             proxy_geometry::formulas(),
+            random_walk::formulas(),
             reflective_shadow_map::formulas(),
             refraction::formulas(),
             srgb::formulas(),
             texture_diffusion::formulas(),
+            veins::formulas(),
             voxelization::formulas(),
         ]
         .into_iter()

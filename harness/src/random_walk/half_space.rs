@@ -1,7 +1,8 @@
 //! Half spaces in closed form (Chandrasekhar, "Radiative Transfer", 1950): what a sphere comes to where it is large.
 
 use super::{BINS, Profile};
-use std::f64::consts::{FRAC_PI_2, PI};
+use lapidary_fresnel::oracle::dielectric;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes of the quadrature to each side of its middle, and the way between two.
 const NODES: i32 = 80;
@@ -49,6 +50,60 @@ pub fn diffuse_albedo(albedo: f64) -> f64 {
     profile(albedo).whole()
 }
 
+/// What a half space behind a smooth dielectric boundary of a relative `index` above 1 reflects, the boundary's own share with it:
+/// Chandrasekhar's reflection function closed by Fresnel's reflectance from inside, summed over the reflections.
+pub fn reflectance_behind(cosine: f64, albedo: f64, index: f64) -> f64 {
+    // 1 - reflectance of the boundary, by the angle inside.
+    let open = |inside: f64| {
+        let sine = index * (1.0 - inside * inside).sqrt();
+        if sine >= 1.0 { 0.0 } else { 1.0 - dielectric(inside, index.recip()) }
+    };
+    // Middles of steps on either side of the critical angle, finer towards it, where the boundary opens like a root.
+    let critical = (1.0 - index.powi(-2)).sqrt();
+    let count = 200;
+    let nodes: Vec<(f64, f64)> = [(0.0, critical), (critical, 1.0)]
+        .into_iter()
+        .flat_map(|(from, to)| {
+            (0..count).map(move |k| {
+                let angle = FRAC_PI_2 * (f64::from(k) + 0.5) / f64::from(count);
+                let step = FRAC_PI_2 / f64::from(count) * (to - from) * 2.0 * angle.sin() * angle.cos();
+                (from + (to - from) * angle.sin().powi(2), step)
+            })
+        })
+        .collect();
+    let values: Vec<f64> = nodes.iter().map(|(mu, _)| h(*mu, albedo)).collect();
+    // Radiance upwards for light of irradiance 1, square to it, downwards under `from`.
+    let scattered =
+        |to: usize, from: f64, h_from: f64| albedo / 4.0 * from / (nodes[to].0 + from) * values[to] * h_from / PI;
+    let entry = (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();
+    let enters = 1.0 - dielectric(cosine, index);
+    let h_entry = h(entry, albedo);
+    // Power per area that enters is `enters`; the irradiance square to the refracted light is that over its cosine.
+    let source: Vec<f64> = (0..nodes.len()).map(|to| enters / entry * scattered(to, entry, h_entry)).collect();
+    let mut upwards = source.clone();
+    for _ in 0..2000 {
+        let next: Vec<f64> = (0..nodes.len())
+            .map(|to| {
+                let again: f64 = (0..nodes.len())
+                    .filter(|from| open(nodes[*from].0) < 1.0)
+                    .map(|from| {
+                        let (mu, step) = nodes[from];
+                        (1.0 - open(mu)) * upwards[from] * TAU * step * scattered(to, mu, values[from])
+                    })
+                    .sum();
+                source[to] + again
+            })
+            .collect();
+        let change: f64 = next.iter().zip(&upwards).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        upwards = next;
+        if change < 1e-9 {
+            break;
+        }
+    }
+    let out: f64 = nodes.iter().zip(&upwards).map(|((mu, step), up)| TAU * mu * step * open(*mu) * up).sum();
+    1.0 - enters + out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,5 +134,16 @@ mod tests {
                 assert!((h(cosine, albedo) * right - 1.0).abs() < 2e-6, "{albedo} {cosine}: {}", h(cosine, albedo));
             }
         }
+    }
+
+    #[test]
+    fn behind_a_boundary_that_does_nothing_and_behind_glass() {
+        for (cosine, albedo) in [(1.0, 0.9), (0.4, 0.5)] {
+            let found = reflectance_behind(cosine, albedo, 1.000_000_1);
+            assert!((found - reflectance(cosine, albedo)).abs() < 1e-4, "{cosine} {albedo}: {found}");
+        }
+        // Nothing is lost where nothing is absorbed, however often the boundary sends light back; and black matter leaves the boundary's own.
+        assert!((reflectance_behind(0.7, 1.0, 1.5) - 1.0).abs() < 2e-3);
+        assert!((reflectance_behind(1.0, 0.0, 1.5) - 0.04).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
 //! What translucent bodies show, path-traced: the picture that the translucent techniques are compared with.
 //!
-//! Bodies are closed triangle meshes that do not overlap, each of one [`Medium`](crate::scene::Medium). Their surfaces do not bend or
-//! reflect light, so that a ray from the eye goes straight in. At each scattering every light is asked for what arrives from it through
+//! Bodies are closed triangle meshes that do not overlap, each of one [`Medium`](crate::scene::Medium). Unless asked for, their surfaces do not bend
+//! or reflect light, so that a ray from the eye goes straight in. At each scattering every light is asked for what arrives from it through
 //! all matter on the way, also through other bodies, or the same again; light from the environment comes along the walk's last direction. What
 //! shows through without being scattered is the background's and is left out.
 //!
@@ -13,7 +13,7 @@ mod walk;
 use super::generator;
 use crate::reference::view::View;
 use crate::render::{Environment, LARGEST_SIDE};
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use closed::open_edges;
 use glam::DVec3;
 use rand::RngExt as _;
@@ -38,6 +38,20 @@ pub struct Settings<'environment> {
     pub seed: u64,
     /// The light around the scene beside its own lights, if any.
     pub environment: Option<&'environment Environment>,
+    /// What surfaces do to light.
+    pub boundary: Boundary,
+}
+
+/// What a body's surface does to light that meets it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Boundary {
+    /// Nothing.
+    #[default]
+    Matched,
+    /// It bends light by the material's refractive index and reflects Fresnel's share, from outside and from inside, as a polished surface does. What it
+    /// mirrors of the surroundings was not scattered and is left out. Light then comes from walks that leave alone: from the environment, and from
+    /// directional lights as discs of 0.1 rad about their direction, which takes very many walks. There may be no point light.
+    Dielectric,
 }
 
 /// A picture.
@@ -70,6 +84,14 @@ pub enum WalkError {
     /// Too few to know their error, or too many.
     #[error("{0} samples a pixel are out of range; take 2 to {MOST_SAMPLES}")]
     Samples(u32),
+    /// A light that no walk would meet.
+    #[error(
+        "light {light} is a point, which no walk through a dielectric boundary meets; take it out or match the boundary"
+    )]
+    Point {
+        /// Its place among the scene's lights, from 0.
+        light: usize,
+    },
     /// A body of unknown matter.
     #[error(
         "{object:?} has no scattering and absorption coefficients, so that no light can be followed through it; give its material a medium"
@@ -105,14 +127,14 @@ pub fn render(
     settings: &Settings<'_>,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Result<Rendering, WalkError> {
-    let &Settings { width, height, samples_per_pixel, seed, environment } = settings;
+    let &Settings { width, height, samples_per_pixel, seed, environment, boundary } = settings;
     if !(1..=LARGEST_SIDE).contains(&width) || !(1..=LARGEST_SIDE).contains(&height) {
         return Err(WalkError::Size { width, height });
     }
     if !(2..=MOST_SAMPLES).contains(&samples_per_pixel) {
         return Err(WalkError::Samples(samples_per_pixel));
     }
-    let matter = matter(scene, environment)?;
+    let matter = matter(scene, boundary, environment)?;
     let view = View::new(&scene.camera, width, height);
     let done = AtomicU64::new(0);
     let row = |y: u32| {
@@ -141,7 +163,15 @@ pub fn render(
 }
 
 /// The bodies of a scene that are sound.
-fn matter<'scene>(scene: &Scene, environment: Option<&'scene Environment>) -> Result<Matter<'scene>, WalkError> {
+fn matter<'scene>(
+    scene: &Scene,
+    boundary: Boundary,
+    environment: Option<&'scene Environment>,
+) -> Result<Matter<'scene>, WalkError> {
+    let point = scene.lights.iter().position(|light| matches!(light, Light::Point { .. }));
+    if let Some(light) = point.filter(|_| boundary == Boundary::Dielectric) {
+        return Err(WalkError::Point { light });
+    }
     for object in &scene.objects {
         let (edges, name) = (open_edges(&object.mesh), || object.name.clone());
         if edges > 0 {
@@ -151,7 +181,8 @@ fn matter<'scene>(scene: &Scene, environment: Option<&'scene Environment>) -> Re
             return Err(WalkError::InsideOut { object: name() });
         }
     }
-    Matter::new(scene, environment).map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })
+    Matter::new(scene, boundary, environment)
+        .map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })
 }
 
 /// Sums over the samples of a pixel.
@@ -180,7 +211,7 @@ impl Pixel {
             };
             let direction = view.direction(f64::from(x) + across, f64::from(y) + down);
             let Some(hit) = matter.enter(view.eye, direction) else { continue };
-            let outcome = matter.follow(view.eye, direction, hit, &mut random);
+            let outcome = matter.walk(view.eye, direction, hit, &mut random);
             pixel.radiance += outcome.radiance;
             pixel.squares += outcome.radiance * outcome.radiance;
             pixel.walks += 1;

@@ -180,7 +180,7 @@ mod tests {
         for name in ["skin", "wax", "jade"] {
             let scene = Scene::named(name).expect("built in");
             let material = &scene.objects[0].material;
-            let medium = material.medium.expect("a medium");
+            let medium = material.medium.as_ref().expect("a medium");
             for channel in 0..3 {
                 let scattering = f64::from(medium.scattering[channel]);
                 let albedo = scattering / (scattering + f64::from(medium.absorption[channel]));

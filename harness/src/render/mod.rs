@@ -389,6 +389,7 @@ fn walk(
         samples_per_pixel: settings.walks,
         seed: 1,
         environment: settings.light_from_environment.then_some(&settings.environment),
+        boundary: mesh::Boundary::Matched,
     };
     Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)
 }

@@ -6,7 +6,7 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 use thiserror::Error;
 
-use super::{Bounds, Camera, Material, Mesh, Object, Scene};
+use super::{Bounds, Camera, Density, Material, Mesh, Object, Scene};
 
 mod light;
 mod material;
@@ -233,6 +233,8 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
         Some("a position or normal is not finite; mend or remove the vertex")
     } else if !mesh.uvs.iter().all(|uv| uv.is_finite()) {
         Some("a texture coordinate is not finite; mend it")
+    } else if material.medium.as_ref().is_some_and(|medium| matches!(medium.density, Density::Grid(_))) {
+        Some("its density is a grid, which a file has no place for; make it uniform or veined")
     } else {
         material.problem()
     }

@@ -28,6 +28,7 @@ mod error;
 mod extension;
 mod light_node;
 mod material;
+mod medium;
 mod nodes;
 mod primitive;
 

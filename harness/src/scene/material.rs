@@ -1,5 +1,6 @@
 //! What a body is made of, as far as glTF says it, and a little further.
 
+use super::Medium;
 use glam::Vec3;
 use lapidary_dispersion::oracle as dispersion;
 
@@ -26,16 +27,6 @@ pub struct Material {
     pub sigma0: Option<Vec3>,
     /// How the inside scatters light; `None` where the material does not say.
     pub medium: Option<Medium>,
-}
-
-/// Matter that scatters light to all sides alike: what is left of forward scattering after similarity theory. Per unit of length, for red,
-/// green and blue, at least 0 and finite.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Medium {
-    /// Reduced scattering coefficient.
-    pub scattering: Vec3,
-    /// Absorption coefficient.
-    pub absorption: Vec3,
 }
 
 /// How a refractive index depends on the wavelength.
@@ -173,10 +164,8 @@ impl Material {
             Some("its material's roughness is not between 0 and 1; mend it")
         } else if !self.sigma0.is_none_or(is_length) {
             Some("its material's sigma0 is not finite and at least 0; mend it")
-        } else if !self.medium.is_none_or(|medium| is_length(medium.scattering) && is_length(medium.absorption)) {
-            Some("its material's scattering or absorption is not finite and at least 0; mend it")
         } else {
-            None
+            self.medium.as_ref().and_then(Medium::problem)
         }
     }
 }

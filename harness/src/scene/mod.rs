@@ -26,6 +26,7 @@ pub mod implicit;
 pub mod layout;
 pub mod light;
 pub mod material;
+pub mod medium;
 pub mod mesh;
 pub mod normals;
 pub mod polyhedron;
@@ -37,7 +38,8 @@ pub use camera::Camera;
 pub use convex::Convex;
 pub use error::SceneError;
 pub use light::Light;
-pub use material::{Dispersion, Material, Medium, Mineral};
+pub use material::{Dispersion, Material, Mineral};
+pub use medium::{Density, DensityGrid, Medium};
 pub use mesh::Mesh;
 pub use normals::Averaging;
 

@@ -19,6 +19,7 @@ mod hard_cases;
 mod optical_path;
 mod parity;
 mod program;
+mod random_walk;
 mod reference;
 mod snapshots;
 mod specialise;

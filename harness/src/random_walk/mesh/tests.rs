@@ -6,7 +6,7 @@ use glam::Vec3;
 use std::time::Instant;
 
 fn settings(side: u32, samples_per_pixel: u32) -> Settings<'static> {
-    Settings { width: side, height: side, samples_per_pixel, seed: 1, environment: None }
+    Settings { width: side, height: side, samples_per_pixel, seed: 1, environment: None, boundary: Boundary::Matched }
 }
 
 fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
@@ -56,7 +56,7 @@ fn white_furnace() {
     let mut scene = named("wax_bunny");
     let mesh = sphere(30.0, 128);
     scene.objects[0].mesh = mesh;
-    scene.objects[0].material.medium = Some(Medium { scattering: Vec3::ONE, absorption: Vec3::ZERO });
+    scene.objects[0].material.medium = Some(Medium::isotropic(Vec3::ONE, Vec3::ZERO));
     scene.lights.clear();
     let scene = scene.seen_from(60.0, 0.0);
     let rendering = rendered(&scene, &Settings { environment: Some(&ones), ..settings(24, 4) });

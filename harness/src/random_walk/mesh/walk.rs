@@ -1,11 +1,15 @@
 //! One walk backwards through bodies of scattering matter: from the eye to the lights.
 
+mod general;
+
 use super::super::isotropic;
+use super::Boundary;
 use crate::reference::geometry::{Bodies, Geometry, Hit, Place};
 use crate::reference::surroundings;
 use crate::render::Environment;
 use crate::scene::light::Arrival;
 use crate::scene::{Light, Medium, Object, Scene};
+use general::Structure;
 use glam::DVec3;
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -22,6 +26,8 @@ pub(super) struct Matter<'scene> {
     bodies: Bodies,
     /// Each body's.
     coefficients: Vec<Coefficients>,
+    structures: Vec<Structure>,
+    boundary: Boundary,
     lights: Vec<Light>,
     environment: Option<&'scene Environment>,
     /// About all bodies: a walk that is outside has slipped through a surface.
@@ -36,8 +42,8 @@ struct Coefficients {
     extinction: DVec3,
 }
 
-impl From<Medium> for Coefficients {
-    fn from(medium: Medium) -> Self {
+impl From<&Medium> for Coefficients {
+    fn from(medium: &Medium) -> Self {
         let scattering = medium.scattering.as_dvec3();
         Self { scattering, extinction: scattering + medium.absorption.as_dvec3() }
     }
@@ -57,14 +63,24 @@ pub(super) struct Outcome {
 
 impl<'scene> Matter<'scene> {
     /// Nothing where an object has no medium: that object's number.
-    pub(super) fn new(scene: &Scene, environment: Option<&'scene Environment>) -> Result<Self, usize> {
-        let medium = |(number, object): (usize, &Object)| object.material.medium.map(Coefficients::from).ok_or(number);
-        let coefficients = scene.objects.iter().enumerate().map(medium).collect::<Result<_, _>>()?;
+    pub(super) fn new(
+        scene: &Scene,
+        boundary: Boundary,
+        environment: Option<&'scene Environment>,
+    ) -> Result<Self, usize> {
+        let objects = || scene.objects.iter().enumerate();
+        let medium =
+            |(number, object): (usize, &Object)| object.material.medium.as_ref().map(Coefficients::from).ok_or(number);
+        let coefficients = objects().map(medium).collect::<Result<_, _>>()?;
+        let structure = |(number, object): (usize, &Object)| Structure::new(object, boundary).ok_or(number);
+        let structures = objects().map(structure).collect::<Result<_, _>>()?;
         let bounds = scene.bounds();
         let margin = 1e-6 * f64::from(bounds.radius());
         Ok(Self {
             bodies: Bodies::new(&scene.objects, Geometry::Triangles),
             coefficients,
+            structures,
+            boundary,
             lights: scene.lights.clone(),
             environment,
             least: bounds.min.as_dvec3() - margin,
@@ -77,13 +93,27 @@ impl<'scene> Matter<'scene> {
         self.bodies.enter(origin, direction, None)
     }
 
-    /// Follows the ray from `origin` along a unit `direction` that enters a body at `hit`.
+    /// Follows the ray from `origin` along a unit `direction` that meets a body at `hit`.
+    pub(super) fn walk(&self, origin: DVec3, direction: DVec3, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+        if self.structures.iter().all(Structure::is_plain) {
+            self.follow(origin, direction, hit, random)
+        } else {
+            self.follow_general(origin, direction, hit, random)
+        }
+    }
+
+    /// Whether a point lies within the bounds of all bodies. Written so that NaN and infinity do not.
+    fn holds(&self, position: DVec3) -> bool {
+        position.cmpge(self.least).all() && position.cmple(self.greatest).all()
+    }
+
+    /// The walk in matter of one density that scatters to all sides alike, whose surface lets all light pass.
     ///
     /// One walk serves all three channels. At each flight one of them is chosen by what is left of it and its extinction gives the
     /// length; each is then weighted by what it would have done over what the choice does in the mean (the balance heuristic, as
     /// Chiang, Kutz and Burley, "Practical and Controllable Subsurface Scattering for Production Path Tracing", 2016, have it). So no channel
     /// ever has more than the three began with together.
-    pub(super) fn follow(&self, origin: DVec3, direction: DVec3, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+    fn follow(&self, origin: DVec3, direction: DVec3, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
         let mut outcome = Outcome::default();
         let mut throughput = DVec3::ONE;
         let mut position = origin + hit.distance * direction;
@@ -114,9 +144,7 @@ impl<'scene> Matter<'scene> {
                 return outcome;
             }
             position += free * direction;
-            // Written so that NaN and infinity are outside.
-            let inside = position.cmpge(self.least).all() && position.cmple(self.greatest).all();
-            let direct = if inside { self.direct(position, body, random) } else { None };
+            let direct = if self.holds(position) { self.direct(position, body, random) } else { None };
             let Some(direct) = direct else {
                 outcome.lost = true;
                 return outcome;
@@ -170,8 +198,24 @@ impl<'scene> Matter<'scene> {
 
     /// The optical depth of all matter on the way of a ray that leaves a body at `out`, as far as `distance`; nothing where a surface
     /// has a gap.
-    fn depth(&self, mut position: DVec3, direction: DVec3, mut out: Hit, mut distance: f64) -> Option<DVec3> {
+    fn depth(&self, position: DVec3, direction: DVec3, out: Hit, distance: f64) -> Option<DVec3> {
         let mut depth = DVec3::ZERO;
+        self.beyond(position, direction, out, distance, |body, _, length| {
+            depth += length * self.coefficients[body].extinction;
+        })?;
+        Some(depth)
+    }
+
+    /// Names each body on the way of a ray that leaves one at `out`, as far as `distance`, with the place where the ray enters it and the length of
+    /// its way inside; nothing where a surface has a gap.
+    fn beyond(
+        &self,
+        mut position: DVec3,
+        direction: DVec3,
+        mut out: Hit,
+        mut distance: f64,
+        mut pass: impl FnMut(usize, DVec3, f64),
+    ) -> Option<()> {
         while let Some(next) =
             self.bodies.enter(position, direction, Some(out.place)).filter(|next| next.distance < distance)
         {
@@ -179,11 +223,11 @@ impl<'scene> Matter<'scene> {
             distance -= next.distance;
             let Place { body, face } = next.place;
             out = self.bodies.leave_body(position, direction, body, Some(face), f64::INFINITY)?;
-            depth += out.distance.min(distance) * self.coefficients[body].extinction;
+            pass(body, position, out.distance.min(distance));
             position += out.distance * direction;
             distance -= out.distance;
         }
-        Some(depth)
+        Some(())
     }
 }
 

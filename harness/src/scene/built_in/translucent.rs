@@ -11,7 +11,7 @@ use crate::scene::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneEr
 fn skin() -> Material {
     scattering(
         "skin",
-        Medium { scattering: Vec3::new(0.74, 0.88, 1.01), absorption: Vec3::new(0.032, 0.17, 0.48) },
+        Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.48)),
         Vec3::new(0.625, 0.385, 0.241),
         Vec3::new(5.8, 3.8, 2.3),
         (1.4, 0.45),
@@ -22,7 +22,7 @@ fn skin() -> Material {
 fn wax() -> Material {
     scattering(
         "wax",
-        Medium { scattering: Vec3::new(1.2, 1.2, 1.1), absorption: Vec3::new(0.003, 0.006, 0.02) },
+        Medium::isotropic(Vec3::new(1.2, 1.2, 1.1), Vec3::new(0.003, 0.006, 0.02)),
         Vec3::new(0.891, 0.850, 0.735),
         Vec3::new(4.0, 4.0, 4.1),
         (1.44, 0.35),
@@ -33,7 +33,7 @@ fn wax() -> Material {
 pub(super) fn jade() -> Material {
     scattering(
         "jade",
-        Medium { scattering: Vec3::new(0.8, 1.2, 0.9), absorption: Vec3::new(0.12, 0.02, 0.08) },
+        Medium::isotropic(Vec3::new(0.8, 1.2, 0.9), Vec3::new(0.12, 0.02, 0.08)),
         Vec3::new(0.428, 0.745, 0.515),
         Vec3::new(4.6, 3.9, 4.5),
         (1.66, 0.0),

@@ -1,9 +1,10 @@
 //! A material as glTF.
 
 use glam::Vec3;
+use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
-use crate::scene::{Bounds, Dispersion, Material, Mesh};
+use crate::scene::{Bounds, Density, Dispersion, Material, Mesh};
 
 /// The mean length of a straight way through a body, which renderers that do not trace it take as its
 /// thickness: 4 V/S for a convex body (Cauchy), and for several alike that of one. A body that encloses
@@ -48,9 +49,25 @@ pub(super) fn material(material: &Material, thickness: f32) -> Value {
     if let Some(sigma0) = material.sigma0 {
         extras.insert("sigma0".to_owned(), json!(sigma0.to_array()));
     }
-    if let Some(medium) = material.medium {
+    if let Some(medium) = &material.medium {
         extras.insert("scattering".to_owned(), json!(medium.scattering.to_array()));
         extras.insert("absorption".to_owned(), json!(medium.absorption.to_array()));
+        if medium.anisotropy != 0.0 {
+            extras.insert("anisotropy".to_owned(), json!(medium.anisotropy));
+        }
+        if let Density::Veins(VeinsPattern { frequency, width, least, greatest, octaves, seed }) = medium.density {
+            extras.insert(
+                "veins".to_owned(),
+                json!({
+                    "frequency": frequency,
+                    "width": width,
+                    "least": least,
+                    "greatest": greatest,
+                    "octaves": octaves,
+                    "seed": seed,
+                }),
+            );
+        }
     }
     let mut written = json!({
         "name": material.name,

@@ -1,6 +1,7 @@
 use super::material::thickness;
 use super::*;
-use crate::scene::{BUILT_IN, Dispersion, Light, Medium, Mineral, gltf};
+use crate::scene::{BUILT_IN, Density, DensityGrid, Dispersion, Light, Medium, Mineral, gltf};
+use lapidary_veins::VeinsPattern;
 
 fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {
     let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -55,7 +56,18 @@ fn json_of(scene: &Scene) -> Value {
 }
 
 fn medium() -> Medium {
-    Medium { scattering: Vec3::new(0.0, f32::MIN_POSITIVE, 0.1), absorption: Vec3::new(1.0 / 7.0, f32::MAX, 0.0) }
+    Medium {
+        anisotropy: -0.3,
+        density: Density::Veins(VeinsPattern {
+            frequency: 0.1,
+            width: 0.3,
+            least: 0.0,
+            greatest: 1.7,
+            octaves: 3,
+            seed: u32::MAX,
+        }),
+        ..Medium::isotropic(Vec3::new(0.0, f32::MIN_POSITIVE, 0.1), Vec3::new(1.0 / 7.0, f32::MAX, 0.0))
+    }
 }
 
 #[test]
@@ -226,6 +238,10 @@ fn what_gltf_forbids_is_refused() {
     let mut scene = good.clone();
     scene.objects[0].material.medium = Some(broken);
     assert!(write(&scene).unwrap_err().to_string().contains("absorption"));
+    let grid = DensityGrid::new(Vec3::ZERO, Vec3::ONE, glam::UVec3::ONE, vec![1.0]).expect("sound");
+    let density = Density::Grid(std::sync::Arc::new(grid));
+    scene.objects[0].material.medium = Some(Medium { density, ..medium() });
+    assert!(write(&scene).unwrap_err().to_string().contains("grid"));
     assert!(refused(|s| s.objects[0].mesh.uvs = vec![Vec2::ZERO]).contains("texture coordinates"));
     let uvs = |s: &mut Scene| s.objects[0].mesh.uvs = vec![Vec2::INFINITY; s.objects[0].mesh.positions.len()];
     assert!(refused(uvs).contains("texture coordinate is not finite"));

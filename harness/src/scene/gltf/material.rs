@@ -3,8 +3,8 @@
 //!
 //! `sellmeier` there names a measured Sellmeier equation, one of [`Mineral::ALL`]. It takes the place of
 //! `KHR_materials_dispersion`, and gives the refractive index too, with which the file's own, if it has one, must
-//! agree. `sigma0` is [`Material::sigma0`]; `scattering` and `absorption`, which come together, are
-//! [`Material::medium`]. All three are lengths, or per length, of the world: as with `attenuationDistance`, the scale of
+//! agree. `sigma0` is [`Material::sigma0`]; `scattering` and `absorption`, which come together, and with them
+//! `anisotropy` and `veins`, are [`Material::medium`]. All are lengths, or per length, of the world: as with `attenuationDistance`, the scale of
 //! a node does not change them. Every body is taken as solid and traced, so `thicknessFactor`, a stand-in for tracing,
 //! is not read.
 
@@ -18,7 +18,8 @@ use serde_json::value::RawValue;
 
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
-use crate::scene::{Dispersion, Material, Medium, Mineral};
+use super::medium::medium;
+use crate::scene::{Dispersion, Material, Mineral};
 
 /// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
 const INDEX_AGREES: f32 = 0.005;
@@ -145,15 +146,19 @@ struct Extras<'a> {
 
 /// `extras.lapidary`, of which a newer program may know more.
 #[derive(Deserialize)]
-struct Lapidary<'a> {
+pub(super) struct Lapidary<'a> {
     #[serde(borrow, default, deserialize_with = "present")]
     sellmeier: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
     sigma0: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
-    scattering: Option<&'a RawValue>,
+    pub(super) scattering: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "present")]
-    absorption: Option<&'a RawValue>,
+    pub(super) absorption: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) anisotropy: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) veins: Option<&'a RawValue>,
 }
 
 /// A member that is there, even where it is null: a writer that has no number for a NaN writes that.
@@ -192,21 +197,8 @@ fn mineral(json: &RawValue) -> Result<Mineral, String> {
     })
 }
 
-/// The medium of `extras.lapidary`, of which no half is left out.
-fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
-    match (extras.scattering, extras.absorption) {
-        (None, None) => Ok(None),
-        (Some(scattering), Some(absorption)) => Ok(Some(Medium {
-            scattering: lengths("scattering", scattering)?,
-            absorption: lengths("absorption", absorption)?,
-        })),
-        (Some(_), None) => Err("its extras.lapidary has scattering but no absorption; give both or neither".to_owned()),
-        (None, Some(_)) => Err("its extras.lapidary has absorption but no scattering; give both or neither".to_owned()),
-    }
-}
-
 /// The member `name` of `extras.lapidary`: numbers for red, green and blue that have a length unit.
-fn lengths(name: &str, json: &RawValue) -> Result<Vec3, String> {
+pub(super) fn lengths(name: &str, json: &RawValue) -> Result<Vec3, String> {
     let numbers = serde_json::from_str::<[f64; 3]>(json.get()).ok();
     let single = numbers.map(|numbers| Vec3::from_array(numbers.map(|number| number as f32)));
     single.filter(|single| single.is_finite() && single.cmpge(Vec3::ZERO).all()).ok_or_else(|| {

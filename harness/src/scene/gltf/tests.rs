@@ -210,7 +210,7 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         attenuation_distance: 0.5,
         roughness: 0.25,
         sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
-        medium: Some(Medium { scattering: Vec3::new(0.74, 0.88, 1.01), absorption: Vec3::new(0.032, 0.17, 0.0) }),
+        medium: Some(Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.0))),
     };
     assert_eq!(material.unwrap(), expected);
 }
@@ -238,7 +238,7 @@ fn a_scale_changes_no_coefficient() {
         d["materials"][0]["extras"] = extras;
     });
     let material = scene.unwrap().objects.remove(0).material;
-    let medium = Medium { scattering: Vec3::new(4.0, 5.0, 6.0), absorption: Vec3::new(7.0, 8.0, 9.0) };
+    let medium = Medium::isotropic(Vec3::new(4.0, 5.0, 6.0), Vec3::new(7.0, 8.0, 9.0));
     assert_eq!((material.sigma0, material.medium), (Some(Vec3::new(1.0, 2.0, 3.0)), Some(medium)));
 }
 

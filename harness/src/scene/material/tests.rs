@@ -57,11 +57,14 @@ fn broken_promises_are_named() {
         assert!(Material { roughness: bad, ..Material::standard() }.problem().unwrap().contains("roughness"));
     }
     for bad in [Vec3::new(0.0, -1e-9, 0.0), Vec3::NAN, Vec3::INFINITY] {
-        let good = Medium { scattering: Vec3::ONE, absorption: Vec3::ZERO };
+        let good = Medium::isotropic(Vec3::ONE, Vec3::ZERO);
         let problem = |material: Material| material.problem().unwrap_or("");
-        assert_eq!(problem(Material { sigma0: Some(Vec3::ZERO), medium: Some(good), ..Material::standard() }), "");
+        assert_eq!(
+            problem(Material { sigma0: Some(Vec3::ZERO), medium: Some(good.clone()), ..Material::standard() }),
+            ""
+        );
         assert!(problem(Material { sigma0: Some(bad), ..Material::standard() }).contains("sigma0"));
-        for medium in [Medium { scattering: bad, ..good }, Medium { absorption: bad, ..good }] {
+        for medium in [Medium { scattering: bad, ..good.clone() }, Medium { absorption: bad, ..good }] {
             assert!(problem(Material { medium: Some(medium), ..Material::standard() }).contains("scattering"));
         }
     }

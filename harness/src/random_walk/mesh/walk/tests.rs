@@ -8,14 +8,14 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A box with these corners.
-fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
+pub(super) fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
     let corner = |k: u8| Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), greatest, least);
     let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
     Mesh::with_shared_normals((0..8).map(corner).collect(), indices, Averaging::Angle)
 }
 
-fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
+pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
     let object = |(mesh, medium)| {
         let material = Material { medium: Some(medium), ..Material::standard() };
         Object { name: "body".to_owned(), mesh, material }
@@ -25,16 +25,20 @@ fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
 }
 
 /// Matter whose lengths are in mean free paths.
-fn grey(albedo: f32) -> Medium {
-    Medium { scattering: Vec3::splat(albedo), absorption: Vec3::splat(1.0 - albedo) }
+pub(super) fn grey(albedo: f32) -> Medium {
+    Medium::isotropic(Vec3::splat(albedo), Vec3::splat(1.0 - albedo))
 }
 
-fn sun(toward: DVec3) -> Light {
+pub(super) fn sun(toward: DVec3) -> Light {
     Light::Directional { toward: toward.as_vec3(), irradiance: Vec3::ONE }
 }
 
 /// The mean of a sample and its standard error.
-fn estimate(count: u32, seed: u64, sample: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (DVec3, DVec3) {
+pub(super) fn estimate(
+    count: u32,
+    seed: u64,
+    sample: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync,
+) -> (DVec3, DVec3) {
     const BATCHES: u32 = 16;
     let batch = |batch: u32| {
         let mut random = generator(seed, batch.into());
@@ -51,9 +55,9 @@ fn estimate(count: u32, seed: u64, sample: impl Fn(&mut Xoshiro256PlusPlus) -> D
 }
 
 /// What a ray brings, and what is left of it where nothing scatters it.
-fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> Outcome {
+pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> Outcome {
     let Some(hit) = matter.enter(origin, direction) else { return Outcome::default() };
-    let outcome = matter.follow(origin, direction, hit, random);
+    let outcome = matter.walk(origin, direction, hit, random);
     assert!(!outcome.lost);
     outcome
 }
@@ -71,7 +75,7 @@ fn diffuse(normal: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
 fn spheres_show_what_leaves_them() {
     for (radius, albedo) in [(2.0, 0.9), (2.0, 1.0), (10.0, 0.9), (10.0, 1.0)] {
         let scene = scene(vec![(sphere(radius, 256), grey(albedo))], vec![sun(DVec3::Z)]);
-        let matter = Matter::new(&scene, None).expect("media");
+        let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
         let expected = profile(radius, f64::from(albedo), 400_000, 21);
         let (mut total, mut expected_total, mut variance) = (0.0, 0.0, 0.0);
         let (mut deviations, mut compared) = (Vec::new(), 0);
@@ -115,7 +119,7 @@ fn spheres_show_what_leaves_them() {
 
 /// Chandrasekhar's H function of isotropic scattering, as Stibbs and Weir have it ("On the H-functions for isotropic scattering", 1959):
 /// ln H = -mu/pi times the integral of ln(1 - albedo phi cot phi) / (cos^2 phi + mu^2 sin^2 phi) over phi from 0 to pi/2.
-fn h(mu: f64, albedo: f64) -> f64 {
+pub(super) fn h(mu: f64, albedo: f64) -> f64 {
     const STEPS: u32 = 2000;
     let sum: f64 = (0..STEPS)
         .map(|k| FRAC_PI_2 * (f64::from(k) + 0.5) / f64::from(STEPS))
@@ -140,7 +144,7 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
                 DVec3::new(sine * x, sine * y, cosine)
             };
             let scene = scene(vec![(body.clone(), grey(albedo as f32))], vec![sun(towards(mu0, 0.0))]);
-            let matter = Matter::new(&scene, None).expect("media");
+            let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
             let eye = towards(mu, azimuth);
             let aside = DVec3::new(0.31, 0.17, 0.0);
             let (mean, error) = estimate(16_000, deviations.len() as u64, |random| {
@@ -165,12 +169,12 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
 #[test]
 fn white_furnace() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
-    let white = |scattering| Medium { scattering, absorption: Vec3::ZERO };
+    let white = |scattering| Medium::isotropic(scattering, Vec3::ZERO);
     let ring = torus(4.0, 1.5, 64, 32);
     let ball = sphere(2.0, 64);
     let bodies = vec![(ring, white(Vec3::new(0.5, 1.0, 2.0))), (ball, white(Vec3::new(3.0, 0.2, 1.0)))];
     let scene = scene(bodies, Vec::new());
-    let matter = Matter::new(&scene, Some(&ones)).expect("media");
+    let matter = Matter::new(&scene, Boundary::Matched, Some(&ones)).expect("media");
     let sample = |random: &mut Xoshiro256PlusPlus| {
         // From all sides, through both bodies or one.
         let (towards, around) = (isotropic(random), isotropic(random));
@@ -192,11 +196,11 @@ fn white_furnace() {
 }
 
 /// A scene through which rays along z pass: a body of two parts about one of another matter.
-fn layers() -> Vec<(Mesh, Medium)> {
+pub(super) fn layers() -> Vec<(Mesh, Medium)> {
     let layer = |from: f32, to: f32| cuboid(Vec3::new(-1.0, -1.0, from), Vec3::new(1.0, 1.0, to));
     let mut outer = layer(0.0, 1.0);
     outer.append(&layer(4.0, 6.0));
-    let medium = |scattering, absorption| Medium { scattering, absorption };
+    let medium = |scattering, absorption| Medium::isotropic(scattering, absorption);
     vec![
         (outer, medium(Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.01, 0.0, 0.05))),
         (layer(2.0, 3.0), medium(Vec3::new(0.3, 0.1, 0.0), Vec3::ZERO)),
@@ -230,7 +234,7 @@ fn light_is_weakened_by_all_matter_on_its_way() {
     ];
     for (light, distance, depth) in cases {
         let scene = scene(layers(), vec![light]);
-        let matter = Matter::new(&scene, None).expect("media");
+        let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
         let from = DVec3::new(0.125, 0.25, 0.25);
         let found = matter.direct(from, 0, &mut generator(1, 0)).expect("no gap");
         let expected = (-depth).exp() / (4.0 * PI * distance * distance);
@@ -246,11 +250,11 @@ fn light_is_weakened_by_all_matter_on_its_way() {
 #[test]
 fn a_deep_point_gets_its_light_in_the_mean() {
     let body = cuboid(Vec3::splat(-8.0), Vec3::splat(8.0));
-    let medium = Medium { scattering: Vec3::new(0.3, 0.4, 0.2), absorption: Vec3::ZERO };
+    let medium = Medium::isotropic(Vec3::new(0.3, 0.4, 0.2), Vec3::ZERO);
     let lamp = Light::Point { position: Vec3::new(0.0, 0.0, -7.0), intensity: Vec3::splat(49.0) };
     for (light, way) in [(sun(DVec3::Z), 8.0), (lamp, 7.0)] {
-        let scene = scene(vec![(body.clone(), medium)], vec![light]);
-        let matter = Matter::new(&scene, None).expect("media");
+        let scene = scene(vec![(body.clone(), medium.clone())], vec![light]);
+        let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
         let from = DVec3::new(0.1, 0.2, 0.0);
         let (mean, error) = estimate(40_000, 9, |random| matter.direct(from, 0, random).expect("no gap"));
         let expected = (-way * medium.scattering.as_dvec3()).exp() / (4.0 * PI);
@@ -264,17 +268,17 @@ fn a_deep_point_gets_its_light_in_the_mean() {
 #[test]
 fn what_goes_straight_through_is_weakened_and_no_more() {
     let scene = scene(layers(), vec![sun(DVec3::X)]);
-    let matter = Matter::new(&scene, None).expect("media");
+    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
     let origin = DVec3::new(0.1, 0.2, -5.0);
     let (mean, error) = estimate(40_000, 2, |random| seen(&matter, origin, DVec3::Z, random).straight);
     let expected = (-3.0 * DVec3::new(0.11, 0.2, 0.35) - DVec3::new(0.3, 0.1, 0.0)).exp();
     println!("{mean} ± {error}, expected {expected}");
     assert!((mean - expected).abs().cmplt(4.0 * error).all());
 
-    let absorbing = Medium { scattering: Vec3::ZERO, absorption: Vec3::new(0.0, 1.0, 0.2) };
-    let bodies = vec![(cuboid(Vec3::NEG_ONE, Vec3::ONE), absorbing)];
+    let absorbing = Medium::isotropic(Vec3::ZERO, Vec3::new(0.0, 1.0, 0.2));
+    let bodies = vec![(cuboid(Vec3::NEG_ONE, Vec3::ONE), absorbing.clone())];
     let scene = self::scene(bodies, vec![sun(DVec3::X)]);
-    let matter = Matter::new(&scene, None).expect("media");
+    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
     let (mean, error) = estimate(40_000, 4, |random| {
         let outcome = seen(&matter, origin, DVec3::Z, random);
         assert_eq!(outcome.radiance, DVec3::ZERO);
@@ -288,21 +292,21 @@ fn what_goes_straight_through_is_weakened_and_no_more() {
 /// Three channels in one walk are what each is alone, and the statistics of a walk in matter of one colour are those of each channel.
 #[test]
 fn channels_do_not_mix() {
-    let medium = Medium { scattering: Vec3::new(0.74, 0.88, 1.5), absorption: Vec3::new(0.032, 0.17, 2.0) };
+    let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 2.0));
     let body = torus(4.0, 1.5, 64, 32).placed(DQuat::from_rotation_x(0.7), DVec3::ZERO);
     let lamp = Light::Point { position: Vec3::new(0.0, 0.0, 0.5), intensity: Vec3::splat(10.0) };
-    let mean = |medium| {
-        let scene = scene(vec![(body.clone(), medium)], vec![sun(DVec3::new(0.6, 0.8, 0.0)), lamp]);
-        let matter = Matter::new(&scene, None).expect("media");
+    let mean = |medium: &Medium| {
+        let scene = scene(vec![(body.clone(), medium.clone())], vec![sun(DVec3::new(0.6, 0.8, 0.0)), lamp]);
+        let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
         estimate(100_000, 17, |random| {
             let (x, y) = in_disc(random);
             seen(&matter, DVec3::new(6.0 * x, 6.0 * y, 20.0), DVec3::NEG_Z, random).radiance
         })
     };
-    let (all, all_error) = mean(medium);
+    let (all, all_error) = mean(&medium);
     for channel in 0..3 {
         let only = |color: Vec3| Vec3::splat(color[channel]);
-        let (one, error) = mean(Medium { scattering: only(medium.scattering), absorption: only(medium.absorption) });
+        let (one, error) = mean(&Medium::isotropic(only(medium.scattering), only(medium.absorption)));
         println!(
             "channel {channel}: {:.5} ± {:.5}, alone {:.5} ± {:.5}",
             all[channel], all_error[channel], one[channel], error[channel]

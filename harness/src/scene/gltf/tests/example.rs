@@ -14,7 +14,7 @@ fn the_documented_example_loads_as_it_says() {
     assert_eq!((material.name.as_str(), material.ior, material.roughness), ("skin", 1.4, 0.45));
     assert_eq!(material.base_color, Vec3::new(0.625, 0.385, 0.241));
     assert_eq!(material.sigma0, Some(Vec3::new(5.8, 3.8, 2.3)));
-    let medium = Medium { scattering: Vec3::new(0.74, 0.88, 1.01), absorption: Vec3::new(0.032, 0.17, 0.48) };
+    let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.48));
     assert_eq!(material.medium, Some(medium));
 
     let mesh = only_mesh(&scene);

@@ -229,6 +229,33 @@ fn media_and_widths_that_are_no_lengths() {
             material_refused("extras", json!({"lapidary": members}), &format!("its extras.lapidary.{name} is "));
         }
     }
+    let media = |name: &str, value: Value| {
+        let mut members = json!({"scattering": good, "absorption": good});
+        members[name] = value;
+        json!({"lapidary": members})
+    };
+    for bad in [json!(1), json!(-1.5), json!("x"), json!([0.5]), Value::Null] {
+        material_refused("extras", media("anisotropy", bad), "its extras.lapidary.anisotropy is ");
+    }
+    let veins = json!({"frequency": 0.2, "width": 0.1, "least": 0.5, "greatest": 2, "octaves": 3, "seed": 1});
+    for (name, bad) in [
+        ("frequency", json!(0)),
+        ("width", json!(0)),
+        ("least", json!(-1)),
+        ("greatest", json!(1e9)),
+        ("octaves", json!(9)),
+        ("octaves", json!(1.5)),
+        ("seed", json!(-1)),
+        ("seed", Value::Null),
+        ("colour", json!(1)),
+    ] {
+        let mut veins = veins.clone();
+        veins[name] = bad;
+        material_refused("extras", media("veins", veins), "its extras.lapidary.veins is ");
+    }
+    material_refused("extras", media("veins", json!(3)), "its extras.lapidary.veins is 3");
+    let says = "its extras.lapidary has anisotropy or veins but neither scattering nor absorption; give both";
+    material_refused("extras", json!({"lapidary": {"veins": veins}}), says);
     let says = "its extras.lapidary has scattering but no absorption; give both or neither";
     material_refused("extras", json!({"lapidary": {"scattering": good}}), says);
     let says = "its extras.lapidary has absorption but no scattering; give both or neither";

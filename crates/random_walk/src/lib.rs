@@ -1,0 +1,207 @@
+//! Rust mirror of `wgsl/random_walk.wgsl`, line by line: light followed through scattering matter by chance. Units, domain and
+//! accuracy stand above the WGSL functions. [`slab`] mirrors the recipe `random_walk_slab`.
+
+pub mod oracle;
+pub mod slab;
+
+use glam::{UVec4, Vec2, Vec3, Vec4};
+
+/// A tentative collision scatters the light.
+pub const RANDOM_WALK_SCATTERED: u32 = 0;
+/// It absorbs the light.
+pub const RANDOM_WALK_ABSORBED: u32 = 1;
+/// There is no collision.
+pub const RANDOM_WALK_PASSED: u32 = 2;
+/// A majorant counts as at least this.
+pub const RANDOM_WALK_THINNEST: f32 = 1e-30;
+/// The anisotropy counts as at most this, of either sign.
+pub const RANDOM_WALK_STRAIGHTEST: f32 = 0.999999;
+
+/// Two unit vectors that make a right-handed basis with a normal as third.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RandomWalkBasis {
+    /// At right angles to the normal.
+    pub tangent: Vec3,
+    /// normal x tangent.
+    pub bitangent: Vec3,
+}
+
+/// What becomes of light at a boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RandomWalkCrossing {
+    /// Unit direction, refracted or reflected.
+    pub direction: Vec3,
+    /// Whether the light crosses the boundary.
+    pub crosses: bool,
+}
+
+/// Random bits of a counter, by pcg4d.
+pub fn bits(counter: UVec4) -> UVec4 {
+    let mut v = counter.wrapping_mul(UVec4::splat(1664525)).wrapping_add(UVec4::splat(1013904223));
+    v.x = v.x.wrapping_add(v.y.wrapping_mul(v.w));
+    v.y = v.y.wrapping_add(v.z.wrapping_mul(v.x));
+    v.z = v.z.wrapping_add(v.x.wrapping_mul(v.y));
+    v.w = v.w.wrapping_add(v.y.wrapping_mul(v.z));
+    v ^= v >> UVec4::splat(16);
+    v.x = v.x.wrapping_add(v.y.wrapping_mul(v.w));
+    v.y = v.y.wrapping_add(v.z.wrapping_mul(v.x));
+    v.z = v.z.wrapping_add(v.x.wrapping_mul(v.y));
+    v.w = v.w.wrapping_add(v.y.wrapping_mul(v.z));
+    v
+}
+
+/// Four numbers in [0, 1), on the multiples of 2⁻²⁴.
+pub fn random(counter: UVec4) -> Vec4 {
+    (bits(counter) >> UVec4::splat(8)).as_vec4() * 5.9604645e-8
+}
+
+/// Way to the next tentative collision.
+pub fn free_path(u: f32, majorant: f32) -> f32 {
+    let v = u.clamp(0.0, 0.99999994);
+    let bits = (1.0 - v).to_bits().cast_signed();
+    let exponent = (bits - 0x3f3504f3) >> 23;
+    let mantissa = f32::from_bits((bits - (exponent << 23)).cast_unsigned());
+    let less = if exponent == 0 { -v } else { mantissa - 1.0 };
+    let s = less / (2.0 + less);
+    let square = s * s;
+    let series = 1.0 + square * (0.33333334 + square * (0.2 + square * 0.14595));
+    let depth = (-exponent) as f32 * 0.6931472 - 2.0 * s * series;
+    depth / majorant.max(RANDOM_WALK_THINNEST)
+}
+
+/// The same by the built-in logarithm, a naive form.
+pub fn free_path_naive(u: f32, majorant: f32) -> f32 {
+    -(1.0 - u).ln() / majorant
+}
+
+/// What happens at a tentative collision: delta tracking.
+pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
+    let place = u * majorant;
+    if place < scattering {
+        return RANDOM_WALK_SCATTERED;
+    }
+    if place < scattering + absorption {
+        return RANDOM_WALK_ABSORBED;
+    }
+    RANDOM_WALK_PASSED
+}
+
+/// What a tentative collision leaves of a transmittance: ratio tracking.
+pub fn ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
+    let most = majorant.max(RANDOM_WALK_THINNEST);
+    transmittance * ((most - density).max(0.0) / most)
+}
+
+/// The same with the quotient taken first, a naive form.
+pub fn ratio_naive(transmittance: f32, density: f32, majorant: f32) -> f32 {
+    transmittance * (1.0 - density / majorant)
+}
+
+/// Henyey and Greenstein's phase function, 1/sr.
+pub fn phase(cosine: f32, g: f32) -> f32 {
+    let a = g.abs().min(RANDOM_WALK_STRAIGHTEST);
+    let c = (sign(g) * cosine).clamp(-1.0, 1.0);
+    let rest = 1.0 - a;
+    let squared = rest * rest + 2.0 * a * (1.0 - c);
+    0.07957747 * rest * (1.0 + a) / (squared * squared.sqrt())
+}
+
+/// WGSL's: 0 for 0.
+fn sign(value: f32) -> f32 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+/// The phase function as it is printed, a naive form.
+pub fn phase_naive(cosine: f32, g: f32) -> f32 {
+    0.07957747 * (1.0 - g * g) / (1.0 + g * g - 2.0 * g * cosine).powf(1.5)
+}
+
+/// Cosine and sine of the deflection from a uniform number.
+pub fn deflection(u: f32, g: f32) -> Vec2 {
+    let a = g.clamp(-RANDOM_WALK_STRAIGHTEST, RANDOM_WALK_STRAIGHTEST);
+    let v = u.clamp(0.0, 1.0);
+    let forwards = (1.0 + a) * v;
+    let backwards = (1.0 - a) * (1.0 - v);
+    let sum = forwards + backwards;
+    let root = (1.0 - a) * (1.0 + a) / sum;
+    let above = forwards * (1.0 + a + root) / sum;
+    let below = backwards * (1.0 - a + root) / sum;
+    Vec2::new(0.5 * (above - below), (above * below).sqrt())
+}
+
+/// The deflection as it is printed, a naive form.
+pub fn deflection_naive(u: f32, g: f32) -> Vec2 {
+    let root = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
+    let cosine = (1.0 + g * g - root * root) / (2.0 * g);
+    Vec2::new(cosine, (1.0 - cosine * cosine).max(0.0).sqrt())
+}
+
+/// Cosine and sine of an angle in turns.
+pub fn azimuth(turns: f32) -> Vec2 {
+    let wrapped = turns - turns.round_ties_even();
+    let folded = Vec2::new(0.25 - wrapped.abs(), wrapped.max(-0.5 - wrapped).min(0.5 - wrapped));
+    let s = folded * folded;
+    folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
+}
+
+/// Two unit vectors at right angles to a normal and to each other.
+pub fn basis(normal: Vec3) -> RandomWalkBasis {
+    let side = if normal.z >= 0.0 { 1.0 } else { -1.0 };
+    let a = -1.0 / (side + normal.z);
+    let b = normal.x * normal.y * a;
+    RandomWalkBasis {
+        tangent: Vec3::new(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
+        bitangent: Vec3::new(b, side + normal.y * normal.y * a, -normal.y),
+    }
+}
+
+/// The basis without the branch, a naive form.
+pub fn basis_naive(normal: Vec3) -> RandomWalkBasis {
+    let a = 1.0 / (1.0 + normal.z);
+    let b = -normal.x * normal.y * a;
+    RandomWalkBasis {
+        tangent: Vec3::new(1.0 - normal.x * normal.x * a, b, -normal.x),
+        bitangent: Vec3::new(b, 1.0 - normal.y * normal.y * a, -normal.y),
+    }
+}
+
+/// Direction after a scattering.
+pub fn turn(direction: Vec3, deflection: Vec2, azimuth: Vec2) -> Vec3 {
+    let basis = basis(direction);
+    let aside = azimuth.x * basis.tangent + azimuth.y * basis.bitangent;
+    let turned = deflection.x * direction + deflection.y * aside;
+    turned * (1.5 - 0.5 * turned.dot(turned))
+}
+
+/// Direction from all alike.
+pub fn isotropic(u: Vec2) -> Vec3 {
+    let v = u.x.clamp(0.0, 1.0);
+    let radius = 2.0 * (v * (1.0 - v)).sqrt();
+    let around = azimuth(u.y);
+    Vec3::new(radius * around.x, radius * around.y, 1.0 - 2.0 * v)
+}
+
+/// Light at a smooth dielectric boundary, reflected or refracted by chance.
+pub fn boundary(incident: Vec3, normal: Vec3, relative_index: f32, u: f32) -> RandomWalkCrossing {
+    let m = (relative_index - 1.0) * (relative_index + 1.0);
+    if m == 0.0 {
+        return RandomWalkCrossing { direction: incident, crosses: true };
+    }
+    let c = (-normal.dot(incident)).clamp(0.0, 1.0);
+    let sine_squared = (1.0 - c) * (1.0 + c);
+    let n_squared = relative_index * relative_index;
+    let nc_squared = n_squared * c * c;
+    let g = (nc_squared + m * sine_squared).max(0.0).sqrt();
+    let s_root = c + g;
+    let s = m / (s_root * s_root).max(m.abs());
+    let p_root = n_squared * c + g;
+    let p_numerator = m * (nc_squared - sine_squared);
+    let p = p_numerator / (p_root * p_root).max(p_numerator.abs());
+    if u < 0.5 * (s * s + p * p) {
+        return RandomWalkCrossing { direction: incident + 2.0 * c * normal, crosses: false };
+    }
+    RandomWalkCrossing { direction: (incident - m / s_root * normal) / relative_index, crosses: true }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,280 @@
+//! Walks where matter is not of one density, scatters forwards or back, or has a surface that bends and reflects light.
+//!
+//! Delta tracking keeps one walk for all three channels: tentative collisions are drawn by the chosen channel's majorant, and since the density is
+//! common to the channels, so is the probability that one of them is real. The balance heuristic weights each flight by what each channel would
+//! have done, as in matter of one density.
+//!
+//! No ray from a collision finds a light through a surface that bends it, but by chance. So with a dielectric boundary light is found by walks
+//! that leave: the environment, and directional lights as small discs. Fresnel's share decides by chance between refraction and reflection.
+
+use super::super::Boundary;
+use super::{Coefficients, Matter, Outcome, SURE, WEAK, arrival, channel, weighted};
+use crate::random_walk::isotropic;
+use crate::reference::geometry::{Hit, Place};
+use crate::reference::surroundings;
+use crate::scene::{Density, Light, Object};
+use glam::{DVec2, DVec3};
+use lapidary_random_walk::oracle;
+use rand::RngExt as _;
+use rand::rngs::Xoshiro256PlusPlus;
+use std::f64::consts::{PI, TAU};
+
+/// Half the angle under which a directional light is seen behind a dielectric boundary, in radians. Half shadows of stone are wider.
+const LIGHT_RADIUS: f64 = 0.1;
+/// A walk that meets surfaces more often than this between two collisions is caught between them.
+const MOST_REFLECTIONS: u32 = 10_000;
+/// A transmittance below this goes on with the probability [`GOES_ON`].
+const FAINT: f64 = 0.02;
+const GOES_ON: f64 = 0.25;
+
+/// What is not in a body's coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Structure {
+    anisotropy: f64,
+    density: Density,
+    /// The density's greatest.
+    most: f64,
+    /// Refractive index, relative to what is about all bodies; 1 where the boundary is matched.
+    index: f64,
+}
+
+impl Structure {
+    /// Nothing where the object has no medium.
+    pub(super) fn new(object: &Object, boundary: Boundary) -> Option<Self> {
+        let medium = object.material.medium.as_ref()?;
+        Some(Self {
+            anisotropy: medium.anisotropy.into(),
+            density: medium.density.clone(),
+            most: medium.density.most().into(),
+            index: match boundary {
+                Boundary::Matched => 1.0,
+                Boundary::Dielectric => object.material.ior.into(),
+            },
+        })
+    }
+
+    /// Whether the walk for matter of one density, isotropic and without a boundary, will do.
+    pub(super) fn is_plain(&self) -> bool {
+        self.anisotropy == 0.0 && self.density == Density::Uniform && self.index == 1.0
+    }
+
+    /// The density over the greatest.
+    fn share(&self, position: DVec3) -> f64 {
+        if self.most > 0.0 { f64::from(self.density.at(position.as_vec3())) / self.most } else { 0.0 }
+    }
+
+    /// A direction after a scattering.
+    fn scattered(&self, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
+        if self.anisotropy == 0.0 {
+            return isotropic(random);
+        }
+        let DVec2 { x: cosine, y: sine } = oracle::deflection(random.random(), self.anisotropy);
+        let (across, along) = (TAU * random.random::<f64>()).sin_cos();
+        let (a, b) = direction.any_orthonormal_pair();
+        (cosine * direction + sine * (along * a + across * b)).normalize()
+    }
+
+    /// Of light that turns by an angle of that cosine.
+    fn phase(&self, cosine: f64) -> f64 {
+        if self.anisotropy == 0.0 { 0.25 / PI } else { oracle::phase(cosine, self.anisotropy) }
+    }
+
+    /// Turns a direction at the boundary, whose `normal` is on the side that it comes from; whether it goes to the other side.
+    fn crosses(&self, direction: &mut DVec3, normal: DVec3, index: f64, random: &mut Xoshiro256PlusPlus) -> bool {
+        if self.index == 1.0 {
+            return true;
+        }
+        let crossing = oracle::boundary(*direction, normal, index, random.random());
+        *direction = crossing.direction.normalize();
+        crossing.crosses
+    }
+}
+
+/// A ray.
+#[derive(Clone, Copy)]
+struct Ray {
+    position: DVec3,
+    direction: DVec3,
+}
+
+/// Where a ray outside of all bodies comes to.
+enum Arrival {
+    /// Inside a body, on its surface.
+    Body(Place),
+    Nowhere,
+    /// Between surfaces that send it to and fro.
+    Caught,
+}
+
+impl Matter<'_> {
+    /// [`Matter::follow`] in any matter.
+    pub(super) fn follow_general(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        hit: Hit,
+        random: &mut Xoshiro256PlusPlus,
+    ) -> Outcome {
+        let mut outcome = Outcome::default();
+        let mut throughput = DVec3::ONE;
+        let mut ray = Ray { position: origin, direction };
+        let mut arrival = self.arrive(&mut ray, Some(hit), random);
+        'bodies: loop {
+            let Place { body, face } = match arrival {
+                Arrival::Body(place) => place,
+                Arrival::Nowhere => {
+                    self.leave(ray.direction, throughput, &mut outcome);
+                    return outcome;
+                }
+                Arrival::Caught => break,
+            };
+            let (mut left, mut reflections) = (Some(face), 0);
+            let structure = &self.structures[body];
+            let Coefficients { scattering, extinction } = self.coefficients[body];
+            let majorant = structure.most * extinction;
+            loop {
+                let depth = -(1.0 - random.random::<f64>()).ln();
+                let chosen = channel(throughput, random.random());
+                let free = if majorant[chosen] > 0.0 { depth / majorant[chosen] } else { f64::INFINITY };
+                if let Some(out) = self.bodies.leave_body(ray.position, ray.direction, body, left, free) {
+                    let transmittance = (-out.distance * majorant).exp();
+                    throughput = weighted(throughput, transmittance, transmittance);
+                    ray.position += out.distance * ray.direction;
+                    if structure.crosses(&mut ray.direction, -out.normal, structure.index.recip(), random) {
+                        let next = self.bodies.enter(ray.position, ray.direction, Some(out.place));
+                        arrival = self.arrive(&mut ray, next, random);
+                        continue 'bodies;
+                    }
+                    left = Some(out.place.face);
+                    reflections += 1;
+                    if reflections > MOST_REFLECTIONS {
+                        break 'bodies;
+                    }
+                    continue;
+                }
+                ray.position += free * ray.direction;
+                if !self.holds(ray.position) {
+                    break 'bodies;
+                }
+                left = None;
+                let transmittance = (-free * majorant).exp();
+                // Of all channels alike, so that the weights of a real collision do not know it.
+                let share = structure.share(ray.position);
+                if share < 1.0 && random.random::<f64>() >= share {
+                    throughput = weighted(throughput, majorant * transmittance, majorant * transmittance);
+                    continue;
+                }
+                throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
+                let Some(direct) = self.direct_general(ray, body, random) else { break 'bodies };
+                outcome.radiance += throughput * direct;
+                outcome.scatterings += 1;
+                reflections = 0;
+                let strongest = throughput.max_element();
+                if strongest < WEAK {
+                    if random.random::<f64>() * WEAK >= strongest {
+                        return outcome;
+                    }
+                    throughput *= WEAK / strongest;
+                }
+                ray.direction = structure.scattered(ray.direction, random);
+            }
+        }
+        outcome.lost = true;
+        outcome
+    }
+
+    /// Takes a ray outside on to the body that it enters, reflected by those that it does not; `next` is what it meets.
+    fn arrive(&self, ray: &mut Ray, mut next: Option<Hit>, random: &mut Xoshiro256PlusPlus) -> Arrival {
+        for _ in 0..MOST_REFLECTIONS {
+            let Some(hit) = next else { return Arrival::Nowhere };
+            ray.position += hit.distance * ray.direction;
+            let structure = &self.structures[hit.place.body];
+            if structure.crosses(&mut ray.direction, hit.normal, structure.index, random) {
+                return Arrival::Body(hit.place);
+            }
+            next = self.bodies.enter(ray.position, ray.direction, Some(hit.place));
+        }
+        Arrival::Caught
+    }
+
+    /// Adds what comes along the last direction of a walk.
+    fn leave(&self, direction: DVec3, throughput: DVec3, outcome: &mut Outcome) {
+        if outcome.scatterings == 0 {
+            outcome.straight = throughput;
+            return;
+        }
+        if let Some(environment) = self.environment {
+            outcome.radiance += throughput * surroundings::radiance(environment, direction);
+        }
+        if self.boundary == Boundary::Dielectric {
+            for light in &self.lights {
+                if let Light::Directional { toward, irradiance } = light
+                    && direction.dot(toward.as_dvec3().normalize()) > LIGHT_RADIUS.cos()
+                {
+                    // A disc's irradiance, square to its middle.
+                    outcome.radiance += throughput * irradiance.as_dvec3() / (PI * LIGHT_RADIUS.sin().powi(2));
+                }
+            }
+        }
+    }
+
+    /// [`Matter::direct`] in any matter; nothing at all behind a dielectric boundary.
+    fn direct_general(&self, ray: Ray, body: usize, random: &mut Xoshiro256PlusPlus) -> Option<DVec3> {
+        if self.boundary == Boundary::Dielectric {
+            return Some(DVec3::ZERO);
+        }
+        let structure = &self.structures[body];
+        // Any rate at all gives the right mean: this one is near that by which light fades.
+        let least = self.coefficients[body].extinction.min_element() * structure.most * structure.share(ray.position);
+        let mut sum = DVec3::ZERO;
+        for light in &self.lights {
+            let (direction, distance, irradiance) = arrival(light, ray.position);
+            let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
+            let out = self.bodies.leave_body(ray.position, direction, body, None, limit.min(distance));
+            let way = match out {
+                Some(out) => out.distance,
+                None if distance < limit => distance,
+                None => continue,
+            };
+            let mut transmittance = self.transmittance(body, Ray { direction, ..ray }, way, random);
+            if let Some(out) = out {
+                let position = ray.position + way * direction;
+                self.beyond(position, direction, out, distance - way, |body, position, length| {
+                    transmittance *= self.transmittance(body, Ray { position, direction }, length, random);
+                })?;
+            }
+            let gain = (least * way - SURE).max(0.0).exp();
+            sum += irradiance * gain * transmittance * structure.phase(ray.direction.dot(direction));
+        }
+        Some(sum)
+    }
+
+    /// An estimate of the share of light that is left after a way inside a body, by ratio tracking; exact in matter of one density.
+    fn transmittance(&self, body: usize, ray: Ray, length: f64, random: &mut Xoshiro256PlusPlus) -> DVec3 {
+        let structure = &self.structures[body];
+        let majorant = structure.most * self.coefficients[body].extinction;
+        if structure.density == Density::Uniform {
+            return (-length * majorant).exp();
+        }
+        let rate = majorant.max_element();
+        let mut transmittance = DVec3::ONE;
+        let mut gone = 0.0;
+        while rate > 0.0 {
+            gone -= (1.0 - random.random::<f64>()).ln() / rate;
+            if gone >= length {
+                break;
+            }
+            transmittance *= 1.0 - majorant * (structure.share(ray.position + gone * ray.direction) / rate);
+            if transmittance.max_element() < FAINT {
+                if random.random::<f64>() >= GOES_ON {
+                    return DVec3::ZERO;
+                }
+                transmittance /= GOES_ON;
+            }
+        }
+        transmittance
+    }
+}
+
+#[cfg(test)]
+mod tests;

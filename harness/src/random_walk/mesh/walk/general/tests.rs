@@ -1,0 +1,218 @@
+use super::super::tests::{cuboid, estimate, grey, h, scene, seen, sun};
+use super::*;
+use crate::random_walk::{generator, half_space};
+use crate::render::Environment;
+use crate::scene::environment_map::EnvironmentMap;
+use crate::scene::surfaces::{sphere, torus};
+use crate::scene::{DensityGrid, Medium, Mesh};
+use glam::{UVec3, Vec3};
+use lapidary_veins::VeinsPattern;
+use std::sync::Arc;
+
+fn veins() -> Density {
+    Density::Veins(VeinsPattern { frequency: 0.8, width: 0.3, least: 0.3, greatest: 1.6, octaves: 2, seed: 4 })
+}
+
+/// A density of 1/2 in all of a body, as a grid that is of 1 far away from it: half of all collisions are none.
+fn split_grid(least: Vec3, greatest: Vec3) -> Density {
+    let mut densities = vec![0.5; 64];
+    densities[63] = 1.0;
+    let wide = 4.0 * (greatest - least);
+    Density::Grid(Arc::new(DensityGrid::new(least - wide, greatest + wide, UVec3::splat(4), densities).expect("sound")))
+}
+
+/// Matter whose coefficients are doubled where its density is a half.
+fn split(albedo: f32, least: Vec3, greatest: Vec3) -> Medium {
+    let medium = grey(albedo);
+    Medium {
+        scattering: 2.0 * medium.scattering,
+        absorption: 2.0 * medium.absorption,
+        density: split_grid(least, greatest),
+        ..medium
+    }
+}
+
+fn white_room() -> Environment {
+    Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] })
+}
+
+fn deep_box() -> (Mesh, Vec3, Vec3) {
+    let (least, greatest) = (Vec3::new(-400.0, -400.0, -100.0), Vec3::new(400.0, 400.0, 0.0));
+    (cuboid(least, greatest), least, greatest)
+}
+
+fn towards(cosine: f64) -> DVec3 {
+    DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)
+}
+
+/// Delta tracking, null collisions and ratio tracking in all: radiances of a half space, with its light from a sun.
+#[test]
+fn a_density_split_by_a_grid_reflects_as_chandrasekhar_has_it() {
+    for albedo in [0.5, 0.9, 0.99] {
+        for (mu0, mu) in [(1.0, 1.0), (0.6, 0.8)] {
+            let (body, least, greatest) = deep_box();
+            let scene = scene(vec![(body, split(albedo as f32, least, greatest))], vec![sun(towards(mu0))]);
+            let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
+            let eye = towards(mu);
+            let aside = DVec3::new(0.31, 0.17, 0.0);
+            let (mean, error) = estimate(24_000, 3, |random| seen(&matter, aside + 3.0 * eye, -eye, random).radiance);
+            let expected = albedo / (4.0 * PI) * mu0 / (mu + mu0) * h(mu, albedo) * h(mu0, albedo);
+            println!("albedo {albedo}, {mu0} to {mu}: {:.5} ± {:.5}, expected {expected:.5}", mean.x, error.x);
+            assert!((mean.x - expected).abs() < 4.0 * error.x && error.x < 0.03 * expected);
+        }
+    }
+}
+
+/// The share that a half space gives back, by walks that leave it into a room of radiance 1: what is seen along a ray is, backwards, what falls on it
+/// from there and comes out.
+fn given_back(medium: Medium, boundary: Boundary, ior: f32, cosine: f64) -> (f64, f64) {
+    let (body, ..) = deep_box();
+    let mut scene = scene(vec![(body, medium)], Vec::new());
+    scene.objects[0].material.ior = ior;
+    let room = white_room();
+    let matter = Matter::new(&scene, boundary, Some(&room)).expect("media");
+    let eye = towards(cosine);
+    let (mean, error) = estimate(40_000, 5, |random| {
+        let outcome = seen(&matter, DVec3::new(0.31, 0.17, 0.0) + 3.0 * eye, -eye, random);
+        outcome.radiance + outcome.straight
+    });
+    (mean.x, error.x)
+}
+
+#[test]
+fn half_spaces_give_back_what_is_known() {
+    for (albedo, normal) in [(0.5, 0.115226), (0.9, 0.414947), (0.99, 0.752721)] {
+        let (_, least, greatest) = deep_box();
+        let (mean, error) = given_back(split(albedo as f32, least, greatest), Boundary::Matched, 1.5, 1.0);
+        println!("albedo {albedo}: {mean:.5} ± {error:.5}, expected {normal}");
+        assert!((mean - normal).abs() < 4.0 * error);
+    }
+    for (albedo, index, cosine) in [(0.9f32, 1.5f32, 1.0), (0.99, 1.4, 0.4)] {
+        let (mean, error) = given_back(grey(albedo), Boundary::Dielectric, index, cosine);
+        let expected = half_space::reflectance_behind(cosine, albedo.into(), index.into());
+        println!("albedo {albedo} behind {index}: {mean:.5} ± {error:.5}, expected {expected:.5}");
+        assert!((mean - expected).abs() < 4.0 * error);
+    }
+}
+
+/// Where scattering goes deep, g counts by 1 - g alone.
+#[test]
+fn forward_scattering_is_like_less_scattering() {
+    let medium =
+        |g: f32| Medium { anisotropy: g, ..Medium::isotropic(Vec3::splat(1.0 / (1.0 - g)), Vec3::splat(0.002)) };
+    let (isotropic, error) = given_back(medium(0.0), Boundary::Matched, 1.0, 0.6);
+    let (forwards, other) = given_back(medium(0.7), Boundary::Matched, 1.0, 0.6);
+    println!("{isotropic:.4} ± {error:.4}, {forwards:.4} ± {other:.4}");
+    assert!((forwards / isotropic - 1.0).abs() < 0.02 + 4.0 * error.hypot(other) / isotropic);
+    let (unlike, _) = given_back(
+        Medium { anisotropy: 0.7, ..Medium::isotropic(Vec3::ONE, Vec3::splat(0.02)) },
+        Boundary::Matched,
+        1.0,
+        0.6,
+    );
+    assert!(unlike < 0.9 * isotropic);
+}
+
+/// What light is left of a way through veins, in the mean, is e to the minus the optical depth.
+#[test]
+fn the_mean_transmittance_of_veins_is_beers() {
+    let coefficients = Vec3::new(0.4, 0.9, 0.1);
+    let medium = Medium { density: veins(), ..Medium::isotropic(Vec3::ZERO, coefficients) };
+    let scene = scene(vec![(cuboid(Vec3::splat(-2.0), Vec3::splat(2.0)), medium)], Vec::new());
+    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
+    let (from, steps) = (DVec3::new(0.3, 0.2, -2.0), 20_000);
+    let depth: f64 = (0..steps)
+        .map(|k| from + 4.0 * (f64::from(k) + 0.5) / f64::from(steps) * DVec3::Z)
+        .map(|position| 4.0 / f64::from(steps) * f64::from(veins().at(position.as_vec3())))
+        .sum();
+    let expected = (-depth * coefficients.as_dvec3()).exp();
+    let ray = Ray { position: from, direction: DVec3::Z };
+    let by_ratio = estimate(40_000, 6, |random| matter.transmittance(0, ray, 4.0, random));
+    let by_walks = estimate(80_000, 7, |random| seen(&matter, from - DVec3::Z, DVec3::Z, random).straight);
+    for (mean, error) in [by_ratio, by_walks] {
+        println!("{mean} ± {error}, expected {expected}");
+        assert!((mean - expected).abs().cmplt(4.0 * error + 1e-4).all() && error.max_element() < 0.01);
+    }
+}
+
+/// Matter that absorbs nothing shows a radiance of 1 where 1 comes from all sides, whatever its density, phase function and boundary.
+#[test]
+fn white_furnace() {
+    let room = white_room();
+    let white = |scattering: Vec3, anisotropy: f32, density: Density| Medium {
+        anisotropy,
+        density,
+        ..Medium::isotropic(scattering, Vec3::ZERO)
+    };
+    for boundary in [Boundary::Matched, Boundary::Dielectric] {
+        let ring = (torus(4.0, 1.5, 64, 32), white(Vec3::new(0.5, 1.0, 2.0), 0.6, veins()));
+        let ball = (sphere(2.0, 64), white(Vec3::new(3.0, 0.2, 1.0), -0.5, Density::Uniform));
+        let scene = scene(vec![ring, ball], Vec::new());
+        let matter = Matter::new(&scene, boundary, Some(&room)).expect("media");
+        let (mean, error) = estimate(40_000, 3, |random| {
+            loop {
+                let origin = 20.0 * isotropic(random);
+                let through = 5.0 * random.random::<f64>() * isotropic(random);
+                let direction = (through - origin).normalize();
+                let Some(hit) = matter.enter(origin, direction) else { continue };
+                let outcome = matter.walk(origin, direction, hit, random);
+                let all = outcome.radiance + outcome.straight;
+                assert!(outcome.lost || (all.element_sum() - 3.0).abs() < 1e-9, "{all}");
+                break if outcome.lost { DVec3::ONE } else { all };
+            }
+        });
+        println!("{boundary:?}: {mean} ± {error}");
+        assert!((mean - 1.0).abs().cmplt(4.0 * error + 1e-12).all() && error.max_element() < 0.01);
+    }
+}
+
+/// The walk for any matter is that for plain matter, where matter is plain.
+#[test]
+fn plain_matter_is_the_same_both_ways() {
+    let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 1.0));
+    let lamp = Light::Point { position: Vec3::new(0.0, 0.0, 0.5), intensity: Vec3::splat(10.0) };
+    let scene = scene(vec![(torus(4.0, 1.5, 64, 32), medium)], vec![sun(towards(0.3)), lamp]);
+    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
+    let start = |random: &mut Xoshiro256PlusPlus| loop {
+        let origin = DVec3::new(12.0 * random.random::<f64>() - 6.0, 12.0 * random.random::<f64>() - 6.0, 20.0);
+        if let Some(hit) = matter.enter(origin, DVec3::NEG_Z) {
+            return (origin, hit);
+        }
+    };
+    let plain = estimate(40_000, 1, |random| {
+        let (origin, hit) = start(random);
+        matter.follow(origin, DVec3::NEG_Z, hit, random).radiance
+    });
+    let general = estimate(40_000, 2, |random| {
+        let (origin, hit) = start(random);
+        matter.follow_general(origin, DVec3::NEG_Z, hit, random).radiance
+    });
+    println!("{} ± {}, {} ± {}", plain.0, plain.1, general.0, general.1);
+    let error = (plain.1 * plain.1 + general.1 * general.1).map(f64::sqrt);
+    assert!((plain.0 - general.0).abs().cmplt(4.0 * error).all() && (error / plain.0).max_element() < 0.03);
+}
+
+/// Behind a boundary that does nothing a light's disc is as bright as the light itself: sun by chance against sun by shadow rays.
+#[test]
+fn a_directional_light_is_found_by_chance_too() {
+    let lit = |boundary: Boundary, count: u32| {
+        let mut scene = scene(vec![(sphere(3.0, 64), grey(0.9))], vec![sun(towards(0.8))]);
+        scene.objects[0].material.ior = 1.000_001;
+        let matter = Matter::new(&scene, boundary, None).expect("media");
+        estimate(count, 8, |random| seen(&matter, DVec3::new(0.4, 0.7, 9.0), DVec3::NEG_Z, random).radiance)
+    };
+    let (sure, sure_error) = lit(Boundary::Matched, 20_000);
+    let (chance, error) = lit(Boundary::Dielectric, 600_000);
+    println!("{} ± {}, by chance {} ± {}", sure.x, sure_error.x, chance.x, error.x);
+    // The disc's own width moves the mean by less than a percent.
+    assert!((chance.x - sure.x).abs() < 4.0 * error.x.hypot(sure_error.x) + 0.01 * sure.x && error.x < 0.05 * sure.x);
+}
+
+#[test]
+fn a_seed_gives_the_same_walk() {
+    let scene = scene(vec![(sphere(3.0, 64), Medium { density: veins(), ..grey(0.9) })], vec![sun(DVec3::Z)]);
+    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
+    let walk = |seed| seen(&matter, DVec3::new(0.0, 0.0, 9.0), DVec3::NEG_Z, &mut generator(seed, 0)).radiance;
+    assert_eq!(walk(4), walk(4));
+    assert_ne!(walk(4), walk(5));
+}

@@ -1,0 +1,72 @@
+//! A scattering medium of a file, from a material's `extras.lapidary`.
+
+use glam::Vec3;
+use lapidary_veins::VeinsPattern;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+use super::error::excerpt;
+use super::material::{Lapidary, lengths};
+use crate::scene::{Density, Medium};
+
+/// `extras.lapidary.veins`; every member must be there, so that none is misspelt.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Veins {
+    frequency: f32,
+    width: f32,
+    least: f32,
+    greatest: f32,
+    octaves: u32,
+    seed: u32,
+}
+
+/// The medium of `extras.lapidary`, of which no half is left out.
+pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
+    let of = |scattering: Vec3, absorption: Vec3| -> Result<Medium, String> {
+        let mut medium = Medium::isotropic(scattering, absorption);
+        if let Some(json) = extras.anisotropy {
+            medium.anisotropy = anisotropy(json)?;
+        }
+        if let Some(json) = extras.veins {
+            medium.density = Density::Veins(veins(json)?);
+        }
+        // What the parts above let pass, the whole has to answer for.
+        medium.problem().map_or(Ok(medium), |_| Err(unfit("veins", extras.veins)))
+    };
+    match (extras.scattering, extras.absorption) {
+        (None, None) if extras.anisotropy.is_some() || extras.veins.is_some() => {
+            Err("its extras.lapidary has anisotropy or veins but neither scattering nor absorption; give both"
+                .to_owned())
+        }
+        (None, None) => Ok(None),
+        (Some(scattering), Some(absorption)) => {
+            of(lengths("scattering", scattering)?, lengths("absorption", absorption)?).map(Some)
+        }
+        (Some(_), None) => Err("its extras.lapidary has scattering but no absorption; give both or neither".to_owned()),
+        (None, Some(_)) => Err("its extras.lapidary has absorption but no scattering; give both or neither".to_owned()),
+    }
+}
+
+fn anisotropy(json: &RawValue) -> Result<f32, String> {
+    let most = Medium::MOST_ANISOTROPY;
+    let number = serde_json::from_str::<f64>(json.get()).ok().map(|number| number as f32);
+    number.filter(|number| (-most..=most).contains(number)).ok_or_else(|| {
+        let found = excerpt(json.get());
+        format!("its extras.lapidary.anisotropy is {found}, but must be a number between -{most} and {most}")
+    })
+}
+
+fn veins(json: &RawValue) -> Result<VeinsPattern, String> {
+    let Veins { frequency, width, least, greatest, octaves, seed } =
+        serde_json::from_str(json.get()).map_err(|_| unfit("veins", Some(json)))?;
+    Ok(VeinsPattern { frequency, width, least, greatest, octaves, seed })
+}
+
+fn unfit(name: &str, json: Option<&RawValue>) -> String {
+    format!(
+        "its extras.lapidary.{name} is {}, but must have a frequency above 0, a width from 0.0009765625 to 4, least and greatest from 0 to 1000, \
+         octaves from 0 to 8 and a whole seed of at least 0",
+        excerpt(json.map_or("missing", RawValue::get))
+    )
+}
