@@ -124,7 +124,7 @@ fn optical_path_decode(bits: u32) -> f32 {
 }
 
 // Cost of a node that light enters near: what is lost at the surface, and the way from the lit point to the node.
-// Returns: -ln(irradiance_share) + extinction offset, at least 0 and at most unreached; unreached where there is no light.
+// Returns: -ln(irradiance_share) + extinction offset, at least 0; unreached where there is no light.
 // Units: none; `irradiance_share` is E N.L over the largest that any node may have; extinction in the inverse of the offset's unit.
 // Domain: share in [0, 1], larger ones count as 1; extinction in [0, 1e15]; offset, the distance from the lit point to the node, in [0, 1e14].
 // Outside: a negative share is no light.
@@ -161,7 +161,7 @@ fn optical_path_through(cost: f32, extinction: f32, offset: f32) -> f32 {
 // Units: none.
 // Domain: cost in [0, 3e38].
 // Outside: 1 for a negative cost.
-// Accuracy: lavapipe 3 ulp + 2 backward; portable 4 ulp + 3 backward
+// Accuracy: lavapipe 4 ulp + 2 backward; portable 5 ulp + 3 backward
 fn optical_path_luminance(cost: f32) -> f32 {
     if cost <= 0.0f {
         return 1.0f;

@@ -33,8 +33,15 @@ fn main() {
         let mut solvers = Vec::new();
         for method in methods {
             let start = Instant::now();
-            let solver =
-                Solver::of_source(gpu, case.grid, method, het, None, &source(method)).unwrap_or_else(|e| panic!("{e}"));
+            let solver = Solver::of_source(
+                gpu,
+                case.grid,
+                method,
+                het,
+                std::env::var("PASSES").ok().and_then(|p| p.parse().ok()),
+                &source(method),
+            )
+            .unwrap_or_else(|e| panic!("{e}"));
             let uploaded = case.upload(gpu);
             solver_run(gpu, &solver, &uploaded, het, case.extinction);
             println!("  {method}: compiled in {:.2} s", start.elapsed().as_secs_f64());
