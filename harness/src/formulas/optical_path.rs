@@ -316,7 +316,7 @@ fn of_light() -> Vec<Formula> {
         })
         .edge("lit in full", |(cost,)| cost == 0.0)
         .edge("just above the deepest", |(cost,)| cost > 0.9995 * OPTICAL_PATH_DEEPEST && cost < OPTICAL_PATH_DEEPEST)
-        .edge("just below it", |(cost,)| cost >= OPTICAL_PATH_DEEPEST && cost < 1.0005 * OPTICAL_PATH_DEEPEST)
+        .edge("just below it", |(cost,)| (OPTICAL_PATH_DEEPEST..1.0005 * OPTICAL_PATH_DEEPEST).contains(&cost))
         .edge("unreached", |(cost,)| cost == OPTICAL_PATH_UNREACHED)
         .invariant("a share, dark where no light reaches", |(cost,), luminance: f32| {
             let right = if cost >= OPTICAL_PATH_DEEPEST { luminance == 0.0 } else { (0.0..=1.0).contains(&luminance) };

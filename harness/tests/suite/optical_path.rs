@@ -7,18 +7,27 @@ mod properties;
 
 use bodies::Case;
 use lapidary_harness::optical_path::{Method, Solver, Status, Stencil};
+use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle::{Number, dijkstra};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 const STENCILS: [Stencil; 3] = [Stencil::Faces, Stencil::Edges, Stencil::Corners];
 
 /// Enough for any path of a small body, however it winds.
-const ENOUGH: u32 = 2048;
+const ENOUGH: u32 = 256;
 
 /// The costs of a case, with a density by voxel where it has one, and how far the solve came.
 fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f32>, Status) {
+    /// One that was compiled once serves every body in its grid.
+    static SOLVERS: Mutex<BTreeMap<String, Solver<'static>>> = Mutex::new(BTreeMap::new());
     let gpu = super::gpu();
     let heterogeneous = case.density.iter().any(|density| *density != 1.0);
-    let solver = Solver::new(gpu, case.grid, method, heterogeneous, most_passes).expect("the recipe compiles");
+    let mut solvers = SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let VoxelGrid { spacing, cells, .. } = case.grid;
+    let solver = solvers
+        .entry(format!("{method} {heterogeneous} {most_passes:?} {spacing} {cells}"))
+        .or_insert_with(|| Solver::new(gpu, case.grid, method, heterogeneous, most_passes).expect("it compiles"));
     let uploaded = case.upload(gpu);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let density = heterogeneous.then_some(&uploaded.density);
