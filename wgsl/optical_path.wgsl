@@ -68,8 +68,7 @@ fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {
     let last = min(third, two);
     let radicand = 3.0f - 2.0f * (second * second - second * last + last * last);
     let three = 0.33333334f * (second + last + sqrt(radicand));
-    let cost = first + slowness * three;
-    return select(OPTICAL_PATH_UNREACHED, cost, cost < OPTICAL_PATH_UNREACHED);
+    return min(first + slowness * three, OPTICAL_PATH_UNREACHED);
 }
 
 // The same by the quadratic formula in T itself, case by case, as one writes it.
@@ -133,7 +132,7 @@ fn optical_path_seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32
     if irradiance_share < OPTICAL_PATH_DARKEST {
         return OPTICAL_PATH_UNREACHED;
     }
-    return max(-log(min(irradiance_share, 1.0f)), 0.0f) + extinction * offset;
+    return max(-log(irradiance_share), 0.0f) + extinction * offset;
 }
 
 // The same as one writes it.
