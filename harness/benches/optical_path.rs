@@ -1,65 +1,56 @@
-//! Times of the optical path's solvers beside each other: `cargo bench --profile dev --bench optical_path`.
+//! Times of the optical path's solvers beside each other, on the bunny, ten optical depths wide:
+//! `cargo bench --profile dev --bench optical_path [CELLS…]`.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "the tests use more of the bodies")]
+
 #[path = "../tests/suite/optical_path/bodies.rs"]
 mod bodies;
 
-use bodies::Case;
+use bodies::{Case, Uploaded};
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
-use lapidary_harness::optical_path::{Method, Solver, Stencil};
-use std::time::Instant;
+use lapidary_harness::optical_path::{Method, Solver};
+use std::time::{Duration, Instant};
 
-/// Rounds over all solvers, of which the least counts.
+/// Rounds over all solvers, of which the least time counts.
 const ROUNDS: usize = 7;
 
-fn source(method: Method) -> String {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../wgsl");
-    let read = |name: &str| std::fs::read_to_string(root.join(name)).expect("a file");
-    let recipe = if method.is_tiled() { "recipes/optical_path_tiles.wgsl" } else { "recipes/optical_path_sweep.wgsl" };
-    [read("optical_path.wgsl"), read("recipes/parts/optical_path_grid.wgsl"), read(recipe)].join("\n")
+/// Seeds back, then a solve; the time of the solve.
+fn run(gpu: &Gpu, solver: &Solver<'_>, case: &Case, uploaded: &Uploaded) -> Duration {
+    gpu.queue.write_buffer(&uploaded.cost, 0, bytemuck::cast_slice(&case.seeds));
+    gpu.queue.submit([]);
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    let start = Instant::now();
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    solver.encode(&mut encoder, &uploaded.matter, None, &uploaded.cost, case.extinction).expect("recorded");
+    gpu.queue.submit([encoder.finish()]);
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    start.elapsed()
 }
 
 fn main() {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("an adapter");
     println!("{}", gpu.describe());
-    let only = std::env::var("ONLY").unwrap_or_default();
-    let sizes = std::env::var("SIZES").unwrap_or("64".to_owned());
-    let het = std::env::var("HET").is_ok();
-    for cells in sizes.split(',').map(|size| size.parse().unwrap()) {
+    let asked: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    for cells in if asked.is_empty() { vec![32, 64, 128] } else { asked } {
         let case = Case::bunny(cells, 10.0);
-        println!("{cells}: {} voxels of matter", case.matter.iter().filter(|m| **m).count());
-        let methods: Vec<Method> =
-            Method::ALL.into_iter().filter(|m| only.is_empty() || only.split(',').any(|o| o == m.name())).collect();
-        let mut solvers = Vec::new();
-        for method in methods {
-            let start = Instant::now();
-            let solver =
-                Solver::of_source(gpu, case.grid, method, het, None, &source(method)).unwrap_or_else(|e| panic!("{e}"));
-            let uploaded = case.upload(gpu);
-            solver_run(gpu, &solver, &uploaded, het, case.extinction);
-            println!("  {method}: compiled in {:.2} s", start.elapsed().as_secs_f64());
-            solvers.push((method, solver, uploaded, f64::INFINITY));
-        }
+        println!("{cells}: {} voxels of matter", case.matter.iter().filter(|matter| **matter).count());
+        let uploaded = case.upload(gpu);
+        let solvers = Method::ALL.map(|method| Solver::new(gpu, case.grid, method, false, None).expect("it compiles"));
+        let mut least = [Duration::MAX; Method::ALL.len()];
         for _ in 0..ROUNDS {
-            for (_, solver, uploaded, least) in &mut solvers {
-                uploaded.reset(gpu);
-                let start = Instant::now();
-                solver_run(gpu, solver, uploaded, het, case.extinction);
-                *least = least.min(start.elapsed().as_secs_f64());
+            for (solver, least) in solvers.iter().zip(&mut least) {
+                *least = run(gpu, solver, &case, &uploaded).min(*least);
             }
         }
-        for (method, solver, _, least) in &solvers {
-            println!("  {method}: {:.2} ms, {:?}", 1e3 * least, solver.status().unwrap());
+        for ((method, solver), least) in Method::ALL.iter().zip(&solvers).zip(least) {
+            run(gpu, solver, &case, &uploaded);
+            let status = solver.status().expect("a device");
+            println!(
+                "| {method} | {:.1} ms | {} passes | {} updates |",
+                1e3 * least.as_secs_f64(),
+                status.passes,
+                status.updates
+            );
         }
     }
-    let _ = Stencil::Faces;
-}
-
-fn solver_run(gpu: &Gpu, solver: &Solver<'_>, uploaded: &bodies::Uploaded, het: bool, extinction: f32) {
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    solver
-        .encode(&mut encoder, &uploaded.matter, het.then_some(&uploaded.density), &uploaded.cost, extinction)
-        .unwrap_or_else(|e| panic!("{e}"));
-    gpu.queue.submit([encoder.finish()]);
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
 }

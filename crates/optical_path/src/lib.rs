@@ -42,8 +42,7 @@ pub fn godunov(least: Vec3, slowness: f32) -> f32 {
     let last = third.min(two);
     let radicand = 3.0 - 2.0 * (second * second - second * last + last * last);
     let three = 0.33333334 * (second + last + radicand.sqrt());
-    let cost = first + slowness * three;
-    if cost < OPTICAL_PATH_UNREACHED { cost } else { OPTICAL_PATH_UNREACHED }
+    (first + slowness * three).min(OPTICAL_PATH_UNREACHED)
 }
 
 /// The same by the quadratic formula in T itself, case by case.
@@ -86,7 +85,7 @@ pub fn seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
     if irradiance_share < OPTICAL_PATH_DARKEST {
         return OPTICAL_PATH_UNREACHED;
     }
-    (-irradiance_share.min(1.0).ln()).max(0.0) + extinction * offset
+    (-irradiance_share.ln()).max(0.0) + extinction * offset
 }
 
 /// The same as one writes it.

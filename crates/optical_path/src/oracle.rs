@@ -60,7 +60,8 @@ pub fn encode(cost: f64) -> u32 {
 
 /// The number that the bits stand for.
 pub fn decode(bits: u32) -> f64 {
-    f64::from(f32::from_bits(bits)).min(UNREACHED)
+    let cost = f64::from(f32::from_bits(bits));
+    if cost.is_sign_negative() { UNREACHED } else { cost.min(UNREACHED) }
 }
 
 /// -ln of the share, and the way.
@@ -68,7 +69,10 @@ pub fn seed(irradiance_share: f64, extinction: f64, offset: f64) -> f64 {
     if irradiance_share < f64::from(f32::MIN_POSITIVE) {
         return UNREACHED;
     }
-    extinction * offset - (irradiance_share.min(1.0) - 1.0).ln_1p()
+    // In two halves, and near 1 from what is missing to it, so that no digit is lost.
+    let root = irradiance_share.min(1.0).sqrt();
+    let half = if root > 0.5 { (root - 1.0).ln_1p() } else { root.ln() };
+    extinction * offset - 2.0 * half
 }
 
 /// The sum, as far as light reaches.

@@ -159,7 +159,19 @@ fn on_graphs() -> Vec<Formula> {
         .build(),
         formula(M, "optical_path_encode", mirror::encode, oracle::encode, |draws| {
             let any = match draws.below(4) {
-                0 => draws.pick(&[0.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -f32::NAN, -1.0, f32::MIN]),
+                0 => draws.pick(&[
+                    0.0,
+                    -0.0,
+                    f32::INFINITY,
+                    f32::NEG_INFINITY,
+                    f32::NAN,
+                    -f32::NAN,
+                    -1.0,
+                    f32::MIN,
+                    // The last NaN without a sign, and the first with one.
+                    f32::from_bits(0x7fff_ffff),
+                    f32::from_bits(0xff80_0001),
+                ]),
                 1 => f32::from_bits(draws.bits()),
                 _ => cost(draws),
             };
@@ -252,8 +264,9 @@ fn on_grids() -> Vec<Formula> {
             )
             .hard_case(
                 "a radicand that rounding makes negative",
-                (Vec3::splat(1000.1), 1e-4),
-                (&[f64::from(1000.1f32) + 1e-4 / 3f64.sqrt()], 7e-5),
+                (Vec3::new(1000.1, 1000.1625, OPTICAL_PATH_UNREACHED), 0.125),
+                // With d = 1/16 between them, half of d + √(2 slowness² - d²) above the lesser.
+                (&[f64::from(1000.1f32) + 0.5 * (0.0625 + (2.0 * 0.125f64.powi(2) - 0.0625f64.powi(2)).sqrt())], 7e-5),
                 ("optical_path_godunov_naive", f64::INFINITY),
             )
             .hard_case(
@@ -308,7 +321,10 @@ fn of_light() -> Vec<Formula> {
         .build(),
         formula(M, "optical_path_luminance", mirror::luminance, oracle::luminance, |draws| {
             (match draws.below(4) {
-                0 => OPTICAL_PATH_DEEPEST * draws.between(0.99, 1.01),
+                0 => {
+                    draws.nudged(OPTICAL_PATH_DEEPEST, 2)
+                        * if draws.below(2) == 0 { 1.0 } else { draws.between(0.99, 1.01) }
+                }
                 1 => draws.magnitude(-40, 6),
                 2 => cost(draws),
                 _ => draws.between(0.0, 20.0),
@@ -316,7 +332,7 @@ fn of_light() -> Vec<Formula> {
         })
         .edge("lit in full", |(cost,)| cost == 0.0)
         .edge("just above the deepest", |(cost,)| cost > 0.9995 * OPTICAL_PATH_DEEPEST && cost < OPTICAL_PATH_DEEPEST)
-        .edge("just below it", |(cost,)| cost >= OPTICAL_PATH_DEEPEST && cost < 1.0005 * OPTICAL_PATH_DEEPEST)
+        .edge("just below it", |(cost,)| (OPTICAL_PATH_DEEPEST..1.0005 * OPTICAL_PATH_DEEPEST).contains(&cost))
         .edge("unreached", |(cost,)| cost == OPTICAL_PATH_UNREACHED)
         .invariant("a share, dark where no light reaches", |(cost,), luminance: f32| {
             let right = if cost >= OPTICAL_PATH_DEEPEST { luminance == 0.0 } else { (0.0..=1.0).contains(&luminance) };

@@ -179,13 +179,12 @@ impl<'gpu> Solver<'gpu> {
             (fresh, progress, workgroups, own)
         })?;
         let most_passes = most_passes.unwrap_or_else(|| Self::default_passes(method, grid.cells));
-        let grid = VoxelGrid { ..grid };
         Ok(Self { gpu, grid, method, heterogeneous, most_passes, begin, next, pass, fresh, progress, workgroups, own })
     }
 
-    /// As many passes as a path takes that crosses the cube from corner to corner by the stencil, with some to spare for concave bodies.
+    /// As many passes as a path takes through the cube from corner to corner by faces, tiles or voxels, and back and forth once or twice more.
     fn default_passes(method: Method, cells: u32) -> u32 {
-        if method.is_tiled() { 3 * cells / TILE } else { 3 * cells }
+        if method.is_tiled() { 2 * cells } else { 8 * cells }
     }
 
     /// Records a solve. `matter` holds a bit for each voxel, in rows as [`VoxelGrid::words_per_row`] says; `density`, where the solver is heterogeneous, an

@@ -28,7 +28,6 @@ pub struct Uploaded {
     pub matter: wgpu::Buffer,
     pub density: wgpu::Buffer,
     pub cost: wgpu::Buffer,
-    seeds: Vec<f32>,
 }
 
 impl Uploaded {
@@ -45,13 +44,6 @@ impl Uploaded {
         encoder.copy_buffer_to_buffer(&self.cost, 0, &readback, 0, size);
         gpu.queue.submit([encoder.finish()]);
         gpu.read_back(&readback, size, |bytes| bytemuck::cast_slice(bytes).to_vec()).expect("a device")
-    }
-
-    /// Puts the seeds back.
-    pub fn reset(&self, gpu: &Gpu) {
-        gpu.queue.write_buffer(&self.cost, 0, bytemuck::cast_slice(&self.seeds));
-        gpu.queue.submit([]);
-        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
     }
 }
 
@@ -160,7 +152,6 @@ impl Case {
             matter: buffer(bytemuck::cast_slice(&bits)),
             density: buffer(bytemuck::cast_slice(&self.density)),
             cost: buffer(bytemuck::cast_slice(&self.seeds)),
-            seeds: self.seeds.clone(),
         }
     }
 }
