@@ -209,7 +209,7 @@ impl<'gpu> Voxelizer<'gpu> {
             gpu.queue.submit([encoder.finish()]);
             readback
         })?;
-        Ok(gpu.read_back(&readback, size, |bytes| bytemuck::pod_collect_to_vec(bytes))?)
+        Ok(gpu.read_back(&readback, size, bytemuck::pod_collect_to_vec)?)
     }
 }
 

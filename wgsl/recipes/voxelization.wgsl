@@ -20,7 +20,7 @@
 override EFFECT_SURFACE: bool = true;
 
 // A triangle over more columns than this is shared among threads.
-const VOXELIZATION_LARGE: u32 = 64u;
+override VOXELIZATION_LARGE: u32 = 64u;
 const VOXELIZATION_WORKGROUP: u32 = 64u;
 
 struct VoxelizationList {
