@@ -3,24 +3,24 @@
 use crate::{column, column_naive};
 use glam::{Vec2, Vec3};
 
-/// A fan about a vertex that columns pass through exactly, closed by its own outline at another depth: each edge belongs to two triangles.
+/// Two fans with one outline, about vertices that columns pass through exactly: each edge belongs to two triangles.
 fn bipyramid(sides: u32, radius: f32) -> Vec<[Vec3; 3]> {
     let rim = |k: u32| {
         let angle = std::f32::consts::TAU * (k % sides) as f32 / sides as f32;
         Vec3::new(0.0, radius * angle.cos(), radius * angle.sin())
     };
-    let ends = [Vec3::new(2.0, 0.5, 0.5), Vec3::new(-3.0, 0.5, 0.5)];
+    let ends = [Vec3::new(2.0, 0.5, 0.5), Vec3::new(-3.0, 0.25, -0.375)];
     (0..sides).flat_map(|k| [[ends[0], rim(k), rim(k + 1)], [ends[1], rim(k + 1), rim(k)]]).collect()
 }
 
-/// Columns through vertices, along edges, and anywhere.
-fn columns(mesh: &[[Vec3; 3]]) -> Vec<Vec2> {
+/// Columns through vertices, along edges, and anywhere up to a distance along y and z.
+fn columns(mesh: &[[Vec3; 3]], reach: f32) -> Vec<Vec2> {
     let flat = |v: Vec3| Vec2::new(v.y, v.z);
     let corners = mesh.iter().flatten().map(|corner| flat(*corner));
     let middles = mesh.iter().map(|[a, b, _]| 0.5 * (flat(*a) + flat(*b)));
     let spread = (0..4000).map(|k| {
         let k = k as f32;
-        Vec2::new((k * 0.618_034).fract(), (k * 0.754_877_7).fract()) * 20.0 - 10.0
+        Vec2::new((k * 0.618_034).fract(), (k * 0.754_877_7).fract()) * 2.0 * reach - reach
     });
     corners.chain(middles).chain(spread).collect()
 }
@@ -29,8 +29,9 @@ fn columns(mesh: &[[Vec3; 3]]) -> Vec<Vec2> {
 fn every_column_is_crossed_an_even_number_of_times() {
     let (mut met, mut odd_naive) = (0, 0);
     for sides in 3..60 {
-        let mesh = bipyramid(sides, 0.1 * sides as f32);
-        for at in columns(&mesh) {
+        let radius = 0.1 * sides as f32;
+        let mesh = bipyramid(sides, radius);
+        for at in columns(&mesh, 1.2 * radius) {
             let count = |test: fn(Vec3, Vec3, Vec3, Vec2) -> crate::VoxelizationColumn| {
                 mesh.iter().filter(|[a, b, c]| test(*a, *b, *c, at).inside).count()
             };
