@@ -85,6 +85,7 @@ pub const RECIPES: &[Recipe] = recipes![
     "gem_bvh",
     "gem_composite",
     "gem_convex",
+    "optical_path_density",
     "optical_path_seed",
     "optical_path_shading",
     "optical_path_sweep",

@@ -4,4 +4,4 @@ mod method;
 mod solver;
 
 pub use method::{Method, Stencil, UnknownMethod};
-pub use solver::{OpticalPathError, Solver, Status};
+pub use solver::{Solver, Status};

@@ -1,13 +1,11 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
 use super::Method;
+use crate::compute::{Kernel, KernelError};
 use crate::cookbook;
-use crate::dispatch::{self, DispatchError};
-use crate::gpu::{Gpu, GpuError};
-use crate::specialise::{SpecialiseError, specialise};
+use crate::gpu::Gpu;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};
-use std::borrow::Cow;
 use wgpu::util::DeviceExt as _;
 
 /// Voxels along an edge of a solver's tile.
@@ -18,20 +16,6 @@ const GROUP: u32 = 32;
 const SWEEP_GROUP: u32 = 8;
 /// The struct `OpticalPathProgress`, in words.
 const PROGRESS_WORDS: u64 = 7;
-
-/// Why a body could not be solved.
-#[derive(Debug, thiserror::Error)]
-pub enum OpticalPathError {
-    /// A recipe is not valid.
-    #[error(transparent)]
-    Dispatch(#[from] DispatchError),
-    /// A recipe does not specialise.
-    #[error(transparent)]
-    Specialise(#[from] SpecialiseError),
-    /// The device refused.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
 
 /// How far a solve came.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,49 +35,6 @@ impl Status {
     #[must_use]
     pub fn luminance_bound(&self) -> f32 {
         if self.active == 0 { 0.0 } else { mirror::luminance(self.least) }
-    }
-}
-
-/// One of a recipe's entry points, specialised.
-#[derive(Debug)]
-struct Kernel {
-    pipeline: wgpu::ComputePipeline,
-    bindings: Vec<u32>,
-}
-
-impl Kernel {
-    fn new(gpu: &Gpu, source: &str, entry: &str, constants: &[(&str, f64)]) -> Result<Self, OpticalPathError> {
-        let (module, _) = dispatch::parse(source, entry)?;
-        let constants = dispatch::declared(&module, constants);
-        let (module, _) = specialise(module, &constants, &[entry])?;
-        let mut bindings: Vec<u32> =
-            module.global_variables.iter().filter_map(|(_, global)| global.binding.map(|at| at.binding)).collect();
-        bindings.sort_unstable();
-        let pipeline = gpu.guarded(&format!("compiling `{entry}`"), |device| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(entry),
-                source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: None,
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        })?;
-        Ok(Self { pipeline, bindings })
-    }
-
-    /// The bind group of those of `buffers`, by binding, that the entry point reads or writes.
-    fn bind(&self, device: &wgpu::Device, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
-        let used = buffers.iter().filter(|(binding, _)| self.bindings.contains(binding));
-        let entries: Vec<wgpu::BindGroupEntry<'_>> = used
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let layout = &self.pipeline.get_bind_group_layout(0);
-        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 }
 
@@ -127,7 +68,7 @@ impl<'gpu> Solver<'gpu> {
         method: Method,
         heterogeneous: bool,
         most_passes: Option<u32>,
-    ) -> Result<Self, OpticalPathError> {
+    ) -> Result<Self, KernelError> {
         let recipe = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
         Self::of_source(gpu, grid, method, heterogeneous, most_passes, &cookbook::recipe_source(recipe))
     }
@@ -143,7 +84,7 @@ impl<'gpu> Solver<'gpu> {
         heterogeneous: bool,
         most_passes: Option<u32>,
         source: &str,
-    ) -> Result<Self, OpticalPathError> {
+    ) -> Result<Self, KernelError> {
         let prefix = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
         let flag = |value| f64::from(u8::from(value));
         let constants = [
@@ -203,7 +144,7 @@ impl<'gpu> Solver<'gpu> {
         density: Option<&wgpu::Buffer>,
         cost: &wgpu::Buffer,
         extinction: f32,
-    ) -> Result<(), OpticalPathError> {
+    ) -> Result<(), KernelError> {
         assert!(density.is_some() || !self.heterogeneous, "a heterogeneous body has a density");
         let cells = self.grid.cells;
         let whole = [cells / SWEEP_GROUP, cells / SWEEP_GROUP, cells];
@@ -218,14 +159,19 @@ impl<'gpu> Solver<'gpu> {
             let mut buffers = vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];
             buffers.extend(density.map(|density| (5, density)));
             buffers.extend((6..).zip(&self.own));
-            let groups = [&self.begin, &self.next, &self.pass].map(|kernel| kernel.bind(device, &buffers));
+            let bind = |kernel: &Kernel, buffers: &[(u32, &wgpu::Buffer)]| {
+                let resources: Vec<_> =
+                    buffers.iter().map(|(place, buffer)| (*place, buffer.as_entire_binding())).collect();
+                kernel.bind(device, 0, &resources)
+            };
+            let groups = [&self.begin, &self.next, &self.pass].map(|kernel| bind(kernel, &buffers));
             // Of ping-pong, the passes back.
             let exchanged = matches!(self.method, Method::PingPong(_)).then(|| {
                 let exchanged: Vec<(u32, &wgpu::Buffer)> = buffers
                     .iter()
                     .map(|(binding, buffer)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *buffer))
                     .collect();
-                self.pass.bind(device, &exchanged)
+                bind(&self.pass, &exchanged)
             });
             // Whichever way they end, the costs are where they belong.
             let passes = if exchanged.is_some() { self.most_passes.next_multiple_of(2) } else { self.most_passes };
@@ -251,7 +197,7 @@ impl<'gpu> Solver<'gpu> {
     ///
     /// # Errors
     /// Where the device is lost.
-    pub fn status(&self) -> Result<Status, OpticalPathError> {
+    pub fn status(&self) -> Result<Status, KernelError> {
         let size = 4 * PROGRESS_WORDS;
         let readback = self.gpu.guarded("reading a solve's status", |device| {
             let readback = device.create_buffer(&wgpu::BufferDescriptor {

@@ -4,8 +4,7 @@ use super::bvh::{Bvh, Extent};
 use crate::scene::convex::{TOLERANCE, planes_of_convex};
 use crate::scene::polyhedron::{MAX_PLANES, Plane};
 use crate::scene::{Mesh, Object};
-use glam::{DVec3, Mat4, Vec3, Vec4};
-use std::collections::HashMap;
+use glam::{DVec3, Mat4, Vec4};
 
 /// How bodies are met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,8 +241,10 @@ struct Triangles {
 
 impl Triangles {
     fn new(mesh: &Mesh) -> Self {
+        // A ray would go from one side of a fold to the other and back for ever.
+        let mesh = mesh.without_folds();
         let corners: Vec<[DVec3; 3]> =
-            bounding(mesh).into_iter().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
+            mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
         let normals = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
         let extents: Vec<Extent> = corners.iter().map(|corners| Extent::of(*corners)).collect();
         let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
@@ -266,30 +267,6 @@ impl Triangles {
         });
         found.map(|(distance, face, normal)| (distance.max(0.0), face, normal))
     }
-}
-
-/// The triangles without those that lie back to back on the same three corners, by pairs: there is nothing between them, and a ray would go from one
-/// to the other and back for ever.
-fn bounding(mesh: &Mesh) -> Vec<[Vec3; 3]> {
-    let mut kept: Vec<Option<[Vec3; 3]>> = Vec::new();
-    // By their corners, those that still wind one way.
-    let mut waiting: HashMap<[[u32; 3]; 3], Vec<(bool, usize)>> = HashMap::new();
-    for corners in mesh.triangles() {
-        // Adding 0 makes -0 and 0 the same bits.
-        let bits = corners.map(|corner| corner.to_array().map(|part| (part + 0.0).to_bits()));
-        let mut sorted = bits;
-        sorted.sort_unstable();
-        let first = bits.iter().position(|corner| *corner == sorted[0]).unwrap_or(0);
-        let winding = bits[(first + 1) % 3] == sorted[1];
-        let same = waiting.entry(sorted).or_default();
-        if let Some((_, other)) = same.pop_if(|(other, _)| *other != winding) {
-            kept[other] = None;
-        } else {
-            same.push((winding, kept.len()));
-            kept.push(Some(corners));
-        }
-    }
-    kept.into_iter().flatten().collect()
 }
 
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared so that the ray

@@ -218,9 +218,6 @@ pub enum RenderError {
     /// A compute pass is not valid.
     #[error(transparent)]
     Kernel(#[from] crate::compute::KernelError),
-    /// Ways of light could not be found.
-    #[error(transparent)]
-    OpticalPath(#[from] crate::optical_path::OpticalPathError),
     /// A material that a rung for scattering cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \

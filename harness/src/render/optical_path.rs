@@ -1,6 +1,8 @@
 //! Translucent stone: the recipe `optical_path_shading`'s pass, and what fills its costs each frame: voxels, reflective shadow maps,
 //! seeds and a solver, all of them on the device.
 
+mod density;
+
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
 use super::light_views::{self, LightView};
 use super::lighting::{self, Lighting};
@@ -11,7 +13,8 @@ use crate::compute::Kernel;
 use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::optical_path::{Method, Solver};
-use crate::scene::{Bounds, Light, Material, Medium, Object, Scene};
+use crate::scene::{Bounds, Density, Light, Material, Medium, Object, Scene};
+use density::Densities;
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
 use glam::Vec3;
@@ -44,6 +47,7 @@ pub(super) struct OpticalPaths<'gpu> {
 struct BodyPaths<'gpu> {
     grid: VoxelGrid,
     voxelizer: Voxelizer<'gpu>,
+    densities: Option<Densities>,
     solver: Solver<'gpu>,
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
@@ -115,7 +119,15 @@ pub(super) fn pass<'gpu>(
         })?;
         maps.add([&positions, &indices, &normals], vertices)?;
         let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
-        let solver = Solver::new(gpu, grid, paths.method, false, None)?;
+        let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
+        let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
+        let solver = Solver::new(gpu, grid, paths.method, densities.is_some(), None)?;
+        let same = gpu.guarded("allocating densities", |device| {
+            // Beside bodies whose density differs, one whose does not has it too; in a scene of the latter nobody reads it.
+            let count = if is_dense(scene) && densities.is_none() { grid.count() } else { 1 };
+            buffer(device, bytemuck::cast_slice(&vec![1f32; count]), wgpu::BufferUsages::STORAGE)
+        })?;
+        let density = densities.as_ref().map_or(&same, |densities| &densities.buffer);
         let channels = (0..if color { 3 } else { 1 })
             .map(|channel| {
                 gpu.guarded("allocating costs", |device| {
@@ -135,7 +147,11 @@ pub(super) fn pass<'gpu>(
                             (2, lighting.lights.as_entire_binding()),
                             (3, light_of_map.as_entire_binding()),
                         ],
-                        vec![(0, costs.as_entire_binding()), (1, voxelizer.matter.as_entire_binding())],
+                        vec![
+                            (0, costs.as_entire_binding()),
+                            (1, voxelizer.matter.as_entire_binding()),
+                            (2, density.as_entire_binding()),
+                        ],
                     ];
                     let groups = [&clear, &seed]
                         .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
@@ -147,7 +163,6 @@ pub(super) fn pass<'gpu>(
             let uniform =
                 buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
             let costs = |channel: usize| channels.get(channel).unwrap_or(&channels[0]).costs.as_entire_binding();
-            let unread = buffer(device, &[0; 4], wgpu::BufferUsages::STORAGE);
             let resources = vec![
                 uniform.as_entire_binding(),
                 positions.as_entire_binding(),
@@ -156,12 +171,12 @@ pub(super) fn pass<'gpu>(
                 costs(0),
                 costs(1),
                 costs(2),
-                unread.as_entire_binding(),
+                density.as_entire_binding(),
             ];
             bind_group(device, &pipeline, 1, resources)
         })?;
         bodies.push(Body { groups: vec![group], vertices });
-        of_bodies.push(BodyPaths { grid, voxelizer, solver, positions, indices, channels });
+        of_bodies.push(BodyPaths { grid, voxelizer, densities, solver, positions, indices, channels });
     }
     let mut shared = lighting.shared();
     shared.extend([Shared::Buffer(views_buffer), Shared::Texture(all_maps)]);
@@ -174,7 +189,7 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings, color: bool) -> Vec<
     let mut constants = vec![
         ("EFFECT_OPTICAL_PATH", 1.0),
         ("EFFECT_COLOR", f64::from(u8::from(color))),
-        ("EFFECT_EXTINCTION_PER_VOXEL", 0.0),
+        ("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(is_dense(scene)))),
     ];
     constants.extend(lighting::constants(scene, settings));
     constants
@@ -183,16 +198,23 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings, color: bool) -> Vec<
 /// What each object takes from light on its way, per unit of length: what scattering and absorption take together, times the settings' scale.
 fn extinctions(scene: &Scene, settings: &Settings) -> Result<Vec<Vec3>, RenderError> {
     let of = |object: &Object| {
-        let Some(Medium { scattering, absorption, .. }) = object.material.medium else {
+        let Some(Medium { scattering, absorption, anisotropy, .. }) = &object.material.medium else {
             return Err(RenderError::NoMedium {
                 object: object.name.clone(),
                 material: object.material.name.clone(),
                 rung: settings.rung,
             });
         };
-        Ok(settings.extinction_scale * (scattering + absorption))
+        // Light that is scattered forwards goes on: similarity theory.
+        Ok(settings.extinction_scale * (*scattering * (1.0 - anisotropy) + *absorption))
     };
     scene.objects.iter().map(of).collect()
+}
+
+/// Whether any body's density differs from place to place.
+fn is_dense(scene: &Scene) -> bool {
+    let media = scene.objects.iter().filter_map(|object| object.material.medium.as_ref());
+    media.into_iter().any(|medium| medium.density != Density::Uniform)
 }
 
 /// Whether red, green and blue differ in any body's extinction or any light.
@@ -245,6 +267,10 @@ impl OpticalPaths<'_> {
         let [width, height, layers] = self.maps.size();
         for body in &self.bodies {
             body.voxelizer.encode(encoder, &body.positions, &body.indices)?;
+            if let Some(densities) = &body.densities {
+                self.gpu.guarded("finding densities", |_| densities.encode(encoder))?;
+            }
+            let density = body.densities.as_ref().map(|densities| &densities.buffer);
             for channel in &body.channels {
                 let cells = body.grid.cells;
                 let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
@@ -260,7 +286,7 @@ impl OpticalPaths<'_> {
                         pass.dispatch_workgroups(x, y, z);
                     }
                 })?;
-                body.solver.encode(encoder, &body.voxelizer.matter, None, &channel.costs, channel.extinction)?;
+                body.solver.encode(encoder, &body.voxelizer.matter, density, &channel.costs, channel.extinction)?;
             }
         }
         Ok(())

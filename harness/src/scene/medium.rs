@@ -53,6 +53,24 @@ impl DensityGrid {
         sound.then_some(Self { least, greatest, size, densities, most })
     }
 
+    /// The box's least and greatest coordinates.
+    #[must_use]
+    pub fn bounds(&self) -> [Vec3; 2] {
+        [self.least, self.greatest]
+    }
+
+    /// Cells along each axis.
+    #[must_use]
+    pub fn size(&self) -> UVec3 {
+        self.size
+    }
+
+    /// Of each cell, x fastest, z slowest.
+    #[must_use]
+    pub fn densities(&self) -> &[f32] {
+        &self.densities
+    }
+
     fn at(&self, position: Vec3) -> f32 {
         let cells = self.size.as_vec3();
         let place = (position - self.least) / (self.greatest - self.least) * cells - 0.5;

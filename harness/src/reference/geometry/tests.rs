@@ -42,13 +42,15 @@ fn through_a_closed_surface_ways_in_and_out_alternate() {
     assert!(entered > 2000, "{entered}");
 }
 
-/// Of the dragon's triangles some hundreds lie back to back.
+/// A bunny on which triangles lie back to back.
 #[test]
 fn between_triangles_back_to_back_there_is_nothing() {
-    let (scene, bodies) = bodies("dragon", Geometry::Triangles);
-    let mesh = &scene.objects[0].mesh;
-    let left_out = mesh.triangle_count() - bounding(mesh).len();
-    assert!(left_out > 500 && left_out.is_multiple_of(2), "{left_out}");
+    let mut scene = Scene::named("bunny_stone").expect("built in");
+    let mesh = &mut scene.objects[0].mesh;
+    let folded: Vec<u32> =
+        mesh.indices.chunks_exact(3).step_by(7).flat_map(|t| [t[0], t[1], t[2], t[2], t[1], t[0]]).collect();
+    mesh.indices.extend(folded);
+    let bodies = Bodies::new(&scene.objects, Geometry::Triangles);
     for (mut origin, direction) in rays(&scene, 5000) {
         let (mut left, mut passes) = (None, 0);
         while let Some(hit) = bodies.enter(origin, direction, left) {
@@ -60,11 +62,6 @@ fn between_triangles_back_to_back_there_is_nothing() {
             assert!(passes < 30, "to and fro");
         }
     }
-    let mut folded = Scene::named("bunny_stone").unwrap().objects.remove(0).mesh;
-    let before = bounding(&folded);
-    assert_eq!(before.len(), folded.triangle_count());
-    folded.indices.extend([5, 70, 900, 70, 5, 900, 900, 5, 70, 900, 70, 5]);
-    assert_eq!(bounding(&folded), before);
 }
 
 #[test]

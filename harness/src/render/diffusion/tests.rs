@@ -1,7 +1,7 @@
 use super::super::pass::Before;
 use super::*;
 use crate::gpu::AdapterChoice;
-use crate::render::{Reflectance, Rung, scene_pass};
+use crate::render::{Reflectance, Rung, Settings, scene_pass};
 use crate::scene::surfaces::sphere;
 use crate::scene::{Light, Mesh, Scene, atlas};
 use glam::{Vec2, Vec3};

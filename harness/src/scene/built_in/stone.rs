@@ -5,7 +5,8 @@ use std::f32::consts::PI;
 
 use super::translucent::{jade, scattering, sized};
 use super::{BUNNY, direction, framed};
-use crate::scene::{Averaging, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use lapidary_veins::VeinsPattern;
+use crate::scene::{Averaging, Density, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
@@ -18,12 +19,15 @@ const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 fn marble() -> Material {
     scattering(
         "marble",
-        Medium { scattering: Vec3::new(2.19, 2.62, 3.0), absorption: Vec3::new(0.0021, 0.0041, 0.0071) },
+        Medium::isotropic(Vec3::new(2.19, 2.62, 3.0), Vec3::new(0.0021, 0.0041, 0.0071)),
         Vec3::new(0.931, 0.913, 0.894),
         Vec3::new(2.2, 1.8, 1.6),
         (1.5, 0.3),
     )
 }
+
+/// Cloudy veins through clearer stone, some 10 mm apart.
+const VEINS: VeinsPattern = VeinsPattern { frequency: 0.1, width: 0.08, least: 0.5, greatest: 4.0, octaves: 3, seed: 7 };
 
 /// The Stanford bunny, 60 mm high, with parallel light from the left.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
@@ -37,7 +41,10 @@ pub(super) fn dragon(name: &str) -> Result<Scene, SceneError> {
     // The folds' triangles had a part in the file's normals.
     let mesh = Mesh::with_shared_normals(unfolded.positions, unfolded.indices, Averaging::Angle);
     let mesh = sized(mesh, 50.0);
-    Ok(stone(name, mesh, jade(), sun(Vec3::new(0.3, 0.5, -1.0), 2.0), (80.0, 15.0)))
+    let jade = jade();
+    let veined = |medium| Medium { density: Density::Veins(VEINS), ..medium };
+    let jade = Material { name: "veined jade".to_owned(), medium: jade.medium.clone().map(veined), ..jade };
+    Ok(stone(name, mesh, jade, sun(Vec3::new(0.3, 0.5, -1.0), 2.0), (80.0, 15.0)))
 }
 
 /// The winged figure, 117 mm high, with parallel light from behind at the left.
@@ -56,6 +63,8 @@ fn figure_of(name: &str, mesh: Mesh) -> Scene {
 
 /// One body in one light, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
 fn stone(name: &str, mesh: Mesh, material: Material, light: Light, (polar, azimuth): (f32, f32)) -> Scene {
+    // Light goes through it, not through its skin alone.
+    let material = Material { sigma0: None, ..material };
     let object = Object { name: name.to_owned(), mesh, material };
     Scene { lights: vec![light], ..framed(name, vec![object], direction(polar, azimuth)) }
 }

@@ -8,7 +8,7 @@
 //! that leave: the environment, and directional lights as small discs. Fresnel's share decides by chance between refraction and reflection.
 
 use super::super::Boundary;
-use super::{Coefficients, Matter, Outcome, SURE, WEAK, arrival, channel, weighted};
+use super::{Coefficients, Matter, Outcome, SURE, WEAK, channel, weighted};
 use crate::random_walk::isotropic;
 use crate::reference::geometry::{Hit, Place};
 use crate::reference::surroundings;
@@ -228,7 +228,7 @@ impl Matter<'_> {
         let least = self.coefficients[body].extinction.min_element() * structure.most * structure.share(ray.position);
         let mut sum = DVec3::ZERO;
         for light in &self.lights {
-            let (direction, distance, irradiance) = arrival(light, ray.position);
+            let Arrival { direction, distance, irradiance } = light.arrival(ray.position);
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
             let out = self.bodies.leave_body(ray.position, direction, body, None, limit.min(distance));
             let way = match out {

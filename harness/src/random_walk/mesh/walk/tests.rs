@@ -242,7 +242,7 @@ fn light_is_weakened_by_all_matter_on_its_way() {
     }
     let away = scene(layers(), vec![spot(Vec3::Z)]);
     let from = DVec3::new(0.125, 0.25, 0.25);
-    let found = Matter::new(&away, None).expect("media").direct(from, 0, &mut generator(1, 0));
+    let found = Matter::new(&away, Boundary::Matched, None).expect("media").direct(from, 0, &mut generator(1, 0));
     assert_eq!(found, Some(DVec3::ZERO));
 }
 

@@ -1,0 +1,110 @@
+//! The recipe `optical_path_density`: how dense a body is, voxel by voxel.
+
+use super::super::RenderError;
+use super::super::device::{buffer, view};
+use super::grid_words;
+use crate::compute::Kernel;
+use crate::cookbook;
+use crate::gpu::Gpu;
+use crate::scene::{Density, DensityGrid};
+use crate::voxel_grid::VoxelGrid;
+use lapidary_veins::VeinsPattern;
+use wgpu::util::DeviceExt as _;
+
+const RECIPE: &str = "optical_path_density";
+
+/// A body's densities on the device, made anew each frame.
+pub(super) struct Densities {
+    kernel: Kernel,
+    group: Option<wgpu::BindGroup>,
+    cells: u32,
+    /// An f32 for each voxel.
+    pub(super) buffer: wgpu::Buffer,
+}
+
+impl Densities {
+    /// Nothing where the density is the same everywhere.
+    pub(super) fn new(
+        gpu: &Gpu,
+        grid: VoxelGrid,
+        density: &Density,
+        matter: &wgpu::Buffer,
+    ) -> Result<Option<Self>, RenderError> {
+        let constants = [("DENSITY_FROM_TEXTURE", f64::from(u8::from(matches!(density, Density::Grid(_)))))];
+        let source = match density {
+            Density::Uniform => return Ok(None),
+            Density::Veins(pattern) => Source::Veins(*pattern),
+            Density::Grid(values) => Source::Texture(values),
+        };
+        let kernel = Kernel::new(gpu, &cookbook::recipe_source(RECIPE), RECIPE, &constants)?;
+        let (group, of_voxels) = gpu.guarded("allocating densities", |device| {
+            let of_voxels = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(RECIPE),
+                size: 4 * grid.count() as u64,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            });
+            let uniform = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::UNIFORM);
+            let place = uniform(bytemuck::cast_slice(&grid_words(grid)));
+            let first = [
+                (0, place.as_entire_binding()),
+                (1, matter.as_entire_binding()),
+                (2, of_voxels.as_entire_binding()),
+            ];
+            let group = match source {
+                Source::Veins(pattern) => {
+                    let pattern = uniform(&pattern_bytes(pattern));
+                    kernel.bind(device, 0, &[&first[..], &[(3, pattern.as_entire_binding())]].concat())
+                }
+                Source::Texture(values) => {
+                    let texture = view(&texture(gpu, values));
+                    let [least, greatest] = values.bounds().map(|corner| corner.extend(0.0).to_array());
+                    let extent = uniform(bytemuck::cast_slice(&[least, greatest]));
+                    let own = [(4, wgpu::BindingResource::TextureView(&texture)), (5, extent.as_entire_binding())];
+                    kernel.bind(device, 0, &[&first[..], &own].concat())
+                }
+            };
+            (group, of_voxels)
+        })?;
+        Ok(Some(Self { kernel, group, cells: grid.cells, buffer: of_voxels }))
+    }
+
+    /// Records it, once the voxels are known.
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.kernel.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups(1, self.cells, self.cells);
+    }
+}
+
+enum Source<'a> {
+    Veins(VeinsPattern),
+    Texture(&'a DensityGrid),
+}
+
+/// `VeinsPattern` as WGSL lays it out.
+fn pattern_bytes(pattern: VeinsPattern) -> Vec<u8> {
+    let VeinsPattern { frequency, width, least, greatest, octaves, seed } = pattern;
+    let words = [frequency, width, least, greatest].map(f32::to_bits);
+    bytemuck::cast_slice(&[&words[..], &[octaves, seed, 0, 0]].concat()).to_vec()
+}
+
+fn texture(gpu: &Gpu, grid: &DensityGrid) -> wgpu::Texture {
+    let [width, height, depth_or_array_layers] = grid.size().to_array();
+    gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &wgpu::TextureDescriptor {
+            label: Some(RECIPE),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(grid.densities()),
+    )
+}

@@ -1,0 +1,67 @@
+// optical_path_density: how dense a body is in each of its voxels, from procedural veins or from a texture.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: own; the veins are the module veins'.
+// requires: veins, voxelization
+//
+// Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds.
+
+// Densities from a 3D texture instead of from veins. Called for by a grid of densities.
+override DENSITY_FROM_TEXTURE: bool = false;
+
+struct OpticalPathBox {
+    // Of the texture, in world units.
+    least: vec3f,
+    greatest: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> grid: VoxelizationGrid;
+// A bit for each voxel, as the recipe voxelization leaves them.
+@group(0) @binding(1) var<storage, read> matter: array<u32>;
+@group(0) @binding(2) var<storage, read_write> density: array<f32>;
+@group(0) @binding(3) var<uniform> pattern: VeinsPattern;
+@group(0) @binding(4) var densities: texture_3d<f32>;
+@group(0) @binding(5) var<uniform> extent: OpticalPathBox;
+
+fn optical_path_texel(texel: vec3u) -> f32 {
+    return textureLoad(densities, texel, 0).x;
+}
+
+// Between the middles of texels linearly, by hand: 32-bit float textures need not be filterable. Outside of those the nearest counts.
+fn optical_path_sampled(position: vec3f) -> f32 {
+    let size = textureDimensions(densities);
+    let place = (position - extent.least) / (extent.greatest - extent.least) * vec3f(size) - 0.5f;
+    let inside = clamp(place, vec3f(0.0f), vec3f(size) - 1.0f);
+    let lower = vec3u(inside);
+    let upper = min(lower + 1u, size - 1u);
+    let weight = inside - vec3f(lower);
+    let near = mix(
+        mix(optical_path_texel(lower), optical_path_texel(vec3u(upper.x, lower.yz)), weight.x),
+        mix(optical_path_texel(vec3u(lower.x, upper.y, lower.z)), optical_path_texel(vec3u(upper.xy, lower.z)), weight.x),
+        weight.y,
+    );
+    let far = mix(
+        mix(optical_path_texel(vec3u(lower.xy, upper.z)), optical_path_texel(vec3u(upper.x, lower.y, upper.z)), weight.x),
+        mix(optical_path_texel(vec3u(lower.x, upper.yz)), optical_path_texel(upper), weight.x),
+        weight.y,
+    );
+    return mix(near, far, weight.z);
+}
+
+@compute @workgroup_size(64)
+fn optical_path_density(@builtin(local_invocation_index) invocation: u32, @builtin(workgroup_id) row: vec3u) {
+    let words = (grid.cells + 31u) / 32u;
+    for (var x = invocation; x < grid.cells; x += 64u) {
+        let word = matter[words * (row.y + grid.cells * row.z) + x / 32u];
+        if ((word >> (x % 32u) & 1u) == 1u) {
+            let voxel = vec3u(x, row.yz);
+            let centre = voxelization_centre(grid, voxel);
+            var found = 0.0f;
+            if (DENSITY_FROM_TEXTURE) {
+                found = optical_path_sampled(centre);
+            } else {
+                found = veins_density(centre, pattern);
+            }
+            density[voxelization_index(grid, voxel)] = found;
+        }
+    }
+}
