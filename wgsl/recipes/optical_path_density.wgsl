@@ -47,12 +47,26 @@ fn optical_path_sampled(position: vec3f) -> f32 {
     return mix(near, far, weight.z);
 }
 
+// Whether there is matter in a voxel or about it, where shading interpolates: in the same word of the nine rows about it. What is in the next word is
+// not looked for; at a word's ends there may always be some.
+fn optical_path_near_matter(voxel: vec3u) -> bool {
+    let words = (grid.cells + 31u) / 32u;
+    let lower = max(voxel.yz, vec2u(1u)) - 1u;
+    let upper = min(voxel.yz + 1u, vec2u(grid.cells - 1u));
+    var bits = 0u;
+    for (var z = lower.y; z <= upper.y; z++) {
+        for (var y = lower.x; y <= upper.x; y++) {
+            bits |= matter[words * (y + grid.cells * z) + voxel.x / 32u];
+        }
+    }
+    let place = voxel.x % 32u;
+    return place == 0u || place == 31u || (bits >> (max(place, 1u) - 1u) & 7u) != 0u;
+}
+
 @compute @workgroup_size(64)
 fn optical_path_density(@builtin(local_invocation_index) invocation: u32, @builtin(workgroup_id) row: vec3u) {
-    let words = (grid.cells + 31u) / 32u;
     for (var x = invocation; x < grid.cells; x += 64u) {
-        let word = matter[words * (row.y + grid.cells * row.z) + x / 32u];
-        if ((word >> (x % 32u) & 1u) == 1u) {
+        if (optical_path_near_matter(vec3u(x, row.yz))) {
             let voxel = vec3u(x, row.yz);
             let centre = voxelization_centre(grid, voxel);
             var found = 0.0f;

@@ -96,10 +96,39 @@ fn optical_path_texel_lit(texel: vec2i, layer: u32, position: vec3f, normal: vec
     return select(0.0f, 1.0f, seen.w < 0.0f || height <= bias);
 }
 
+// Density at a point, between the middles of voxels linearly.
+fn optical_path_density(position: vec3f) -> f32 {
+    let place = (position - body.grid.origin) / body.grid.spacing - 0.5f;
+    let inside = clamp(place, vec3f(0.0f), vec3f(f32(body.grid.cells - 1u)));
+    let lower = vec3u(inside);
+    let upper = min(lower + 1u, vec3u(body.grid.cells - 1u));
+    let weight = inside - vec3f(lower);
+    var near = vec2f(0.0f);
+    for (var layer = 0u; layer < 2u; layer++) {
+        let z = select(lower.z, upper.z, layer == 1u);
+        let below = mix(
+            density[voxelization_index(body.grid, vec3u(lower.xy, z))],
+            density[voxelization_index(body.grid, vec3u(upper.x, lower.y, z))],
+            weight.x,
+        );
+        let above = mix(
+            density[voxelization_index(body.grid, vec3u(lower.x, upper.y, z))],
+            density[voxelization_index(body.grid, vec3u(upper.xy, z))],
+            weight.x,
+        );
+        near[layer] = mix(below, above, weight.y);
+    }
+    return mix(near.x, near.y, weight.z);
+}
+
 // What is left of the largest irradiance along the cheapest way from the 27 voxels about a point.
 fn optical_path_along(position: vec3f) -> vec3f {
     let around = vec3i(voxelization_voxel(body.grid, position));
     let last = i32(body.grid.cells) - 1i;
+    var own = 1.0f;
+    if (EFFECT_EXTINCTION_PER_VOXEL) {
+        own = optical_path_density(position);
+    }
     var least = vec3f(OPTICAL_PATH_UNREACHED);
     for (var neighbour = 0i; neighbour < 27i; neighbour++) {
         let step = vec3i(neighbour % 3i, (neighbour / 3i) % 3i, neighbour / 9i) - 1i;
@@ -108,7 +137,7 @@ fn optical_path_along(position: vec3f) -> vec3f {
         let offset = distance(position, voxelization_centre(body.grid, voxel));
         var extinction = body.extinction;
         if (EFFECT_EXTINCTION_PER_VOXEL) {
-            extinction *= density[index];
+            extinction *= 0.5f * (own + density[index]);
         }
         least.x = min(least.x, optical_path_through(optical_path_decode(costs_red[index]), extinction.x, offset));
         if (EFFECT_COLOR) {

@@ -14,9 +14,9 @@ use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::optical_path::{Method, Solver};
 use crate::scene::{Bounds, Density, Light, Material, Medium, Object, Scene};
-use density::Densities;
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
+use density::Densities;
 use glam::Vec3;
 
 const SEED: &str = "optical_path_seed";

@@ -46,11 +46,8 @@ impl Densities {
             });
             let uniform = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::UNIFORM);
             let place = uniform(bytemuck::cast_slice(&grid_words(grid)));
-            let first = [
-                (0, place.as_entire_binding()),
-                (1, matter.as_entire_binding()),
-                (2, of_voxels.as_entire_binding()),
-            ];
+            let first =
+                [(0, place.as_entire_binding()), (1, matter.as_entire_binding()), (2, of_voxels.as_entire_binding())];
             let group = match source {
                 Source::Veins(pattern) => {
                     let pattern = uniform(&pattern_bytes(pattern));

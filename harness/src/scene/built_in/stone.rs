@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 
 use super::translucent::{jade, scattering, sized};
 use super::{BUNNY, direction, framed};
-use lapidary_veins::VeinsPattern;
 use crate::scene::{Averaging, Density, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use lapidary_veins::VeinsPattern;
 
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
@@ -27,7 +27,8 @@ fn marble() -> Material {
 }
 
 /// Cloudy veins through clearer stone, some 10 mm apart.
-const VEINS: VeinsPattern = VeinsPattern { frequency: 0.1, width: 0.08, least: 0.5, greatest: 4.0, octaves: 3, seed: 7 };
+const VEINS: VeinsPattern =
+    VeinsPattern { frequency: 0.1, width: 0.08, least: 0.5, greatest: 4.0, octaves: 3, seed: 7 };
 
 /// The Stanford bunny, 60 mm high, with parallel light from the left.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {

@@ -228,7 +228,8 @@ impl Matter<'_> {
         let least = self.coefficients[body].extinction.min_element() * structure.most * structure.share(ray.position);
         let mut sum = DVec3::ZERO;
         for light in &self.lights {
-            let Arrival { direction, distance, irradiance } = light.arrival(ray.position);
+            let found = light.arrival(ray.position);
+            let (direction, distance, irradiance) = (found.direction, found.distance, found.irradiance);
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
             let out = self.bodies.leave_body(ray.position, direction, body, None, limit.min(distance));
             let way = match out {
