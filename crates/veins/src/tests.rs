@@ -60,5 +60,5 @@ fn density_keeps_its_bounds_and_reaches_them() {
     let densities = (0..20_000).map(|k| density(Vec3::new(0.37 * k as f32, 0.21 * (k % 97) as f32, 1.5), pattern));
     let (least, greatest) =
         densities.fold((f32::MAX, 0.0f32), |(least, greatest), value| (least.min(value), greatest.max(value)));
-    assert!(least >= 0.25 && least < 0.35 && greatest <= 2.0 && greatest > 1.99, "{least} {greatest}");
+    assert!((0.25..0.35).contains(&least) && (1.99..=2.0).contains(&greatest), "{least} {greatest}");
 }

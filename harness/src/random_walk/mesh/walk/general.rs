@@ -258,12 +258,15 @@ impl Matter<'_> {
             return (-length * majorant).exp();
         }
         let rate = majorant.max_element();
+        if rate == 0.0 {
+            return DVec3::ONE;
+        }
         let mut transmittance = DVec3::ONE;
         let mut gone = 0.0;
-        while rate > 0.0 {
+        loop {
             gone -= (1.0 - random.random::<f64>()).ln() / rate;
             if gone >= length {
-                break;
+                return transmittance;
             }
             transmittance *= 1.0 - majorant * (structure.share(ray.position + gone * ray.direction) / rate);
             if transmittance.max_element() < FAINT {
@@ -273,7 +276,6 @@ impl Matter<'_> {
                 transmittance /= GOES_ON;
             }
         }
-        transmittance
     }
 }
 

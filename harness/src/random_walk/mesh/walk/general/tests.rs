@@ -149,7 +149,7 @@ fn white_furnace() {
         let ball = (sphere(2.0, 64), white(Vec3::new(3.0, 0.2, 1.0), -0.5, Density::Uniform));
         let scene = scene(vec![ring, ball], Vec::new());
         let matter = Matter::new(&scene, boundary, Some(&room)).expect("media");
-        let (mean, error) = estimate(40_000, 3, |random| {
+        let (mean, error) = estimate(160_000, 12, |random| {
             loop {
                 let origin = 20.0 * isotropic(random);
                 let through = 5.0 * random.random::<f64>() * isotropic(random);
@@ -162,7 +162,7 @@ fn white_furnace() {
             }
         });
         println!("{boundary:?}: {mean} ± {error}");
-        assert!((mean - 1.0).abs().cmplt(4.0 * error + 1e-12).all() && error.max_element() < 0.01);
+        assert!((mean - 1.0).abs().cmplt(4.0 * error + 1e-12).all() && error.max_element() < 0.005);
     }
 }
 
