@@ -64,7 +64,7 @@ const SCENES: &[Row] = &[
     ("{}/nan.gltf --out {}/out.png", One, &["nan.gltf: ", "vertex 1 lies at (NaN", "finite"]),
     ("{}/index.gltf --out {}/out.png", One, &["index.gltf: ", "index 1 is 3", "3 vertices"]),
     ("{}/uv.gltf --out {}/out.png", One, &["uv.gltf: ", "vertex 1 has texture coordinates (0, NaN)", "finite"]),
-    ("{}/spot.gltf --out {}/out.png", One, &["spot.gltf: ", "light 0 \"desk\"", "spot lights are not read"]),
+    ("{}/spot.gltf --out {}/out.png", One, &["spot.gltf: ", "light 0 \"desk\"", "cone angles are 1.0 and 0.5"]),
     ("{}/dark.gltf --out {}/out.png", One, &["dark.gltf: ", "its intensity is -1.0", "at least 0"]),
     ("{}/half.gltf --out {}/out.png", One, &["half.gltf: ", "material 0 \"wax\"", "scattering but no absorption"]),
     ("{}/sigma.gltf --out {}/out.png", One, &["sigma.gltf: ", "material 0 \"wax\"", "sigma0 is [1,null,1]"]),
@@ -302,7 +302,9 @@ const BAD_MEMBERS: [(&str, Change); 5] = [
         add(&mut d["bufferViews"], json!({"buffer": 1, "byteLength": 24}));
         add(&mut d["buffers"], json!({"byteLength": 24, "uri": uri}));
     }),
-    ("spot.gltf", |d| add_light(d, json!({"type": "spot", "name": "desk", "spot": {}}))),
+    ("spot.gltf", |d| {
+        add_light(d, json!({"type": "spot", "name": "desk", "spot": {"innerConeAngle": 1.0, "outerConeAngle": 0.5}}))
+    }),
     ("dark.gltf", |d| add_light(d, json!({"type": "point", "intensity": -1}))),
     ("half.gltf", |d| add_wax(d, json!({"scattering": [1, 1, 1]}))),
     ("sigma.gltf", |d| add_wax(d, json!({"sigma0": [1, null, 1]}))),
