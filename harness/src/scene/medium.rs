@@ -37,6 +37,7 @@ pub struct DensityGrid {
     size: UVec3,
     /// x fastest, z slowest.
     densities: Vec<f32>,
+    least_density: f32,
     most: f32,
 }
 
@@ -50,7 +51,8 @@ impl DensityGrid {
             && (count > 0 && count == densities.len() as u64)
             && densities.iter().all(|density| density.is_finite() && *density >= 0.0);
         let most = densities.iter().fold(0.0, |most: f32, density| most.max(*density));
-        sound.then_some(Self { least, greatest, size, densities, most })
+        let least_density = densities.iter().fold(f32::MAX, |least: f32, density| least.min(*density));
+        sound.then_some(Self { least, greatest, size, densities, least_density, most })
     }
 
     /// The box's least and greatest coordinates.
@@ -110,6 +112,16 @@ impl Density {
         }
     }
 
+    /// No density is less.
+    #[must_use]
+    pub fn least(&self) -> f32 {
+        match self {
+            Self::Uniform => 1.0,
+            Self::Veins(pattern) => pattern.least.min(pattern.greatest),
+            Self::Grid(grid) => grid.least_density,
+        }
+    }
+
     fn is_sound(&self) -> bool {
         let Self::Veins(VeinsPattern { frequency, width, least, greatest, octaves, .. }) = *self else {
             return true;
@@ -166,7 +178,7 @@ mod tests {
         assert_eq!([at(0.5, 1.0), at(1.5, 1.0), at(0.5, 3.0), at(1.5, 3.0)], [1.0, 2.0, 3.0, 8.0]);
         assert_eq!([at(1.0, 1.0), at(0.5, 2.0), at(1.0, 2.0)], [1.5, 2.0, 3.5]);
         assert_eq!([at(-9.0, -9.0), at(9.0, 9.0)], [1.0, 8.0]);
-        assert_eq!(density.most(), 8.0);
+        assert_eq!((density.least(), density.most()), (1.0, 8.0));
     }
 
     #[test]

@@ -32,7 +32,8 @@ const GOES_ON: f64 = 0.25;
 pub(super) struct Structure {
     anisotropy: f64,
     density: Density,
-    /// The density's greatest.
+    /// The density's least and greatest.
+    least: f64,
     most: f64,
     /// Refractive index, relative to what is about all bodies; 1 where the boundary is matched.
     index: f64,
@@ -45,6 +46,7 @@ impl Structure {
         Some(Self {
             anisotropy: medium.anisotropy.into(),
             density: medium.density.clone(),
+            least: medium.density.least().into(),
             most: medium.density.most().into(),
             index: match boundary {
                 Boundary::Matched => 1.0,
@@ -224,8 +226,8 @@ impl Matter<'_> {
             return Some(DVec3::ZERO);
         }
         let structure = &self.structures[body];
-        // Any rate at all gives the right mean: this one is near that by which light fades.
-        let least = self.coefficients[body].extinction.min_element() * structure.most * structure.share(ray.position);
+        // Any rate at all gives the right mean; at this one no gain outgrows what the way takes away.
+        let least = self.coefficients[body].extinction.min_element() * structure.least;
         let mut sum = DVec3::ZERO;
         for light in &self.lights {
             let found = light.arrival(ray.position);
