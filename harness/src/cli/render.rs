@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
     #[arg(long, value_name = "FORM", default_value = "mean", value_parser = parse_curvature)]
     curvature: Curvature,
-    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.25 where left out.
+    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.18 where left out.
     #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
     extinction_scale: Option<f32>,
     /// Factor of the paper's dispersion, eq. (12), for rungs +paper.

@@ -195,7 +195,11 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings, color: bool) -> Vec<
     constants
 }
 
-/// What each object takes from light on its way, per unit of length: what scattering and absorption take together, times the settings' scale.
+/// Beside the extinction itself, how often that of diffused light, √(3 absorption × extinction), counts: docs/optical_path_shading.md has the fit.
+const EFFECTIVE_WEIGHT: f32 = 2.0;
+
+/// What each object takes from light on its way, per unit of length: the settings' scale times what scattering and absorption take, and absorption
+/// once more as it acts on light that is scattered all along.
 fn extinctions(scene: &Scene, settings: &Settings) -> Result<Vec<Vec3>, RenderError> {
     let of = |object: &Object| {
         let Some(Medium { scattering, absorption, anisotropy, .. }) = &object.material.medium else {
@@ -206,7 +210,9 @@ fn extinctions(scene: &Scene, settings: &Settings) -> Result<Vec<Vec3>, RenderEr
             });
         };
         // Light that is scattered forwards goes on: similarity theory.
-        Ok(settings.extinction_scale * (*scattering * (1.0 - anisotropy) + *absorption))
+        let extinction = *scattering * (1.0 - anisotropy) + *absorption;
+        let effective = (3.0 * *absorption * extinction).map(f32::sqrt);
+        Ok(settings.extinction_scale * (extinction + EFFECTIVE_WEIGHT * effective))
     };
     scene.objects.iter().map(of).collect()
 }

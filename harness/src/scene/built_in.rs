@@ -136,8 +136,8 @@ pub const BUILT_IN: [BuiltIn; 27] = [
     },
     BuiltIn {
         name: "dragon",
-        description: "The Stanford dragon of jade, 50 mm high and 71 mm long, with parallel light from behind, which passes claws, crest and \
-            tail.",
+        description: "The Stanford dragon of veined jade, 50 mm high and 71 mm long, with parallel light from behind, which passes claws, crest \
+            and tail.",
     },
     BuiltIn {
         name: "figure",
