@@ -2,7 +2,7 @@
 
 use crate::program::{folder, succeeds};
 use lapidary_harness::cost::cdrf::{self, CdrfReport};
-use lapidary_harness::cost::optical_path;
+use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
 use lapidary_harness::cost::{MEASURES, Report, views};
@@ -97,6 +97,9 @@ fn the_pages_show_the_record() {
     let cdrf: CdrfReport = record("measurements/lavapipe/cdrf.json");
     holds(&cdrf, "cdrf", "lavapipe", &["cdrf.md", "cdrf_ladder.md"]);
     assert_eq!(docs("measurements/lavapipe/cdrf.txt"), cdrf.text());
+    let paths: OpticalPathReport = record("measurements/lavapipe/optical_path.json");
+    holds(&paths, "optical_path", "lavapipe", &["optical_path_ladder.md"]);
+    assert_eq!(docs("measurements/lavapipe/optical_path.txt"), paths.text());
     let sphere: SphereReport = record("measurements/random_walk/sphere.json");
     holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
 }
