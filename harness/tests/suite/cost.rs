@@ -220,7 +220,9 @@ fn ways_through_stone_are_compared_written_and_shown_again() {
         for measure in ["nats", "luminance"] {
             let [lambert, ways] = ["lambert", "godunov-16"]
                 .map(|rung| error(rung, view, measure).expect("a closed form, or a finer grid"));
-            assert!(ways > 0.0 && ways < 0.5 * lambert, "{view} {measure}: {ways} {lambert}");
+            // Black counts as a cost, and so costs tell more than luminance does, of which deep places have little.
+            let share = if measure == "nats" { 0.2 } else { 1.0 };
+            assert!(ways > 0.0 && ways < share * lambert, "{view} {measure}: {ways} {lambert}");
         }
         let walked = lapidary_harness::snapshot::WALKED.iter().any(|reference| reference.scene == view);
         assert_eq!(error("godunov-16", view, "walks").is_some(), walked, "{view}");
