@@ -181,6 +181,13 @@ impl<'gpu> Voxelizer<'gpu> {
         Ok(())
     }
 
+    /// Bytes of its buffers.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let buffers = [&self.grid, &self.beyond, &self.large, &self.matter, &self.surface, &self.status];
+        buffers.into_iter().map(wgpu::Buffer::size).sum()
+    }
+
     /// The counts of the last frame that was submitted. It waits for the device.
     ///
     /// # Errors

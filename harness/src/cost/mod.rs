@@ -7,6 +7,7 @@ pub mod drawing;
 mod error;
 mod gem;
 mod gem_tables;
+pub mod optical_path;
 pub mod page;
 pub mod plot;
 mod profile;
@@ -18,7 +19,7 @@ pub mod views;
 
 pub use choices::Choice;
 pub use dispersion::Colours;
-pub use error::{Errors, MEASURES};
+pub use error::{Errors, MEASURES, exposed_distance};
 pub use gem::{Options, RUNGS, run};
 pub use profile::profile;
 pub use reflection::Reflection;
@@ -39,7 +40,8 @@ pub struct Row {
     pub view: String,
     /// The error, in the unit of its measure; none where the rung has none by this measure.
     pub error: Option<f64>,
-    /// `flip`, `rmse` or `energy` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks.
+    /// `flip`, `rmse` or `energy` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks; of ways
+    /// through stone `nats`, `luminance` or `walks`.
     pub error_measure: &'static str,
     /// Milliseconds for a frame; none where times were not asked for.
     pub ms: Option<f64>,
@@ -172,7 +174,7 @@ fn no_slower(other: &RungReport, rung: &RungReport) -> bool {
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// No such ladder.
-    #[error("no ladder `{0}`; there are gem, cdrf and sphere")]
+    #[error("no ladder `{0}`; there are gem, cdrf, optical_path and sphere")]
     Technique(String),
     /// A record of spheres that nothing can be compared with.
     #[error(

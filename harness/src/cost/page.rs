@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::cdrf::CdrfReport;
+use super::optical_path::OpticalPathReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
@@ -31,7 +32,7 @@ fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).collect()
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(of::<OpticalPathReport>()).collect()
 }
 
 /// Whether a page's marks are sound.
@@ -86,6 +87,21 @@ pub(super) fn header(columns: &[&str]) -> String {
 /// Adds a line to a table.
 pub(super) fn row(table: &mut String, cells: &[String]) {
     let _ = writeln!(table, "| {} |", cells.join(" | "));
+}
+
+/// A count of bytes.
+pub(super) fn bytes(count: u64) -> String {
+    match count {
+        0 => "0".to_owned(),
+        1..10_000 => format!("{count} B"),
+        10_000..10_000_000 => format!("{:.0} KiB", count as f64 / 1024.0),
+        _ => format!("{:.0} MiB", count as f64 / f64::from(1 << 20)),
+    }
+}
+
+/// A goal's line.
+pub(super) fn judged(table: &mut String, goal: &str, measured: String, met: bool) {
+    row(table, &[goal.to_owned(), measured, if met { "met" } else { "missed" }.to_owned()]);
 }
 
 #[cfg(test)]

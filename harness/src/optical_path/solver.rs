@@ -193,6 +193,13 @@ impl<'gpu> Solver<'gpu> {
         Ok(())
     }
 
+    /// Bytes of its own buffers, which the costs are none of.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let shared = [&self.fresh, &self.progress, &self.workgroups];
+        shared.into_iter().chain(&self.own).map(wgpu::Buffer::size).sum()
+    }
+
     /// How far the last submitted solve came. Waits for it: not for every frame.
     ///
     /// # Errors

@@ -2,9 +2,10 @@
 
 use super::device::PipelineSource;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
-use super::{RenderError, Settings, camera, device, scene_pass};
+use super::{RenderError, Settings, Stage, camera, device, scene_pass};
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
+use crate::optical_path::Status;
 use crate::scene::Scene;
 use std::time::{Duration, Instant};
 
@@ -104,19 +105,62 @@ impl<'gpu> Frame<'gpu> {
 
     /// Draws it once and waits.
     pub fn run(&self) -> Result<FrameTime, RenderError> {
+        self.timed(|encoder| {
+            self.pass.prepare(encoder)?;
+            self.draw(encoder);
+            Ok(())
+        })
+    }
+
+    /// Draws it once, each stage submitted and waited for by itself, so that together they take longer than a frame. None where the rung
+    /// follows no light through bodies.
+    pub fn run_stages(&self) -> Result<Option<[Duration; Stage::ALL.len()]>, RenderError> {
+        let Some(paths) = self.pass.paths() else { return Ok(None) };
+        let mut times = [Duration::ZERO; Stage::ALL.len()];
+        for (stage, time) in Stage::ALL.into_iter().zip(&mut times) {
+            let run = self.timed(|encoder| {
+                if stage == Stage::Shade {
+                    self.draw(encoder);
+                }
+                paths.encode_stage(encoder, stage)
+            })?;
+            *time = run.total;
+        }
+        Ok(Some(times))
+    }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
+        let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
+        self.pass.draw(encoder, &self.view, &target);
+        if let Some(display) = &self.display {
+            display.draw(encoder);
+        }
+    }
+
+    /// Submits what `record` does and waits.
+    fn timed(
+        &self,
+        record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), RenderError>,
+    ) -> Result<FrameTime, RenderError> {
         let start = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
-        self.pass.prepare(&mut encoder)?;
-        self.pass.draw(&mut encoder, &self.view, &target);
-        if let Some(display) = &self.display {
-            display.draw(&mut encoder);
-        }
+        record(&mut encoder)?;
         self.gpu.queue.submit([encoder.finish()]);
         let encode = start.elapsed();
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         waited.map_err(|error| GpuError::Device { what: "drawing a frame".to_owned(), reason: error.to_string() })?;
         Ok(FrameTime { total: start.elapsed(), encode })
+    }
+
+    /// How far the solvers of light's ways came in the last frame that was drawn, body by body; of several channels, in the last. Waits for
+    /// the device.
+    pub fn solved(&self) -> Result<Vec<Status>, RenderError> {
+        self.pass.paths().map_or(Ok(Vec::new()), |paths| paths.statuses())
+    }
+
+    /// Bytes of what is allocated to find light's ways, but for uniforms.
+    pub fn path_bytes(&self) -> u64 {
+        self.pass.paths().map_or(0, |paths| paths.bytes())
     }
 
     /// How many draw calls the scene takes.

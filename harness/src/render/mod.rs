@@ -31,7 +31,7 @@ use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
 pub(crate) use gem::constants;
-pub use optical_path::Paths;
+pub use optical_path::{Paths, Stage};
 use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};

@@ -2,6 +2,7 @@
 //! seeds and a solver, all of them on the device.
 
 mod density;
+mod stage;
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
 use super::light_views::{self, LightView};
@@ -12,12 +13,13 @@ use super::{RenderError, Settings};
 use crate::compute::Kernel;
 use crate::cookbook;
 use crate::gpu::Gpu;
-use crate::optical_path::{Method, Solver};
+use crate::optical_path::{Method, Solver, Status};
 use crate::scene::{Bounds, Density, Light, Material, Medium, Object, Scene};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::Voxelizer;
 use density::Densities;
 use glam::Vec3;
+pub use stage::Stage;
 
 const SEED: &str = "optical_path_seed";
 /// Texels of a map along a side for each voxel of a grid: the sphere about a body is up to 1.7 grids wide.
@@ -269,37 +271,78 @@ fn map_bytes(views: &[LightView]) -> Vec<u8> {
 impl OpticalPaths<'_> {
     /// Everything that the frame's picture looks up, from the meshes and lights alone.
     pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
-        self.gpu.guarded("drawing reflective shadow maps", |_| self.maps.encode(encoder))?;
-        let [width, height, layers] = self.maps.size();
-        for body in &self.bodies {
-            body.voxelizer.encode(encoder, &body.positions, &body.indices)?;
-            if let Some(densities) = &body.densities {
-                self.gpu.guarded("finding densities", |_| densities.encode(encoder))?;
+        Stage::ALL.into_iter().try_for_each(|stage| self.encode_stage(encoder, stage))
+    }
+
+    /// One stage of it, after those before. Nothing of [`Stage::Shade`], which is no part of it.
+    pub(super) fn encode_stage(&self, encoder: &mut wgpu::CommandEncoder, stage: Stage) -> Result<(), RenderError> {
+        match stage {
+            Stage::Voxels => self.bodies.iter().try_for_each(|body| self.encode_voxels(encoder, body)),
+            Stage::Maps => Ok(self.gpu.guarded("drawing reflective shadow maps", |_| self.maps.encode(encoder))?),
+            Stage::Seeds => {
+                let channels = self.bodies.iter().flat_map(|body| body.channels.iter().map(move |of| (body, of)));
+                channels.into_iter().try_for_each(|(body, channel)| self.encode_seeds(encoder, body, channel))
             }
-            let density = body.densities.as_ref().map(|densities| &densities.buffer);
-            for channel in &body.channels {
-                let cells = body.grid.cells;
-                let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
-                self.gpu.guarded("seeding costs", |_| {
-                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                    for ((kernel, groups), [x, y, z]) in
-                        [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes)
-                    {
-                        pass.set_pipeline(&kernel.pipeline);
-                        for (index, group) in (0..).zip(groups) {
-                            pass.set_bind_group(index, group, &[]);
-                        }
-                        pass.dispatch_workgroups(x, y, z);
+            Stage::Solve => {
+                for body in &self.bodies {
+                    let density = body.densities.as_ref().map(|densities| &densities.buffer);
+                    for Channel { costs, extinction, .. } in &body.channels {
+                        body.solver.encode(encoder, &body.voxelizer.matter, density, costs, *extinction)?;
                     }
-                })?;
-                body.solver.encode(encoder, &body.voxelizer.matter, density, &channel.costs, channel.extinction)?;
+                }
+                Ok(())
             }
+            Stage::Shade => Ok(()),
         }
+    }
+
+    fn encode_voxels(&self, encoder: &mut wgpu::CommandEncoder, body: &BodyPaths<'_>) -> Result<(), RenderError> {
+        body.voxelizer.encode(encoder, &body.positions, &body.indices)?;
+        if let Some(densities) = &body.densities {
+            self.gpu.guarded("finding densities", |_| densities.encode(encoder))?;
+        }
+        Ok(())
+    }
+
+    fn encode_seeds(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        body: &BodyPaths<'_>,
+        channel: &Channel,
+    ) -> Result<(), RenderError> {
+        let [width, height, layers] = self.maps.size();
+        let cells = body.grid.cells;
+        let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
+        self.gpu.guarded("seeding costs", |_| {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes) {
+                pass.set_pipeline(&kernel.pipeline);
+                for (index, group) in (0..).zip(groups) {
+                    pass.set_bind_group(index, group, &[]);
+                }
+                pass.dispatch_workgroups(x, y, z);
+            }
+        })?;
         Ok(())
     }
 
     /// How many draw calls it takes.
     pub(super) fn draw_calls(&self) -> usize {
         self.maps.draw_calls()
+    }
+
+    /// How far each body's solver came in its last channel. Waits for the device.
+    pub(super) fn statuses(&self) -> Result<Vec<Status>, RenderError> {
+        self.bodies.iter().map(|body| Ok(body.solver.status()?)).collect()
+    }
+
+    /// Bytes of the maps, and of each body's voxels, densities, costs and solver.
+    pub(super) fn bytes(&self) -> u64 {
+        let of = |body: &BodyPaths<'_>| {
+            let costs: u64 = body.channels.iter().map(|channel| channel.costs.size()).sum();
+            let densities = body.densities.as_ref().map_or(0, |densities| densities.buffer.size());
+            body.voxelizer.bytes() + densities + costs + body.solver.bytes()
+        };
+        self.maps.bytes() + self.bodies.iter().map(of).sum::<u64>()
     }
 }

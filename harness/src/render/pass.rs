@@ -87,6 +87,14 @@ impl ScenePass<'_> {
         })
     }
 
+    /// The paths of light, where the rung follows any.
+    pub(super) fn paths(&self) -> Option<&OpticalPaths<'_>> {
+        self.before.iter().find_map(|before| match before {
+            Before::Paths(paths) => Some(paths),
+            Before::Diffusion(_) => None,
+        })
+    }
+
     /// Draws the objects: one draw call for each.
     pub(super) fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, target: &SceneTarget<'_>) {
         let colors: Vec<_> = target.colors.iter().map(|view| device::cleared(view)).collect();

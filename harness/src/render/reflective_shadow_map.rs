@@ -117,6 +117,13 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
         }
     }
 
+    /// Bytes of the maps and their depth.
+    pub(super) fn bytes(&self) -> u64 {
+        let [width, height, layers] = self.size().map(u64::from);
+        let texel = |format: wgpu::TextureFormat| u64::from(format.block_copy_size(None).unwrap_or_default());
+        width * height * (layers * texel(FORMAT) + texel(DEPTH_FORMAT))
+    }
+
     /// How many draw calls it takes.
     pub(super) fn draw_calls(&self) -> usize {
         self.views.len() * self.meshes.len()

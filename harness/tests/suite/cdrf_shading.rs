@@ -3,6 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
+use lapidary_harness::cost::exposed_distance;
 use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::light::Arrival;
@@ -445,14 +446,7 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
             let usual = settings(rung);
             let settings =
                 Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, curvature: Curvature::Vertex, ..usual };
-            let found = draw(&scene, &settings).linear;
-            let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-                let pairs = found.iter().flatten().zip(truth.iter().flatten()).enumerate();
-                pairs.filter(|(place, _)| place % 4 < 3).map(|(_, (a, b))| f(f64::from(*a), f64::from(*b))).sum()
-            };
-            let (both, own, other) = (sum(&|a, b| a * b), sum(&|a, _| a * a), sum(&|_, b| b * b));
-            // The least of |k a - b|^2 over k.
-            ((other - both * both / own) / other).sqrt()
+            exposed_distance(&draw(&scene, &settings).linear, &truth)
         };
         let [lambert, blur, accurate, spherical] = ["lambert", "blur", "accurate", "spherical"].map(distance);
         println!(

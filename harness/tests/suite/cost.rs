@@ -2,6 +2,7 @@
 
 use crate::program::{folder, succeeds};
 use lapidary_harness::cost::cdrf::{self, CdrfReport};
+use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
 use lapidary_harness::cost::{MEASURES, Report, views};
@@ -96,6 +97,9 @@ fn the_pages_show_the_record() {
     let cdrf: CdrfReport = record("measurements/lavapipe/cdrf.json");
     holds(&cdrf, "cdrf", "lavapipe", &["cdrf.md", "cdrf_ladder.md"]);
     assert_eq!(docs("measurements/lavapipe/cdrf.txt"), cdrf.text());
+    let paths: OpticalPathReport = record("measurements/lavapipe/optical_path.json");
+    holds(&paths, "optical_path", "lavapipe", &["optical_path_ladder.md"]);
+    assert_eq!(docs("measurements/lavapipe/optical_path.txt"), paths.text());
     let sphere: SphereReport = record("measurements/random_walk/sphere.json");
     holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
 }
@@ -196,6 +200,38 @@ fn the_reflectance_is_timed_written_and_shown_again() {
     assert_eq!(again.trim_end(), read("cdrf.txt").trim_end());
     assert!(again.contains("PlayStation 3") && again.contains("+ Lambert"), "{again}");
     assert!(read("cdrf.svg").contains("cheap"));
+}
+
+#[test]
+fn ways_through_stone_are_compared_written_and_shown_again() {
+    let folder = folder();
+    let arguments =
+        ["cost", "optical_path", "--rungs", "lambert,godunov-16", "--rounds", "1", "--json", "--out", "report"];
+    let rows: Value = serde_json::from_str(&succeeds(folder.path(), &arguments).stdout).expect("JSON alone");
+    let rows = rows.as_array().expect("an array");
+    assert_eq!(rows.len(), 2 * optical_path::VIEWS.len() * optical_path::MEASURES.len());
+    let error = |rung: &str, view: &str, measure: &str| {
+        let row = rows.iter().find(|row| row["rung"] == rung && row["view"] == view && row["error_measure"] == measure);
+        let row = row.unwrap_or_else(|| panic!("{rung} {view} {measure}"));
+        assert!(row["technique"] == "optical_path" && row["adapter"].is_string() && row["ms"].is_number(), "{row}");
+        row["error"].as_f64()
+    };
+    for view in optical_path::VIEWS {
+        for measure in ["nats", "luminance"] {
+            let [lambert, ways] = ["lambert", "godunov-16"]
+                .map(|rung| error(rung, view, measure).expect("a closed form, or a finer grid"));
+            // Black counts as a cost, and so costs tell more than luminance does, of which deep places have little.
+            let share = if measure == "nats" { 0.2 } else { 1.0 };
+            assert!(ways > 0.0 && ways < share * lambert, "{view} {measure}: {ways} {lambert}");
+        }
+        let walked = lapidary_harness::snapshot::WALKED.iter().any(|reference| reference.scene == view);
+        assert_eq!(error("godunov-16", view, "walks").is_some(), walked, "{view}");
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("report").join(name)).expect(name);
+    let again = succeeds(folder.path(), &["cost", "optical_path", "--from", "report/optical_path.json"]).stdout;
+    assert_eq!(again.trim_end(), read("optical_path.txt").trim_end());
+    assert!(read("optical_path_error.svg").contains("godunov-16"));
+    assert!(read("optical_path_growth.svg").contains("godunov, the solve"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::table::{NONE, milliseconds, over_lambert, residuals, scientific, under_blur};
 use super::{ANALYTIC, BLUR, CdrfReport, CurvatureSource, Distance, PAPER, Part, RUNGS, RungReport, frames};
-use crate::cost::page::{Table, Tables, header, row};
+use crate::cost::page::{Table, Tables, bytes, header, judged, row};
 use std::fmt::Write as _;
 
 impl Tables for CdrfReport {
@@ -41,16 +41,6 @@ fn errors(report: &CdrfReport) -> String {
         add(name, distance);
     }
     table
-}
-
-/// A count of bytes.
-fn bytes(count: u64) -> String {
-    match count {
-        0 => "0".to_owned(),
-        1..10_000 => format!("{count} B"),
-        10_000..10_000_000 => format!("{:.0} KiB", count as f64 / 1024.0),
-        _ => format!("{:.0} MiB", count as f64 / f64::from(1 << 20)),
-    }
 }
 
 fn ladder(report: &CdrfReport) -> String {
@@ -127,11 +117,6 @@ fn times(report: &CdrfReport, part: Part) -> String {
         report.rounds, report.adapter
     );
     table
-}
-
-/// A goal's line.
-fn judged(table: &mut String, goal: &str, measured: String, met: bool) {
-    row(table, &[goal.to_owned(), measured, if met { "met" } else { "missed" }.to_owned()]);
 }
 
 /// Where curvature comes from, in words.

@@ -1,0 +1,223 @@
+//! The ladder of light's ways through stone: solver, stencil and size of the grid, each rung's error against a closed form, the finest grid
+//! and random walks, and its time stage by stage.
+
+pub mod frames;
+mod page;
+pub mod plot;
+mod table;
+pub mod views;
+mod walks;
+
+pub use frames::{PathTiming, Solved};
+pub use views::{Distance, VIEWS};
+
+use super::{CostError, Row};
+use crate::gpu::Gpu;
+use crate::render::Rung;
+use serde::{Deserialize, Serialize};
+use walks::Walks;
+
+/// The ladder's name.
+pub const TECHNIQUE: &str = "optical_path";
+/// The rungs: no way through the body, the paper's solver, stencils on rising grids by two solvers, the Eikonal equation, random walks.
+pub const RUNGS: [&str; 21] = [
+    LAMBERT,
+    "paper-64",
+    "ping-pong-6-64",
+    "ping-pong-18-64",
+    "ping-pong-26-16",
+    "ping-pong-26-32",
+    "ping-pong-26-64",
+    "ping-pong-26-128",
+    "tiled-6-64",
+    "tiled-18-64",
+    "tiled-26-16",
+    "tiled-26-32",
+    "tiled-26-64",
+    "tiled-26-128",
+    "tiled-26-256",
+    "godunov-16",
+    "godunov-32",
+    "godunov-64",
+    "godunov-128",
+    FINEST,
+    REFERENCE,
+];
+/// What knows no way through a body.
+pub const LAMBERT: &str = "lambert";
+/// What stands for the converged costs of a body without a closed form.
+pub const FINEST: &str = "godunov-256";
+/// Random walks.
+pub const REFERENCE: &str = "reference";
+/// The rung that a scene has where none is asked for.
+pub const USUAL: &str = "godunov-64";
+/// The solvers whose time is followed from the coarsest grid to the finest.
+pub const GROWING: [&str; 3] = ["ping-pong-26", "tiled-26", "godunov"];
+/// Voxels along an edge of those grids.
+pub const CELLS: [u32; 5] = [16, 32, 64, 128, 256];
+
+/// The measures of a row.
+pub const MEASURES: [&str; 3] = ["nats", "luminance", "walks"];
+
+/// What is measured, and how carefully.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Rounds of timing; none leaves times out.
+    pub rounds: u32,
+    /// Width and height of the timed frame.
+    pub frame: [u32; 2],
+    /// The rungs: Lambert's law, ways by voxels, and the reference.
+    pub rungs: Vec<Rung>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { rounds: 5, frame: [512, 512], rungs: RUNGS.iter().filter_map(|name| name.parse().ok()).collect() }
+    }
+}
+
+/// All of one rung.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RungReport {
+    /// The rung's name.
+    pub rung: String,
+    /// Its errors by view, in the order of [`VIEWS`].
+    pub distances: Vec<Distance>,
+    /// The frame of the bunny of one extinction for all channels.
+    pub grey: Option<PathTiming>,
+    /// The same where red, green and blue have costs of their own.
+    pub rgb: Option<PathTiming>,
+    /// How far the solver of the grey bunny came; none where nothing is solved.
+    pub solved: Option<Solved>,
+    /// Bytes of the maps, voxels, costs and solver of the grey bunny.
+    pub bytes: u64,
+    /// Another rung is faster, and errs no more in any view.
+    pub dominated: bool,
+}
+
+/// The ladder, measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OpticalPathReport {
+    /// The device and its driver.
+    pub adapter: String,
+    /// The size of the timed frame.
+    pub frame: [u32; 2],
+    /// Rounds of timing, but of slow rungs.
+    pub rounds: u32,
+    /// From cheap to exact.
+    pub rungs: Vec<RungReport>,
+}
+
+/// Measures the ladder. `progress` is told what is done, and how much of it.
+///
+/// # Errors
+///
+/// Where a committed reference is damaged, or the device refuses.
+pub fn run(
+    gpu: &Gpu,
+    options: &Options,
+    progress: &mut dyn FnMut(&'static str, u64, u64),
+) -> Result<OpticalPathReport, CostError> {
+    let mut rungs: Vec<RungReport> = options.rungs.iter().map(|rung| RungReport::unmeasured(*rung)).collect();
+    let total = (VIEWS.len() * rungs.len()) as u64;
+    let mut done = 0;
+    for name in VIEWS {
+        progress("comparing", done, total);
+        let view = views::View::new(gpu, name)?;
+        let walks = Walks::of(gpu, name)?;
+        for (report, &rung) in rungs.iter_mut().zip(&options.rungs) {
+            let mut distance = if rung == Rung::Reference { Distance::default() } else { view.distance(gpu, rung)? };
+            distance.walks = walks.as_ref().map(|walks| walks.distance(gpu, rung)).transpose()?;
+            report.distances.push(distance);
+            done += 1;
+            progress("comparing", done, total);
+        }
+    }
+    frames::measure(gpu, options, &mut rungs, &mut |done, total| progress("timing", done, total))?;
+    let mut report = OpticalPathReport { adapter: gpu.describe(), frame: options.frame, rounds: options.rounds, rungs };
+    report.mark_dominated();
+    Ok(report)
+}
+
+impl RungReport {
+    fn unmeasured(rung: Rung) -> Self {
+        Self {
+            rung: rung.to_string(),
+            distances: Vec::new(),
+            grey: None,
+            rgb: None,
+            solved: None,
+            bytes: 0,
+            dominated: false,
+        }
+    }
+
+    /// The time of the grey bunny's frame in milliseconds.
+    pub fn ms(&self) -> Option<f64> {
+        Some(self.grey.as_ref()?.ms)
+    }
+
+    /// Its errors in the view of that name.
+    pub fn distance(&self, view: &str) -> Distance {
+        let place = VIEWS.iter().position(|name| *name == view);
+        place.and_then(|place| self.distances.get(place)).copied().unwrap_or_default()
+    }
+
+    /// Whether this rung is faster than `other`, and errs no more wherever both have an error.
+    fn beats(&self, other: &Self) -> bool {
+        let faster = matches!((self.ms(), other.ms()), (Some(mine), Some(others)) if mine < others);
+        let both = self.distances.iter().zip(&other.distances).filter_map(|(mine, others)| mine.nats.zip(others.nats));
+        faster && both.clone().next().is_some() && both.into_iter().all(|(mine, others)| mine <= others)
+    }
+}
+
+impl OpticalPathReport {
+    /// The rung of that name.
+    pub fn rung(&self, name: &str) -> Option<&RungReport> {
+        self.rungs.iter().find(|rung| rung.rung == name)
+    }
+
+    /// Marks the rungs that another one beats.
+    pub fn mark_dominated(&mut self) {
+        let marks: Vec<bool> = self.rungs.iter().map(|rung| self.rungs.iter().any(|other| other.beats(rung))).collect();
+        for (rung, mark) in self.rungs.iter_mut().zip(marks) {
+            rung.dominated = mark;
+        }
+    }
+
+    /// A row for each rung, view and measure. The time is that of the grey bunny's frame in all of them.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for rung in &self.rungs {
+            for view in VIEWS {
+                for (measure, error_measure) in MEASURES.into_iter().enumerate() {
+                    let (ms, error) = (rung.ms(), rung.distance(view).of(measure));
+                    let beats = |other: &RungReport| {
+                        let no_slower = matches!((other.ms(), ms), (Some(other), Some(ms)) if other <= ms);
+                        let found = other.distance(view).of(measure);
+                        no_slower && matches!((found, error), (Some(other), Some(error)) if other < error)
+                    };
+                    rows.push(Row {
+                        technique: TECHNIQUE,
+                        rung: rung.rung.clone(),
+                        view: view.to_owned(),
+                        error,
+                        error_measure,
+                        ms,
+                        dominated: self.rungs.iter().any(beats),
+                        adapter: self.adapter.clone(),
+                    });
+                }
+            }
+        }
+        rows
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        table::text(self)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,211 @@
+//! What is looked at, and how far a rung's costs are from the truth there, pixel by pixel.
+
+use super::FINEST;
+use crate::cost::CostError;
+use crate::gpu::Gpu;
+use crate::render::{self, Picture, RenderError, Rung, Settings};
+use crate::scene::surfaces::sphere;
+use crate::scene::{Light, Material, Medium, Object, Scene, SceneError};
+use glam::{DVec3, Vec3};
+use lapidary_optical_path::oracle;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// A ball of eight optical depths' radius, lit from the side; the bunny; the dragon, whose density differs from place to place.
+pub const VIEWS: [&str; 3] = [BALL, "bunny", "dragon"];
+/// The view that has a closed form.
+pub const BALL: &str = "ball";
+/// Pixels along a side of a compared picture.
+pub(super) const SIDE: u32 = 512;
+/// The ball's radius, so long that at 64 cells a voxel's edge is 1: what the paper's solver takes every edge for.
+const RADIUS: f64 = 31.0;
+/// Optical depths along it.
+const DEPTH: f64 = 8.0;
+/// Columns of its mesh: flat triangles lie up to (π / 256)² / 2 of the radius inside, 6e-4 optical depths.
+const COLUMNS: u32 = 256;
+/// Pixels nearer to the silhouette than this share of the radius show the mesh's outline.
+const INSIDE: f64 = 0.99;
+/// Angles whose cost is found, between which it is interpolated.
+const ANGLES: u32 = 4096;
+/// Where the truth is deeper, in nats, nothing is compared: there is no light to see.
+pub(super) const DEEPEST: f64 = 12.0;
+/// What a rung's cost counts as at most, and black with it.
+pub(super) const BLACK: f64 = 24.0;
+
+/// How far a rung is from the truth in a view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Distance {
+    /// Root mean square of the costs' errors in nats.
+    pub nats: Option<f64>,
+    /// The same of luminance, e to the minus cost: of the brightest possible.
+    pub luminance: Option<f64>,
+    /// From the committed picture by random walks: [`crate::cost::exposed_distance`]. Of the walks themselves, their own standard error.
+    pub walks: Option<f64>,
+}
+
+impl Distance {
+    /// By the measure of that number in [`super::MEASURES`].
+    pub fn of(&self, measure: usize) -> Option<f64> {
+        [self.nats, self.luminance, self.walks][measure]
+    }
+}
+
+/// A scene of one extinction and what its pixels' costs should be.
+pub(super) struct View {
+    scene: Scene,
+    extinction_scale: f32,
+    /// None where there is nothing to compare.
+    truth: Vec<Option<f64>>,
+    /// The rung that the truth is made by, if any.
+    maker: Option<Rung>,
+}
+
+impl View {
+    pub(super) fn new(gpu: &Gpu, name: &str) -> Result<Self, CostError> {
+        if name == BALL {
+            let scene = ball()?;
+            let truth = exact(&scene);
+            return Ok(Self { scene, extinction_scale: 1.0, truth, maker: None });
+        }
+        let maker = FINEST.parse().ok();
+        let mut view = Self {
+            scene: grey(Scene::named(name)?),
+            extinction_scale: render::EXTINCTION_SCALE,
+            truth: Vec::new(),
+            maker,
+        };
+        view.truth = maker.map(|rung| view.costs(gpu, rung)).transpose()?.unwrap_or_default();
+        Ok(view)
+    }
+
+    /// Errors but those beside random walks. The rung that made the truth has none.
+    pub(super) fn distance(&self, gpu: &Gpu, rung: Rung) -> Result<Distance, CostError> {
+        if self.maker == Some(rung) {
+            return Ok(Distance::default());
+        }
+        Ok(between(&self.costs(gpu, rung)?, &self.truth))
+    }
+
+    fn costs(&self, gpu: &Gpu, rung: Rung) -> Result<Vec<Option<f64>>, RenderError> {
+        let settings = Settings { extinction_scale: self.extinction_scale, ..settings(rung, SIDE) };
+        Ok(costs(&self.scene, &render::render(gpu, &self.scene, &settings)?))
+    }
+}
+
+/// One sample a pixel, by the scene's lights alone, and nothing mirrors.
+pub(super) fn settings(rung: Rung, side: u32) -> Settings {
+    Settings { rung, samples: 1, light_from_environment: false, reflection: false, ..Settings::of_size(side, side) }
+}
+
+/// The scene white and with one extinction for all channels, the green one's.
+pub(super) fn grey(mut scene: Scene) -> Scene {
+    for object in &mut scene.objects {
+        object.material.base_color = Vec3::ONE;
+        if let Some(medium) = &mut object.material.medium {
+            medium.scattering = Vec3::splat(medium.scattering.y);
+            medium.absorption = Vec3::splat(medium.absorption.y);
+        }
+    }
+    scene
+}
+
+/// The ball under parallel light from the right, seen square to it.
+fn ball() -> Result<Scene, SceneError> {
+    let mut scene = Scene::named("bunny")?;
+    let medium = Medium::isotropic(Vec3::splat((DEPTH / RADIUS) as f32), Vec3::ZERO);
+    let material = Material { base_color: Vec3::ONE, medium: Some(medium), ..scene.objects[0].material.clone() };
+    scene.objects = vec![Object { name: BALL.to_owned(), mesh: sphere(RADIUS, COLUMNS), material }];
+    scene.lights = vec![Light::Directional { toward: Vec3::X, irradiance: Vec3::ONE }];
+    Ok(scene.seen_from(90.0, 0.0))
+}
+
+/// The ball's costs in closed form: where a ray through the pixel's middle meets the sphere.
+fn exact(scene: &Scene) -> Vec<Option<f64>> {
+    let by_angle: Vec<f64> = (0..=ANGLES)
+        .into_par_iter()
+        .map(|step| oracle::ball(DEPTH, DEPTH, PI * f64::from(step) / f64::from(ANGLES)))
+        .collect();
+    let cost = |angle: f64| {
+        let place = (angle / PI).clamp(0.0, 1.0) * f64::from(ANGLES);
+        let lower = (place.floor() as usize).min(ANGLES as usize - 1);
+        by_angle[lower] + (place - lower as f64) * (by_angle[lower + 1] - by_angle[lower])
+    };
+    let world_from_clip = render::clip_from_world(scene, SIDE, SIDE).as_dmat4().inverse();
+    let eye = scene.camera.eye.as_dvec3();
+    let of_pixel = |index: u32| {
+        let clip = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIDE) - 1.0;
+        let far = world_from_clip.project_point3(DVec3::new(clip(index % SIDE), -clip(index / SIDE), 1.0));
+        let direction = (far - eye).normalize();
+        let (along, beside) = (-eye.dot(direction), eye.cross(direction).length());
+        (beside < INSIDE * RADIUS).then(|| {
+            let place = eye + (along - (RADIUS * RADIUS - beside * beside).sqrt()) * direction;
+            cost(place.angle_between(DVec3::X))
+        })
+    };
+    (0..SIDE * SIDE).map(of_pixel).collect()
+}
+
+/// The cost of each pixel that a body covers, of a white scene in one sun's light.
+fn costs(scene: &Scene, picture: &Picture) -> Vec<Option<f64>> {
+    let irradiance = scene.lights.iter().find_map(|light| match light {
+        Light::Directional { irradiance, .. } => Some(f64::from(irradiance.x)),
+        _ => None,
+    });
+    let largest = FRAC_1_PI * irradiance.unwrap_or(1.0);
+    let cost = |pixel: &[f32; 4]| (pixel[3] == 1.0).then(|| (-(f64::from(pixel[0]) / largest).ln()).min(BLACK));
+    picture.linear.iter().map(cost).collect()
+}
+
+/// Root mean squares over the pixels where light is to be seen.
+fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
+    let (mut nats, mut luminance, mut count) = (0.0, 0.0, 0u32);
+    for (found, truth) in found.iter().zip(truth).filter_map(|(found, truth)| (*found).zip(*truth)) {
+        if truth < DEEPEST {
+            nats += (found - truth).powi(2);
+            luminance += ((-found).exp() - (-truth).exp()).powi(2);
+            count += 1;
+        }
+    }
+    let mean = |sum: f64| (count > 0).then(|| (sum / f64::from(count)).sqrt());
+    Distance { nats: mean(nats), luminance: mean(luminance), walks: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::AdapterChoice;
+
+    #[test]
+    fn black_and_the_unseen_count_as_they_should() {
+        let truth = [Some(0.0), Some(DEEPEST), None, Some(1.0)];
+        let found = between(&[Some(1.0), Some(0.0), Some(0.0), Some(1.0)], &truth);
+        let half = 0.5f64.sqrt();
+        assert!((found.nats.expect("seen") - half).abs() < 1e-12);
+        assert!((found.luminance.expect("seen") - half * (1.0 - (-1f64).exp())).abs() < 1e-12);
+        assert_eq!(between(&[None; 4], &truth), Distance::default());
+    }
+
+    /// Where light falls the ball's costs are those of Lambert's law but near the terminator, pixel by pixel: the pixels' angles are right.
+    #[test]
+    fn the_balls_bright_side_is_lamberts() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let view = View::new(gpu, BALL).expect("made");
+        let lambert = view.costs(gpu, "lambert".parse().expect("a rung")).expect("rendered");
+        let (mut bright, mut dark, mut worst) = (0, 0, 0.0f64);
+        for (found, truth) in lambert.iter().zip(&view.truth) {
+            let Some((found, truth)) = (*found).zip(*truth) else { continue };
+            if truth < 0.7 {
+                bright += 1;
+                worst = worst.max((found - truth).abs());
+            }
+            dark += usize::from(found == BLACK && truth > 3.0);
+        }
+        println!("{bright} bright pixels, off by {worst:.1e} nats at most; {dark} dark ones");
+        // Of the seen disc the bright part is a sixth, the dark one nearly a half.
+        let seen = view.truth.iter().flatten().count();
+        assert!(seen > 80_000 && bright > seen / 8 && dark > 2 * seen / 5, "{bright} and {dark} of {seen}");
+        // A pixel of a flat triangle has the interpolated normal of a place up to (2π / 256)² / 8 of the radius away, times the slope of the cost.
+        assert!(worst < 1e-3, "{worst}");
+    }
+}

@@ -1,0 +1,75 @@
+//! The committed pictures by random walks: how far a rung is from one after its best exposure, and how sure the picture is of itself.
+
+use super::views::settings;
+use crate::cost::{CostError, exposed_distance};
+use crate::gpu::Gpu;
+use crate::random_walk::mesh;
+use crate::render::{self, RenderError, Rung, SAMPLES, Settings};
+use crate::scene::Scene;
+use crate::snapshot::{EXR_SIDE, WALKED};
+
+/// The picture that is walked again, for the spread of its walks, has this part of the committed one's side, ...
+const REDUCTION: u32 = 4;
+/// ... and so many walks from each pixel.
+const FEW: u32 = 16;
+
+/// A scene and its picture by random walks.
+pub(super) struct Walks {
+    scene: Scene,
+    linear: Vec<[f32; 4]>,
+    /// From each pixel.
+    count: u32,
+}
+
+impl Walks {
+    /// Of the built-in scene of that name, in its own colours; nothing where no picture of it is committed.
+    pub(super) fn of(gpu: &Gpu, name: &str) -> Result<Option<Self>, CostError> {
+        let Some(reference) = WALKED.iter().find(|reference| reference.scene == name) else { return Ok(None) };
+        let linear = reference.picture(gpu)?.linear;
+        Ok(Some(Self { scene: Scene::named(name)?, linear, count: reference.walks }))
+    }
+
+    /// How far a rung's picture is from this one; of the reference, this one's own standard error.
+    pub(super) fn distance(&self, gpu: &Gpu, rung: Rung) -> Result<f64, CostError> {
+        if rung == Rung::Reference {
+            return self.standard_error();
+        }
+        let settings = Settings { samples: SAMPLES, ..settings(rung, EXR_SIDE) };
+        Ok(exposed_distance(&render::render(gpu, &self.scene, &settings)?.linear, &self.linear))
+    }
+
+    /// Root mean square of the pixels' standard errors, over the root mean square of their radiance. A picture holds no errors: a few walks
+    /// tell their spread.
+    fn standard_error(&self) -> Result<f64, CostError> {
+        let few = mesh::Settings {
+            width: EXR_SIDE / REDUCTION,
+            height: EXR_SIDE / REDUCTION,
+            samples_per_pixel: FEW,
+            seed: 1,
+            environment: None,
+            boundary: mesh::Boundary::Matched,
+        };
+        let walked = mesh::render(&self.scene, &few, &|_, _| {}).map_err(RenderError::from)?;
+        let square = |value: &f32| f64::from(*value).powi(2);
+        let variance: f64 = walked.standard_error.iter().flatten().map(square).sum();
+        let power: f64 = walked.linear.iter().flat_map(|pixel| &pixel[..3]).map(square).sum();
+        Ok((variance / power * f64::from(FEW) / f64::from(self.count)).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::AdapterChoice;
+
+    #[test]
+    fn a_committed_picture_is_found_by_its_scene_and_its_walks_are_surer_than_lamberts_law() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let walks = Walks::of(gpu, "skin_bunny").expect("read").expect("committed");
+        let of = |rung: &str| walks.distance(gpu, rung.parse().expect(rung)).expect(rung);
+        let [own, lambert, paths] = ["reference", "lambert", "godunov-32"].map(of);
+        println!("the walks' own {own:.4}, Lambert {lambert:.4}, ways {paths:.4}");
+        assert!(own > 0.0 && own < 0.3 * lambert && lambert < 1.0 && paths < 1.0);
+        assert!(Walks::of(gpu, "ball").expect("read").is_none());
+    }
+}
