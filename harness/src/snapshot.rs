@@ -296,7 +296,7 @@ pub(crate) fn reference_picture(gpu: &Gpu, path: &Path, settings: &Settings) -> 
     let (width, height) = (settings.width, settings.height);
     let linear: Vec<[f32; 4]> = read(path, (width, height))?.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
     let encoded = vec![[0; 4]; linear.len()];
-    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
+    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     render::encode(gpu, settings, &mut picture)?;
     Ok(picture)
 }

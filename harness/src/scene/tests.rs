@@ -224,7 +224,9 @@ fn translucent_bodies_have_texture_coordinates() {
 
 #[test]
 fn stone_is_lit_by_one_light_and_has_its_size() {
-    for (name, material, size) in [("bunny", "marble", 60.0), ("dragon", "veined jade", 50.0), ("figure", "marble", 117.0)] {
+    for (name, material, size) in
+        [("bunny", "marble", 60.0), ("dragon", "veined jade", 50.0), ("figure", "marble", 117.0)]
+    {
         let scene = Scene::named(name).unwrap();
         assert_eq!((scene.objects.len(), scene.lights.len()), (1, 1));
         assert_eq!(scene.lights[0].problem(), None);
