@@ -2,7 +2,7 @@
 
 use super::{RADIUS, ball, draw, lamp, settings, spot, sun};
 use crate::pixels::on_the_ball;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lapidary_harness::scene::{Light, Scene};
 use lapidary_optical_path::oracle;
 use std::f64::consts::PI;
@@ -60,7 +60,7 @@ fn lit_ball(light: Light) -> Scene {
 fn errors(light: Light, wanted: impl Fn(DVec3) -> f64) -> (f64, f64) {
     let scene = lit_ball(light);
     let brightest = lattice(&light).iter().fold(0.0f64, |most, (_, entering)| most.max(*entering));
-    let (mut squares, mut count, mut worst_lit) = (0.0, 0, 0.0f64);
+    let (mut squares, mut sum, mut count, mut worst_lit) = (0.0, 0.0, 0, 0.0f64);
     let (mut lit, mut dark) = (0, 0);
     for (position, found) in on_the_ball(&scene, &draw(&scene, &settings("godunov-64"))).into_iter().step_by(5) {
         assert!(found.x == found.y && found.y == found.z, "grey: {found}");
@@ -70,6 +70,7 @@ fn errors(light: Light, wanted: impl Fn(DVec3) -> f64) -> (f64, f64) {
             continue;
         }
         squares += (found / wanted).ln().powi(2);
+        sum += (found / wanted).ln();
         count += 1;
         if own >= 0.1 * brightest && own >= wanted * (1.0 - 1e-9) {
             worst_lit = worst_lit.max((found / own - 1.0).abs());
@@ -79,7 +80,8 @@ fn errors(light: Light, wanted: impl Fn(DVec3) -> f64) -> (f64, f64) {
     }
     assert!(lit > 300 && dark > 300, "{lit} lit, {dark} dark of {count} pixels");
     let rms = (squares / f64::from(count)).sqrt();
-    println!("rms {rms:.3} nats over {count} pixels, lit ones off by {worst_lit:.1e} at most");
+    let mean = sum / f64::from(count);
+    println!("rms {rms:.3} nats, mean {mean:.3}, over {count} pixels; lit ones off by {worst_lit:.1e} at most");
     (rms, worst_lit)
 }
 
@@ -87,23 +89,27 @@ fn errors(light: Light, wanted: impl Fn(DVec3) -> f64) -> (f64, f64) {
 /// a tenth that is 3e-3 with the slant at which the camera sees it.
 const LIT: f64 = 3e-3;
 
+/// Godunov's update is exact for fronts along an axis, and of first order for those across: along an axis the whole of a picture keeps
+/// within a tenth of a nat, and at the worst slant within twice that.
+const ALONG_AN_AXIS: f64 = 0.1;
+const SLANTING: f64 = 0.2;
+
 #[test]
 fn a_ball_under_a_sun_is_the_closed_form() {
-    let Light::Directional { toward, irradiance } = sun() else { panic!("a sun") };
-    let toward = toward.as_dvec3();
-    let wanted = |point: DVec3| {
-        let cost = oracle::ball(DEPTH, DEPTH, point.angle_between(toward));
-        f64::from(irradiance.x) * (-cost).exp()
-    };
-    let (rms, lit) = errors(sun(), wanted);
-    assert!(rms <= 0.1, "{rms} nats");
-    assert!(lit <= LIT, "{lit}");
-    // The search over chords finds the same.
-    let (light, places) = (sun(), lattice(&sun()));
-    for (point, _) in &places {
-        let point = -*point;
-        let (searched, closed) = (along_chords(&light, &places, point), wanted(point));
-        assert!((searched / closed).ln().abs() < 1e-6, "{searched} {closed}");
+    for (toward, bound) in
+        [(Vec3::NEG_X, ALONG_AN_AXIS), (Vec3::Y, ALONG_AN_AXIS), (Vec3::new(-0.8, 0.6, 0.0), SLANTING)]
+    {
+        let light = Light::Directional { toward, irradiance: Vec3::splat(2.0) };
+        let wanted = |point: DVec3| 2.0 * (-oracle::ball(DEPTH, DEPTH, point.angle_between(toward.as_dvec3()))).exp();
+        let (rms, lit) = errors(light, wanted);
+        assert!(rms <= bound, "{toward}: {rms} nats");
+        assert!(lit <= LIT, "{toward}: {lit}");
+        // The search over chords finds the same.
+        let places = lattice(&light);
+        for (point, _) in places.iter().step_by(7) {
+            let (searched, closed) = (along_chords(&light, &places, -*point), wanted(-*point));
+            assert!((searched / closed).ln().abs() < 1e-6, "{searched} {closed}");
+        }
     }
 }
 
@@ -112,7 +118,7 @@ fn balls_under_a_lamp_and_under_a_spot_are_the_best_of_all_chords() {
     for light in [lamp(), spot()] {
         let places = lattice(&light);
         let (rms, lit) = errors(light, |point| along_chords(&light, &places, point));
-        assert!(rms <= 0.1, "{light:?}: {rms} nats");
+        assert!(rms <= SLANTING, "{light:?}: {rms} nats");
         assert!(lit <= LIT, "{light:?}: {lit}");
     }
 }

@@ -129,13 +129,16 @@ fn extinctions_of_every_size_have_their_limit() {
 /// Filled from end to end, turned, moved far away, and of every number of voxels.
 #[test]
 fn a_body_leaves_the_grids_outermost_voxels_free() {
+    let mut solid = 0;
     let gpu = super::super::gpu();
     let turned = cuboid(Vec3::ONE).placed(DQuat::from_rotation_y(0.5), DVec3::ZERO);
     for mesh in [cuboid(Vec3::new(3.0, 3.0, 3.0)), turned, cuboid(Vec3::new(0.1, 7.0, 0.02)), sphere(1.0, 64)] {
         for (cells, offset) in [(16, 0.0), (40, 1.0), (64, 1000.0), (128, -0.3)] {
             let mesh = mesh.placed(DQuat::IDENTITY, DVec3::splat(offset));
             let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
-            let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[]).expect("compiled");
+            // What the surface alone touches may lie in the outermost voxels by rounding: a face lies on their border.
+            let effects = [("EFFECT_SURFACE", 0.0)];
+            let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &effects).expect("compiled");
             let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
             let usage = wgpu::BufferUsages::STORAGE;
             let [positions, indices] = parts.map(|contents| {
@@ -155,9 +158,10 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
                     assert!(BVec3::from_array(free).all(), "{cells} voxels at {offset}: voxel ({x}, {y}, {z})");
                 }
             }
-            assert!(filled > 0, "{cells} voxels at {offset}");
+            solid += filled;
         }
     }
+    assert!(solid > 10_000, "{solid}");
 }
 
 /// Far from the world's origin a body looks as it does there.
@@ -214,7 +218,9 @@ fn a_mesh_of_nothing_is_a_picture_of_nothing() {
     let one = ball(4.0, vec![sun()]);
     let mut three = one.clone();
     three.objects.extend([nothing, points]);
-    assert_eq!(draw(&three, &coarse()).linear, draw(&one, &coarse()).linear);
+    // Whose costs are the same to the bit in every run.
+    let settings = Settings { rung: "tiled-26-32".parse().expect("a rung"), ..coarse() };
+    assert!(draw(&three, &settings).linear == draw(&one, &settings).linear);
 }
 
 /// A triangle of no area, one with a corner that is not a number, and one of a single point.
@@ -249,7 +255,18 @@ fn a_body_in_anothers_shadow_stays_black() {
         let picture = draw(&scene, &coarse());
         covered("two", &picture);
         assert!(brightest(&picture, false) > 0.3, "{light:?}");
-        assert_eq!(brightest(&picture, true), 0.0, "{light:?}");
+        // Where light all but grazes it, the body before it stands less out of its tangent plane than shadows are biased by: two texels, of some 0.33
+        // each, 20 away. No more than that share of the light is left.
+        let leak = brightest(&picture, true);
+        println!("in the shadow at most {leak:.1e}");
+        assert!(leak <= 0.66 / 20.0 / PI as f32, "{light:?}: {leak}");
+        let (mut black, mut other) = (0, 0);
+        for (place, pixel) in picture.linear.iter().enumerate().filter(|(_, pixel)| pixel[3] == 1.0) {
+            if place as u32 % picture.width >= picture.width * 7 / 10 {
+                if pixel[0] == 0.0 { black += 1 } else { other += 1 }
+            }
+        }
+        assert!(black > 10 * other && black > 100, "{light:?}: {black} black, {other} not");
     }
     // From the other side both are lit: almost nothing is lost inside.
     let scene = scene(vec![before, behind], vec![light(1.0)]).seen_from(90.0, 0.0);
@@ -353,7 +370,8 @@ fn spring(turns: f64, extinction: f32) -> (Scene, impl Fn(f64) -> DVec3) {
     let light = Light::Spot {
         position: lit + 100.0 * Vec3::Y,
         direction: Vec3::NEG_Y,
-        intensity: Vec3::splat(1e4),
+        // 1 at the top of the tube.
+        intensity: Vec3::splat((100.0 - thickness as f32).powi(2)),
         inner_angle: 0.005,
         outer_angle: 0.01,
     };

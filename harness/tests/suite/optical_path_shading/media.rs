@@ -6,6 +6,9 @@ use lapidary_harness::scene::{Density, DensityGrid, Light, Medium, Scene};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
 
+/// Godunov's solver ends where a pass would lower costs by less than a ten thousandth of them, here of up to 9 nats; and which voxel is first is not said.
+const SOLVED: f32 = 1e-3;
+
 /// A ball whose medium is changed.
 fn with_medium(lights: Vec<Light>, change: impl FnOnce(Medium) -> Medium) -> Scene {
     let mut scene = ball(4.0, lights);
@@ -53,8 +56,7 @@ fn another_light_darkens_no_pixel() {
             brighter += i32::from(after[0] > 1.01 * before[0]);
         }
         println!("darker by {lost:.1e} at most, {brighter} pixels brighter");
-        // The solver leaves costs that a pass would lower by less than a ten thousandth of them, here of up to 9 nats.
-        assert!(lost < 2e-3 && brighter > 500, "{lost} {brighter}");
+        assert!(lost < SOLVED && brighter > 500, "{lost} {brighter}");
     }
 }
 
@@ -62,9 +64,11 @@ fn another_light_darkens_no_pixel() {
 fn each_colour_goes_its_own_way() {
     let extinction = Vec3::new(0.1, 0.3, 0.9);
     let of = |extinction: Vec3| with_medium(vec![sun(), lamp()], |_| Medium::isotropic(extinction, Vec3::ZERO));
-    let colored = draw(&of(extinction), &settings("godunov-64"));
+    // Whose least costs are the same to the bit whichever voxel is first.
+    let rung = "tiled-26-64";
+    let colored = draw(&of(extinction), &settings(rung));
     for (channel, grey) in extinction.to_array().into_iter().enumerate() {
-        let grey = draw(&of(Vec3::splat(grey)), &settings("godunov-64"));
+        let grey = draw(&of(Vec3::splat(grey)), &settings(rung));
         let mut seen = 0;
         for (colored, grey) in colored.linear.iter().zip(&grey.linear) {
             assert_eq!(colored[channel].to_bits(), grey[channel].to_bits(), "channel {channel}: {colored:?} {grey:?}");
@@ -77,7 +81,7 @@ fn each_colour_goes_its_own_way() {
 /// Light of one colour alone, and a light of each colour from its own side.
 #[test]
 fn coloured_lights_do_not_mix() {
-    let of = |lights: Vec<Light>| draw(&ball(4.0, lights), &settings("godunov-32"));
+    let of = |lights: Vec<Light>| draw(&ball(4.0, lights), &settings("tiled-26-32"));
     let from = |toward: Vec3, irradiance: Vec3| Light::Directional { toward, irradiance };
     let [x, y, z] = [Vec3::NEG_X, Vec3::Y, Vec3::Z];
     let all = of(vec![from(x, Vec3::X), from(y, 0.5 * Vec3::Y), from(z, 0.25 * Vec3::Z)]);
@@ -99,8 +103,7 @@ fn a_density_of_one_changes_nothing() {
     let veins = draw(&with_density(Density::Veins(pattern)), &settings("godunov-64"));
     let [ones, veins] = [ones, veins].map(|picture| apart(&picture, &uniform));
     println!("ones {ones:.1e}, veins {veins:.1e}");
-    // Weights that add up to 1 but for a few last places; of costs of up to 7 nats, by hundreds of steps.
-    assert!(ones < 1e-4 && veins < 1e-4, "{ones} {veins}");
+    assert!(ones < SOLVED && veins < SOLVED, "{ones} {veins}");
 }
 
 #[test]
@@ -110,7 +113,7 @@ fn a_density_of_two_is_twice_the_extinction() {
     let twice = draw(&twice, &settings("godunov-64"));
     let (difference, once) = (apart(&twos, &twice), draw(&with_density(Density::Uniform), &settings("godunov-64")));
     println!("apart {difference:.1e}");
-    assert!(difference < 1e-4, "{difference}");
+    assert!(difference < SOLVED, "{difference}");
     assert!(apart(&once, &twice) > 1.0, "and not once");
 }
 

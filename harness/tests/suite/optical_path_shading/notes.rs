@@ -7,11 +7,11 @@ use lapidary_harness::render::Note;
 use lapidary_harness::scene::surfaces::sphere;
 use lapidary_harness::scene::{Scene, glb};
 
-/// The ball without the first of its triangles.
+/// The ball without its upper cap.
 fn open() -> Scene {
     let mut scene = ball(1.0, vec![sun()]);
     scene.objects[0].mesh = sphere(10.0, 64);
-    scene.objects[0].mesh.indices.drain(..600);
+    scene.objects[0].mesh.indices.drain(..3600);
     scene
 }
 

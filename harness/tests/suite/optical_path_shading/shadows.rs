@@ -77,21 +77,21 @@ fn compare(what: &str, scene: &Scene, light: &Light, band: f64) -> [u32; 3] {
 
 #[test]
 fn a_ring_throws_the_shadow_on_itself_that_rays_find() {
-    let position = Vec3::new(28.0, 16.0, 20.0);
+    let position = Vec3::new(30.0, 7.0, 21.0);
     let at = |toward: Vec3| {
         let direction = (toward - position).normalize();
         Light::Spot { position, direction, intensity: Vec3::splat(1500.0), inner_angle: 0.3, outer_angle: 0.5 }
     };
     let lights = [
-        ("sun", Light::Directional { toward: Vec3::new(0.7, 0.5, 0.5).normalize(), irradiance: Vec3::ONE }),
+        ("sun", Light::Directional { toward: Vec3::new(0.8, 0.25, 0.55).normalize(), irradiance: Vec3::ONE }),
         ("lamp", Light::Point { position, intensity: Vec3::splat(1500.0) }),
         ("spot", at(Vec3::ZERO)),
         // Amid the scene: six views.
-        ("lamp beside the tube", Light::Point { position: Vec3::new(-16.0, 2.0, 0.0), intensity: Vec3::splat(300.0) }),
+        ("lamp beside the tube", Light::Point { position: Vec3::new(11.3, 2.0, 11.3), intensity: Vec3::splat(300.0) }),
     ];
     for (what, light) in lights {
         let ring = stone("ring", torus(MAJOR, MINOR, 256, 128), Vec3::splat(OPAQUE));
-        let scene = scene(vec![ring], vec![light]).seen_from(35.0, 20.0);
+        let scene = scene(vec![ring], vec![light]).seen_from(58.0, 45.0);
         // A texel is a 256th of what a map covers: 0.16 of a sun's, up to 0.2 of one of six views at the far end of the ring. Three of them.
         let [lit, dark, between] = compare(what, &scene, &light, 0.6);
         assert!(lit > 1000 && dark > 100, "{what}: {lit} {dark}");
@@ -111,8 +111,9 @@ fn a_ball_has_no_acne() {
             let cosine = (position / RADIUS).dot(arrival.direction);
             if cosine > 0.02 && arrival.irradiance.x > 1e-2 {
                 let share = PI * found.x / (cosine * arrival.irradiance.x);
-                // The mesh's normals are off by up to 1e-3 in the cosine, with the slant at which they are seen.
-                assert!((share - 1.0).abs() < 0.01 + 1e-3 / cosine, "{what}: {share} at a cosine of {cosine}");
+                // The mesh's normals are off by up to 1e-3 in the cosine, with the slant at which they are seen; at a spot's soft edge
+                // that is more.
+                assert!((share - 1.0).abs() < 0.03 + 1e-3 / cosine, "{what}: {share} at a cosine of {cosine}");
                 seen += 1;
             } else if cosine < -0.02 {
                 assert!(found.x < 1e-6, "{what}: {found} behind");
