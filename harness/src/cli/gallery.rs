@@ -50,7 +50,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         title: strip::TITLE.to_owned(),
         file: path,
         paragraph: strip::PARAGRAPH.to_owned(),
-        command: "./cook snapshots".to_owned(),
+        command: format!("./cook snapshots {}", strip::NAME),
         size: (seen.width, seen.height),
     });
     bar.inc(1);

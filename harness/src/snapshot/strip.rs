@@ -47,7 +47,7 @@ pub fn scenes() -> Result<Vec<Scene>, SceneError> {
     let drops = |time: f64| Object { name: "drops".to_owned(), mesh: merging(time), ..bunny.objects[0].clone() };
     let apart = Scene { objects: vec![drops(0.0)], ..bunny.clone() }.seen_from(75.0, 20.0);
     for time in [0.0, 0.25, 0.45, 0.7, 1.0] {
-        scenes.push(Scene { objects: vec![drops(time)], lights: vec![sun(-130.0, 0.5)], ..apart.clone() });
+        scenes.push(Scene { objects: vec![drops(time)], lights: vec![sun(-150.0, 0.4)], ..apart.clone() });
     }
     Ok(scenes)
 }
@@ -55,7 +55,7 @@ pub fn scenes() -> Result<Vec<Scene>, SceneError> {
 /// From `azimuth` degrees off +z towards +x, so high above the horizon.
 fn sun(azimuth: f32, height: f32) -> Light {
     let (x, z) = azimuth.to_radians().sin_cos();
-    Light::Directional { toward: Vec3::new(x, height, z).normalize(), irradiance: Vec3::splat(2.0 * PI) }
+    Light::Directional { toward: Vec3::new(x, height, z).normalize(), irradiance: Vec3::splat(1.4 * PI) }
 }
 
 /// How each frame is rendered.
@@ -64,6 +64,8 @@ pub fn settings() -> Settings {
     Settings {
         rung: Rung::OpticalPath(Paths { cells: 64, method: Method::Godunov }),
         light_from_environment: false,
+        // Half of what is usual, for bodies as small in the picture as these.
+        extinction_scale: 0.5 * render::EXTINCTION_SCALE,
         exposure: 1.5,
         ..Settings::of_size(SIDE, SIDE)
     }

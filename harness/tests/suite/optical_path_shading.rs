@@ -68,7 +68,7 @@ fn spot() -> Light {
     let position = Vec3::new(-20.0, 12.0, 9.0);
     Light::Spot {
         position,
-        direction: (Vec3::new(0.0, 3.0, 2.0) - position).normalize(),
+        direction: (Vec3::new(-2.0, 3.0, 8.0) - position).normalize(),
         intensity: Vec3::splat(800.0),
         inner_angle: 0.1,
         outer_angle: 0.3,

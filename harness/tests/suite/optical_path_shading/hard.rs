@@ -398,19 +398,26 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     let samples: Vec<DVec3> = (0..2000).map(|k| path(f64::from(k) / 2000.0)).collect();
     let nearest = |point: DVec3| {
         let distances = samples.iter().map(|sample| sample.distance_squared(point)).enumerate();
-        distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, squared)| (k as f64 / 2000.0, squared.sqrt() - thickness))
+        distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, squared)| (k as f64 / 2000.0, squared.sqrt()))
     };
     let eye = scene.camera.eye.as_dvec3();
     let turn = (2.0 * PI * radius).hypot(pitch);
     let (mut black, mut right) = (0, 0);
     for (direction, pixel) in crate::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
-        let mut along = eye.length() - 70.0;
-        let hit = (0..60).find_map(|_| {
-            let (share, free) = nearest(eye + along * direction)?;
-            along += free;
-            (free < 0.02).then_some(share)
+        // The mesh's tube has twelve sides: what lies between the circles about and within them is left out.
+        let hits = [1.0, (PI / 12.0).cos()].map(|inscribed| {
+            let mut along = eye.length() - 70.0;
+            (0..60).find_map(|_| {
+                let (share, distance) = nearest(eye + along * direction)?;
+                let free = distance - inscribed * thickness;
+                along += free;
+                (free < 0.02).then_some(share)
+            })
         });
-        let Some(share) = hit else { continue };
+        let [Some(share), Some(inner)] = hits else { continue };
+        if (share - inner).abs() > 0.01 {
+            continue;
+        }
         let length = turn * turns * (lit_share(turns) - share).abs();
         let light = |length: f64| (-f64::from(extinction) * length).exp() / PI;
         // Along the outer wall, with the solver's own excess and the way across; along the inner wall, the ends' light being at hand.

@@ -102,8 +102,8 @@ fn a_ring_throws_the_shadow_on_itself_that_rays_find() {
 /// Of a convex body, nothing that faces the light is in shadow, however slantingly.
 #[test]
 fn a_ball_has_no_acne() {
-    let centre = Light::Point { position: Vec3::new(0.0, 11.0, 0.0), intensity: Vec3::splat(30.0) };
-    for (what, light) in [("sun", sun()), ("lamp", lamp()), ("spot", spot()), ("lamp near by", centre)] {
+    let near = Light::Point { position: Vec3::new(4.0, 3.0, 10.5), intensity: Vec3::splat(30.0) };
+    for (what, light) in [("sun", sun()), ("lamp", lamp()), ("spot", spot()), ("lamp near by", near)] {
         let scene = ball(OPAQUE, vec![light]);
         let mut seen = 0;
         for (position, found) in on_the_ball(&scene, &draw(&scene, &settings("godunov-64"))) {
@@ -111,9 +111,10 @@ fn a_ball_has_no_acne() {
             let cosine = (position / RADIUS).dot(arrival.direction);
             if cosine > 0.02 && arrival.irradiance.x > 1e-2 {
                 let share = PI * found.x / (cosine * arrival.irradiance.x);
-                // The mesh's normals are off by up to 1e-3 in the cosine, with the slant at which they are seen; at a spot's soft edge
-                // that is more.
-                assert!((share - 1.0).abs() < 0.03 + 1e-3 / cosine, "{what}: {share} at a cosine of {cosine}");
+                // The mesh's normals are off by up to 1e-3 in the cosine, with the slant at which they are seen; and its place in a spot's soft
+                // edge, where light falls off by half in a hundredth of a radian.
+                let tolerance = if what == "spot" { 0.1 } else { 0.01 };
+                assert!((share - 1.0).abs() < tolerance + 1e-3 / cosine, "{what}: {share} at a cosine of {cosine}");
                 seen += 1;
             } else if cosine < -0.02 {
                 assert!(found.x < 1e-6, "{what}: {found} behind");
