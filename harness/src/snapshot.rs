@@ -1,5 +1,7 @@
 //! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
 
+pub mod strip;
+
 use crate::gpu::Gpu;
 use crate::render::{self, Curvature, Picture, RenderError, Rung, Settings, file};
 use crate::scene::{Scene, SceneError};
@@ -254,6 +256,54 @@ impl Shot {
     }
 }
 
+/// A committed picture: a file to look at and one of linear radiance.
+#[derive(Clone, Copy, Debug)]
+pub enum Committed {
+    /// Of one scene.
+    Shot(&'static Shot),
+    /// Of translucent stone in motion.
+    Strip,
+}
+
+impl Committed {
+    /// Every one.
+    pub const COUNT: usize = SHOTS.len() + 1;
+
+    /// Each once.
+    pub fn all() -> impl Iterator<Item = Self> {
+        SHOTS.iter().map(Self::Shot).chain([Self::Strip])
+    }
+
+    /// Its files' name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shot(shot) => shot.name,
+            Self::Strip => strip::NAME,
+        }
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub fn folder(self) -> PathBuf {
+        match self {
+            Self::Shot(shot) => shot.folder(),
+            Self::Strip => folder("optical_path"),
+        }
+    }
+
+    /// Renders it anew, as its PNG and as its EXR would hold it.
+    ///
+    /// # Errors
+    /// Where its scene does not load, or the device refuses.
+    pub fn render(self, gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
+        match self {
+            Self::Shot(shot) => render_shot(gpu, shot, &shot.source()),
+            Self::Strip => strip::render(gpu),
+        }
+    }
+}
+
 /// Where the pictures of a technique's recipes are.
 pub fn folder(technique: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots").join(technique)
@@ -304,7 +354,7 @@ pub(crate) fn reference_picture(gpu: &Gpu, path: &Path, settings: &Settings) -> 
     let (width, height) = (settings.width, settings.height);
     let linear: Vec<[f32; 4]> = read(path, (width, height))?.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
     let encoded = vec![[0; 4]; linear.len()];
-    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
+    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     render::encode(gpu, settings, &mut picture)?;
     Ok(picture)
 }
@@ -380,11 +430,11 @@ pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Resu
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
 }
 
-/// Compares new pictures with the references in `folder`. Where they differ too much, the new PNG and a picture of the
+/// Compares new pictures with the references called `name` in `folder`. Where they differ too much, the new PNG and a picture of the
 /// difference are left beside the reference, as `<name>.new.png` and `<name>.difference.png`.
-pub fn compare(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
-    let png = folder.join(format!("{}.png", shot.name));
-    let exr = folder.join(format!("{}.exr", shot.name));
+pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
+    let png = folder.join(format!("{name}.png"));
+    let exr = folder.join(format!("{name}.exr"));
     let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
     let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
     let map = flip_map(seen, reference.as_raw());
@@ -392,7 +442,7 @@ pub fn compare(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Res
         flip: nv_flip::FlipPool::from_image(&map).mean(),
         rmse: relative_rmse(&linear.linear, reference_linear.as_raw()),
     };
-    let beside = ["new", "difference"].map(|kind| folder.join(format!("{}.{kind}.png", shot.name)));
+    let beside = ["new", "difference"].map(|kind| folder.join(format!("{name}.{kind}.png")));
     if comparison.holds() {
         // What an earlier failure left is out of date.
         for path in beside {
@@ -424,11 +474,11 @@ pub(crate) fn flip(picture: &Picture, reference: &Picture) -> Vec<f32> {
     flip_map(picture, &rgb(reference)).to_vec()
 }
 
-/// Makes new pictures the references.
-pub fn accept(shot: &Shot, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<(), SnapshotError> {
+/// Makes new pictures the references called `name`.
+pub fn accept(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<(), SnapshotError> {
     std::fs::create_dir_all(folder).map_err(|error| file::FileError::Write { path: folder.to_owned(), error })?;
     for (picture, extension) in [(seen, "png"), (linear, "exr")] {
-        let path = folder.join(format!("{}.{extension}", shot.name));
+        let path = folder.join(format!("{name}.{extension}"));
         file::write(picture, &path)?;
         let bytes = std::fs::metadata(&path).map_or(0, |metadata| metadata.len());
         if bytes > LARGEST_FILE {

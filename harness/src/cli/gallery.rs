@@ -5,7 +5,7 @@ use lapidary_harness::cost::drawing::SIZE as PLOT_SIZE;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;
-use lapidary_harness::snapshot::{self, EXR_SIDE, PNG_SIDE, SHOTS, WALKED};
+use lapidary_harness::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, strip};
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.
@@ -24,7 +24,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let out = arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/gallery"));
     let gpu = context.gpu()?;
     let rendered = tempfile::tempdir()?;
-    let bar = progress::bar(SHOTS.len() as u64, "rendering");
+    let bar = progress::bar(Committed::COUNT as u64, "rendering");
     let mut pictures = Vec::new();
     for shot in &SHOTS {
         bar.set_message(shot.name);
@@ -42,6 +42,18 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         });
         bar.inc(1);
     }
+    bar.set_message(strip::NAME);
+    let path = rendered.path().join(format!("{}.png", strip::NAME));
+    let [seen, _] = strip::render(gpu)?;
+    file::write(&seen, &path)?;
+    pictures.push(Picture {
+        title: strip::TITLE.to_owned(),
+        file: path,
+        paragraph: strip::PARAGRAPH.to_owned(),
+        command: format!("./cook snapshots {}", strip::NAME),
+        size: (seen.width, seen.height),
+    });
+    bar.inc(1);
     for reference in &WALKED {
         let path = rendered.path().join(format!("{}_walked.png", reference.scene));
         file::write(&reference.picture(gpu)?, &path)?;

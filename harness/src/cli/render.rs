@@ -183,6 +183,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     bar.finish_and_clear();
     file::write(&picture, &out)?;
+    for note in &picture.notes {
+        eprintln!("cook: {note}");
+    }
     output::line(&out.display().to_string())?;
     if let Some(Lost { max, mean }) = picture.lost {
         output::line(&format!("not followed: {max:.1e} of a ray's energy at most, {mean:.1e} in the mean"))?;

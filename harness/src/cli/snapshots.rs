@@ -1,35 +1,48 @@
 //! `cook snapshots`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::snapshot::{self, SHOTS};
+use lapidary_harness::nearest::suggest;
+use lapidary_harness::snapshot::{self, Committed};
 
 /// Renders the committed pictures again and compares them, or accepts the new ones.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  ./cook snapshots\n  ./cook snapshots --accept")]
+#[command(after_help = "Examples:\n  ./cook snapshots\n  ./cook snapshots --accept\n  ./cook snapshots strip")]
 pub(super) struct Arguments {
+    /// One picture alone, by its file's name; all where left out.
+    #[arg(value_parser = parse_name)]
+    name: Option<String>,
     /// Make the new pictures the references. Look at them first.
     #[arg(long)]
     accept: bool,
 }
 
+fn parse_name(text: &str) -> Result<String, String> {
+    let names: Vec<&str> = Committed::all().map(Committed::name).collect();
+    let known = names.contains(&text).then(|| text.to_owned());
+    known.ok_or_else(|| format!("no such picture{}", suggest(text, &names)))
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let gpu = context.gpu()?;
-    let bar = progress::bar(SHOTS.len() as u64, "rendering");
+    let chosen: Vec<Committed> = Committed::all()
+        .filter(|committed| arguments.name.as_ref().is_none_or(|name| name == committed.name()))
+        .collect();
+    let bar = progress::bar(chosen.len() as u64, "rendering");
     let mut outcome = Outcome::Passed;
     let mut lines = Vec::new();
-    for shot in &SHOTS {
-        bar.set_message(shot.name);
-        let pictures = snapshot::render_shot(gpu, shot, &shot.source())?;
+    for committed in chosen {
+        let (name, folder) = (committed.name(), committed.folder());
+        bar.set_message(name);
+        let pictures = committed.render(gpu)?;
         if arguments.accept {
-            snapshot::accept(shot, &pictures, &shot.folder())?;
-            lines.push(format!("{:<24} accepted", shot.name));
+            snapshot::accept(name, &pictures, &folder)?;
+            lines.push(format!("{name:<24} accepted"));
         } else {
-            match snapshot::compare(shot, &pictures, &shot.folder()) {
+            match snapshot::compare(name, &pictures, &folder) {
                 Ok(comparison) => {
                     let verdict = if comparison.holds() { "same" } else { "DIFFERENT" };
                     lines.push(format!(
-                        "{:<24} {verdict}: FLIP {:.4} (at most {}), relative RMSE {:.4} (at most {})",
-                        shot.name,
+                        "{name:<24} {verdict}: FLIP {:.4} (at most {}), relative RMSE {:.4} (at most {})",
                         comparison.flip,
                         snapshot::MOST_FLIP,
                         comparison.rmse,
@@ -40,7 +53,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                     }
                 }
                 Err(error) => {
-                    lines.push(format!("{:<24} FAILED: {error}", shot.name));
+                    lines.push(format!("{name:<24} FAILED: {error}"));
                     outcome = Outcome::Failed;
                 }
             }

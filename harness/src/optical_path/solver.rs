@@ -205,20 +205,41 @@ impl<'gpu> Solver<'gpu> {
     /// # Errors
     /// Where the device is lost.
     pub fn status(&self) -> Result<Status, KernelError> {
-        let size = 4 * PROGRESS_WORDS;
-        let readback = self.gpu.guarded("reading a solve's status", |device| {
-            let readback = device.create_buffer(&wgpu::BufferDescriptor {
+        let kept = self.kept_status()?;
+        self.gpu.guarded("reading a solve's status", |device| {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.keep_status(&mut encoder, &kept);
+            self.gpu.queue.submit([encoder.finish()]);
+        })?;
+        self.status_of(&kept)
+    }
+
+    /// A buffer for [`Solver::keep_status`].
+    ///
+    /// # Errors
+    /// Where the device refuses the memory.
+    pub fn kept_status(&self) -> Result<wgpu::Buffer, KernelError> {
+        Ok(self.gpu.guarded("allocating a solve's status", |device| {
+            device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
-                size,
+                size: 4 * PROGRESS_WORDS,
                 usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
                 mapped_at_creation: false,
-            });
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encoder.copy_buffer_to_buffer(&self.progress, 0, &readback, 0, size);
-            self.gpu.queue.submit([encoder.finish()]);
-            readback
-        })?;
-        Ok(self.gpu.read_back(&readback, size, |bytes| {
+            })
+        })?)
+    }
+
+    /// Records that how far the solve before came is kept, though others follow. Nothing waits.
+    pub fn keep_status(&self, encoder: &mut wgpu::CommandEncoder, kept: &wgpu::Buffer) {
+        encoder.copy_buffer_to_buffer(&self.progress, 0, kept, 0, 4 * PROGRESS_WORDS);
+    }
+
+    /// What was kept by the last submission. Waits for it: not for every frame.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub fn status_of(&self, kept: &wgpu::Buffer) -> Result<Status, KernelError> {
+        Ok(self.gpu.read_back(kept, 4 * PROGRESS_WORDS, |bytes| {
             let words: &[u32] = bytemuck::cast_slice(bytes);
             let parity = (words[0] & 1) as usize;
             let least = mirror::decode(words[5 + parity]);

@@ -12,6 +12,7 @@ mod gem;
 mod harmonics;
 mod light_views;
 mod lighting;
+mod note;
 mod optical_path;
 mod pass;
 mod reflectance;
@@ -31,6 +32,7 @@ use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
 pub(crate) use gem::constants;
+pub use note::Note;
 pub use optical_path::{Paths, Stage};
 use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
@@ -150,6 +152,8 @@ pub struct Picture {
     pub lost: Option<Lost>,
     /// How good the reference of what scatters light is; none of another rung.
     pub walked: Option<WalkedPicture>,
+    /// What is not as it should be.
+    pub notes: Vec<Note>,
 }
 
 /// How good a picture by random walks is.
@@ -306,7 +310,7 @@ fn render_from(
     }
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
-    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None };
+    let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     if settings.rung == Rung::Reference {
         if scatters(scene) {
             let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
@@ -352,6 +356,7 @@ fn render_from(
         display.finish(encoder, *tile, settings, &mut picture)?;
         progress(done, tiles.len() as u64);
     }
+    picture.notes = pass.notes()?;
     Ok(picture)
 }
 

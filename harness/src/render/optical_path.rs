@@ -9,7 +9,7 @@ use super::light_views::{self, LightView};
 use super::lighting::{self, Lighting};
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
-use super::{RenderError, Settings};
+use super::{Note, RenderError, Settings};
 use crate::compute::Kernel;
 use crate::cookbook;
 use crate::gpu::Gpu;
@@ -20,6 +20,7 @@ use crate::voxelization::Voxelizer;
 use density::Densities;
 use glam::Vec3;
 pub use stage::Stage;
+use std::f32::consts::FRAC_1_PI;
 
 const SEED: &str = "optical_path_seed";
 /// Texels of a map along a side for each voxel of a grid: the sphere about a body is up to 1.7 grids wide.
@@ -47,6 +48,8 @@ pub(super) struct OpticalPaths<'gpu> {
 
 /// Of one body.
 struct BodyPaths<'gpu> {
+    /// Of its object.
+    name: String,
     grid: VoxelGrid,
     voxelizer: Voxelizer<'gpu>,
     densities: Option<Densities>,
@@ -54,6 +57,8 @@ struct BodyPaths<'gpu> {
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
     channels: Vec<Channel>,
+    /// What the surface sends back where the cost is 0, for each channel: linear radiance.
+    brightest: Vec3,
 }
 
 /// Of one of a body's channels.
@@ -62,6 +67,8 @@ struct Channel {
     costs: wgpu::Buffer,
     /// Of clearing and of seeding.
     groups: [[Option<wgpu::BindGroup>; 2]; 2],
+    /// How far its last solve came.
+    status: wgpu::Buffer,
 }
 
 /// Compiles `source`, the composed recipe, and uploads the scene.
@@ -108,6 +115,10 @@ pub(super) fn pass<'gpu>(
     let all_maps = maps.view();
     let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
     for (object, extinction) in scene.objects.iter().zip(&extinctions) {
+        // Nothing to draw, and no buffer is empty.
+        if object.mesh.indices.is_empty() {
+            continue;
+        }
         let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), paths.cells);
         let Object { mesh, material, .. } = object;
         let parts: [&[u8]; 3] = [
@@ -132,7 +143,8 @@ pub(super) fn pass<'gpu>(
         let density = densities.as_ref().map_or(&same, |densities| &densities.buffer);
         let channels = (0..if color { 3 } else { 1 })
             .map(|channel| {
-                gpu.guarded("allocating costs", |device| {
+                let status = solver.kept_status()?;
+                Ok(gpu.guarded("allocating costs", |device| {
                     let costs = device.create_buffer(&wgpu::BufferDescriptor {
                         label: Some(SEED),
                         size: 4 * grid.count() as u64,
@@ -157,10 +169,10 @@ pub(super) fn pass<'gpu>(
                     ];
                     let groups = [&clear, &seed]
                         .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
-                    Channel { extinction, costs, groups }
-                })
+                    Channel { extinction, costs, groups, status }
+                })?)
             })
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, RenderError>>()?;
         let group = gpu.guarded("uploading a material", |device| {
             let uniform =
                 buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
@@ -178,7 +190,8 @@ pub(super) fn pass<'gpu>(
             bind_group(device, &pipeline, 1, resources)
         })?;
         bodies.push(Body { groups: vec![group], vertices });
-        of_bodies.push(BodyPaths { grid, voxelizer, densities, solver, positions, indices, channels });
+        let (name, brightest) = (object.name.clone(), FRAC_1_PI * material.base_color * largest);
+        of_bodies.push(BodyPaths { name, grid, voxelizer, densities, solver, positions, indices, channels, brightest });
     }
     let mut shared = lighting.shared();
     shared.extend([Shared::Buffer(views_buffer), Shared::Texture(all_maps)]);
@@ -286,8 +299,9 @@ impl OpticalPaths<'_> {
             Stage::Solve => {
                 for body in &self.bodies {
                     let density = body.densities.as_ref().map(|densities| &densities.buffer);
-                    for Channel { costs, extinction, .. } in &body.channels {
+                    for Channel { costs, extinction, status, .. } in &body.channels {
                         body.solver.encode(encoder, &body.voxelizer.matter, density, costs, *extinction)?;
+                        body.solver.keep_status(encoder, status);
                     }
                 }
                 Ok(())
@@ -324,6 +338,32 @@ impl OpticalPaths<'_> {
             }
         })?;
         Ok(())
+    }
+
+    /// What is to be said about the last submitted frame. Waits for it.
+    pub(super) fn notes(&self) -> Result<Vec<Note>, RenderError> {
+        let mut notes = Vec::new();
+        for body in &self.bodies {
+            let odd_columns = body.voxelizer.status()?.odd_columns;
+            if odd_columns > 0 {
+                let columns = body.grid.cells * body.grid.cells;
+                notes.push(Note::Open { object: body.name.clone(), odd_columns, columns });
+            }
+            let mut bound = 0f32;
+            for (number, channel) in body.channels.iter().enumerate() {
+                // The first serves all three where there is no other.
+                let brightest = if body.channels.len() == 1 {
+                    body.brightest.max_element()
+                } else {
+                    body.brightest.to_array()[number]
+                };
+                bound = bound.max(brightest * body.solver.status_of(&channel.status)?.luminance_bound());
+            }
+            if bound > 0.0 {
+                notes.push(Note::StoppedEarly { object: body.name.clone(), bound });
+            }
+        }
+        Ok(notes)
     }
 
     /// How many draw calls it takes.

@@ -2,7 +2,7 @@
 
 use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
-use super::{RenderError, device};
+use super::{Note, RenderError, device};
 use crate::gpu::Gpu;
 use glam::{Mat4, Vec3};
 
@@ -93,6 +93,15 @@ impl ScenePass<'_> {
             Before::Paths(paths) => Some(paths),
             Before::Diffusion(_) => None,
         })
+    }
+
+    /// What is to be said about the last submitted frame. Waits for it.
+    pub(super) fn notes(&self) -> Result<Vec<Note>, RenderError> {
+        let of = |before: &Before<'_>| match before {
+            Before::Diffusion(_) => Ok(Vec::new()),
+            Before::Paths(paths) => paths.notes(),
+        };
+        self.before.iter().map(of).collect::<Result<Vec<_>, _>>().map(|notes| notes.concat())
     }
 
     /// Draws the objects: one draw call for each.

@@ -1,6 +1,7 @@
 //! The recipe `cdrf_shading` against what its parts promise: spheres, whose curvature is known, by every rung; the environment by quadrature;
 //! what is off; and what nobody should draw.
 
+use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
 use lapidary_harness::cost::exposed_distance;
@@ -47,28 +48,6 @@ fn expected(scene: &Scene, position: DVec3, radius: f64, reflectance: impl Fn(f6
             irradiance * DVec3::from_array(sigma.to_array().map(|sigma| reflectance(normal.dot(toward), sigma)));
     }
     material.base_color.as_dvec3() * received * FRAC_1_PI
-}
-
-/// The pixels that lie wholly on the ball about the origin, with their places on it: where a ray through the pixel's middle meets the sphere.
-fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
-    let world_from_clip = render::clip_from_world(scene, SIDE, SIDE).as_dmat4().inverse();
-    let radius = scene.objects[0].mesh.positions[0].as_dvec3().length();
-    let eye = scene.camera.eye.as_dvec3();
-    let mut found = Vec::new();
-    for (index, [r, g, b, alpha]) in (0..).zip(&picture.linear) {
-        let (row, column): (u32, u32) = (index / SIDE, index % SIDE);
-        let clip = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIDE) - 1.0;
-        let far = world_from_clip.project_point3(DVec3::new(clip(column), -clip(row), 1.0));
-        let direction = (far - eye).normalize();
-        let (along, beside) = (-eye.dot(direction), eye.cross(direction).length());
-        // Away from the silhouette, where the mesh's outline is not the sphere's.
-        if beside < 0.99 * radius && *alpha == 1.0 {
-            let place = eye + (along - (radius * radius - beside * beside).sqrt()) * direction;
-            found.push((place, DVec3::new((*r).into(), (*g).into(), (*b).into())));
-        }
-    }
-    assert!(found.len() > 5000, "{} pixels", found.len());
-    found
 }
 
 /// Normals interpolated over a mesh of 256 columns are off by (2 pi / 256)^2 / 8 = 7.5e-5 in length, less in direction; curvature by

@@ -1,7 +1,7 @@
 //! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
 
 use lapidary_harness::scene::Scene;
-use lapidary_harness::snapshot::{self, Comparison, SHOTS, Shot, SnapshotError};
+use lapidary_harness::snapshot::{self, Committed, Comparison, SHOTS, Shot, SnapshotError};
 use std::path::Path;
 
 fn source() -> String {
@@ -27,10 +27,11 @@ fn copy_of(folder: &Path) -> tempfile::TempDir {
 
 #[test]
 fn every_picture_is_as_it_was() {
-    for shot in &SHOTS {
-        let pictures = snapshot::render_shot(super::gpu(), shot, &shot.source()).expect("rendered");
-        let comparison = snapshot::compare(shot, &pictures, &shot.folder()).expect(shot.name);
-        assert!(comparison.holds(), "{}: {comparison:?}; see the new picture and the difference beside it", shot.name);
+    for committed in Committed::all() {
+        let name = committed.name();
+        let pictures = committed.render(super::gpu()).expect("rendered");
+        let comparison = snapshot::compare(name, &pictures, &committed.folder()).expect(name);
+        assert!(comparison.holds(), "{name}: {comparison:?}; see the new picture and the difference beside it");
     }
 }
 
@@ -38,7 +39,7 @@ fn every_picture_is_as_it_was() {
 fn planted(scene: &Scene, source: &str) -> Comparison {
     let copy = copy_of(&brilliant().folder());
     let pictures = snapshot::render_scene(super::gpu(), brilliant(), scene, source).expect("rendered");
-    let comparison = snapshot::compare(brilliant(), &pictures, copy.path()).expect("compared");
+    let comparison = snapshot::compare("brilliant", &pictures, copy.path()).expect("compared");
     for kind in ["new", "difference"] {
         assert_eq!(copy.path().join(format!("brilliant.{kind}.png")).exists(), !comparison.holds(), "{kind}");
     }
@@ -79,7 +80,7 @@ fn swapped_channels_are_seen() {
 fn a_missing_reference_fails_and_is_not_made() {
     let empty = tempfile::tempdir().expect("a folder");
     let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
-    let error = snapshot::compare(brilliant(), &pictures, empty.path()).expect_err("no reference");
+    let error = snapshot::compare("brilliant", &pictures, empty.path()).expect_err("no reference");
     assert!(matches!(error, SnapshotError::Missing(_)), "{error}");
     assert_eq!(std::fs::read_dir(empty.path()).expect("the folder").count(), 0);
 }
@@ -89,18 +90,18 @@ fn an_unreadable_reference_fails() {
     let copy = copy_of(&brilliant().folder());
     std::fs::write(copy.path().join("brilliant.png"), b"not a picture").expect("written");
     let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
-    let error = snapshot::compare(brilliant(), &pictures, copy.path()).expect_err("no picture");
+    let error = snapshot::compare("brilliant", &pictures, copy.path()).expect_err("no picture");
     assert!(matches!(error, SnapshotError::Unreadable { .. }), "{error}");
 }
 
 #[test]
 fn the_committed_pictures_are_small() {
     // By name, since another test may have left a failure's pictures beside them.
-    let files = SHOTS
-        .iter()
-        .flat_map(|shot| ["png", "exr"].map(|extension| shot.folder().join(format!("{}.{extension}", shot.name))));
+    let files = Committed::all().flat_map(|committed| {
+        ["png", "exr"].map(|extension| committed.folder().join(format!("{}.{extension}", committed.name())))
+    });
     let sizes: Vec<u64> = files.map(|file| std::fs::metadata(file).expect("a committed picture").len()).collect();
-    assert_eq!(sizes.len(), 2 * SHOTS.len());
+    assert_eq!(sizes.len(), 2 * Committed::COUNT);
     assert!(sizes.iter().all(|size| *size <= snapshot::LARGEST_FILE));
     assert!(sizes.iter().sum::<u64>() <= 24 << 20);
 }

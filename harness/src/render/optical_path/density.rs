@@ -41,7 +41,7 @@ impl Densities {
             let of_voxels = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(RECIPE),
                 size: 4 * grid.count() as u64,
-                usage: wgpu::BufferUsages::STORAGE,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
             let uniform = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::UNIFORM);
@@ -105,3 +105,6 @@ fn texture(gpu: &Gpu, grid: &DensityGrid) -> wgpu::Texture {
         bytemuck::cast_slice(grid.densities()),
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,36 @@
+//! What a picture's pixels show, and where that lies.
+
+use glam::DVec3;
+use lapidary_harness::render::{self, Picture};
+use lapidary_harness::scene::Scene;
+
+/// For each pixel the unit direction in which the camera looks through its middle, and what it found.
+pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {
+    let (width, height) = (picture.width, picture.height);
+    let world_from_clip = render::clip_from_world(scene, width, height).as_dmat4().inverse();
+    let eye = scene.camera.eye.as_dvec3();
+    let ray = |(index, pixel): (u32, &[f32; 4])| {
+        let clip = |place: u32, side: u32| 2.0 * (f64::from(place) + 0.5) / f64::from(side) - 1.0;
+        let (column, row) = (clip(index % width, width), clip(index / width, height));
+        let far = world_from_clip.project_point3(DVec3::new(column, -row, 1.0));
+        ((far - eye).normalize(), *pixel)
+    };
+    (0..).zip(&picture.linear).map(ray).collect()
+}
+
+/// The pixels that lie wholly on the ball about the origin, with their places on it: where a ray through the pixel's middle meets the sphere.
+pub(crate) fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
+    let radius = scene.objects[0].mesh.positions[0].as_dvec3().length();
+    let eye = scene.camera.eye.as_dvec3();
+    let mut found = Vec::new();
+    for (direction, [r, g, b, alpha]) in rays(scene, picture) {
+        let (along, beside) = (-eye.dot(direction), eye.cross(direction).length());
+        // Away from the silhouette, where the mesh's outline is not the sphere's.
+        if beside < 0.99 * radius && alpha == 1.0 {
+            let place = eye + (along - (radius * radius - beside * beside).sqrt()) * direction;
+            found.push((place, DVec3::new(r.into(), g.into(), b.into())));
+        }
+    }
+    assert!(found.len() > 5000, "{} pixels", found.len());
+    found
+}
