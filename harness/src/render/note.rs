@@ -48,8 +48,8 @@ mod tests {
     fn a_note_is_a_line_with_its_figures() {
         let open = Note::Open { object: "hare".to_owned(), odd_columns: 7, columns: 4096 }.to_string();
         assert!(open.starts_with("object `hare` is not closed: 7 of the 4096 columns"), "{open}");
-        let stopped = Note::StoppedEarly { object: "spring".to_owned(), bound: 0.0125 }.to_string();
-        assert!(stopped.contains("`spring`") && stopped.contains("at most 1.2e-2"), "{stopped}");
+        let stopped = Note::StoppedEarly { object: "spring".to_owned(), bound: 0.25 }.to_string();
+        assert!(stopped.contains("`spring`") && stopped.contains("at most 2.5e-1"), "{stopped}");
         for line in [open, stopped] {
             assert!(!line.contains('\n') && !line.contains("  "), "{line}");
         }
