@@ -102,7 +102,9 @@ pub const RECIPES: &[Recipe] = recipes![
 pub const PARTS: &[Part] = parts![
     "gem_shading",
     "harmonics",
+    "light_views",
     "lights",
+    "matter",
     "mesh",
     "mesh_normals",
     "optical_path_grid",

@@ -190,6 +190,24 @@ impl Gpu {
         }
     }
 
+    /// The words of a whole buffer that may be copied from. Waits for everything submitted.
+    pub fn words(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+        let size = buffer.size();
+        let readback = self.guarded("reading a buffer back", |device| {
+            let readback = device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            });
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, size);
+            self.queue.submit([encoder.finish()]);
+            readback
+        })?;
+        self.read_back(&readback, size, bytemuck::pod_collect_to_vec)
+    }
+
     /// Waits for everything submitted and hands the bytes of a `MAP_READ` buffer to `read`.
     pub fn read_back<T>(&self, buffer: &wgpu::Buffer, size: u64, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         let failed = |reason: String| GpuError::Device { what: "reading results back".to_owned(), reason };

@@ -7,8 +7,8 @@ use glam::{UVec3, Vec3};
 pub const LEAST_CELLS: u32 = 16;
 /// Voxels along an edge of the largest grid.
 pub const MOST_CELLS: u32 = 256;
-/// Voxels along an edge of a tile, of which a grid has a whole number.
-pub const TILE: u32 = 8;
+/// The voxels along an edge are a multiple of this: what the passes over voxels take at a time, along any axis, goes into it.
+pub const MULTIPLE: u32 = 8;
 
 /// A cube of `cells`³ voxels. Voxel (x, y, z) has the number x + `cells` (y + `cells` z).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct VoxelGrid {
     pub origin: Vec3,
     /// A voxel's edge in world units, above 0.
     pub spacing: f32,
-    /// Voxels along each edge: a multiple of [`TILE`] from [`LEAST_CELLS`] to [`MOST_CELLS`].
+    /// Voxels along each edge: a multiple of [`MULTIPLE`] from [`LEAST_CELLS`] to [`MOST_CELLS`].
     pub cells: u32,
 }
 
@@ -28,7 +28,7 @@ impl VoxelGrid {
     /// Where `cells` is none that [`VoxelGrid::cells`] allows.
     #[must_use]
     pub fn about(bounds: Bounds, cells: u32) -> Self {
-        assert!((LEAST_CELLS..=MOST_CELLS).contains(&cells) && cells.is_multiple_of(TILE), "{cells} voxels");
+        assert!((LEAST_CELLS..=MOST_CELLS).contains(&cells) && cells.is_multiple_of(MULTIPLE), "{cells} voxels");
         let extent = (bounds.max - bounds.min).max_element();
         // A point, or nothing at all, still has voxels of some size.
         let extent = if extent > 0.0 { extent } else { 1.0 };

@@ -193,30 +193,8 @@ impl<'gpu> Voxelizer<'gpu> {
     /// # Errors
     /// Where the device does.
     pub fn status(&self) -> Result<Status, DispatchError> {
-        let words = self.read(&self.status)?;
+        let words = self.gpu.words(&self.status)?;
         Ok(Status { solid: words[0], surface: words[1], odd_columns: words[2] })
-    }
-
-    /// The words of one of the buffers. It waits for the device.
-    ///
-    /// # Errors
-    /// Where the device refuses.
-    pub fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, DispatchError> {
-        let gpu = self.gpu;
-        let size = buffer.size();
-        let readback = gpu.guarded("reading voxels back", |device| {
-            let readback = device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size,
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            });
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, size);
-            gpu.queue.submit([encoder.finish()]);
-            readback
-        })?;
-        Ok(gpu.read_back(&readback, size, bytemuck::pod_collect_to_vec)?)
     }
 }
 

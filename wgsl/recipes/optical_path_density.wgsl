@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; the veins are the module veins'.
 // requires: veins, voxelization
+// parts: matter
 //
 // Dispatch with (1, cells, cells) workgroups after the recipe voxelization, and before the seeds.
 
@@ -15,7 +16,6 @@ struct OpticalPathBox {
 }
 
 @group(0) @binding(0) var<uniform> grid: VoxelizationGrid;
-// A bit for each voxel, as the recipe voxelization leaves them.
 @group(0) @binding(1) var<storage, read> matter: array<u32>;
 @group(0) @binding(2) var<storage, read_write> density: array<f32>;
 @group(0) @binding(3) var<uniform> pattern: VeinsPattern;
@@ -50,13 +50,12 @@ fn optical_path_sampled(position: vec3f) -> f32 {
 // Whether there is matter in a voxel or about it, where shading interpolates: in the same word of the nine rows about it. What is in the next word is
 // not looked for; at a word's ends there may always be some.
 fn optical_path_near_matter(voxel: vec3u) -> bool {
-    let words = (grid.cells + 31u) / 32u;
     let lower = max(voxel.yz, vec2u(1u)) - 1u;
     let upper = min(voxel.yz + 1u, vec2u(grid.cells - 1u));
     var bits = 0u;
     for (var z = lower.y; z <= upper.y; z++) {
         for (var y = lower.x; y <= upper.x; y++) {
-            bits |= matter[words * (y + grid.cells * z) + voxel.x / 32u];
+            bits |= matter_word(grid.cells, vec3u(voxel.x, y, z));
         }
     }
     let place = voxel.x % 32u;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.1.
 // requires: optical_path, reflective_shadow_map, voxelization
-// parts: lights
+// parts: lights, light_views, matter
 //
 // Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed with an invocation for each texel of each map. One channel at a
 // time: costs are those of red, green or blue.
@@ -21,12 +21,8 @@ struct OpticalPathSeeding {
 }
 
 @group(0) @binding(0) var<uniform> seeding: OpticalPathSeeding;
-// The recipe reflective_shadow_map's, a layer for each view.
-@group(0) @binding(1) var maps: texture_2d_array<f32>;
-// Which light each layer is a view of. The part lights has binding 2.
-@group(0) @binding(3) var<storage, read> light_of_map: array<u32>;
+// Bindings 2, 4 and 5 are the parts'.
 @group(1) @binding(0) var<storage, read_write> costs: array<atomic<u32>>;
-// A bit for each voxel, as the recipe voxelization leaves them.
 @group(1) @binding(1) var<storage, read> matter: array<u32>;
 @group(1) @binding(2) var<storage, read> density: array<f32>;
 
@@ -54,9 +50,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
         return;
     }
     let voxel = voxelization_voxel(seeding.grid, seen.xyz);
-    let words = (seeding.grid.cells + 31u) / 32u;
-    let word = matter[words * (voxel.y + seeding.grid.cells * voxel.z) + voxel.x / 32u];
-    if ((word >> (voxel.x % 32u) & 1u) == 0u) {
+    if (!matter_is_at(seeding.grid.cells, voxel)) {
         return;
     }
     let index = voxelization_index(seeding.grid, voxel);
@@ -64,7 +58,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     if (EFFECT_EXTINCTION_PER_VOXEL) {
         extinction *= density[index];
     }
-    let arrival = light_arrival(lights[light_of_map[texel.z]], seen.xyz);
+    let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
     let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
     let offset = distance(seen.xyz, voxelization_centre(seeding.grid, voxel));
     atomicMin(&costs[index], optical_path_encode(optical_path_seed(share, extinction, offset)));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.2.
 // requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
-// parts: mesh, mesh_normals, surroundings, lights, harmonics, reflection
+// parts: mesh, mesh_normals, surroundings, lights, light_views, harmonics, reflection
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes voxelization, reflective_shadow_map,
 // optical_path_seed and a solver have filled the costs.
@@ -21,12 +21,6 @@ struct OpticalPathView {
     eye: vec3f,
 }
 
-// One view of a light.
-struct OpticalPathMap {
-    view: ReflectiveShadowMapView,
-    light: u32,
-}
-
 struct OpticalPathBody {
     grid: VoxelizationGrid,
     // Linear RGB: what the surface sends back of diffuse light.
@@ -42,9 +36,7 @@ struct OpticalPathBody {
 }
 
 @group(0) @binding(0) var<uniform> view: OpticalPathView;
-// Bindings 1, 2 and 3 are the parts'.
-@group(0) @binding(4) var<storage, read> views: array<OpticalPathMap>;
-@group(0) @binding(5) var maps: texture_2d_array<f32>;
+// Bindings 1 to 5 are the parts'.
 @group(1) @binding(0) var<uniform> body: OpticalPathBody;
 // Three floats a vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 2.
 // requires: optical_path
-// parts: optical_path_grid
+// parts: matter, optical_path_grid
 //
 // 1. `optical_path_sweep_begin`.
 // 2. As often as passes are granted: `optical_path_sweep_next`, one workgroup, then, by the arguments that it has written,
@@ -51,7 +51,7 @@ fn optical_path_lowered(cost: u32) {
 
 @compute @workgroup_size(8, 8, 1)
 fn optical_path_sweep_pull(@builtin(global_invocation_id) voxel: vec3u) {
-    if !optical_path_is_matter(voxel) {
+    if !matter_is_at(grid.cells, voxel) {
         return;
     }
     let index = optical_path_voxel(voxel);
@@ -93,7 +93,7 @@ fn optical_path_sweep_push(@builtin(global_invocation_id) voxel: vec3u) {
         var offset = vec3i(0i);
         offset[side >> 1u] = select(-1i, 1i, (side & 1u) == 1u);
         let place = vec3u(vec3i(voxel) + offset);
-        if all(place < vec3u(grid.cells)) && optical_path_is_matter(place) {
+        if all(place < vec3u(grid.cells)) && matter_is_at(grid.cells, place) {
             let neighbour = optical_path_voxel(place);
             let edge = optical_path_edge_paper(extinction, optical_path_extinction(neighbour));
             let offered = optical_path_encode(optical_path_relax(OPTICAL_PATH_UNREACHED, cost, edge));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J. Sci. Comput. 30 (2008), the block-based variant.
 // requires: optical_path
-// parts: optical_path_grid
+// parts: matter, optical_path_grid
 //
 // 1. `optical_path_tiles_begin`, an invocation for each tile.
 // 2. As often as passes are granted: `optical_path_tiles_next`, one workgroup, then `optical_path_tiles_update` by the arguments that it has
@@ -72,7 +72,7 @@ fn optical_path_tiles_begin(@builtin(global_invocation_id) invocation: vec3u) {
     for (var row = 0u; row < 16u; row++) {
         let first = corner + vec3u(0u, row & 3u, row >> 2u);
         // A row of a tile never lies in two words.
-        let word = matter[grid.words_per_row * (first.y + grid.cells * first.z) + (first.x >> 5u)];
+        let word = matter_word(grid.cells, first);
         let four = (word >> (first.x & 31u)) & 15u;
         bits[row >> 3u] |= four << (4u * (row & 7u));
         for (var x = 0u; x < 4u; x++) {

@@ -70,22 +70,7 @@ impl<'gpu> Solver<'gpu> {
         most_passes: Option<u32>,
     ) -> Result<Self, KernelError> {
         let recipe = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
-        Self::of_source(gpu, grid, method, heterogeneous, most_passes, &cookbook::recipe_source(recipe))
-    }
-
-    /// The same from another text of the method's recipe.
-    ///
-    /// # Errors
-    /// As [`Solver::new`].
-    pub fn of_source(
-        gpu: &'gpu Gpu,
-        grid: VoxelGrid,
-        method: Method,
-        heterogeneous: bool,
-        most_passes: Option<u32>,
-        source: &str,
-    ) -> Result<Self, KernelError> {
-        let prefix = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
+        let source = cookbook::recipe_source(recipe);
         let flag = |value| f64::from(u8::from(value));
         let constants = [
             ("OPTICAL_PATH_STENCIL", f64::from(method.stencil().neighbours())),
@@ -98,7 +83,7 @@ impl<'gpu> Solver<'gpu> {
             Method::PingPong(_) => "pull",
             Method::Tiled(_) | Method::Godunov => "update",
         };
-        let kernel = |entry: &str| Kernel::new(gpu, source, &format!("{prefix}_{entry}"), &constants);
+        let kernel = |entry: &str| Kernel::new(gpu, &source, &format!("{recipe}_{entry}"), &constants);
         let [begin, next, pass] = [kernel("begin")?, kernel("next")?, kernel(pass)?];
         let tiles = u64::from(grid.cells / TILE).pow(3);
         let voxels = grid.count() as u64;
@@ -150,7 +135,7 @@ impl<'gpu> Solver<'gpu> {
         let whole = [cells / SWEEP_GROUP, cells / SWEEP_GROUP, cells];
         let begin = if self.method.is_tiled() { [(cells / TILE).pow(3).div_ceil(GROUP), 1, 1] } else { whole };
         self.gpu.guarded("recording a solve", |device| {
-            let words = [cells, self.grid.words_per_row(), extinction.to_bits(), self.grid.spacing.to_bits()];
+            let words = [cells, extinction.to_bits(), self.grid.spacing.to_bits(), 0];
             let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: None,
                 contents: bytemuck::cast_slice(&words),

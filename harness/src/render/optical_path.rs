@@ -7,7 +7,7 @@ mod stage;
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
 use super::light_views::{self, LightView};
 use super::lighting::{self, Lighting};
-use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
+use super::pass::{self, Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::{Note, RenderError, Settings};
 use crate::compute::Kernel;
@@ -102,25 +102,71 @@ pub(super) fn pass<'gpu>(
     let lighting = Lighting::upload(gpu, scene, settings)?;
     let side = (TEXELS_PER_VOXEL * paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
     let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
-    let [clear, seed] = {
-        let source = cookbook::recipe_source(SEED);
-        let kernel = |entry: &str| Kernel::new(gpu, &source, entry, &constants);
-        [kernel("optical_path_clear")?, kernel("optical_path_seed_texel")?]
+    let views =
+        gpu.guarded("uploading views", |device| buffer(device, &view_bytes(&views), wgpu::BufferUsages::STORAGE))?;
+    let seeds = cookbook::recipe_source(SEED);
+    let kernel = |entry: &str| Kernel::new(gpu, &seeds, entry, &constants);
+    let kernels = [kernel("optical_path_clear")?, kernel("optical_path_seed_texel")?];
+    let shared = Shared { views, maps: maps.view(), lights: lighting.lights.clone() };
+    let upload = Upload {
+        gpu,
+        pipeline: &pipeline,
+        kernels: &kernels,
+        paths,
+        shared: &shared,
+        largest,
+        color,
+        dense: is_dense(scene),
     };
-    let (views_buffer, light_of_map) = gpu.guarded("uploading views", |device| {
-        let lights: Vec<u32> = views.iter().map(|view| view.light).collect();
-        let storage = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::STORAGE);
-        (storage(&map_bytes(&views)), storage(bytemuck::cast_slice(&lights)))
-    })?;
-    let all_maps = maps.view();
     let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
-    for (object, extinction) in scene.objects.iter().zip(&extinctions) {
-        // Nothing to draw, and no buffer is empty.
-        if object.mesh.indices.is_empty() {
-            continue;
-        }
-        let grid = VoxelGrid::about(Bounds::of(object.mesh.positions.iter().copied()), paths.cells);
-        let Object { mesh, material, .. } = object;
+    // An object without triangles has nothing to draw, and no buffer is empty.
+    let objects = scene.objects.iter().zip(&extinctions).filter(|(object, _)| !object.mesh.indices.is_empty());
+    for (object, extinction) in objects {
+        let (body, of_body) = upload.body(object, *extinction, &mut maps)?;
+        bodies.push(body);
+        of_bodies.push(of_body);
+    }
+    let mut bound = lighting.shared();
+    bound.extend([pass::Shared::Buffer(shared.views), pass::Shared::Texture(shared.maps)]);
+    let [clear, seed] = kernels;
+    let before = vec![Before::Paths(OpticalPaths { gpu, maps, clear, seed, bodies: of_bodies })];
+    Ok(ScenePass { gpu, pipeline, shared: bound, bodies, before })
+}
+
+/// What seeds and shading look up of the lights.
+struct Shared {
+    views: wgpu::Buffer,
+    maps: wgpu::TextureView,
+    lights: wgpu::Buffer,
+}
+
+/// What sending a body to the device takes beside the body.
+struct Upload<'a, 'gpu> {
+    gpu: &'gpu Gpu,
+    pipeline: &'a wgpu::RenderPipeline,
+    /// Clearing and seeding.
+    kernels: &'a [Kernel; 2],
+    paths: Paths,
+    shared: &'a Shared,
+    /// The irradiance whose cost is 0, for each channel.
+    largest: Vec3,
+    /// Each channel has costs of its own.
+    color: bool,
+    /// Some body's density differs from place to place.
+    dense: bool,
+}
+
+impl<'gpu> Upload<'_, 'gpu> {
+    /// A body to be drawn, and what finds the light's ways through it. The maps are to show it too.
+    fn body(
+        &self,
+        object: &Object,
+        extinction: Vec3,
+        maps: &mut ReflectiveShadowMaps<'gpu>,
+    ) -> Result<(Body, BodyPaths<'gpu>), RenderError> {
+        let gpu = self.gpu;
+        let Object { mesh, material, name } = object;
+        let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.paths.cells);
         let parts: [&[u8]; 3] = [
             bytemuck::cast_slice(&mesh.positions),
             bytemuck::cast_slice(&mesh.indices),
@@ -134,69 +180,63 @@ pub(super) fn pass<'gpu>(
         let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
-        let solver = Solver::new(gpu, grid, paths.method, densities.is_some(), None)?;
+        let solver = Solver::new(gpu, grid, self.paths.method, densities.is_some(), None)?;
         let same = gpu.guarded("allocating densities", |device| {
             // Beside bodies whose density differs, one whose does not has it too; in a scene of the latter nobody reads it.
-            let count = if is_dense(scene) && densities.is_none() { grid.count() } else { 1 };
+            let count = if self.dense && densities.is_none() { grid.count() } else { 1 };
             buffer(device, bytemuck::cast_slice(&vec![1f32; count]), wgpu::BufferUsages::STORAGE)
         })?;
         let density = densities.as_ref().map_or(&same, |densities| &densities.buffer);
-        let channels = (0..if color { 3 } else { 1 })
-            .map(|channel| {
-                let status = solver.kept_status()?;
-                Ok(gpu.guarded("allocating costs", |device| {
-                    let costs = device.create_buffer(&wgpu::BufferDescriptor {
-                        label: Some(SEED),
-                        size: 4 * grid.count() as u64,
-                        usage: wgpu::BufferUsages::STORAGE,
-                        mapped_at_creation: false,
-                    });
-                    let extinction = extinction[channel];
-                    let seeding = seeding_bytes(grid, extinction, largest[channel], channel as u32);
-                    let seeding = buffer(device, &seeding, wgpu::BufferUsages::UNIFORM);
-                    let resources = [
-                        vec![
-                            (0, seeding.as_entire_binding()),
-                            (1, wgpu::BindingResource::TextureView(&all_maps)),
-                            (2, lighting.lights.as_entire_binding()),
-                            (3, light_of_map.as_entire_binding()),
-                        ],
-                        vec![
-                            (0, costs.as_entire_binding()),
-                            (1, voxelizer.matter.as_entire_binding()),
-                            (2, density.as_entire_binding()),
-                        ],
-                    ];
-                    let groups = [&clear, &seed]
-                        .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
-                    Channel { extinction, costs, groups, status }
-                })?)
-            })
-            .collect::<Result<Vec<_>, RenderError>>()?;
+        let channels = (0..if self.color { 3 } else { 1 })
+            .map(|channel| self.channel(channel, extinction[channel], grid, [&voxelizer.matter, density], &solver))
+            .collect::<Result<Vec<_>, _>>()?;
         let group = gpu.guarded("uploading a material", |device| {
-            let uniform =
-                buffer(device, &body_bytes(grid, material, *extinction, largest), wgpu::BufferUsages::UNIFORM);
-            let costs = |channel: usize| channels.get(channel).unwrap_or(&channels[0]).costs.as_entire_binding();
-            let resources = vec![
-                uniform.as_entire_binding(),
-                positions.as_entire_binding(),
-                indices.as_entire_binding(),
-                normals.as_entire_binding(),
-                costs(0),
-                costs(1),
-                costs(2),
-                density.as_entire_binding(),
-            ];
-            bind_group(device, &pipeline, 1, resources)
+            let uniform = body_bytes(grid, material, extinction, self.largest);
+            let uniform = buffer(device, &uniform, wgpu::BufferUsages::UNIFORM);
+            let costs = |channel: usize| &channels.get(channel).unwrap_or(&channels[0]).costs;
+            let buffers = [&uniform, &positions, &indices, &normals, costs(0), costs(1), costs(2), density];
+            bind_group(device, self.pipeline, 1, buffers.map(wgpu::Buffer::as_entire_binding).into())
         })?;
-        bodies.push(Body { groups: vec![group], vertices });
-        let (name, brightest) = (object.name.clone(), FRAC_1_PI * material.base_color * largest);
-        of_bodies.push(BodyPaths { name, grid, voxelizer, densities, solver, positions, indices, channels, brightest });
+        let brightest = FRAC_1_PI * material.base_color * self.largest;
+        let name = name.clone();
+        let of_body = BodyPaths { name, grid, voxelizer, densities, solver, positions, indices, channels, brightest };
+        Ok((Body { groups: vec![group], vertices }, of_body))
     }
-    let mut shared = lighting.shared();
-    shared.extend([Shared::Buffer(views_buffer), Shared::Texture(all_maps)]);
-    let before = vec![Before::Paths(OpticalPaths { gpu, maps, clear, seed, bodies: of_bodies })];
-    Ok(ScenePass { gpu, pipeline, shared, bodies, before })
+
+    fn channel(
+        &self,
+        number: usize,
+        extinction: f32,
+        grid: VoxelGrid,
+        [matter, density]: [&wgpu::Buffer; 2],
+        solver: &Solver<'_>,
+    ) -> Result<Channel, RenderError> {
+        let status = solver.kept_status()?;
+        Ok(self.gpu.guarded("allocating costs", |device| {
+            let costs = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(SEED),
+                size: 4 * grid.count() as u64,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            });
+            let seeding = seeding_bytes(grid, extinction, self.largest[number], number as u32);
+            let seeding = buffer(device, &seeding, wgpu::BufferUsages::UNIFORM);
+            let resources = [
+                vec![
+                    (0, seeding.as_entire_binding()),
+                    (2, self.shared.lights.as_entire_binding()),
+                    (4, self.shared.views.as_entire_binding()),
+                    (5, wgpu::BindingResource::TextureView(&self.shared.maps)),
+                ],
+                vec![(0, costs.as_entire_binding()), (1, matter.as_entire_binding()), (2, density.as_entire_binding())],
+            ];
+            let groups = self
+                .kernels
+                .each_ref()
+                .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
+            Channel { extinction, costs, groups, status }
+        })?)
+    }
 }
 
 /// The overrides of the recipes for these settings.
@@ -241,12 +281,7 @@ fn is_dense(scene: &Scene) -> bool {
 /// Whether red, green and blue differ in any body's extinction or any light.
 fn is_colored(extinctions: &[Vec3], lights: &[Light]) -> bool {
     let grey = |color: Vec3| color.x == color.y && color.y == color.z;
-    let power = |light: &Light| match *light {
-        Light::Directional { irradiance: power, .. }
-        | Light::Point { intensity: power, .. }
-        | Light::Spot { intensity: power, .. } => power,
-    };
-    !(extinctions.iter().copied().all(grey) && lights.iter().map(power).all(grey))
+    !(extinctions.iter().copied().all(grey) && lights.iter().map(Light::power).all(grey))
 }
 
 /// `VoxelizationGrid` as WGSL lays it out, in 32 bytes.
@@ -273,8 +308,8 @@ fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: V
     bytemuck::cast_slice(&[&grid_words(grid)[..], &tail].concat()).to_vec()
 }
 
-/// `array<OpticalPathMap>` of the recipe.
-fn map_bytes(views: &[LightView]) -> Vec<u8> {
+/// `array<LightView>` of the part `light_views`.
+fn view_bytes(views: &[LightView]) -> Vec<u8> {
     let entry = |from: &LightView| {
         [reflective_shadow_map::bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat()
     };
@@ -373,7 +408,8 @@ impl OpticalPaths<'_> {
 
     /// How far each body's solver came in its last channel. Waits for the device.
     pub(super) fn statuses(&self) -> Result<Vec<Status>, RenderError> {
-        self.bodies.iter().map(|body| Ok(body.solver.status()?)).collect()
+        let last = |body: &BodyPaths<'_>| body.channels.last().map(|channel| body.solver.status_of(&channel.status));
+        Ok(self.bodies.iter().filter_map(last).collect::<Result<_, _>>()?)
     }
 
     /// Bytes of the maps, and of each body's voxels, densities, costs and solver.

@@ -5,7 +5,7 @@ use super::reflectance::{REFLECTANCES, Reflectance};
 use crate::nearest;
 use crate::optical_path::Method;
 use crate::scene::Scene;
-use crate::voxel_grid::{LEAST_CELLS, MOST_CELLS, TILE};
+use crate::voxel_grid::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 use std::fmt;
 use std::str::FromStr;
 
@@ -185,9 +185,9 @@ impl FromStr for Rung {
         if let Some((Ok(method), cells)) =
             text.rsplit_once('-').map(|(method, cells)| (method.parse::<Method>(), cells))
         {
-            let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(TILE);
+            let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(MULTIPLE);
             let cells = whole(cells).filter(is_grid).ok_or_else(|| {
-                format!("`{cells}` cells; a grid has a multiple of {TILE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")
+                format!("`{cells}` cells; a grid has a multiple of {MULTIPLE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")
             })?;
             return Ok(Self::OpticalPath(Paths { cells, method }));
         }

@@ -93,6 +93,16 @@ impl Light {
         }
     }
 
+    /// Linear RGB: a sun's irradiance, a lamp's intensity.
+    #[must_use]
+    pub fn power(&self) -> Vec3 {
+        match *self {
+            Self::Directional { irradiance: power, .. }
+            | Self::Point { intensity: power, .. }
+            | Self::Spot { intensity: power, .. } => power,
+        }
+    }
+
     /// Which of its fields' promises is broken, and what to do; nothing for a sound light.
     #[must_use]
     pub fn problem(&self) -> Option<&'static str> {
@@ -106,13 +116,7 @@ impl Light {
             Self::Point { position, .. } | Self::Spot { position, .. } if !position.is_finite() => {
                 Some("its position is not finite; mend it")
             }
-            Self::Directional { irradiance: light, .. }
-            | Self::Point { intensity: light, .. }
-            | Self::Spot { intensity: light, .. }
-                if !is_light(light) =>
-            {
-                Some("its light is not finite and at least 0; mend it")
-            }
+            _ if !is_light(self.power()) => Some("its light is not finite and at least 0; mend it"),
             Self::Spot { inner_angle, outer_angle, .. } if !are_cone_angles(inner_angle, outer_angle) => {
                 Some("its cone's angles are not 0 ≤ inner < outer ≤ π/2; mend them")
             }

@@ -58,8 +58,8 @@ fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
     gpu.queue.submit([encoder.finish()]);
     Voxels {
         grid,
-        matter: voxelizer.read(&voxelizer.matter).expect("read back"),
-        surface: voxelizer.read(&voxelizer.surface).expect("read back"),
+        matter: super::gpu().words(&voxelizer.matter).expect("read back"),
+        surface: super::gpu().words(&voxelizer.surface).expect("read back"),
         status: voxelizer.status().expect("read back"),
     }
 }

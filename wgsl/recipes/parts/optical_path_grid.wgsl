@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //
-// A recipe adds: what it does in a pass, from which voxels or tiles, and where the workgroups of its next pass come from.
+// A recipe adds: the part matter; what it does in a pass, from which voxels or tiles, and where the workgroups of its next pass come from.
 
 // Neighbours of a voxel that edges lead to: 6, 18 or 26.
 override OPTICAL_PATH_STENCIL: u32 = 26u;
@@ -12,8 +12,6 @@ override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 struct OpticalPathGrid {
     // Voxels along an edge of the cube: a multiple of 8, at most 256. Voxel (x, y, z) has the number x + cells (y + cells z).
     cells: u32,
-    // Words of a row along x in `matter`.
-    words_per_row: u32,
     // In the inverse of the spacing's unit, at least 0.
     extinction: f32,
     // A voxel's edge.
@@ -35,7 +33,6 @@ struct OpticalPathProgress {
 }
 
 @group(0) @binding(0) var<uniform> grid: OpticalPathGrid;
-// A bit for each voxel, the least first: row (y, z) begins at words_per_row (y + cells z).
 @group(0) @binding(1) var<storage, read> matter: array<u32>;
 // Before a solve the seeds, unreached elsewhere; then the costs. Encoded, so that passes may read what others write.
 @group(0) @binding(2) var<storage, read_write> costs: array<atomic<u32>>;
@@ -49,11 +46,6 @@ fn optical_path_voxel(voxel: vec3u) -> u32 {
     return voxel.x + grid.cells * (voxel.y + grid.cells * voxel.z);
 }
 
-fn optical_path_is_matter(voxel: vec3u) -> bool {
-    let word = matter[grid.words_per_row * (voxel.y + grid.cells * voxel.z) + (voxel.x >> 5u)];
-    return ((word >> (voxel.x & 31u)) & 1u) != 0u;
-}
-
 fn optical_path_extinction(index: u32) -> f32 {
     if EFFECT_EXTINCTION_PER_VOXEL {
         return grid.extinction * density[index];
@@ -64,7 +56,7 @@ fn optical_path_extinction(index: u32) -> f32 {
 // What the solve begins from: nothing but costs, and those in matter alone.
 fn optical_path_seeded(voxel: vec3u) -> u32 {
     let cost = optical_path_encode(bitcast<f32>(atomicLoad(&costs[optical_path_voxel(voxel)])));
-    return select(optical_path_encode(OPTICAL_PATH_UNREACHED), cost, optical_path_is_matter(voxel));
+    return select(optical_path_encode(OPTICAL_PATH_UNREACHED), cost, matter_is_at(grid.cells, voxel));
 }
 
 // Begins a pass. Returns: how many tiles or voxels it is to take up.

@@ -14,14 +14,12 @@ const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
 /// What [`crate::scene::figure::mesh`] makes, in a second or two.
 const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 
-/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble. Its `sigma0` is that of wax by the
-/// same number of mean free paths: both absorb next to nothing.
+/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble.
 fn marble() -> Material {
     scattering(
         "marble",
         Medium::isotropic(Vec3::new(2.19, 2.62, 3.0), Vec3::new(0.0021, 0.0041, 0.0071)),
         Vec3::new(0.931, 0.913, 0.894),
-        Vec3::new(2.2, 1.8, 1.6),
         (1.5, 0.3),
     )
 }
@@ -64,8 +62,6 @@ fn figure_of(name: &str, mesh: Mesh) -> Scene {
 
 /// One body in one light, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
 fn stone(name: &str, mesh: Mesh, material: Material, light: Light, (polar, azimuth): (f32, f32)) -> Scene {
-    // Light goes through it, not through its skin alone.
-    let material = Material { sigma0: None, ..material };
     let object = Object { name: name.to_owned(), mesh, material };
     Scene { lights: vec![light], ..framed(name, vec![object], direction(polar, azimuth)) }
 }

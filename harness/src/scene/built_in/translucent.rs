@@ -13,7 +13,6 @@ fn skin() -> Material {
         "skin",
         Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.48)),
         Vec3::new(0.625, 0.385, 0.241),
-        Vec3::new(5.8, 3.8, 2.3),
         (1.4, 0.45),
     )
 }
@@ -24,7 +23,6 @@ fn wax() -> Material {
         "wax",
         Medium::isotropic(Vec3::new(1.2, 1.2, 1.1), Vec3::new(0.003, 0.006, 0.02)),
         Vec3::new(0.891, 0.850, 0.735),
-        Vec3::new(4.0, 4.0, 4.1),
         (1.44, 0.35),
     )
 }
@@ -35,42 +33,28 @@ pub(super) fn jade() -> Material {
         "jade",
         Medium::isotropic(Vec3::new(0.8, 1.2, 0.9), Vec3::new(0.12, 0.02, 0.08)),
         Vec3::new(0.428, 0.745, 0.515),
-        Vec3::new(4.6, 3.9, 4.5),
         (1.66, 0.0),
     )
 }
 
-/// `base_color` is what a half space of the medium reflects of diffuse light, and `sigma0` the width that random walks through
-/// spheres of ten mean free paths give: docs/cdrf.md.
-pub(super) fn scattering(
-    name: &str,
-    medium: Medium,
-    base_color: Vec3,
-    sigma0: Vec3,
-    (ior, roughness): (f32, f32),
-) -> Material {
-    Material {
-        name: name.to_owned(),
-        base_color,
-        ior,
-        roughness,
-        sigma0: Some(sigma0),
-        medium: Some(medium),
-        ..Material::standard()
-    }
+/// `base_color` is what a half space of the medium reflects of diffuse light.
+pub(super) fn scattering(name: &str, medium: Medium, base_color: Vec3, (ior, roughness): (f32, f32)) -> Material {
+    Material { name: name.to_owned(), base_color, ior, roughness, medium: Some(medium), ..Material::standard() }
 }
 
 /// The radii of the spheres, and the gap between two.
 const RADII: [f64; 5] = [40.0, 24.0, 14.0, 8.0, 5.0];
 const GAP: f64 = 3.0;
 
-/// The material that a scene's name begins with.
+/// The material that a scene's name begins with. Its `sigma0` is the width that random walks through spheres of ten mean free paths
+/// give: docs/cdrf.md.
 fn material(name: &str) -> Material {
-    match name.split('_').next() {
-        Some("skin") => skin(),
-        Some("wax") => wax(),
-        _ => jade(),
-    }
+    let (material, sigma0) = match name.split('_').next() {
+        Some("skin") => (skin(), Vec3::new(5.8, 3.8, 2.3)),
+        Some("wax") => (wax(), Vec3::new(4.0, 4.0, 4.1)),
+        _ => (jade(), Vec3::new(4.6, 3.9, 4.5)),
+    };
+    Material { sigma0: Some(sigma0), ..material }
 }
 
 /// The paper's picture: spheres of falling radius in a falling row, lit from the upper left.

@@ -33,17 +33,7 @@ pub struct Uploaded {
 impl Uploaded {
     /// The costs as they stand.
     pub fn costs(&self, gpu: &Gpu) -> Vec<f32> {
-        let size = self.cost.size();
-        let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&self.cost, 0, &readback, 0, size);
-        gpu.queue.submit([encoder.finish()]);
-        gpu.read_back(&readback, size, |bytes| bytemuck::cast_slice(bytes).to_vec()).expect("a device")
+        gpu.words(&self.cost).expect("a device").into_iter().map(f32::from_bits).collect()
     }
 }
 

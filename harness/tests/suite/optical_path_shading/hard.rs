@@ -147,7 +147,7 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             voxelizer.encode(&mut encoder, &positions, &indices).expect("recorded");
             gpu.queue.submit([encoder.finish()]);
-            let matter = voxelizer.read(&voxelizer.matter).expect("read back");
+            let matter = gpu.words(&voxelizer.matter).expect("read back");
             let mut filled = 0;
             for index in 0..grid.count() {
                 let UVec3 { x, y, z } = grid.voxel(index);

@@ -21,18 +21,10 @@ fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) 
     }
     let matter = buffer(&gpu.device, bytemuck::cast_slice(&bits), wgpu::BufferUsages::STORAGE);
     let densities = Densities::new(gpu, grid, density, &matter).expect("compiled").expect("it differs");
-    let size = densities.buffer.size();
-    let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     densities.encode(&mut encoder);
-    encoder.copy_buffer_to_buffer(&densities.buffer, 0, &readback, 0, size);
     gpu.queue.submit([encoder.finish()]);
-    gpu.read_back(&readback, size, bytemuck::pod_collect_to_vec).expect("a device")
+    gpu.words(&densities.buffer).expect("a device").into_iter().map(f32::from_bits).collect()
 }
 
 /// A grid that reaches neither to the voxels' ends nor ends within them, and veins; each with what the device may be off by.

@@ -1,0 +1,15 @@
+// light_views: what each light sees, a layer of a map for each of its views.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Source: own.
+//
+// A recipe adds: the module reflective_shadow_map. The maps, which the recipe of that name draws, are bound here.
+
+struct LightView {
+    view: ReflectiveShadowMapView,
+    // Its light's number.
+    light: u32,
+}
+
+// A view for each layer of the maps.
+@group(0) @binding(4) var<storage, read> views: array<LightView>;
+@group(0) @binding(5) var maps: texture_2d_array<f32>;
