@@ -1,4 +1,4 @@
-// optical_path_seed: where light enters a body: each lit texel of the lights' maps puts its cost into the voxel that it lies in.
+// optical_path_seed: where light enters a body: each lit texel of the lights' maps puts its cost into the voxel that it lies in and those about it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.1.
 // requires: optical_path, reflective_shadow_map, voxelization
@@ -53,13 +53,35 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     if (!matter_is_at(seeding.grid.cells, voxel)) {
         return;
     }
-    let index = voxelization_index(seeding.grid, voxel);
-    var extinction = seeding.extinction;
-    if (EFFECT_EXTINCTION_PER_VOXEL) {
-        extinction *= density[index];
-    }
     let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
     let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
-    let offset = distance(seen.xyz, voxelization_centre(seeding.grid, voxel));
-    atomicMin(&costs[index], optical_path_encode(optical_path_seed(share, extinction, offset)));
+    let own = extinction_at(voxel);
+    let last = vec3i(i32(seeding.grid.cells) - 1i);
+    // Where a front begins, solvers err most. So all voxels about the texel begin with their true distances from it.
+    for (var index = 0i; index < 27i; index++) {
+        let step = vec3i(index % 3i, (index / 3i) % 3i, index / 9i) - 1i;
+        let place = vec3i(voxel) + step;
+        if (any(place < vec3i(0i)) || any(place > last)) {
+            continue;
+        }
+        let near = vec3u(place);
+        if (!matter_is_at(seeding.grid.cells, near)) {
+            continue;
+        }
+        let extinction = 0.5f * (own + extinction_at(near));
+        let offset = distance(seen.xyz, voxelization_centre(seeding.grid, near));
+        let cost = optical_path_encode(optical_path_seed(share, extinction, offset));
+        let node = voxelization_index(seeding.grid, near);
+        // A look at what is there spares most of the writes, which are dear.
+        if (cost < atomicLoad(&costs[node])) {
+            atomicMin(&costs[node], cost);
+        }
+    }
+}
+
+fn extinction_at(voxel: vec3u) -> f32 {
+    if (EFFECT_EXTINCTION_PER_VOXEL) {
+        return seeding.extinction * density[voxelization_index(seeding.grid, voxel)];
+    }
+    return seeding.extinction;
 }

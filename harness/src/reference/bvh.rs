@@ -16,6 +16,11 @@ impl Extent {
         points.into_iter().fold(nothing, |extent, point| extent.with(&Self { least: point, greatest: point }))
     }
 
+    /// The smallest box about all of them.
+    pub(super) fn union<'a>(extents: impl IntoIterator<Item = &'a Self>) -> Self {
+        extents.into_iter().fold(Self::of([]), |all, extent| all.with(extent))
+    }
+
     fn with(&self, other: &Self) -> Self {
         Self { least: self.least.min(other.least), greatest: self.greatest.max(other.greatest) }
     }
@@ -35,7 +40,7 @@ impl Extent {
 
     /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A
     /// line within one of its sides may count as a miss.
-    fn entry(&self, origin: DVec3, inverse: DVec3, from: f64, to: f64) -> Option<f64> {
+    pub(super) fn entry(&self, origin: DVec3, inverse: DVec3, from: f64, to: f64) -> Option<f64> {
         let (a, b) = ((self.least - origin) * inverse, (self.greatest - origin) * inverse);
         let near = a.min(b).max_element().max(from);
         let far = a.max(b).min_element().min(to);
@@ -75,8 +80,7 @@ impl Bvh {
 
     fn split(&mut self, extents: &[Extent], first: usize, end: usize) {
         let items = &mut self.order[first..end];
-        let nothing = Extent::of([]);
-        let extent = items.iter().fold(nothing, |all, &item| all.with(&extents[item]));
+        let extent = Extent::union(items.iter().map(|&item| &extents[item]));
         let place = self.nodes.len();
         self.nodes.push(Node { extent, content: Content::Leaf { first, end } });
         if items.len() <= LEAF {

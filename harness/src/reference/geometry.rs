@@ -1,6 +1,7 @@
 //! Bodies, and where rays enter and leave them, in f64.
 
 use super::bvh::{Bvh, Extent};
+use super::cells::Cells;
 use crate::scene::convex::{TOLERANCE, planes_of_convex};
 use crate::scene::polyhedron::{MAX_PLANES, Plane};
 use crate::scene::{Mesh, Object};
@@ -234,6 +235,8 @@ struct Triangles {
     corners: Vec<[DVec3; 3]>,
     normals: Vec<DVec3>,
     tree: Bvh,
+    /// For short rays that set out inside.
+    cells: Cells,
     /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by
     /// rounding, outside of the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
     reach_back: f64,
@@ -245,26 +248,33 @@ impl Triangles {
         let mesh = mesh.without_folds();
         let corners: Vec<[DVec3; 3]> =
             mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
-        let normals = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
+        let vector_areas = || corners.iter().map(|[a, b, c]| 0.5 * (b - a).cross(c - a));
+        let normals = vector_areas().map(DVec3::normalize_or_zero).collect();
+        let area: f64 = vector_areas().map(DVec3::length).sum();
         let extents: Vec<Extent> = corners.iter().map(|corners| Extent::of(*corners)).collect();
         let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
         let reach_back = largest * f64::EPSILON * f64::from(1 << 12);
         let padded: Vec<Extent> = extents.iter().map(|extent| extent.padded(reach_back)).collect();
-        Self { tree: Bvh::new(&padded), corners, normals, reach_back }
+        // As wide as a triangle of the mean area.
+        let cells = Cells::new(&padded, (area / corners.len() as f64).sqrt());
+        Self { tree: Bvh::new(&padded), cells, corners, normals, reach_back }
     }
 
     /// The first triangle before `limit` that a ray meets from `side`, leaving out the one just left.
     fn first(&self, origin: DVec3, direction: DVec3, left: Option<usize>, limit: f64, side: Side) -> Option<Found> {
         let shear = Shear::new(direction);
         let mut found: Option<Found> = None;
-        self.tree.visit(origin, direction, (-self.reach_back, limit), |item, limit| {
+        let mut visit = |item, limit| {
             let met = if left == Some(item) { None } else { shear.meet(origin, &self.corners[item], side) };
             if let Some(distance) = met.filter(|distance| (-self.reach_back..limit).contains(distance)) {
                 found = Some((distance, item, self.normals[item]));
                 return distance;
             }
             limit
-        });
+        };
+        if !self.cells.visit(origin, direction, limit, &mut visit) {
+            self.tree.visit(origin, direction, (-self.reach_back, limit), visit);
+        }
         found.map(|(distance, face, normal)| (distance.max(0.0), face, normal))
     }
 }

@@ -11,6 +11,7 @@
 //! recipes have them.
 
 mod bvh;
+mod cells;
 pub(crate) mod geometry;
 pub mod spectrum;
 pub(crate) mod surroundings;
