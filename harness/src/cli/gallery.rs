@@ -5,7 +5,7 @@ use lapidary_harness::cost::drawing::SIZE as PLOT_SIZE;
 use lapidary_harness::gallery::{self, Picture, Site};
 use lapidary_harness::render::file;
 use lapidary_harness::scene::BUILT_IN;
-use lapidary_harness::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, strip};
+use lapidary_harness::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.
@@ -42,18 +42,24 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         });
         bar.inc(1);
     }
-    bar.set_message(strip::NAME);
-    let path = rendered.path().join(format!("{}.png", strip::NAME));
-    let [seen, _] = strip::render(gpu)?;
-    file::write(&seen, &path)?;
-    pictures.push(Picture {
-        title: strip::TITLE.to_owned(),
-        file: path,
-        paragraph: strip::PARAGRAPH.to_owned(),
-        command: format!("./cook snapshots {}", strip::NAME),
-        size: (seen.width, seen.height),
-    });
-    bar.inc(1);
+    for (committed, title, paragraph) in [
+        (Committed::Strip, strip::TITLE, strip::PARAGRAPH),
+        (Committed::BesideWalks, beside_walks::TITLE, beside_walks::PARAGRAPH),
+    ] {
+        let name = committed.name();
+        bar.set_message(name);
+        let path = rendered.path().join(format!("{name}.png"));
+        let [seen, _] = committed.render(gpu)?;
+        file::write(&seen, &path)?;
+        pictures.push(Picture {
+            title: title.to_owned(),
+            file: path,
+            paragraph: paragraph.to_owned(),
+            command: format!("./cook snapshots {name}"),
+            size: (seen.width, seen.height),
+        });
+        bar.inc(1);
+    }
     for reference in &WALKED {
         let path = rendered.path().join(format!("{}_walked.png", reference.scene));
         file::write(&reference.picture(gpu)?, &path)?;
@@ -61,8 +67,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             title: reference.title.to_owned(),
             file: path,
             paragraph: format!(
-                "What random walks find, {} from each pixel: light that enters anywhere, is scattered inside and leaves towards the eye. \
-                 It knows thickness and shadows, which no reflectance function does.",
+                "What random walks find, {} for each pixel: light that enters anywhere, is scattered inside and leaves towards the eye. \
+                 They know thickness and shadows, which no reflectance function does, and all ways, of which the cheapest is one.",
                 reference.walks
             ),
             command: reference.command(),

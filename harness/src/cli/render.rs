@@ -3,6 +3,7 @@
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_harness::cookbook;
 use lapidary_harness::nearest::suggest;
+use lapidary_harness::random_walk::mesh::{Boundary, Origin};
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
 use lapidary_harness::render::{
@@ -73,9 +74,15 @@ pub(super) struct Arguments {
     /// Wavelengths of the reference; 31 where left out.
     #[arg(long)]
     wavelengths: Option<usize>,
-    /// Walks from each pixel that the reference of what scatters light follows; 256 where left out.
+    /// Walks for each pixel that the reference of what scatters light follows; 256 where left out.
     #[arg(long)]
     walks: Option<u32>,
+    /// Where those walks set out: from the lights there is less noise, but no environment.
+    #[arg(long, value_name = "END", value_parser = parse_origin)]
+    walks_from: Option<Origin>,
+    /// What surfaces do to those walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
+    #[arg(long, value_parser = ["matched", "dielectric"])]
+    boundary: Option<String>,
     /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     energy_bound: Option<f64>,
@@ -97,6 +104,12 @@ fn parse_curvature(text: &str) -> Result<Curvature, String> {
     let names = Curvature::ALL.map(Curvature::name);
     let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
     found.ok_or_else(|| format!("no such curvature{}; there is {}", suggest(text, &names), names.join(", ")))
+}
+
+fn parse_origin(text: &str) -> Result<Origin, String> {
+    let names = Origin::ALL.map(Origin::name);
+    let found = Origin::ALL.into_iter().find(|origin| origin.name() == text);
+    found.ok_or_else(|| format!("no such end of a walk{}; there is {}", suggest(text, &names), names.join(" and ")))
 }
 
 fn parse_positive(text: &str) -> Result<f32, String> {
@@ -121,6 +134,8 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> 
         ("--wavelengths", (!reference || scatters) && arguments.wavelengths.is_some()),
         ("--energy-bound", (!reference || scatters) && arguments.energy_bound.is_some()),
         ("--walks", !(reference && scatters) && arguments.walks.is_some()),
+        ("--walks-from", !(reference && scatters) && arguments.walks_from.is_some()),
+        ("--boundary", !(reference && scatters) && arguments.boundary.is_some()),
         ("--without absorption", (outside || scattered) && without("absorption")),
         ("--without environment", !(scattered || reference && scatters) && without("environment")),
         ("--without reflection", !scattered && without("reflection")),
@@ -173,6 +188,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         wavelengths: arguments.wavelengths.unwrap_or(usual.wavelengths),
         energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
         walks: arguments.walks.unwrap_or(usual.walks),
+        walks_from: arguments.walks_from.unwrap_or(usual.walks_from),
+        boundary: match arguments.boundary.as_deref() {
+            Some("dielectric") => Boundary::Dielectric,
+            _ => Boundary::Matched,
+        },
         ..usual
     };
     let source = cookbook::recipe_source(rung.recipe());

@@ -18,10 +18,25 @@ pub struct Errors {
     pub energy: f64,
 }
 
-/// Root mean square distance of linear radiance from `truth`, over the root mean square of that, after the one exposure that brings
-/// `found` nearest. Both are pixels of one size with coverage, which does not count.
+/// What `found` is to be multiplied by to come as near as it can to `truth`, in linear radiance by root mean square. Both are pixels of one size with
+/// coverage, which does not count. Of a picture without light no exposure is nearer than another: 1.
+#[must_use]
+pub fn best_exposure(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
+    let [both, own, _] = products(found, truth);
+    if own > 0.0 { both / own } else { 1.0 }
+}
+
+/// Root mean square distance of linear radiance from `truth`, over the root mean square of that, after the [`best_exposure`].
 #[must_use]
 pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
+    let [both, own, other] = products(found, truth);
+    // The least of |k a - b|^2 over k.
+    let nearer = if own > 0.0 { both * both / own } else { 0.0 };
+    ((other - nearer).max(0.0) / other).sqrt()
+}
+
+/// The sums of a b, a a and b b over all pixels' channels.
+fn products(found: &[[f32; 4]], truth: &[[f32; 4]]) -> [f64; 3] {
     let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
     for (found, truth) in found.iter().zip(truth) {
         for (a, b) in found[..3].iter().zip(&truth[..3]) {
@@ -31,9 +46,7 @@ pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
             other += b * b;
         }
     }
-    // The least of |k a - b|^2 over k. Of a picture without light no exposure is nearer than another.
-    let nearer = if own > 0.0 { both * both / own } else { 0.0 };
-    ((other - nearer).max(0.0) / other).sqrt()
+    [both, own, other]
 }
 
 impl Errors {

@@ -19,7 +19,7 @@ pub mod views;
 
 pub use choices::Choice;
 pub use dispersion::Colours;
-pub use error::{Errors, MEASURES, exposed_distance};
+pub use error::{Errors, MEASURES, best_exposure, exposed_distance};
 pub use gem::{Options, RUNGS, run};
 pub use profile::profile;
 pub use reflection::Reflection;

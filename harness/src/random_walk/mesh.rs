@@ -5,9 +5,12 @@
 //! all matter on the way, also through other bodies, or the same again; light from the environment comes along the walk's last direction. What
 //! shows through without being scattered is the background's and is left out.
 //!
+//! Walks set out from the eye, or from the lights: the same picture in the mean.
+//!
 //! The eye and the lights stand outside of the bodies; a point light inside gives the right mean with an error that has no bound.
 
 mod closed;
+mod from_lights;
 mod walk;
 
 use super::generator;
@@ -15,11 +18,12 @@ use crate::reference::view::View;
 use crate::render::{Environment, LARGEST_SIDE};
 use crate::scene::{Light, Scene};
 use closed::open_edges;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rand::RngExt as _;
+use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use walk::Matter;
+use walk::{Matter, Ray};
 
 /// The most samples of a pixel.
 pub const MOST_SAMPLES: u32 = 1 << 20;
@@ -31,15 +35,42 @@ pub struct Settings<'environment> {
     pub width: u32,
     /// In pixels, 1 to [`LARGEST_SIDE`].
     pub height: u32,
-    /// Walks from each pixel, 2 to [`MOST_SAMPLES`]. The largest square number of them start from a grid's cells, one each, the rest
-    /// anywhere in the pixel.
+    /// Walks for each pixel, 2 to [`MOST_SAMPLES`]. From the eye, the largest square number of them start from the cells of a grid over the pixel,
+    /// one each, the rest anywhere in it; from the lights, all pixels' walks together start so from a disc or a cone about all bodies.
     pub samples_per_pixel: u32,
+    /// Where walks set out.
+    pub origin: Origin,
     /// The same seed gives the same picture on any number of threads.
     pub seed: u64,
     /// The light around the scene beside its own lights, if any.
     pub environment: Option<&'environment Environment>,
     /// What surfaces do to light.
     pub boundary: Boundary,
+}
+
+/// Where walks set out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// From the eye, a number from each pixel.
+    #[default]
+    Eye,
+    /// From the lights: less noise for the same time, the less the brighter a pixel is. For the scene's own lights alone, and where surfaces do
+    /// nothing to light.
+    Lights,
+}
+
+impl Origin {
+    /// Every one.
+    pub const ALL: [Self; 2] = [Self::Eye, Self::Lights];
+
+    /// The field's usual name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eye => "eye",
+            Self::Lights => "lights",
+        }
+    }
 }
 
 /// What a body's surface does to light that meets it.
@@ -59,10 +90,10 @@ pub enum Boundary {
 pub struct Rendering {
     /// Linear radiance and coverage, row by row from the top: means over a pixel, so that what it does not cover is black.
     pub linear: Vec<[f32; 4]>,
-    /// The standard error of each pixel's red, green and blue, as of samples that know nothing of one another. Since they are spread
-    /// evenly over the pixel, the error is no greater, and less where a pixel is not of one brightness.
+    /// The standard error of each pixel's red, green and blue. From the eye, as of samples that know nothing of one another: since they are spread
+    /// evenly over the pixel, the error is no greater, and less where a pixel is not of one brightness. From the lights, by the spread of 64 batches.
     pub standard_error: Vec<[f32; 3]>,
-    /// Samples that met a body.
+    /// Walks that met a body.
     pub walks: u64,
     /// Of all walks together.
     pub scatterings: u64,
@@ -92,6 +123,14 @@ pub enum WalkError {
         /// Its place among the scene's lights, from 0.
         light: usize,
     },
+    /// Light that walks from the lights do not bring.
+    #[error(
+        "walks from the lights follow the scene's own lights alone; leave the environment out or walk from the eye"
+    )]
+    Environment,
+    /// A surface that walks from the lights do not know.
+    #[error("walks from the lights find no eye behind a dielectric boundary; match the boundary or walk from the eye")]
+    Dielectric,
     /// A body of unknown matter.
     #[error(
         "{object:?} has no scattering and absorption coefficients, so that no light can be followed through it; give its material a medium"
@@ -118,7 +157,7 @@ pub enum WalkError {
     },
 }
 
-/// Renders `scene` on all cores, and says after each row how many of how many are done.
+/// Renders `scene` on all cores, and says after each part how many of how many are done.
 ///
 /// # Errors
 /// [`WalkError`], where a setting is out of range or a body is none that light can be followed through.
@@ -127,15 +166,24 @@ pub fn render(
     settings: &Settings<'_>,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Result<Rendering, WalkError> {
-    let &Settings { width, height, samples_per_pixel, seed, environment, boundary } = settings;
+    let &Settings { width, height, samples_per_pixel, origin, seed, environment, boundary } = settings;
     if !(1..=LARGEST_SIDE).contains(&width) || !(1..=LARGEST_SIDE).contains(&height) {
         return Err(WalkError::Size { width, height });
     }
     if !(2..=MOST_SAMPLES).contains(&samples_per_pixel) {
         return Err(WalkError::Samples(samples_per_pixel));
     }
+    if origin == Origin::Lights && environment.is_some() {
+        return Err(WalkError::Environment);
+    }
+    if origin == Origin::Lights && boundary == Boundary::Dielectric {
+        return Err(WalkError::Dielectric);
+    }
     let matter = matter(scene, boundary, environment)?;
     let view = View::new(&scene.camera, width, height);
+    if origin == Origin::Lights {
+        return Ok(from_lights::render(&matter, (&scene.lights, scene.bounds()), &view, settings, progress));
+    }
     let done = AtomicU64::new(0);
     let row = |y: u32| {
         let pixel = |x: u32| {
@@ -185,6 +233,16 @@ fn matter<'scene>(
         .map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })
 }
 
+/// A point of the unit square for one of so many samples: the largest square number of them have a cell of a grid each, the rest lie anywhere.
+fn stratum(sample: u64, samples: u64, random: &mut Xoshiro256PlusPlus) -> DVec2 {
+    let place = DVec2::new(random.random(), random.random());
+    let side = samples.isqrt();
+    if sample >= side * side {
+        return place;
+    }
+    (DVec2::new((sample % side) as f64, (sample / side) as f64) + place) / side as f64
+}
+
 /// Sums over the samples of a pixel.
 #[derive(Clone, Copy, Default)]
 struct Pixel {
@@ -200,18 +258,11 @@ impl Pixel {
     fn new(matter: &Matter<'_>, view: &View, (x, y): (u32, u32), samples: u32, stream: (u64, u64)) -> Self {
         let mut random = generator(stream.0, stream.1);
         let mut pixel = Self::default();
-        let side = samples.isqrt();
         for sample in 0..samples {
-            let (across, down) = (random.random::<f64>(), random.random::<f64>());
-            let (across, down) = if sample < side * side {
-                let cell = |index: u32, within: f64| (f64::from(index) + within) / f64::from(side);
-                (cell(sample % side, across), cell(sample / side, down))
-            } else {
-                (across, down)
-            };
-            let direction = view.direction(f64::from(x) + across, f64::from(y) + down);
+            let place = stratum(sample.into(), samples.into(), &mut random);
+            let direction = view.direction(f64::from(x) + place.x, f64::from(y) + place.y);
             let Some(hit) = matter.enter(view.eye, direction) else { continue };
-            let outcome = matter.walk(view.eye, direction, hit, &mut random);
+            let outcome = matter.walk(Ray { position: view.eye, direction }, hit, &mut random);
             pixel.radiance += outcome.radiance;
             pixel.squares += outcome.radiance * outcome.radiance;
             pixel.walks += 1;

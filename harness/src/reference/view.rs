@@ -38,12 +38,62 @@ impl View {
         let up = 1.0 - 2.0 * y / self.height;
         (self.forward + self.half_right * right + self.half_up * up).normalize()
     }
+
+    /// How the picture shows a point; nothing where it lies behind the eye or beside the picture.
+    pub(crate) fn sight(&self, point: DVec3) -> Option<Sight> {
+        let way = point - self.eye;
+        let depth = way.dot(self.forward);
+        if depth <= 0.0 {
+            return None;
+        }
+        let along = |half: DVec3| way.dot(half) / (depth * half.length_squared());
+        let x = 0.5 * self.width * (1.0 + along(self.half_right));
+        let y = 0.5 * self.height * (1.0 - along(self.half_up));
+        if !((0.0..self.width).contains(&x) && (0.0..self.height).contains(&y)) {
+            return None;
+        }
+        let distance = way.length();
+        // A pixel's area at depth 1, by the sides' halves.
+        let pixel = 4.0 * self.half_right.length() * self.half_up.length() / (self.width * self.height);
+        Some(Sight { x, y, toward: -way / distance, distance, weight: distance / (depth.powi(3) * pixel) })
+    }
+}
+
+/// How a picture shows a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    /// In pixels from the left and from the top.
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    /// Unit direction from the point to the eye, and how far that is.
+    pub(crate) toward: DVec3,
+    pub(crate) distance: f64,
+    /// The mean radiance over the pixel that a radiant intensity of 1 from the point adds.
+    pub(crate) weight: f64,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::{Vec3, Vec4Swizzles as _};
+
+    /// The solid angle of a pixel is what its corners' directions span.
+    #[test]
+    fn an_intensity_is_spread_over_a_pixels_solid_angle() {
+        let camera = Camera { vertical_fov: 0.9, ..Camera::framing([Vec3::ZERO].into_iter(), Vec3::Z, 0.9) };
+        let view = View::new(&camera, 64, 48);
+        for (x, y) in [(32.0, 24.0), (0.5, 0.5), (60.5, 10.5)] {
+            let shift = 1e-3;
+            let [right, down] = [(shift, 0.0), (0.0, shift)]
+                .map(|(a, b)| (view.direction(x + a, y + b) - view.direction(x - a, y - b)) / (2.0 * shift));
+            let solid_angle = right.cross(down).length();
+            let sight = view.sight(view.eye + 3.0 * view.direction(x, y)).expect("in the picture");
+            // What a point of intensity 1 sends to the eye, over the solid angle.
+            assert!((sight.weight * 9.0 * solid_angle - 1.0).abs() < 1e-6, "{sight:?}");
+        }
+        assert!(view.sight(view.eye - view.direction(32.0, 24.0)).is_none());
+        assert!(view.sight(view.eye + view.direction(-1.0, 24.0)).is_none());
+    }
 
     /// The matrix that the renderer's camera is made of, with f32's digits.
     #[test]
@@ -61,6 +111,8 @@ mod tests {
         for (x, y) in [(0.125, 0.875), (320.0, 240.0), (639.5, 10.25), (17.0, 479.0)] {
             let point = camera.eye + 7.0 * view.direction(x, y).as_vec3();
             let projected = clip * point.extend(1.0);
+            let sight = view.sight(camera.eye.as_dvec3() + 7.0 * view.direction(x, y)).expect("in the picture");
+            assert!((sight.x - x).abs() < 1e-9 && (sight.y - y).abs() < 1e-9 && (sight.distance - 7.0).abs() < 1e-12);
             let [right, up] = (projected.xy() / projected.w).to_array().map(f64::from);
             assert!((0.5 * (right + 1.0) * f64::from(width) - x).abs() < 1e-3);
             assert!((0.5 * (1.0 - up) * f64::from(height) - y).abs() < 1e-3);

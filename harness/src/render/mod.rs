@@ -105,8 +105,12 @@ pub struct Settings {
     pub wavelengths: usize,
     /// The share of a camera ray's energy that the reference need not follow.
     pub energy_bound: f64,
-    /// Walks from each pixel that the reference of what scatters light follows.
+    /// Walks for each pixel that the reference of what scatters light follows.
     pub walks: u32,
+    /// Where those set out.
+    pub walks_from: mesh::Origin,
+    /// What surfaces do to them.
+    pub boundary: mesh::Boundary,
 }
 
 impl Settings {
@@ -133,6 +137,8 @@ impl Settings {
             wavelengths: reference::WAVELENGTHS,
             energy_bound: reference::ENERGY_BOUND,
             walks: WALKS,
+            walks_from: mesh::Origin::Eye,
+            boundary: mesh::Boundary::Matched,
         }
     }
 }
@@ -389,9 +395,10 @@ fn walk(
         width: settings.width,
         height: settings.height,
         samples_per_pixel: settings.walks,
+        origin: settings.walks_from,
         seed: 1,
         environment: settings.light_from_environment.then_some(&settings.environment),
-        boundary: mesh::Boundary::Matched,
+        boundary: settings.boundary,
     };
     Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)
 }

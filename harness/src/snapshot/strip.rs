@@ -1,6 +1,7 @@
 //! Translucent stone in motion: frames side by side, each with voxels, maps, seeds and costs of its own. Nothing is kept from one to the next.
 
 use super::SnapshotError;
+use super::frames::{halved, side_by_side};
 use crate::gpu::Gpu;
 use crate::optical_path::Method;
 use crate::render::{self, Paths, Picture, Rung, Settings};
@@ -78,69 +79,14 @@ pub fn settings() -> Settings {
 pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
     let settings = settings();
     let frames = scenes()?.iter().map(|scene| render::render(gpu, scene, &settings)).collect::<Result<Vec<_>, _>>()?;
-    let seen = side_by_side(&frames);
+    let seen = side_by_side(&frames, FRAMES[0]);
     let half = halved(&seen);
     Ok([seen, half])
-}
-
-/// Frames of [`SIDE`] pixels in their rows.
-fn side_by_side(frames: &[Picture]) -> Picture {
-    let [width, height] = FRAMES.map(|count| count * SIDE);
-    let pixel = |index: u32| {
-        let (column, row) = (index % width, index / width);
-        let frame = &frames[(row / SIDE * FRAMES[0] + column / SIDE) as usize];
-        (frame, (row % SIDE * SIDE + column % SIDE) as usize)
-    };
-    Picture {
-        width,
-        height,
-        linear: (0..width * height).map(pixel).map(|(frame, place)| frame.linear[place]).collect(),
-        encoded: (0..width * height).map(pixel).map(|(frame, place)| frame.encoded[place]).collect(),
-        lost: None,
-        walked: None,
-        notes: frames.iter().flat_map(|frame| frame.notes.clone()).collect(),
-    }
-}
-
-/// The mean of each two by two pixels, linear alone.
-fn halved(picture: &Picture) -> Picture {
-    let [width, height] = [picture.width / 2, picture.height / 2];
-    let mean = |index: u32| {
-        let first = (index / width * 2 * picture.width + index % width * 2) as usize;
-        let below = first + picture.width as usize;
-        let four = [first, first + 1, below, below + 1].map(|place| picture.linear[place]);
-        std::array::from_fn(|channel| 0.25 * four.iter().map(|pixel| pixel[channel]).sum::<f32>())
-    };
-    let linear: Vec<[f32; 4]> = (0..width * height).map(mean).collect();
-    let encoded = vec![[0; 4]; linear.len()];
-    Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn frame(number: u32) -> Picture {
-        let pixels = (SIDE * SIDE) as usize;
-        let linear = vec![[number as f32, 0.0, 0.0, 1.0]; pixels];
-        let encoded = vec![[number as u8, 0, 0, 255]; pixels];
-        Picture { width: SIDE, height: SIDE, linear, encoded, lost: None, walked: None, notes: Vec::new() }
-    }
-
-    #[test]
-    fn frames_lie_in_rows() {
-        let frames: Vec<Picture> = (0..FRAMES[0] * FRAMES[1]).map(frame).collect();
-        let mut strip = side_by_side(&frames);
-        assert_eq!((strip.width, strip.height), (640, 512));
-        for (column, row, number) in [(0, 0, 0), (127, 127, 0), (128, 0, 1), (639, 0, 4), (0, 128, 5), (639, 511, 19)] {
-            let place = row * 640 + column;
-            assert_eq!((strip.encoded[place][0], strip.linear[place][0]), (number, f32::from(number)));
-        }
-        strip.linear[641][0] = 4.0;
-        let half = halved(&strip);
-        assert_eq!((half.width, half.height, half.linear.len()), (320, 256, 320 * 256));
-        assert_eq!((half.linear[0][0], half.linear[64][0], half.linear[320 * 64][0]), (1.0, 1.0, 5.0));
-    }
 
     #[test]
     fn there_is_a_scene_for_each_frame() {

@@ -363,62 +363,11 @@ fn bad_input_is_refused() {
     assert!(matches!(refused(&stone, "cheap"), RenderError::NoSigma0 { .. }));
 }
 
-/// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
-/// walks leave open.
-#[test]
-fn the_committed_references_are_walked_again() {
-    use lapidary_harness::random_walk::mesh;
-    use lapidary_harness::snapshot::{EXR_SIDE, WALKED};
-    let readme = std::fs::read_to_string(snapshot_folder().join("README.md")).expect("the references' page");
-    for reference in &WALKED {
-        assert!(readme.contains(&reference.command()), "{}", reference.command());
-        let committed = reference.picture(super::gpu()).expect(reference.scene).linear;
-        let scene = Scene::named(reference.scene).expect("built in");
-        let side = EXR_SIDE / 4;
-        let few = mesh::Settings {
-            width: side,
-            height: side,
-            samples_per_pixel: 9,
-            seed: 99,
-            environment: None,
-            boundary: mesh::Boundary::Matched,
-        };
-        let again = mesh::render(&scene, &few, &|_, _| {}).expect("walked");
-        let mut worst = 0.0f64;
-        for quarter in 0..4 {
-            let inside = |row: u32, column: u32, side: u32| (row / (side / 2)) * 2 + column / (side / 2) == quarter;
-            for channel in 0..3 {
-                let (mut sum, mut variance) = (0.0, 0.0);
-                for (place, (pixel, error)) in (0..).zip(again.linear.iter().zip(&again.standard_error)) {
-                    if inside(place / side, place % side, side) {
-                        sum += f64::from(pixel[channel]);
-                        variance += f64::from(error[channel]).powi(2);
-                    }
-                }
-                let expected: f64 = (0..)
-                    .zip(&committed)
-                    .filter(|(place, _)| inside(place / EXR_SIDE, place % EXR_SIDE, EXR_SIDE))
-                    .map(|(_, pixel)| f64::from(pixel[channel]) / 16.0)
-                    .sum();
-                // The committed picture's own error is small beside it: it has a hundred times the walks or more.
-                let off = (sum - expected).abs() / (variance.sqrt() + 2e-3 * expected);
-                worst = worst.max(if expected > 0.0 { off } else { 0.0 });
-            }
-        }
-        println!("{}: the quarters' means differ by {worst:.1} standard errors at most", reference.scene);
-        assert!(worst < 4.5, "{}: {worst}", reference.scene);
-    }
-}
-
-fn snapshot_folder() -> std::path::PathBuf {
-    lapidary_harness::snapshot::folder("cdrf").join("reference")
-}
-
 /// After each side's best single exposure the reflectance is nearer to the random walks than Lambert's law.
 #[test]
 fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
-    use lapidary_harness::snapshot::{EXR_SIDE, WALKED};
-    for reference in &WALKED {
+    use lapidary_harness::snapshot::{EXR_SIDE, WalkedReference};
+    for reference in WalkedReference::of("cdrf") {
         let truth = reference.picture(super::gpu()).expect(reference.scene).linear;
         let scene = Scene::named(reference.scene).expect("built in");
         let distance = |rung: &str| {

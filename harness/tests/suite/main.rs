@@ -28,6 +28,7 @@ mod specialise;
 mod text;
 mod texture_diffusion;
 mod voxelization;
+mod walked_references;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
 

@@ -8,17 +8,16 @@ use crate::render::{self, RenderError, Rung, SAMPLES, Settings};
 use crate::scene::Scene;
 use crate::snapshot::{EXR_SIDE, WALKED};
 
-/// The picture that is walked again, for the spread of its walks, has this part of the committed one's side, ...
-const REDUCTION: u32 = 4;
-/// ... and so many walks from each pixel.
-const FEW: u32 = 16;
+/// The picture that is walked again, for the spread of its walks, has so many for each pixel.
+const FEW: u32 = 4;
 
 /// A scene and its picture by random walks.
 pub(super) struct Walks {
     scene: Scene,
     linear: Vec<[f32; 4]>,
-    /// From each pixel.
+    /// For each pixel.
     count: u32,
+    origin: mesh::Origin,
 }
 
 impl Walks {
@@ -26,7 +25,7 @@ impl Walks {
     pub(super) fn of(gpu: &Gpu, name: &str) -> Result<Option<Self>, CostError> {
         let Some(reference) = WALKED.iter().find(|reference| reference.scene == name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
-        Ok(Some(Self { scene: Scene::named(name)?, linear, count: reference.walks }))
+        Ok(Some(Self { scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
     }
 
     /// How far a rung's picture is from this one; of the reference, this one's own standard error.
@@ -42,9 +41,10 @@ impl Walks {
     /// tell their spread.
     fn standard_error(&self) -> Result<f64, CostError> {
         let few = mesh::Settings {
-            width: EXR_SIDE / REDUCTION,
-            height: EXR_SIDE / REDUCTION,
+            width: EXR_SIDE,
+            height: EXR_SIDE,
             samples_per_pixel: FEW,
+            origin: self.origin,
             seed: 1,
             environment: None,
             boundary: mesh::Boundary::Matched,

@@ -6,7 +6,15 @@ use glam::Vec3;
 use std::time::Instant;
 
 fn settings(side: u32, samples_per_pixel: u32) -> Settings<'static> {
-    Settings { width: side, height: side, samples_per_pixel, seed: 1, environment: None, boundary: Boundary::Matched }
+    Settings {
+        width: side,
+        height: side,
+        samples_per_pixel,
+        origin: Origin::Eye,
+        seed: 1,
+        environment: None,
+        boundary: Boundary::Matched,
+    }
 }
 
 fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
@@ -20,13 +28,15 @@ fn named(name: &str) -> Scene {
 #[test]
 fn a_seed_gives_the_same_picture_on_any_number_of_threads() {
     let scene = named("jade_ring");
-    let on = |threads: usize, seed: u64| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| rendered(&scene, &Settings { seed, ..settings(24, 5) }))
-    };
-    let one = on(1, 7);
-    assert_eq!(one, on(3, 7));
-    assert_ne!(one.linear, on(1, 8).linear);
+    for origin in Origin::ALL {
+        let on = |threads: usize, seed: u64| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| rendered(&scene, &Settings { seed, origin, ..settings(24, 5) }))
+        };
+        let one = on(1, 7);
+        assert_eq!(one, on(3, 7));
+        assert_ne!(one.linear, on(1, 8).linear);
+    }
 }
 
 /// The further a point light, the more parallel its rays.
@@ -73,12 +83,64 @@ fn white_furnace() {
     assert!(rendering.linear.iter().all(|pixel| pixel[0] <= pixel[3] + 1e-6));
 }
 
+/// From either end the same light is found: means of sixteen parts of the picture, over plain matter, veins with forward scattering, several bodies, and lamps.
+#[test]
+fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
+    let mut veined = named("dragon");
+    veined.objects[0].material.medium.as_mut().expect("a medium").anisotropy = 0.6;
+    let lamp = Light::Point { position: Vec3::new(10.0, 60.0, 80.0), intensity: Vec3::new(9e3, 6e3, 3e3) };
+    let spot = Light::Spot {
+        position: Vec3::new(-90.0, 20.0, 60.0),
+        direction: Vec3::new(0.9, -0.1, -0.6).normalize(),
+        intensity: Vec3::splat(2e4),
+        inner_angle: 0.1,
+        outer_angle: 0.5,
+    };
+    for (scene, lights) in [(named("jade"), vec![]), (named("jade_ring"), vec![]), (veined, vec![lamp, spot])] {
+        let scene = Scene { lights: [&scene.lights[..], &lights].concat(), ..scene };
+        let (side, part) = (32, 8);
+        let of = |origin: Origin| rendered(&scene, &Settings { origin, ..settings(side, 100) });
+        let [eye, light] = Origin::ALL.map(of);
+        let covered = |picture: &Rendering| picture.linear.iter().map(|pixel| f64::from(pixel[3])).sum::<f64>();
+        assert!((covered(&eye) / covered(&light) - 1.0).abs() < 0.01);
+        let mut worst = 0.0f64;
+        for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
+            for channel in 0..3 {
+                let of_part = |picture: &Rendering| {
+                    let pixels = (0..).zip(picture.linear.iter().zip(&picture.standard_error));
+                    let inside = |place: u32| place / side / part == row && place % side / part == column;
+                    let inside = pixels.filter(|(place, _)| inside(*place));
+                    inside.fold((0.0, 0.0), |(sum, variance), (_, (pixel, error))| {
+                        (sum + f64::from(pixel[channel]), variance + f64::from(error[channel]).powi(2))
+                    })
+                };
+                let [(a, error_a), (b, error_b)] = [&eye, &light].map(of_part);
+                // Of a part next to black, too few walks tell the spread.
+                if a > 0.05 {
+                    worst = worst.max((a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
+                }
+            }
+        }
+        println!("{}: parts differ by {worst:.1} standard errors at most", scene.name);
+        assert!(worst > 0.0 && worst < 4.5, "{}: {worst}", scene.name);
+    }
+}
+
 /// What pictures differ by from seed to seed is what their standard errors say, and no more: the strata can only help.
 #[test]
 fn errors_are_what_they_are_said_to_be() {
+    for origin in Origin::ALL {
+        let [found, said] = variances(origin);
+        println!("from the {}, variance over what is said: {}", origin.name(), found / said);
+        assert!((found / said).cmpgt(DVec3::splat(0.75)).all() && (found / said).cmplt(DVec3::splat(1.15)).all());
+    }
+}
+
+/// Of pictures of many seeds, and what they say.
+fn variances(origin: Origin) -> [DVec3; 2] {
     let scene = named("skin_ring");
     let pictures: Vec<Rendering> =
-        (0..64).map(|seed| rendered(&scene, &Settings { seed, ..settings(10, 12) })).collect();
+        (0..64).map(|seed| rendered(&scene, &Settings { seed, origin, ..settings(10, 12) })).collect();
     let count = pictures.len() as f64;
     let (mut found, mut said) = (DVec3::ZERO, DVec3::ZERO);
     for pixel in (0..100).filter(|&pixel| pictures.iter().all(|picture| picture.linear[pixel][3] == 1.0)) {
@@ -90,8 +152,7 @@ fn errors_are_what_they_are_said_to_be() {
             said[channel] += squares.sum::<f64>() / count;
         }
     }
-    println!("variance over what is said: {}", found / said);
-    assert!((found / said).cmpgt(DVec3::splat(0.75)).all() && (found / said).cmplt(DVec3::splat(1.15)).all());
+    [found, said]
 }
 
 #[test]
@@ -108,6 +169,11 @@ fn what_cannot_be_followed_is_refused() {
     assert_eq!(refused(&scene, &settings(8, 1)), WalkError::Samples(1));
     assert_eq!(refused(&scene, &settings(8, MOST_SAMPLES + 1)), WalkError::Samples(MOST_SAMPLES + 1));
 
+    let ones = Environment::Map(EnvironmentMap { width: 2, height: 1, pixels: vec![[1.0; 4]; 2] });
+    let lights = Settings { origin: Origin::Lights, ..settings(8, 2) };
+    assert_eq!(refused(&scene, &Settings { environment: Some(&ones), ..lights }), WalkError::Environment);
+    assert_eq!(refused(&scene, &Settings { boundary: Boundary::Dielectric, ..lights }), WalkError::Dielectric);
+
     let with = |change: &dyn Fn(&mut Object)| {
         let mut scene = scene.clone();
         change(&mut scene.objects[0]);
@@ -123,13 +189,15 @@ fn what_cannot_be_followed_is_refused() {
 }
 
 #[test]
-fn progress_counts_rows() {
-    let seen = std::sync::Mutex::new(Vec::new());
-    let note = |done, all| seen.lock().expect("no panic").push((done, all));
-    render(&named("skin"), &settings(6, 2), &note).expect("rendered");
-    let mut seen = seen.into_inner().expect("no panic");
-    seen.sort_unstable();
-    assert_eq!(seen, (1..=6).map(|done| (done, 6)).collect::<Vec<_>>());
+fn progress_counts_rows_and_batches() {
+    for (origin, parts) in Origin::ALL.into_iter().zip([6, 64 + 6]) {
+        let seen = std::sync::Mutex::new(Vec::new());
+        let note = |done, all| seen.lock().expect("no panic").push((done, all));
+        render(&named("skin"), &Settings { origin, ..settings(6, 2) }, &note).expect("rendered");
+        let mut seen = seen.into_inner().expect("no panic");
+        seen.sort_unstable();
+        assert_eq!(seen, (1..=parts).map(|done| (done, parts)).collect::<Vec<_>>());
+    }
 }
 
 /// How fast, how noisy, and how many walks slip through a surface: next to none.

@@ -1,4 +1,5 @@
-//! One walk backwards through bodies of scattering matter: from the eye to the lights.
+//! One walk through bodies of scattering matter: backwards from the eye, or from a light, as light goes. Matter does not know the difference, but for what
+//! each scattering is connected with.
 
 mod general;
 
@@ -6,6 +7,7 @@ use super::super::isotropic;
 use super::Boundary;
 use crate::reference::geometry::{Bodies, Geometry, Hit, Place};
 use crate::reference::surroundings;
+use crate::reference::view::{Sight, View};
 use crate::render::Environment;
 use crate::scene::light::Arrival;
 use crate::scene::{Light, Medium, Object, Scene};
@@ -49,10 +51,41 @@ impl From<&Medium> for Coefficients {
     }
 }
 
+/// What each scattering is connected with.
+#[derive(Clone, Copy)]
+pub(super) enum Targets<'a> {
+    /// The lights, by a walk from the eye.
+    Lights(&'a [Light]),
+    /// The eye, by a walk from a light.
+    Eye(&'a View),
+}
+
+impl Targets<'_> {
+    fn count(self) -> usize {
+        match self {
+            Self::Lights(lights) => lights.len(),
+            Self::Eye(_) => 1,
+        }
+    }
+
+    /// What a point receives from a light, or the radiance that the eye sees of a point that shines with intensity 1, and in which pixel.
+    fn at(self, number: usize, position: DVec3) -> Option<(Arrival, [u32; 2])> {
+        match self {
+            // Outside of a spot's cone there is none.
+            Self::Lights(lights) => Some((lights[number].arrival(position), [0; 2]))
+                .filter(|(arrival, _)| arrival.irradiance != DVec3::ZERO),
+            Self::Eye(view) => view.sight(position).map(|Sight { x, y, toward, distance, weight }| {
+                let arrival = Arrival { direction: toward, distance, irradiance: DVec3::splat(weight) };
+                (arrival, [x as u32, y as u32])
+            }),
+        }
+    }
+}
+
 /// What a walk brought.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outcome {
-    /// Linear RGB, of light that was scattered at least once.
+    /// Linear RGB, of light that was scattered at least once, by a walk from the eye.
     pub(super) radiance: DVec3,
     /// What is left of a walk that nothing scattered: the mean is the share of what lies behind that shows through.
     pub(super) straight: DVec3,
@@ -93,12 +126,37 @@ impl<'scene> Matter<'scene> {
         self.bodies.enter(origin, direction, None)
     }
 
-    /// Follows the ray from `origin` along a unit `direction` that meets a body at `hit`.
-    pub(super) fn walk(&self, origin: DVec3, direction: DVec3, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+    /// Follows a ray from the eye that meets a body at `hit`.
+    pub(super) fn walk(&self, ray: Ray, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+        let mut radiance = DVec3::ZERO;
+        let outcome = self.follow(Targets::Lights(&self.lights), ray, hit, random, &mut |_, value| radiance += value);
+        Outcome { radiance: radiance + outcome.radiance, ..outcome }
+    }
+
+    /// Follows light along a ray that meets a body at `hit`; `deposit` gets what the eye sees of it and in which pixel.
+    pub(super) fn walk_of_light(
+        &self,
+        eye: &View,
+        ray: Ray,
+        hit: Hit,
+        random: &mut Xoshiro256PlusPlus,
+        mut deposit: impl FnMut([u32; 2], DVec3),
+    ) -> Outcome {
+        self.follow(Targets::Eye(eye), ray, hit, random, &mut deposit)
+    }
+
+    fn follow(
+        &self,
+        targets: Targets<'_>,
+        ray: Ray,
+        hit: Hit,
+        random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
+    ) -> Outcome {
         if self.structures.iter().all(Structure::is_plain) {
-            self.follow(origin, direction, hit, random)
+            self.follow_plain(targets, ray, hit, random, deposit)
         } else {
-            self.follow_general(origin, direction, hit, random)
+            self.follow_general(targets, ray, hit, random, deposit)
         }
     }
 
@@ -113,11 +171,18 @@ impl<'scene> Matter<'scene> {
     /// length; each is then weighted by what it would have done over what the choice does in the mean (the balance heuristic, as
     /// Chiang, Kutz and Burley, "Practical and Controllable Subsurface Scattering for Production Path Tracing", 2016, have it). So no channel
     /// ever has more than the three began with together.
-    fn follow(&self, origin: DVec3, direction: DVec3, hit: Hit, random: &mut Xoshiro256PlusPlus) -> Outcome {
+    fn follow_plain(
+        &self,
+        targets: Targets<'_>,
+        ray: Ray,
+        hit: Hit,
+        random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
+    ) -> Outcome {
         let mut outcome = Outcome::default();
         let mut throughput = DVec3::ONE;
-        let mut position = origin + hit.distance * direction;
-        let mut direction = direction;
+        let Ray { mut position, mut direction } = ray;
+        position += hit.distance * direction;
         let (mut body, mut left) = (hit.place.body, Some(hit.place.face));
         loop {
             let Coefficients { scattering, extinction } = self.coefficients[body];
@@ -144,14 +209,13 @@ impl<'scene> Matter<'scene> {
                 return outcome;
             }
             position += free * direction;
-            let direct = if self.holds(position) { self.direct(position, body, random) } else { None };
-            let Some(direct) = direct else {
-                outcome.lost = true;
-                return outcome;
-            };
             let transmittance = (-free * extinction).exp();
             throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
-            outcome.radiance += throughput * direct;
+            let mut connected = |place, value: DVec3| deposit(place, throughput * value);
+            if !self.holds(position) || self.connect(targets, position, body, random, &mut connected).is_none() {
+                outcome.lost = true;
+                return outcome;
+            }
             outcome.scatterings += 1;
             let strongest = throughput.max_element();
             if strongest < WEAK {
@@ -165,20 +229,24 @@ impl<'scene> Matter<'scene> {
         }
     }
 
-    /// What the lights send to a point in `body`, times the phase function; nothing where a surface has a gap.
-    fn direct(&self, position: DVec3, body: usize, random: &mut Xoshiro256PlusPlus) -> Option<DVec3> {
+    /// What the targets send to a point in `body`, or see of it, times the phase function; nothing where a surface has a gap.
+    fn connect(
+        &self,
+        targets: Targets<'_>,
+        position: DVec3,
+        body: usize,
+        random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
+    ) -> Option<()> {
         let extinction = self.coefficients[body].extinction;
         let least = extinction.min_element();
-        let mut sum = DVec3::ZERO;
-        for light in &self.lights {
-            let Arrival { direction, distance, irradiance } = light.arrival(position);
+        for target in 0..targets.count() {
             // A longer way is looked for with the probability that makes up for its gain below: most of a search's time goes
             // into ways that bring next to nothing.
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
-            // Outside of a spot's cone.
-            if irradiance == DVec3::ZERO {
+            let Some((Arrival { direction, distance, irradiance }, place)) = targets.at(target, position) else {
                 continue;
-            }
+            };
             let out = self.bodies.leave_body(position, direction, body, None, limit.min(distance));
             let (way, beyond) = match out {
                 Some(out) => {
@@ -191,9 +259,9 @@ impl<'scene> Matter<'scene> {
                 None => continue,
             };
             let gain = (least * way - SURE).max(0.0).exp();
-            sum += irradiance * gain * (-way * extinction - beyond).exp();
+            deposit(place, irradiance * (gain / (4.0 * PI)) * (-way * extinction - beyond).exp());
         }
-        Some(sum / (4.0 * PI))
+        Some(())
     }
 
     /// The optical depth of all matter on the way of a ray that leaves a body at `out`, as far as `distance`; nothing where a surface
@@ -229,6 +297,13 @@ impl<'scene> Matter<'scene> {
         }
         Some(())
     }
+}
+
+/// A ray: a place and a unit direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub(super) position: DVec3,
+    pub(super) direction: DVec3,
 }
 
 /// A channel, each as likely as its share, from a number in [0, 1).

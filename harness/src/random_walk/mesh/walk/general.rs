@@ -8,7 +8,7 @@
 //! that leave: the environment, and directional lights as small discs. Fresnel's share decides by chance between refraction and reflection.
 
 use super::super::Boundary;
-use super::{Coefficients, Matter, Outcome, SURE, WEAK, channel, weighted};
+use super::{Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
 use crate::random_walk::isotropic;
 use crate::reference::geometry::{Hit, Place};
 use crate::reference::surroundings;
@@ -92,13 +92,6 @@ impl Structure {
     }
 }
 
-/// A ray.
-#[derive(Clone, Copy)]
-struct Ray {
-    position: DVec3,
-    direction: DVec3,
-}
-
 /// Where a ray outside of all bodies comes to.
 enum Arrival {
     /// Inside a body, on its surface.
@@ -112,14 +105,14 @@ impl Matter<'_> {
     /// [`Matter::follow`] in any matter.
     pub(super) fn follow_general(
         &self,
-        origin: DVec3,
-        direction: DVec3,
+        targets: Targets<'_>,
+        mut ray: Ray,
         hit: Hit,
         random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
     ) -> Outcome {
         let mut outcome = Outcome::default();
         let mut throughput = DVec3::ONE;
-        let mut ray = Ray { position: origin, direction };
         let mut arrival = self.arrive(&mut ray, Some(hit), random);
         'bodies: loop {
             let Place { body, face } = match arrival {
@@ -167,8 +160,10 @@ impl Matter<'_> {
                     continue;
                 }
                 throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
-                let Some(direct) = self.direct_general(ray, body, random) else { break 'bodies };
-                outcome.radiance += throughput * direct;
+                let mut connected = |place, value: DVec3| deposit(place, throughput * value);
+                if self.connect_general(targets, ray, body, random, &mut connected).is_none() {
+                    break 'bodies;
+                }
                 outcome.scatterings += 1;
                 reflections = 0;
                 let strongest = throughput.max_element();
@@ -220,19 +215,25 @@ impl Matter<'_> {
         }
     }
 
-    /// [`Matter::direct`] in any matter; nothing at all behind a dielectric boundary.
-    fn direct_general(&self, ray: Ray, body: usize, random: &mut Xoshiro256PlusPlus) -> Option<DVec3> {
+    /// [`Matter::connect`] in any matter; nothing at all behind a dielectric boundary.
+    fn connect_general(
+        &self,
+        targets: Targets<'_>,
+        ray: Ray,
+        body: usize,
+        random: &mut Xoshiro256PlusPlus,
+        deposit: &mut impl FnMut([u32; 2], DVec3),
+    ) -> Option<()> {
         if self.boundary == Boundary::Dielectric {
-            return Some(DVec3::ZERO);
+            return Some(());
         }
         let structure = &self.structures[body];
         // Any rate at all gives the right mean; at this one no gain outgrows what the way takes away.
         let least = self.coefficients[body].extinction.min_element() * structure.least;
-        let mut sum = DVec3::ZERO;
-        for light in &self.lights {
-            let found = light.arrival(ray.position);
-            let (direction, distance, irradiance) = (found.direction, found.distance, found.irradiance);
+        for target in 0..targets.count() {
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
+            let Some((found, place)) = targets.at(target, ray.position) else { continue };
+            let (direction, distance, irradiance) = (found.direction, found.distance, found.irradiance);
             let out = self.bodies.leave_body(ray.position, direction, body, None, limit.min(distance));
             let way = match out {
                 Some(out) => out.distance,
@@ -247,9 +248,9 @@ impl Matter<'_> {
                 })?;
             }
             let gain = (least * way - SURE).max(0.0).exp();
-            sum += irradiance * gain * transmittance * structure.phase(ray.direction.dot(direction));
+            deposit(place, irradiance * gain * transmittance * structure.phase(ray.direction.dot(direction)));
         }
-        Some(sum)
+        Some(())
     }
 
     /// An estimate of the share of light that is left after a way inside a body, by ratio tracking; exact in matter of one density.

@@ -155,7 +155,7 @@ fn white_furnace() {
                 let through = 5.0 * random.random::<f64>() * isotropic(random);
                 let direction = (through - origin).normalize();
                 let Some(hit) = matter.enter(origin, direction) else { continue };
-                let outcome = matter.walk(origin, direction, hit, random);
+                let outcome = matter.walk(Ray { position: origin, direction }, hit, random);
                 let all = outcome.radiance + outcome.straight;
                 assert!(outcome.lost || (all.element_sum() - 3.0).abs() < 1e-9, "{all}");
                 break if outcome.lost { DVec3::ONE } else { all };
@@ -176,16 +176,19 @@ fn plain_matter_is_the_same_both_ways() {
     let start = |random: &mut Xoshiro256PlusPlus| loop {
         let origin = DVec3::new(12.0 * random.random::<f64>() - 6.0, 12.0 * random.random::<f64>() - 6.0, 20.0);
         if let Some(hit) = matter.enter(origin, DVec3::NEG_Z) {
-            return (origin, hit);
+            return (Ray { position: origin, direction: DVec3::NEG_Z }, hit);
         }
     };
+    let lights = Targets::Lights(&matter.lights);
     let plain = estimate(40_000, 1, |random| {
-        let (origin, hit) = start(random);
-        matter.follow(origin, DVec3::NEG_Z, hit, random).radiance
+        let ((ray, hit), mut radiance) = (start(random), DVec3::ZERO);
+        matter.follow_plain(lights, ray, hit, random, &mut |_, value| radiance += value);
+        radiance
     });
     let general = estimate(40_000, 2, |random| {
-        let (origin, hit) = start(random);
-        matter.follow_general(origin, DVec3::NEG_Z, hit, random).radiance
+        let ((ray, hit), mut radiance) = (start(random), DVec3::ZERO);
+        matter.follow_general(lights, ray, hit, random, &mut |_, value| radiance += value);
+        radiance
     });
     println!("{} ± {}, {} ± {}", plain.0, plain.1, general.0, general.1);
     let error = (plain.1 * plain.1 + general.1 * general.1).map(f64::sqrt);

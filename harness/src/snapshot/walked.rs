@@ -1,0 +1,72 @@
+//! Committed references by random walks.
+
+use super::shots::LIGHTS_ALONE;
+use super::{EXR_SIDE, SnapshotError, folder, reference_picture};
+use crate::gpu::Gpu;
+use crate::random_walk::mesh::Origin;
+use crate::render::{Picture, Settings};
+use std::path::PathBuf;
+
+/// A committed reference by random walks, of a scene by its lights alone.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkedReference {
+    /// Of the scene, and its file's name.
+    pub scene: &'static str,
+    /// What the gallery calls it.
+    pub title: &'static str,
+    /// Whose recipes it is a reference of.
+    pub technique: &'static str,
+    /// Walks for each pixel.
+    pub walks: u32,
+    /// Where they set out.
+    pub origin: Origin,
+}
+
+/// Every one.
+pub const WALKED: [WalkedReference; 6] = [
+    skin("skin", "Skin: spheres by random walks", 1024),
+    skin("skin_bunny", "Skin: the bunny by random walks", 1024),
+    skin("skin_ring", "Skin: the ring by random walks", 576),
+    stone("bunny", "Marble: the bunny by random walks"),
+    stone("dragon", "Veined jade: the dragon by random walks"),
+    stone("figure", "Marble: the figure by random walks"),
+];
+
+const fn skin(scene: &'static str, title: &'static str, walks: u32) -> WalkedReference {
+    WalkedReference { scene, title, technique: "cdrf", walks, origin: Origin::Eye }
+}
+
+const fn stone(scene: &'static str, title: &'static str) -> WalkedReference {
+    WalkedReference { scene, title, technique: "optical_path", walks: 4096, origin: Origin::Lights }
+}
+
+impl WalkedReference {
+    /// Those of a technique's recipes.
+    pub fn of(technique: &str) -> impl Iterator<Item = &'static Self> {
+        WALKED.iter().filter(move |reference| reference.technique == technique)
+    }
+
+    /// Where it is kept.
+    pub fn file(&self) -> PathBuf {
+        folder(self.technique).join("reference").join(format!("{}.exr", self.scene))
+    }
+
+    /// The command that makes it again.
+    pub fn command(&self) -> String {
+        let Self { scene, technique, walks, origin, .. } = self;
+        let origin = match origin {
+            Origin::Eye => String::new(),
+            other => format!(" --walks-from {}", other.name()),
+        };
+        format!(
+            "./cook render {scene} --rung reference --size {EXR_SIDE}x{EXR_SIDE} --walks {walks}{origin} --without environment \
+             --out snapshots/{technique}/reference/{scene}.exr"
+        )
+    }
+
+    /// As it was followed, and as it is seen.
+    pub fn picture(&self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
+        let settings = Settings { exposure: LIGHTS_ALONE, ..Settings::of_size(EXR_SIDE, EXR_SIDE) };
+        reference_picture(gpu, &self.file(), &settings)
+    }
+}

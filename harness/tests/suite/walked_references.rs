@@ -1,0 +1,74 @@
+//! The committed pictures by random walks.
+
+use lapidary_harness::cost::exposed_distance;
+use lapidary_harness::random_walk::mesh;
+use lapidary_harness::render;
+use lapidary_harness::scene::Scene;
+use lapidary_harness::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
+
+/// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
+/// walks leave open.
+#[test]
+fn the_committed_references_are_walked_again() {
+    for reference in &WALKED {
+        let page = reference.file().with_file_name("README.md");
+        let readme = std::fs::read_to_string(page).expect("the references' page");
+        assert!(readme.contains(&reference.command()), "{}", reference.command());
+        let committed = reference.picture(super::gpu()).expect(reference.scene).linear;
+        let scene = Scene::named(reference.scene).expect("built in");
+        let side = EXR_SIDE / 4;
+        let few = mesh::Settings {
+            width: side,
+            height: side,
+            samples_per_pixel: 9,
+            origin: reference.origin,
+            seed: 99,
+            environment: None,
+            boundary: mesh::Boundary::Matched,
+        };
+        let again = mesh::render(&scene, &few, &|_, _| {}).expect("walked");
+        let mut worst = 0.0f64;
+        for quarter in 0..4 {
+            let inside = |row: u32, column: u32, side: u32| (row / (side / 2)) * 2 + column / (side / 2) == quarter;
+            for channel in 0..3 {
+                let (mut sum, mut variance) = (0.0, 0.0);
+                for (place, (pixel, error)) in (0..).zip(again.linear.iter().zip(&again.standard_error)) {
+                    if inside(place / side, place % side, side) {
+                        sum += f64::from(pixel[channel]);
+                        variance += f64::from(error[channel]).powi(2);
+                    }
+                }
+                let expected: f64 = (0..)
+                    .zip(&committed)
+                    .filter(|(place, _)| inside(place / EXR_SIDE, place % EXR_SIDE, EXR_SIDE))
+                    .map(|(_, pixel)| f64::from(pixel[channel]) / 16.0)
+                    .sum();
+                // The committed picture's own error is small beside it: it has a hundred times the walks or more.
+                let off = (sum - expected).abs() / (variance.sqrt() + 2e-3 * expected);
+                worst = worst.max(if expected > 0.0 { off } else { 0.0 });
+            }
+        }
+        println!("{}: the quarters' means differ by {worst:.1} standard errors at most", reference.scene);
+        assert!(worst < 4.5, "{}: {worst}", reference.scene);
+    }
+}
+
+/// After each side's best single exposure the cheapest ways are at most half as far from the walks as Lambert's law, in every scene.
+#[test]
+fn the_cheapest_ways_are_twice_as_near_to_random_walks_as_lambert() {
+    for reference in WalkedReference::of("optical_path") {
+        let gpu = super::gpu();
+        let truth = reference.picture(gpu).expect(reference.scene).linear;
+        let scene = Scene::named(reference.scene).expect("built in");
+        let distance = |rung: &str| {
+            let picture = render::render(gpu, &scene, &beside_walks::settings(rung)).expect("rendered");
+            exposed_distance(&picture.linear, &truth)
+        };
+        let [lambert, coarse, fine] = ["lambert", "godunov-64", "godunov-128"].map(distance);
+        println!(
+            "{}: root mean square from the walks, of theirs: Lambert {lambert:.3}, godunov-64 {coarse:.3}, godunov-128 {fine:.3}",
+            reference.scene
+        );
+        assert!(coarse <= 0.5 * lambert && fine <= 0.5 * lambert, "{}: {coarse} {fine} {lambert}", reference.scene);
+    }
+}
