@@ -13,7 +13,7 @@ pub use error::{Distance, TableReport};
 pub use frames::{CurvatureSource, FrameReport, Part};
 pub use walks::Residuals;
 
-use super::{CostError, Row};
+use super::{CostError, Row, mark, mark_rows};
 use crate::gpu::Gpu;
 use crate::render::{Reflectance, Rung};
 use error::Samples;
@@ -166,11 +166,6 @@ impl RungReport {
         }
     }
 
-    /// Whether errors by this measure can be compared: the spherical form is measured against another function.
-    fn comparable(&self, other: &Self, measure: usize) -> bool {
-        measure == 2 || (self.rung == SPHERICAL) == (other.rung == SPHERICAL)
-    }
-
     /// Whether this rung is faster than `other` in the lit part, with curvature from either source, and errs no more.
     fn beats(&self, other: &Self) -> bool {
         let faster = |source| match (self.ms(Part::Lit, source), other.ms(Part::Lit, source)) {
@@ -178,11 +173,19 @@ impl RungReport {
             _ => false,
         };
         let nearer = |measure| match (self.error(measure), other.error(measure)) {
-            (Some(mine), Some(others)) => self.comparable(other, measure) && mine <= others,
+            (Some(mine), Some(others)) => {
+                are_comparable([&self.rung, &other.rung], MEASURES[measure]) && mine <= others
+            }
             _ => false,
         };
         CurvatureSource::ALL.into_iter().all(faster) && (0..2).all(nearer)
     }
+}
+
+/// Whether the errors of two rungs by a measure can be compared: the spherical form is measured against another function, but by walks.
+fn are_comparable(rungs: [&str; 2], error_measure: &str) -> bool {
+    let [one, other] = rungs.map(|rung| rung == SPHERICAL);
+    error_measure == MEASURES[2] || one == other
 }
 
 impl CdrfReport {
@@ -198,10 +201,7 @@ impl CdrfReport {
 
     /// Marks the rungs that another one beats.
     pub fn mark_dominated(&mut self) {
-        let marks: Vec<bool> = self.rungs.iter().map(|rung| self.rungs.iter().any(|other| other.beats(rung))).collect();
-        for (rung, mark) in self.rungs.iter_mut().zip(marks) {
-            rung.dominated = mark;
-        }
+        mark(&mut self.rungs, RungReport::beats, |rung| &mut rung.dominated);
     }
 
     /// A row for each rung, measure and view, a view being a part of the work and a source of curvature: `lit+screen`.
@@ -210,26 +210,20 @@ impl CdrfReport {
         for rung in &self.rungs {
             for (part, source) in frames::views() {
                 for (measure, error_measure) in MEASURES.into_iter().enumerate() {
-                    let (ms, error) = (rung.ms(part, source), rung.error(measure));
-                    let beats = |other: &RungReport| {
-                        let no_slower = matches!((other.ms(part, source), ms), (Some(other), Some(ms)) if other <= ms);
-                        let nearer =
-                            matches!((other.error(measure), error), (Some(other), Some(error)) if other < error);
-                        no_slower && nearer && other.comparable(rung, measure)
-                    };
                     rows.push(Row {
                         technique: TECHNIQUE,
                         rung: rung.rung.clone(),
                         view: format!("{}+{}", part.name(), source.name()),
-                        error,
+                        error: rung.error(measure),
                         error_measure,
-                        ms,
-                        dominated: self.rungs.iter().any(beats),
+                        ms: rung.ms(part, source),
+                        dominated: false,
                         adapter: self.adapter.clone(),
                     });
                 }
             }
         }
+        mark_rows(&mut rows, |one, other| are_comparable([&one.rung, &other.rung], one.error_measure));
         rows
     }
 

@@ -120,28 +120,24 @@ impl Report {
     /// A row for each rung, measure and view.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
-        for (index, rung) in self.rungs.iter().enumerate() {
+        for rung in &self.rungs {
             for (view, name) in self.views.iter().enumerate() {
                 let Some(errors) = rung.errors[view] else { continue };
                 for (measure, error_measure) in MEASURES.into_iter().enumerate() {
-                    let error = errors.of(measure);
-                    let beats = |other: &RungReport| {
-                        let Some(errors) = other.errors[view] else { return false };
-                        no_slower(other, rung) && errors.of(measure) < error
-                    };
                     rows.push(Row {
                         technique: "gem",
                         rung: rung.rung.clone(),
                         view: name.clone(),
-                        error: Some(error),
+                        error: Some(errors.of(measure)),
                         error_measure,
                         ms: rung.timing.map(|timing| timing.ms),
-                        dominated: self.rungs.iter().enumerate().any(|(k, other)| k != index && beats(other)),
+                        dominated: false,
                         adapter: self.adapter.clone(),
                     });
                 }
             }
         }
+        mark_rows(&mut rows, |_, _| true);
         rows
     }
 
@@ -152,11 +148,7 @@ impl Report {
             let faster = matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms < rung.ms);
             faster && (0..2).all(|measure| other.mean(measure) <= ALIKE * rung.mean(measure))
         };
-        let marks: Vec<bool> =
-            self.rungs.iter().map(|rung| self.rungs.iter().any(|other| beats(other, rung))).collect();
-        for (rung, mark) in self.rungs.iter_mut().zip(marks) {
-            rung.dominated = mark;
-        }
+        mark(&mut self.rungs, beats, |rung| &mut rung.dominated);
     }
 
     /// For people.
@@ -165,9 +157,23 @@ impl Report {
     }
 }
 
-/// Whether `other` is timed and takes no more time than `rung`.
-fn no_slower(other: &RungReport, rung: &RungReport) -> bool {
-    matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms <= rung.ms)
+/// Sets the mark of each item that another one beats.
+fn mark<T>(items: &mut [T], beats: impl Fn(&T, &T) -> bool, mark: impl Fn(&mut T) -> &mut bool) {
+    let marks: Vec<bool> = items.iter().map(|item| items.iter().any(|other| beats(other, item))).collect();
+    for (item, beaten) in items.iter_mut().zip(marks) {
+        *mark(item) = beaten;
+    }
+}
+
+/// Marks the rows than which another of the same view and measure is not slower and errs less, where the two errors are `comparable`.
+fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
+    let beats = |other: &Row, row: &Row| {
+        let alike = (&other.view, other.error_measure) == (&row.view, row.error_measure);
+        let no_slower = matches!((other.ms, row.ms), (Some(other), Some(row)) if other <= row);
+        let nearer = matches!((other.error, row.error), (Some(other), Some(row)) if other < row);
+        alike && no_slower && nearer && comparable(other, row)
+    };
+    mark(rows, beats, |row| &mut row.dominated);
 }
 
 /// Why a ladder could not be measured.

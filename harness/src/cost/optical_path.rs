@@ -11,7 +11,7 @@ mod walks;
 pub use frames::{PathTiming, Solved};
 pub use views::{Distance, VIEWS};
 
-use super::{CostError, Row};
+use super::{CostError, Row, mark, mark_rows};
 use crate::gpu::Gpu;
 use crate::render::Rung;
 use serde::{Deserialize, Serialize};
@@ -179,10 +179,7 @@ impl OpticalPathReport {
 
     /// Marks the rungs that another one beats.
     pub fn mark_dominated(&mut self) {
-        let marks: Vec<bool> = self.rungs.iter().map(|rung| self.rungs.iter().any(|other| other.beats(rung))).collect();
-        for (rung, mark) in self.rungs.iter_mut().zip(marks) {
-            rung.dominated = mark;
-        }
+        mark(&mut self.rungs, RungReport::beats, |rung| &mut rung.dominated);
     }
 
     /// A row for each rung, view and measure. The time is that of the grey bunny's frame in all of them.
@@ -191,25 +188,20 @@ impl OpticalPathReport {
         for rung in &self.rungs {
             for view in VIEWS {
                 for (measure, error_measure) in MEASURES.into_iter().enumerate() {
-                    let (ms, error) = (rung.ms(), rung.distance(view).of(measure));
-                    let beats = |other: &RungReport| {
-                        let no_slower = matches!((other.ms(), ms), (Some(other), Some(ms)) if other <= ms);
-                        let found = other.distance(view).of(measure);
-                        no_slower && matches!((found, error), (Some(other), Some(error)) if other < error)
-                    };
                     rows.push(Row {
                         technique: TECHNIQUE,
                         rung: rung.rung.clone(),
                         view: view.to_owned(),
-                        error,
+                        error: rung.distance(view).of(measure),
                         error_measure,
-                        ms,
-                        dominated: self.rungs.iter().any(beats),
+                        ms: rung.ms(),
+                        dominated: false,
                         adapter: self.adapter.clone(),
                     });
                 }
             }
         }
+        mark_rows(&mut rows, |_, _| true);
         rows
     }
 
