@@ -59,7 +59,7 @@ fn optical_path_near_matter(voxel: vec3u) -> bool {
         }
     }
     let place = voxel.x % 32u;
-    return place == 0u || place == 31u || (bits >> (max(place, 1u) - 1u) & 7u) != 0u;
+    return place == 0u || place == 31u || ((bits >> (max(place, 1u) - 1u)) & 7u) != 0u;
 }
 
 @compute @workgroup_size(64)

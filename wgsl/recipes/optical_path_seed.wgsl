@@ -4,7 +4,7 @@
 // requires: optical_path, reflective_shadow_map, voxelization
 // parts: lights, light_views, matter
 //
-// Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed with an invocation for each texel of each map. One channel at a
+// Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed_texel with an invocation for each texel of each map. One channel at a
 // time: costs are those of red, green or blue.
 
 // Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.

@@ -60,13 +60,13 @@ fn optical_path_vertex(@builtin(vertex_index) vertex: u32) -> OpticalPathVertex 
     return OpticalPathVertex(view.clip_from_world * vec4f(position, 1.0f), position, mesh_normal(index));
 }
 
-// The share of a texel's neighbours, weighted by nearness, that nothing keeps from the light; 0 beside the map.
+// The share of a texel's neighbours, weighted by nearness, that nothing keeps from the light; -1 beside the map.
 fn optical_path_lit(layer: u32, position: vec3f, normal: vec3f) -> f32 {
     let size = textureDimensions(maps).x;
     let clip = reflective_shadow_map_clip(views[layer].view, position);
     let place = reflective_shadow_map_texel(clip, f32(size));
     if (any(place < vec2f(0.0f)) || any(place > vec2f(f32(size)))) {
-        return 0.0f;
+        return -1.0f;
     }
     // As high as a texel is wide: w is the depth of a lamp's map, whose texels grow with it, and 1 for a sun's.
     let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);
@@ -152,11 +152,18 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
 
     var received = vec3f(0.0f);
     var highlights = vec3f(0.0f);
+    // A light's views lie one after another. On the seam of two both see the point, and it counts once.
+    var counted = arrayLength(&lights);
     for (var layer = 0u; layer < arrayLength(&views); layer++) {
-        let arrival = light_arrival(lights[views[layer].light], input.position);
+        let light = views[layer].light;
+        let arrival = light_arrival(lights[light], input.position);
         let cosine = reflective_shadow_map_cosine(normal, arrival.direction);
-        if (cosine > 0.0f) {
+        if (cosine > 0.0f && light != counted) {
             let lit = optical_path_lit(layer, input.position, normal);
+            if (lit < 0.0f) {
+                continue;
+            }
+            counted = light;
             received += lit * cosine * arrival.irradiance;
             if (EFFECT_MICROFACET) {
                 highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);

@@ -445,8 +445,8 @@ fn optical_path_tiles_update(@builtin(global_invocation_id) invocation: vec3u) {
         b = optical_path_falling(a, b, c, s_a, s_b, s_c, bits.x >> 16u);
         a = optical_path_falling(first, a, b, s_first, s_a, s_b, bits.x);
         moving = vec2u(
-            optical_path_changed(a_round, a) | optical_path_changed(b_round, b) << 16u,
-            optical_path_changed(c_round, c) | optical_path_changed(d_round, d) << 16u,
+            optical_path_changed(a_round, a) | (optical_path_changed(b_round, b) << 16u),
+            optical_path_changed(c_round, c) | (optical_path_changed(d_round, d) << 16u),
         );
     }
     let changed = vec2u(

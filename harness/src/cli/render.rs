@@ -80,6 +80,9 @@ pub(super) struct Arguments {
     /// Where those walks set out: from the lights there is less noise, but no environment.
     #[arg(long, value_name = "END", value_parser = parse_origin)]
     walks_from: Option<Origin>,
+    /// Another seed gives other walks; 1 where left out.
+    #[arg(long)]
+    seed: Option<u64>,
     /// What surfaces do to those walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
     #[arg(long, value_parser = ["matched", "dielectric"])]
     boundary: Option<String>,
@@ -135,6 +138,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> 
         ("--energy-bound", (!reference || scatters) && arguments.energy_bound.is_some()),
         ("--walks", !(reference && scatters) && arguments.walks.is_some()),
         ("--walks-from", !(reference && scatters) && arguments.walks_from.is_some()),
+        ("--seed", !(reference && scatters) && arguments.seed.is_some()),
         ("--boundary", !(reference && scatters) && arguments.boundary.is_some()),
         ("--without absorption", (outside || scattered) && without("absorption")),
         ("--without environment", !(scattered || reference && scatters) && without("environment")),
@@ -189,6 +193,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
         walks: arguments.walks.unwrap_or(usual.walks),
         walks_from: arguments.walks_from.unwrap_or(usual.walks_from),
+        seed: arguments.seed.unwrap_or(usual.seed),
         boundary: match arguments.boundary.as_deref() {
             Some("dielectric") => Boundary::Dielectric,
             _ => Boundary::Matched,

@@ -1,6 +1,7 @@
 //! The module contract as checks over the text and over naga's IR. A finding fails the tests.
 
 use super::header::{self, Header};
+use super::precedence::mixed_operators;
 use crate::dispatch::{self, shape::Shape};
 use naga::{Expression, Function, Handle};
 use std::fmt;
@@ -24,6 +25,8 @@ pub enum Rule {
     Literal,
     /// No comparison of a value with itself.
     SelfComparison,
+    /// Parentheses where the grammar wants them between operators.
+    Precedence,
     /// No two modules define the same name; all of them compile as one.
     Composition,
 }
@@ -55,6 +58,7 @@ pub fn lint(name: &str, source: &str) -> Vec<Finding> {
     };
     check_header(name, source, &mut report);
     check_literals(source, &mut report);
+    findings_of_operators(source, &mut report);
     match dispatch::parse(source, &format!("wgsl/{name}.wgsl")) {
         Err(error) => report(Rule::Valid, 0, error.to_string()),
         Ok((module, _)) => {
@@ -65,6 +69,22 @@ pub fn lint(name: &str, source: &str) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Checks what no module is: the text of a recipe with its parts, each by itself.
+pub fn lint_recipe(name: &str, source: &str) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    findings_of_operators(source, &mut |rule, line, message| {
+        findings.push(Finding { rule, module: format!("recipes/{name}"), line, message });
+    });
+    findings
+}
+
+fn findings_of_operators(source: &str, report: &mut Report<'_>) {
+    for (line, operators) in mixed_operators(source) {
+        let message = format!("`{operators}` side by side, which compilers other than naga refuse; put parentheses");
+        report(Rule::Precedence, line, message);
+    }
 }
 
 /// Checks that all modules compile as one text, in this order and in the reverse.

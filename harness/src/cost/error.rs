@@ -30,6 +30,9 @@ pub fn best_exposure(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
 #[must_use]
 pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
     let [both, own, other] = products(found, truth);
+    if ![both, own, other].into_iter().all(f64::is_finite) {
+        return f64::INFINITY;
+    }
     // The least of |k a - b|^2 over k.
     let nearer = if own > 0.0 { both * both / own } else { 0.0 };
     ((other - nearer).max(0.0) / other).sqrt()

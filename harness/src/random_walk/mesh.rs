@@ -81,7 +81,7 @@ pub enum Boundary {
     Matched,
     /// It bends light by the material's refractive index and reflects Fresnel's share, from outside and from inside, as a polished surface does. What it
     /// mirrors of the surroundings was not scattered and is left out. Light then comes from walks that leave alone: from the environment, and from
-    /// directional lights as discs of 0.1 rad about their direction, which takes very many walks. There may be no point light.
+    /// directional lights as discs of 0.1 rad about their direction, which takes very many walks. There may be no point light and no spot.
     Dielectric,
 }
 
@@ -117,7 +117,7 @@ pub enum WalkError {
     Samples(u32),
     /// A light that no walk would meet.
     #[error(
-        "light {light} is a point, which no walk through a dielectric boundary meets; take it out or match the boundary"
+        "light {light} has no size, so that no walk through a dielectric boundary meets it; take it out or match the boundary"
     )]
     Point {
         /// Its place among the scene's lights, from 0.
@@ -216,7 +216,7 @@ fn matter<'scene>(
     boundary: Boundary,
     environment: Option<&'scene Environment>,
 ) -> Result<Matter<'scene>, WalkError> {
-    let point = scene.lights.iter().position(|light| matches!(light, Light::Point { .. }));
+    let point = scene.lights.iter().position(|light| matches!(light, Light::Point { .. } | Light::Spot { .. }));
     if let Some(light) = point.filter(|_| boundary == Boundary::Dielectric) {
         return Err(WalkError::Point { light });
     }

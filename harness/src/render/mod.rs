@@ -111,6 +111,8 @@ pub struct Settings {
     pub walks_from: mesh::Origin,
     /// What surfaces do to them.
     pub boundary: mesh::Boundary,
+    /// Another seed gives other walks.
+    pub seed: u64,
 }
 
 impl Settings {
@@ -139,6 +141,7 @@ impl Settings {
             walks: WALKS,
             walks_from: mesh::Origin::Eye,
             boundary: mesh::Boundary::Matched,
+            seed: 1,
         }
     }
 }
@@ -396,7 +399,7 @@ fn walk(
         height: settings.height,
         samples_per_pixel: settings.walks,
         origin: settings.walks_from,
-        seed: 1,
+        seed: settings.seed,
         environment: settings.light_from_environment.then_some(&settings.environment),
         boundary: settings.boundary,
     };

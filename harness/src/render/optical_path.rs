@@ -2,31 +2,30 @@
 //! seeds and a solver, all of them on the device.
 
 mod density;
+mod seeds;
 mod stage;
 
 use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
 use super::light_views::{self, LightView};
 use super::lighting::{self, Lighting};
-use super::pass::{self, Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass};
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::{Note, RenderError, Settings};
-use crate::compute::Kernel;
-use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::optical_path::{Method, Solver, Status};
 use crate::scene::{Bounds, Density, Light, Material, Medium, Object, Scene};
 use crate::voxel_grid::VoxelGrid;
-use crate::voxelization::Voxelizer;
+use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
 use density::Densities;
 use glam::Vec3;
+use seeds::{Lit, Seeded, Seeds};
 pub use stage::Stage;
 use std::f32::consts::FRAC_1_PI;
 
-const SEED: &str = "optical_path_seed";
-/// Texels of a map along a side for each voxel of a grid: the sphere about a body is up to 1.7 grids wide.
+/// Texels of a map along a side for each voxel of a grid that all bodies fill: the sphere about a body is up to 1.7 grids wide.
 const TEXELS_PER_VOXEL: u32 = 4;
-/// Invocations of a workgroup of the seeds along each side of a map.
-const SEED_GROUP: u32 = 8;
+/// For smaller bodies there are more, so that none of their voxels is left out, but no more than this along a side.
+const MOST_TEXELS: u32 = 2048;
 
 /// How light's ways through bodies are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +40,7 @@ pub struct Paths {
 pub(super) struct OpticalPaths<'gpu> {
     gpu: &'gpu Gpu,
     maps: ReflectiveShadowMaps<'gpu>,
-    clear: Kernel,
-    seed: Kernel,
+    seeds: Seeds,
     bodies: Vec<BodyPaths<'gpu>>,
 }
 
@@ -65,8 +63,7 @@ struct BodyPaths<'gpu> {
 struct Channel {
     extinction: f32,
     costs: wgpu::Buffer,
-    /// Of clearing and of seeding.
-    groups: [[Option<wgpu::BindGroup>; 2]; 2],
+    groups: seeds::Groups,
     /// How far its last solve came.
     status: wgpu::Buffer,
 }
@@ -100,24 +97,14 @@ pub(super) fn pass<'gpu>(
         },
     )?;
     let lighting = Lighting::upload(gpu, scene, settings)?;
-    let side = (TEXELS_PER_VOXEL * paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
+    let side = map_side(scene, paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
     let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
     let views =
         gpu.guarded("uploading views", |device| buffer(device, &view_bytes(&views), wgpu::BufferUsages::STORAGE))?;
-    let seeds = cookbook::recipe_source(SEED);
-    let kernel = |entry: &str| Kernel::new(gpu, &seeds, entry, &constants);
-    let kernels = [kernel("optical_path_clear")?, kernel("optical_path_seed_texel")?];
-    let shared = Shared { views, maps: maps.view(), lights: lighting.lights.clone() };
-    let upload = Upload {
-        gpu,
-        pipeline: &pipeline,
-        kernels: &kernels,
-        paths,
-        shared: &shared,
-        largest,
-        color,
-        dense: is_dense(scene),
-    };
+    let seeds = Seeds::new(gpu, &constants)?;
+    let lit = Lit { views, maps: maps.view(), lights: lighting.lights.clone() };
+    let upload =
+        Upload { gpu, pipeline: &pipeline, seeds: &seeds, paths, lit: &lit, largest, color, dense: is_dense(scene) };
     let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
     // An object without triangles has nothing to draw, and no buffer is empty.
     let objects = scene.objects.iter().zip(&extinctions).filter(|(object, _)| !object.mesh.indices.is_empty());
@@ -127,27 +114,31 @@ pub(super) fn pass<'gpu>(
         of_bodies.push(of_body);
     }
     let mut bound = lighting.shared();
-    bound.extend([pass::Shared::Buffer(shared.views), pass::Shared::Texture(shared.maps)]);
-    let [clear, seed] = kernels;
-    let before = vec![Before::Paths(OpticalPaths { gpu, maps, clear, seed, bodies: of_bodies })];
+    bound.extend([Shared::Buffer(lit.views), Shared::Texture(lit.maps)]);
+    let before = vec![Before::Paths(OpticalPaths { gpu, maps, seeds, bodies: of_bodies })];
     Ok(ScenePass { gpu, pipeline, shared: bound, bodies, before })
 }
 
-/// What seeds and shading look up of the lights.
-struct Shared {
-    views: wgpu::Buffer,
-    maps: wgpu::TextureView,
-    lights: wgpu::Buffer,
+/// Texels along the sides of the lights' maps, which show all bodies: so many that the smallest one's voxels are seen.
+fn map_side(scene: &Scene, cells: u32) -> u32 {
+    let widest = 2.0 / 3f32.sqrt() * scene.bounds().radius();
+    let extent = |object: &Object| {
+        let bounds = Bounds::of(object.mesh.positions.iter().copied());
+        (bounds.max - bounds.min).max_element()
+    };
+    let extents = scene.objects.iter().filter(|object| !object.mesh.indices.is_empty()).map(extent);
+    let least = extents.filter(|extent| *extent > 0.0).fold(widest, f32::min);
+    let side = TEXELS_PER_VOXEL * cells;
+    if least < widest { (side as f32 * (widest / least)).min(MOST_TEXELS.max(side) as f32) as u32 } else { side }
 }
 
 /// What sending a body to the device takes beside the body.
 struct Upload<'a, 'gpu> {
     gpu: &'gpu Gpu,
     pipeline: &'a wgpu::RenderPipeline,
-    /// Clearing and seeding.
-    kernels: &'a [Kernel; 2],
+    seeds: &'a Seeds,
     paths: Paths,
-    shared: &'a Shared,
+    lit: &'a Lit,
     /// The irradiance whose cost is 0, for each channel.
     largest: Vec3,
     /// Each channel has costs of its own.
@@ -177,6 +168,10 @@ impl<'gpu> Upload<'_, 'gpu> {
             parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE))
         })?;
         maps.add([&positions, &indices, &normals], vertices)?;
+        if mesh.triangle_count() > MOST_TRIANGLES as usize {
+            let [bytes, limit] = [mesh.triangle_count() as u64, MOST_TRIANGLES.into()].map(|count| 12 * count);
+            return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
+        }
         let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
@@ -214,26 +209,14 @@ impl<'gpu> Upload<'_, 'gpu> {
         let status = solver.kept_status()?;
         Ok(self.gpu.guarded("allocating costs", |device| {
             let costs = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(SEED),
+                label: Some("costs"),
                 size: 4 * grid.count() as u64,
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             });
-            let seeding = seeding_bytes(grid, extinction, self.largest[number], number as u32);
-            let seeding = buffer(device, &seeding, wgpu::BufferUsages::UNIFORM);
-            let resources = [
-                vec![
-                    (0, seeding.as_entire_binding()),
-                    (2, self.shared.lights.as_entire_binding()),
-                    (4, self.shared.views.as_entire_binding()),
-                    (5, wgpu::BindingResource::TextureView(&self.shared.maps)),
-                ],
-                vec![(0, costs.as_entire_binding()), (1, matter.as_entire_binding()), (2, density.as_entire_binding())],
-            ];
-            let groups = self
-                .kernels
-                .each_ref()
-                .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])));
+            let largest = self.largest[number];
+            let seeded = Seeded { grid, matter, density, costs: &costs, extinction, largest, channel: number as u32 };
+            let groups = self.seeds.bind(device, self.lit, &seeded);
             Channel { extinction, costs, groups, status }
         })?)
     }
@@ -288,13 +271,6 @@ fn is_colored(extinctions: &[Vec3], lights: &[Light]) -> bool {
 fn grid_words(grid: VoxelGrid) -> [f32; 8] {
     let VoxelGrid { origin, spacing, cells } = grid;
     [origin.x, origin.y, origin.z, spacing, f32::from_bits(cells), 0.0, 0.0, 0.0]
-}
-
-/// `OpticalPathSeeding` of the recipe.
-fn seeding_bytes(grid: VoxelGrid, extinction: f32, largest: f32, channel: u32) -> Vec<u8> {
-    // No light has a share of nothing.
-    let tail = [extinction, largest.max(f32::MIN_POSITIVE), f32::from_bits(channel), 0.0];
-    bytemuck::cast_slice(&[&grid_words(grid)[..], &tail].concat()).to_vec()
 }
 
 /// `OpticalPathBody` of the recipe.
@@ -359,20 +335,9 @@ impl OpticalPaths<'_> {
         body: &BodyPaths<'_>,
         channel: &Channel,
     ) -> Result<(), RenderError> {
-        let [width, height, layers] = self.maps.size();
-        let cells = body.grid.cells;
-        let sizes = [[1, cells, cells], [width.div_ceil(SEED_GROUP), height.div_ceil(SEED_GROUP), layers]];
-        self.gpu.guarded("seeding costs", |_| {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(&channel.groups).zip(sizes) {
-                pass.set_pipeline(&kernel.pipeline);
-                for (index, group) in (0..).zip(groups) {
-                    pass.set_bind_group(index, group, &[]);
-                }
-                pass.dispatch_workgroups(x, y, z);
-            }
-        })?;
-        Ok(())
+        Ok(self.gpu.guarded("seeding costs", |_| {
+            self.seeds.encode(encoder, &channel.groups, body.grid.cells, self.maps.size());
+        })?)
     }
 
     /// What is to be said about the last submitted frame. Waits for it.

@@ -53,7 +53,7 @@ const RENDER: &[Row] = &[
     ("jade --rung reference --walks-from light --out {}/out.png", Usage, &["did you mean `lights`"]),
     ("jade --size 8x8 --rung reference --walks-from lights --out {}/out.png", One, &["leave the environment out"]),
     ("jade --boundary dielectric --out {}/out.png", One, &["knows no --boundary"]),
-    ("jade_ring --size 8x8 --rung reference --boundary dielectric --out {}/out.png", One, &["light 1 is a point"]),
+    ("jade_ring --size 8x8 --rung reference --boundary dielectric --out {}/out.png", One, &["light 1 has no size"]),
     ("octahedron --rung convex-1 --centre paper --out {}/out.png", One, &["knows no --centre paper"]),
     ("octahedron --rung proxy-1 --strength 2 --out {}/out.png", One, &["knows no --strength"]),
     ("octahedron --rest lost --out {}/out.png", Usage, &["--rest", "dropped"]),

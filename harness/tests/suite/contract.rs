@@ -2,7 +2,7 @@
 
 use lapidary_harness::check;
 use lapidary_harness::cookbook::accuracy_line::Accuracy;
-use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition};
+use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
 use lapidary_harness::cookbook::translate::{Target, translate};
 use lapidary_harness::cookbook::{modules, recipes};
 use lapidary_harness::dispatch::shape::Signature;
@@ -323,6 +323,20 @@ fn a_comparison_with_itself_is_found() {
     }
     let different = "let pair = SamplePair(first, second);\n    let odd = pair.first != pair.second;";
     assert!(lint("sample", &changed(BODY, &format!("    {different}\n{BODY}"))).is_empty());
+}
+
+#[test]
+fn operators_that_need_parentheses_are_found() {
+    statement_breaks(Rule::Precedence, "let bits = 1u | 2u << 3u;");
+    assert_eq!(lint_recipe("sample", "let bits = 1u & 2u + 3u;").len(), 1);
+}
+
+#[test]
+fn recipes_have_their_parentheses() {
+    for recipe in recipes() {
+        let findings: Vec<Finding> = recipe.own_text().flat_map(|text| lint_recipe(recipe.name, text)).collect();
+        assert!(findings.is_empty(), "{}", spell(&findings));
+    }
 }
 
 #[test]

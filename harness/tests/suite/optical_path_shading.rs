@@ -87,6 +87,7 @@ fn covered(what: &str, picture: &Picture) -> usize {
 fn apart(one: &Picture, other: &Picture) -> f32 {
     let channels = |picture: &Picture| picture.linear.iter().flat_map(|pixel| pixel[..3].to_vec()).collect::<Vec<_>>();
     let (one, other) = (channels(one), channels(other));
+    assert!(one.iter().chain(&other).all(|value| value.is_finite()), "not finite");
     assert_eq!(one.len(), other.len());
     let brightest = other.iter().copied().fold(0.0, f32::max);
     assert!(brightest > 0.0, "nothing to compare");

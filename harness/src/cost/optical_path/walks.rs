@@ -52,7 +52,8 @@ impl Walks {
         let walked = mesh::render(&self.scene, &few, &|_, _| {}).map_err(RenderError::from)?;
         let square = |value: &f32| f64::from(*value).powi(2);
         let variance: f64 = walked.standard_error.iter().flatten().map(square).sum();
-        let power: f64 = walked.linear.iter().flat_map(|pixel| &pixel[..3]).map(square).sum();
+        // Of the committed picture, whose noise adds next to nothing to it.
+        let power: f64 = self.linear.iter().flat_map(|pixel| &pixel[..3]).map(square).sum();
         Ok((variance / power * f64::from(FEW) / f64::from(self.count)).sqrt())
     }
 }

@@ -115,8 +115,9 @@ fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
                     })
                 };
                 let [(a, error_a), (b, error_b)] = [&eye, &light].map(of_part);
+                assert!([a, b, error_a, error_b].into_iter().all(f64::is_finite));
                 // Of a part next to black, too few walks tell the spread.
-                if a > 0.05 {
+                if a.max(b) > 0.05 {
                     worst = worst.max((a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
                 }
             }
@@ -173,6 +174,16 @@ fn what_cannot_be_followed_is_refused() {
     let lights = Settings { origin: Origin::Lights, ..settings(8, 2) };
     assert_eq!(refused(&scene, &Settings { environment: Some(&ones), ..lights }), WalkError::Environment);
     assert_eq!(refused(&scene, &Settings { boundary: Boundary::Dielectric, ..lights }), WalkError::Dielectric);
+    let spot = Light::Spot {
+        position: Vec3::ZERO,
+        direction: Vec3::Y,
+        intensity: Vec3::ONE,
+        inner_angle: 0.1,
+        outer_angle: 0.2,
+    };
+    let spotlit = Scene { lights: vec![scene.lights[0], spot], ..scene.clone() };
+    let dielectric = Settings { boundary: Boundary::Dielectric, ..settings(8, 2) };
+    assert_eq!(refused(&spotlit, &dielectric), WalkError::Point { light: 1 });
 
     let with = |change: &dyn Fn(&mut Object)| {
         let mut scene = scene.clone();

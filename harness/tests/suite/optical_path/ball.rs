@@ -14,7 +14,8 @@ const DEPTH: f32 = 8.0;
 /// Points along an edge of the shadow map.
 const MAP: u32 = 512;
 
-/// The ball in 64³ voxels, lit along -z by the points of a shadow map: each seeds the voxel that it lies in, with its distance to the middle.
+/// The ball in 64³ voxels, lit along -z by the points of a shadow map: each seeds the 27 voxels about it, by its distance to their middles, as the recipe
+/// does.
 fn lit() -> Case {
     let middle = Vec3::splat(32.0);
     let inside = |voxel: UVec3| (voxel.as_vec3() + 0.5 - middle).length() <= RADIUS;
@@ -28,23 +29,31 @@ fn lit() -> Case {
         let normal = Vec3::new(across.x, across.y, height.sqrt());
         // A hair inside, so that the point lies in matter where the voxel of its middle does.
         let point = middle + (RADIUS - 0.5) * normal;
-        let voxel = case.grid.index(point.floor().as_uvec3());
-        if case.matter[voxel] {
-            let offset = (middle + RADIUS * normal - case.grid.centre(case.grid.voxel(voxel))).length();
-            let cost = seed(normal.z, case.extinction, offset);
-            case.seeds[voxel] = case.seeds[voxel].min(cost);
+        if !case.matter[case.grid.index(point.floor().as_uvec3())] {
+            continue;
+        }
+        for near in about(point) {
+            let voxel = case.grid.index(near);
+            if case.matter[voxel] {
+                let offset = (middle + RADIUS * normal - case.grid.centre(near)).length();
+                case.seeds[voxel] = case.seeds[voxel].min(seed(normal.z, case.extinction, offset));
+            }
         }
     }
     case
+}
+
+/// The voxels about a point.
+fn about(point: Vec3) -> impl Iterator<Item = UVec3> {
+    let first = point.floor().as_ivec3() - 1;
+    (0..27).map(move |place| (first + glam::IVec3::new(place % 3, place / 3 % 3, place / 9)).as_uvec3())
 }
 
 /// What a shaded point at the surface sees: itself, where it is lit, and the voxels about it.
 fn looked_up(case: &Case, costs: &[f32], normal: Vec3) -> f32 {
     let point = Vec3::splat(32.0) + RADIUS * normal;
     let own = seed(normal.z, case.extinction, 0.0);
-    let first = point.floor().as_ivec3() - 1;
-    (0..27).fold(own, |least, place| {
-        let voxel = (first + glam::IVec3::new(place % 3, place / 3 % 3, place / 9)).as_uvec3();
+    about(point).fold(own, |least, voxel| {
         let offset = (point - case.grid.centre(voxel)).length();
         relax(least, through(costs[case.grid.index(voxel)], case.extinction, offset), 0.0)
     })
@@ -79,17 +88,17 @@ fn rms(case: &Case, method: Method) -> [f64; 2] {
 #[test]
 fn godunov_finds_the_balls_costs_and_stencils_their_own() {
     let case = lit();
-    for (method, low, high) in [
-        (Method::Tiled(Stencil::Faces), 1.35, 1.45),
-        (Method::Tiled(Stencil::Edges), 0.26, 0.33),
-        (Method::Tiled(Stencil::Corners), 0.25, 0.31),
-        (Method::Godunov, 0.05, 0.09),
+    // As docs/optical_path.md has them.
+    for (method, stated) in [
+        (Method::Tiled(Stencil::Faces), [1.066, 1.302]),
+        (Method::Tiled(Stencil::Edges), [0.326, 0.266]),
+        (Method::Tiled(Stencil::Corners), [0.326, 0.255]),
+        (Method::Godunov, [0.076, 0.058]),
     ] {
-        let [surface, inside] = rms(&case, method);
-        println!("{method}: {surface:.3} nats at the surface, {inside:.3} in the voxels");
-        assert!((low..high).contains(&inside), "{method}: {inside} nats");
-        if method == Method::Godunov {
-            assert!(surface < 0.1, "{surface} nats");
+        let found = rms(&case, method);
+        println!("{method}: {:.3} nats at the surface, {:.3} in the voxels", found[0], found[1]);
+        for (found, stated) in found.into_iter().zip(stated) {
+            assert!((found / stated - 1.0).abs() < 0.03, "{method}: {found} nats, {stated} stated");
         }
     }
 }
@@ -111,6 +120,6 @@ fn offsets_count() {
     let without = solve(&naive, Method::Godunov)[case.grid.index(pole)];
     println!("far pole: {exact} exact, {with} with offsets, {without} without");
     assert!((with - exact).abs() < 0.05, "{exact}: {with} with");
-    // By e^0.3, about 40 %.
-    assert!((0.25..0.45).contains(&(exact - without)), "{exact}: {without} without");
+    // By e^0.7, about twice.
+    assert!((0.6..0.8).contains(&(exact - without)), "{exact}: {without} without");
 }

@@ -1,0 +1,95 @@
+//! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
+
+use super::grid_words;
+use crate::compute::{Kernel, KernelError};
+use crate::cookbook;
+use crate::gpu::Gpu;
+use crate::render::device::buffer;
+use crate::voxel_grid::VoxelGrid;
+
+const RECIPE: &str = "optical_path_seed";
+/// Invocations of a workgroup along each side of a map.
+const GROUP: u32 = 8;
+
+/// Its two entry points.
+pub(super) struct Seeds {
+    clear: Kernel,
+    seed: Kernel,
+}
+
+/// What is looked up of the lights.
+pub(super) struct Lit {
+    pub(super) lights: wgpu::Buffer,
+    pub(super) views: wgpu::Buffer,
+    pub(super) maps: wgpu::TextureView,
+}
+
+/// What is seeded.
+pub(super) struct Seeded<'a> {
+    pub(super) grid: VoxelGrid,
+    pub(super) matter: &'a wgpu::Buffer,
+    pub(super) density: &'a wgpu::Buffer,
+    pub(super) costs: &'a wgpu::Buffer,
+    /// Per unit of length where the density is 1.
+    pub(super) extinction: f32,
+    /// The irradiance whose cost is 0.
+    pub(super) largest: f32,
+    /// 0 red, 1 green, 2 blue.
+    pub(super) channel: u32,
+}
+
+/// Bind groups, each of clearing and of seeding.
+pub(super) type Groups = [[Option<wgpu::BindGroup>; 2]; 2];
+
+impl Seeds {
+    pub(super) fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, KernelError> {
+        let source = cookbook::recipe_source(RECIPE);
+        let kernel = |entry: &str| Kernel::new(gpu, &source, entry, constants);
+        Ok(Self { clear: kernel("optical_path_clear")?, seed: kernel("optical_path_seed_texel")? })
+    }
+
+    pub(super) fn bind(&self, device: &wgpu::Device, lit: &Lit, seeded: &Seeded<'_>) -> Groups {
+        let uniform = buffer(device, &seeded.bytes(), wgpu::BufferUsages::UNIFORM);
+        let resources = [
+            vec![
+                (0, uniform.as_entire_binding()),
+                (2, lit.lights.as_entire_binding()),
+                (4, lit.views.as_entire_binding()),
+                (5, wgpu::BindingResource::TextureView(&lit.maps)),
+            ],
+            vec![
+                (0, seeded.costs.as_entire_binding()),
+                (1, seeded.matter.as_entire_binding()),
+                (2, seeded.density.as_entire_binding()),
+            ],
+        ];
+        [&self.clear, &self.seed]
+            .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])))
+    }
+
+    /// For maps of this width, height and number of layers.
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder, groups: &Groups, cells: u32, maps: [u32; 3]) {
+        let [width, height, layers] = maps;
+        let sizes = [[1, cells, cells], [width.div_ceil(GROUP), height.div_ceil(GROUP), layers]];
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(groups).zip(sizes) {
+            pass.set_pipeline(&kernel.pipeline);
+            for (index, group) in (0..).zip(groups) {
+                pass.set_bind_group(index, group, &[]);
+            }
+            pass.dispatch_workgroups(x, y, z);
+        }
+    }
+}
+
+impl Seeded<'_> {
+    /// `OpticalPathSeeding` of the recipe.
+    fn bytes(&self) -> Vec<u8> {
+        // No light has a share of nothing.
+        let tail = [self.extinction, self.largest.max(f32::MIN_POSITIVE), f32::from_bits(self.channel), 0.0];
+        bytemuck::cast_slice(&[&grid_words(self.grid)[..], &tail].concat()).to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests;
