@@ -38,6 +38,13 @@ impl VoxelGrid {
         Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
     }
 
+    /// `VoxelizationGrid` as WGSL lays it out in a uniform, with what fills it up to 32 bytes.
+    #[must_use]
+    pub fn words(&self) -> [f32; 8] {
+        let Self { origin, spacing, cells } = *self;
+        [origin.x, origin.y, origin.z, spacing, f32::from_bits(cells), 0.0, 0.0, 0.0]
+    }
+
     /// How many voxels there are.
     #[must_use]
     pub fn count(&self) -> usize {

@@ -119,19 +119,8 @@ impl<'gpu> Voxelizer<'gpu> {
                 status: storage(STATUS_BYTES),
             }
         })?;
-        voxelizer.place(grid);
+        gpu.queue.write_buffer(&voxelizer.grid, 0, bytemuck::cast_slice(&grid.words()));
         Ok(voxelizer)
-    }
-
-    /// Moves or scales the grid, from the next submission on.
-    ///
-    /// # Panics
-    /// Where it has another number of cells.
-    pub fn place(&self, grid: VoxelGrid) {
-        assert_eq!(grid.cells, self.cells, "the buffers' size");
-        let VoxelGrid { origin, spacing, cells } = grid;
-        let words = [origin.x.to_bits(), origin.y.to_bits(), origin.z.to_bits(), spacing.to_bits(), cells, 0, 0, 0];
-        self.gpu.queue.write_buffer(&self.grid, 0, bytemuck::cast_slice(&words));
     }
 
     /// Makes voxels of the mesh as it is then: `positions` holds three floats a vertex, `indices` three words a triangle, all of the buffer.

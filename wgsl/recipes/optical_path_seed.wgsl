@@ -45,7 +45,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
         return;
     }
     // The map shows other bodies too.
-    let inside = (seen.xyz - seeding.grid.origin) / seeding.grid.spacing;
+    let inside = voxelization_local(seeding.grid, seen.xyz);
     if (any(inside < vec3f(0.0f)) || any(inside > vec3f(f32(seeding.grid.cells)))) {
         return;
     }
@@ -55,7 +55,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
     let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
     let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
-    let own = extinction_at(voxel);
+    let own = optical_path_extinction_at(voxel);
     let last = vec3i(i32(seeding.grid.cells) - 1i);
     // Where a front begins, solvers err most. So all voxels about the texel begin with their true distances from it.
     for (var index = 0i; index < 27i; index++) {
@@ -68,7 +68,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
         if (!matter_is_at(seeding.grid.cells, near)) {
             continue;
         }
-        let extinction = 0.5f * (own + extinction_at(near));
+        let extinction = 0.5f * (own + optical_path_extinction_at(near));
         let offset = distance(seen.xyz, voxelization_centre(seeding.grid, near));
         let cost = optical_path_encode(optical_path_seed(share, extinction, offset));
         let node = voxelization_index(seeding.grid, near);
@@ -79,7 +79,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
 }
 
-fn extinction_at(voxel: vec3u) -> f32 {
+fn optical_path_extinction_at(voxel: vec3u) -> f32 {
     if (EFFECT_EXTINCTION_PER_VOXEL) {
         return seeding.extinction * density[voxelization_index(seeding.grid, voxel)];
     }

@@ -267,12 +267,6 @@ fn is_colored(extinctions: &[Vec3], lights: &[Light]) -> bool {
     !(extinctions.iter().copied().all(grey) && lights.iter().map(Light::power).all(grey))
 }
 
-/// `VoxelizationGrid` as WGSL lays it out, in 32 bytes.
-fn grid_words(grid: VoxelGrid) -> [f32; 8] {
-    let VoxelGrid { origin, spacing, cells } = grid;
-    [origin.x, origin.y, origin.z, spacing, f32::from_bits(cells), 0.0, 0.0, 0.0]
-}
-
 /// `OpticalPathBody` of the recipe.
 fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Vec<u8> {
     let tail = [
@@ -281,7 +275,7 @@ fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: V
         largest.extend(0.0),
     ];
     let tail = tail.map(|row| row.to_array()).concat();
-    bytemuck::cast_slice(&[&grid_words(grid)[..], &tail].concat()).to_vec()
+    bytemuck::cast_slice(&[&grid.words()[..], &tail].concat()).to_vec()
 }
 
 /// `array<LightView>` of the part `light_views`.

@@ -65,8 +65,6 @@ pub fn settings() -> Settings {
     Settings {
         rung: Rung::OpticalPath(Paths { cells: 64, method: Method::Godunov }),
         light_from_environment: false,
-        // Half of what is usual, for bodies as small in the picture as these.
-        extinction_scale: 0.5 * render::EXTINCTION_SCALE,
         exposure: 1.5,
         ..Settings::of_size(SIDE, SIDE)
     }

@@ -2,7 +2,6 @@
 
 use super::super::RenderError;
 use super::super::device::{buffer, view};
-use super::grid_words;
 use crate::compute::Kernel;
 use crate::cookbook;
 use crate::gpu::Gpu;
@@ -45,7 +44,7 @@ impl Densities {
                 mapped_at_creation: false,
             });
             let uniform = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::UNIFORM);
-            let place = uniform(bytemuck::cast_slice(&grid_words(grid)));
+            let place = uniform(bytemuck::cast_slice(&grid.words()));
             let first =
                 [(0, place.as_entire_binding()), (1, matter.as_entire_binding()), (2, of_voxels.as_entire_binding())];
             let group = match source {

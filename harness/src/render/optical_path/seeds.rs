@@ -1,6 +1,5 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
-use super::grid_words;
 use crate::compute::{Kernel, KernelError};
 use crate::cookbook;
 use crate::gpu::Gpu;
@@ -87,7 +86,7 @@ impl Seeded<'_> {
     fn bytes(&self) -> Vec<u8> {
         // No light has a share of nothing.
         let tail = [self.extinction, self.largest.max(f32::MIN_POSITIVE), f32::from_bits(self.channel), 0.0];
-        bytemuck::cast_slice(&[&grid_words(self.grid)[..], &tail].concat()).to_vec()
+        bytemuck::cast_slice(&[&self.grid.words()[..], &tail].concat()).to_vec()
     }
 }
 
