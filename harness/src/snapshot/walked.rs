@@ -23,21 +23,22 @@ pub struct WalkedReference {
 }
 
 /// Every one.
-pub const WALKED: [WalkedReference; 6] = [
+pub const WALKED: [WalkedReference; 7] = [
     skin("skin", "Skin: spheres by random walks", 1024),
     skin("skin_bunny", "Skin: the bunny by random walks", 1024),
     skin("skin_ring", "Skin: the ring by random walks", 576),
-    stone("bunny", "Marble: the bunny by random walks"),
-    stone("dragon", "Veined jade: the dragon by random walks"),
-    stone("figure", "Marble: the figure by random walks"),
+    stone("bunny", "Marble: the bunny by random walks", 4096),
+    stone("dragon", "Veined jade: the dragon by random walks", 4096),
+    stone("figure", "Marble: the figure by random walks", 4900),
+    stone("wax_bunny", "Wax: the bunny by random walks", 4096),
 ];
 
 const fn skin(scene: &'static str, title: &'static str, walks: u32) -> WalkedReference {
     WalkedReference { scene, title, technique: "cdrf", walks, origin: Origin::Eye }
 }
 
-const fn stone(scene: &'static str, title: &'static str) -> WalkedReference {
-    WalkedReference { scene, title, technique: "optical_path", walks: 4096, origin: Origin::Lights }
+const fn stone(scene: &'static str, title: &'static str, walks: u32) -> WalkedReference {
+    WalkedReference { scene, title, technique: "optical_path", walks, origin: Origin::Lights }
 }
 
 impl WalkedReference {
