@@ -32,9 +32,10 @@ impl VoxelGrid {
         let extent = (bounds.max - bounds.min).max_element();
         // A point, or nothing at all, still has voxels of some size.
         let extent = if extent > 0.0 { extent } else { 1.0 };
-        // Far from the origin corners are rounded, by half the last digit each; so much more is free.
+        let spacing = extent / (cells - 2) as f32;
+        // Far from the origin corners are rounded. Where that is a good part of the voxel that is to be free, there is so much more.
         let rounded = 4.0 * f32::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element();
-        let spacing = (extent + rounded) / (cells - 2) as f32;
+        let spacing = if rounded > 0.25 * spacing { (extent + rounded) / (cells - 2) as f32 } else { spacing };
         Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
     }
 
