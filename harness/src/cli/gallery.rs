@@ -101,6 +101,7 @@ fn plots() -> Vec<(String, Picture)> {
     let gem = "./cook cost gem --out docs/measurements/lavapipe";
     let sphere = "./cook cost sphere --out docs/measurements/random_walk";
     let cdrf = "./cook cost cdrf --out docs/measurements/lavapipe";
+    let paths = "./cook cost optical_path --out docs/measurements/lavapipe";
     vec![
         figure(
             "gem",
@@ -124,6 +125,22 @@ fn plots() -> Vec<(String, Picture)> {
             "What accuracy costs",
             "Time of a frame that lit skin fills against the largest error of the reflectance. On the grey lines lie the rungs to choose from: \
                 nothing faster is better.",
+        ),
+        figure(
+            "optical_path",
+            "lavapipe/optical_path_error.svg",
+            paths,
+            "What accuracy costs",
+            "Time of a frame of the bunny against the error of the cost on the ball, which has a closed form, by solver and size of the grid. On \
+                the grey line lie the rungs to choose from: nothing faster is better.",
+        ),
+        figure(
+            "optical_path",
+            "lavapipe/optical_path_growth.svg",
+            paths,
+            "How the time grows",
+            "Time against the cells along an edge of the grid: solvers that look at every voxel in every pass grow faster than those that \
+                look at what changes.",
         ),
         figure(
             "cdrf",
