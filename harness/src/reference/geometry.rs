@@ -6,6 +6,7 @@ use crate::scene::convex::{TOLERANCE, planes_of_convex};
 use crate::scene::polyhedron::{MAX_PLANES, Plane};
 use crate::scene::{Mesh, Object};
 use glam::{DVec3, Mat4, Vec4};
+use std::sync::OnceLock;
 
 /// How bodies are met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,8 +236,8 @@ struct Triangles {
     corners: Vec<[DVec3; 3]>,
     normals: Vec<DVec3>,
     tree: Bvh,
-    /// For short rays that set out inside.
-    cells: Cells,
+    /// For short rays that set out inside. The first of them makes it: most pictures have none.
+    cells: OnceLock<Cells>,
     /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by
     /// rounding, outside of the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
     reach_back: f64,
@@ -248,16 +249,19 @@ impl Triangles {
         let mesh = mesh.without_folds();
         let corners: Vec<[DVec3; 3]> =
             mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
-        let vector_areas = || corners.iter().map(|[a, b, c]| 0.5 * (b - a).cross(c - a));
-        let normals = vector_areas().map(DVec3::normalize_or_zero).collect();
-        let area: f64 = vector_areas().map(DVec3::length).sum();
+        let normals = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
         let extents: Vec<Extent> = corners.iter().map(|corners| Extent::of(*corners)).collect();
         let largest = extents.iter().map(Extent::largest_coordinate).fold(0.0, f64::max);
         let reach_back = largest * f64::EPSILON * f64::from(1 << 12);
         let padded: Vec<Extent> = extents.iter().map(|extent| extent.padded(reach_back)).collect();
-        // As wide as a triangle of the mean area.
-        let cells = Cells::new(&padded, (area / corners.len() as f64).sqrt());
-        Self { tree: Bvh::new(&padded), cells, corners, normals, reach_back }
+        Self { tree: Bvh::new(&padded), cells: OnceLock::new(), corners, normals, reach_back }
+    }
+
+    /// Cells as wide as a triangle of the mean area.
+    fn cells(&self) -> Cells {
+        let extents = self.corners.iter().map(|corners| Extent::of(*corners).padded(self.reach_back));
+        let area: f64 = self.corners.iter().map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum();
+        Cells::new(&extents.collect::<Vec<_>>(), (area / self.corners.len() as f64).sqrt())
     }
 
     /// The first triangle before `limit` that a ray meets from `side`, leaving out the one just left.
@@ -272,7 +276,8 @@ impl Triangles {
             }
             limit
         };
-        if !self.cells.visit(origin, direction, limit, &mut visit) {
+        let is_short = limit.is_finite();
+        if !(is_short && self.cells.get_or_init(|| self.cells()).visit(origin, direction, limit, &mut visit)) {
             self.tree.visit(origin, direction, (-self.reach_back, limit), visit);
         }
         found.map(|(distance, face, normal)| (distance.max(0.0), face, normal))

@@ -87,6 +87,26 @@ pub(super) fn buffer(device: &wgpu::Device, contents: &[u8], usage: wgpu::Buffer
     device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
 }
 
+/// A texture with contents, to be sampled or loaded: of this width, height and depth or number of layers, layer by layer.
+pub(super) fn texture(
+    gpu: &Gpu,
+    (dimension, format): (wgpu::TextureDimension, wgpu::TextureFormat),
+    [width, height, depth_or_array_layers]: [u32; 3],
+    contents: &[u8],
+) -> wgpu::Texture {
+    let descriptor = wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, contents)
+}
+
 /// How many vertices draw `object`, whose parts are to be storage buffers.
 ///
 /// # Errors

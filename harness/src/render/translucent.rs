@@ -10,7 +10,6 @@ use crate::gpu::Gpu;
 use crate::scene::curvatures::vertex_curvatures;
 use crate::scene::{Material, Object, Scene};
 use glam::{UVec2, Vec2, Vec3};
-use wgpu::util::DeviceExt as _;
 
 /// Compiles `source`, the composed recipe, and uploads the scene.
 pub(super) fn pass<'gpu>(
@@ -178,22 +177,8 @@ fn baked(gpu: &Gpu, material: &Material, side: u32, format: Format) -> Result<wg
 
 fn texture(gpu: &Gpu, side: u32, format: Format, texels: &[Vec3]) -> Result<wgpu::TextureView, RenderError> {
     let (format, bytes) = format.texture(texels);
-    let texture = gpu.guarded("uploading a table", |device| {
-        device.create_texture_with_data(
-            &gpu.queue,
-            &wgpu::TextureDescriptor {
-                label: Some("reflectance"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            },
-            wgpu::util::TextureDataOrder::LayerMajor,
-            &bytes,
-        )
+    let texture = gpu.guarded("uploading a table", |_| {
+        device::texture(gpu, (wgpu::TextureDimension::D2, format), [side, side, 1], &bytes)
     })?;
     Ok(device::view(&texture))
 }

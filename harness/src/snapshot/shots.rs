@@ -94,60 +94,35 @@ pub const SHOTS: [Shot; 39] = [
             keep them together.",
         ..shot("exact_separate", "Round brilliant, exact, three separate wavelengths", "brilliant", "convex-8+3")
     },
+    by_lights("skin", "Skin: spheres of falling radius", "skin", "accurate"),
     Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
-        ..shot("skin", "Skin: spheres of falling radius", "skin", "accurate")
-    },
-    Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
         paragraph: "The same by Lambert's law: the terminator is as sharp on the smallest sphere as on the largest.",
-        ..shot("skin_lambert", "Skin: spheres by Lambert's law", "skin", "lambert")
+        ..by_lights("skin_lambert", "Skin: spheres by Lambert's law", "skin", "lambert")
     },
-    Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
-        ..shot("wax", "Wax: spheres of falling radius", "wax", "accurate")
-    },
+    by_lights("wax", "Wax: spheres of falling radius", "wax", "accurate"),
     bright("jade", "Jade: polished spheres of falling radius", "jade", "accurate"),
     bright("skin_ring", "Skin: a ring under a sun and two lamps", "skin_ring", "accurate"),
     bright("wax_ring", "Wax: a ring", "wax_ring", "accurate"),
     bright("jade_ring", "Jade: a polished ring", "jade_ring", "accurate"),
     Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
         paragraph: "One mesh four ways, by one light: Lambert's law, a blur in the mesh's texture, the curvature-dependent reflectance, and random \
             walks. This is Lambert's law.",
-        ..shot("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
+        ..by_lights("skin_bunny_lambert", "Skin: the bunny by Lambert's law", "skin_bunny", "lambert")
     },
     Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
         paragraph: "Irradiance drawn into a texture of 1024 texels a side and blurred there by a Gaussian for each channel, with the stretch of \
             the texture taken into account: what the reflectance function replaces.",
-        ..shot("skin_bunny_blur", "Skin: the bunny by texture diffusion", "skin_bunny", "blur")
+        ..by_lights("skin_bunny_blur", "Skin: the bunny by texture diffusion", "skin_bunny", "blur")
     },
     Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
         curvature: Curvature::Vertex,
         paragraph: "The curvature-dependent reflectance, with the mean curvature of the mesh at its vertices. No texture, no second pass.",
-        ..shot("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
+        ..by_lights("skin_bunny", "Skin: the bunny by curvature", "skin_bunny", "accurate")
     },
     Shot {
-        lights_alone: true,
-        matte: true,
-        exposure: LIGHTS_ALONE,
         paragraph: "The same with curvature from the pixel's derivatives, which need no data and jump from triangle to triangle of a mesh as coarse \
             as this.",
-        ..shot("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
+        ..by_lights("skin_bunny_derivatives", "Skin: the bunny by curvature from derivatives", "skin_bunny", "accurate")
     },
     stone("bunny", "Marble: the bunny, light from the left"),
     stone("dragon", "Veined jade: the dragon, light from behind"),
@@ -174,6 +149,11 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
 /// Under the scene's lights and the studio's, which is made for stones: half of that is enough.
 const fn bright(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
     Shot { exposure: 0.45, ..shot(name, title, scene, rung) }
+}
+
+/// By the scene's lights alone, on a surface that reflects nothing: what the references by random walks know.
+const fn by_lights(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
+    Shot { lights_alone: true, matte: true, exposure: LIGHTS_ALONE, ..shot(name, title, scene, rung) }
 }
 
 /// Light through the body, along the cheapest ways.

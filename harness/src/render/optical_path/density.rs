@@ -1,14 +1,13 @@
 //! The recipe `optical_path_density`: how dense a body is, voxel by voxel.
 
 use super::super::RenderError;
-use super::super::device::{buffer, view};
+use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
 use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::scene::{Density, DensityGrid};
 use crate::voxel_grid::VoxelGrid;
 use lapidary_veins::VeinsPattern;
-use wgpu::util::DeviceExt as _;
 
 const RECIPE: &str = "optical_path_density";
 
@@ -87,22 +86,8 @@ fn pattern_bytes(pattern: VeinsPattern) -> Vec<u8> {
 }
 
 fn texture(gpu: &Gpu, grid: &DensityGrid) -> wgpu::Texture {
-    let [width, height, depth_or_array_layers] = grid.size().to_array();
-    gpu.device.create_texture_with_data(
-        &gpu.queue,
-        &wgpu::TextureDescriptor {
-            label: Some(RECIPE),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: wgpu::TextureFormat::R32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
-        wgpu::util::TextureDataOrder::LayerMajor,
-        bytemuck::cast_slice(grid.densities()),
-    )
+    let format = (wgpu::TextureDimension::D3, wgpu::TextureFormat::R32Float);
+    device::texture(gpu, format, grid.size().to_array(), bytemuck::cast_slice(grid.densities()))
 }
 
 #[cfg(test)]

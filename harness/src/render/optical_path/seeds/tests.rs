@@ -1,6 +1,7 @@
 use super::*;
 use crate::gpu::AdapterChoice;
 use crate::render::Settings;
+use crate::render::device::texture;
 use crate::render::light_views::{self, LightView};
 use crate::render::lighting::Lighting;
 use crate::render::optical_path::view_bytes;
@@ -9,7 +10,6 @@ use glam::{IVec3, UVec3, Vec3, Vec4};
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, decode, seed};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt as _, SeedableRng as _};
-use wgpu::util::DeviceExt as _;
 
 /// 40 voxels do not fill their rows' words.
 const CELLS: u32 = 40;
@@ -91,22 +91,8 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let views = light_views::views(&lights(), bounds());
     assert_eq!(views.len(), 8);
     let texels = texels(views.len() * (SIDE * SIDE) as usize, grid);
-    let size = wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: views.len() as u32 };
-    let maps = gpu.device.create_texture_with_data(
-        &gpu.queue,
-        &wgpu::TextureDescriptor {
-            label: None,
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
-        wgpu::util::TextureDataOrder::LayerMajor,
-        bytemuck::cast_slice(&texels),
-    );
+    let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
+    let maps = texture(gpu, format, [SIDE, SIDE, views.len() as u32], bytemuck::cast_slice(&texels));
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
     let storage = |contents: &[u8]| buffer(&gpu.device, contents, wgpu::BufferUsages::STORAGE);
