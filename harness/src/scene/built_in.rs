@@ -232,7 +232,7 @@ fn bunny_stone(name: &str) -> Result<Scene, SceneError> {
 
 fn framed(name: &str, objects: Vec<Object>, toward_eye: Vec3) -> Scene {
     let camera = Camera::framing(vertices(&objects), toward_eye, VERTICAL_FOV);
-    Scene { name: name.to_owned(), objects, lights: Vec::new(), camera }
+    Scene { name: name.to_owned(), objects, lights: Vec::new(), camera, lacking: Vec::new() }
 }
 
 pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {

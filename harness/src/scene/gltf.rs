@@ -117,7 +117,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
         }
     };
     let lights = light_node::lights(&root, &shown.nodes)?;
-    Ok(Scene { name: shown.name, objects, lights, camera })
+    Ok(Scene { name: shown.name, objects, lights, camera, lacking: Vec::new() })
 }
 
 fn check_asset(root: &Root) -> Result<(), GltfError> {

@@ -20,6 +20,15 @@ pub struct Material {
     pub attenuation_color: Vec3,
     /// In world units, above 0 and no subnormal number; infinite where the body absorbs nothing.
     pub attenuation_distance: f32,
+    /// The share of the light at the surface that goes straight through it, 0 (opaque) to 1 (clear): `KHR_materials_transmission`.
+    pub transmission: f32,
+    /// The share that goes through it to all sides alike, 0 to 1: `KHR_materials_diffuse_transmission`.
+    pub diffuse_transmission: f32,
+    /// What that light is multiplied by, linear RGB, each 0 to 1.
+    pub diffuse_transmission_color: Vec3,
+    /// Of the body beneath the surface, in world units, at least 0: `KHR_materials_volume`. 0 is a thin wall, without an inside that
+    /// would bend or absorb light.
+    pub thickness: f32,
     /// Of the surface, 0 (a mirror) to 1, as glTF has it: its square is the width of the microfacets' slopes.
     pub roughness: f32,
     /// Of the curvature-dependent reflectance function: the Gaussian's width in radians is this times the curvature. In world units,
@@ -117,7 +126,7 @@ impl Mineral {
 }
 
 impl Material {
-    /// glTF's default material: white, with refractive index 1.5, without dispersion or absorption.
+    /// glTF's default material: white, opaque, with refractive index 1.5, without dispersion or absorption.
     #[must_use]
     pub fn standard() -> Self {
         Self {
@@ -127,6 +136,10 @@ impl Material {
             dispersion: Dispersion::None,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
+            transmission: 0.0,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: Vec3::ONE,
+            thickness: 0.0,
             roughness: 1.0,
             sigma0: None,
             medium: None,
@@ -160,6 +173,12 @@ impl Material {
             Some("its material's attenuation colour has a part outside 0 to 1; mend it")
         } else if !(f32::MIN_POSITIVE..).contains(&self.attenuation_distance) {
             Some("its material's attenuation distance is not above 0; mend it")
+        } else if ![self.transmission, self.diffuse_transmission].iter().all(|share| (0.0..=1.0).contains(share)) {
+            Some("its material's transmission is not between 0 and 1; mend it")
+        } else if !is_color(self.diffuse_transmission_color) {
+            Some("its material's colour of diffuse transmission has a part outside 0 to 1; mend it")
+        } else if !(0.0..=f32::MAX).contains(&self.thickness) {
+            Some("its material's thickness is not finite and at least 0; mend it")
         } else if !(0.0..=1.0).contains(&self.roughness) {
             Some("its material's roughness is not between 0 and 1; mend it")
         } else if !self.sigma0.is_none_or(is_length) {

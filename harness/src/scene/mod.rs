@@ -65,6 +65,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Where to look at them from.
     pub camera: Camera,
+    /// What its file asks for and nothing here draws, each named once.
+    pub lacking: Vec<String>,
 }
 
 /// An axis-aligned box.

@@ -68,7 +68,8 @@ fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
 }
 
 fn polished() -> Material {
-    Material { roughness: 0.0, ..Material::standard() }
+    // A girdle's radius: about as thick as the stone is, and all that matters is that it is no thin wall.
+    Material { roughness: 0.0, transmission: 1.0, thickness: 1.0, ..Material::standard() }
 }
 
 fn tinted(material: Material, color: Vec3) -> Material {

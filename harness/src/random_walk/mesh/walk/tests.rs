@@ -21,7 +21,13 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
         Object { name: "body".to_owned(), mesh, material }
     };
     let camera = Camera::framing([Vec3::ZERO].into_iter(), Vec3::Z, 0.5);
-    Scene { name: "test".to_owned(), objects: bodies.into_iter().map(object).collect(), lights, camera }
+    Scene {
+        name: "test".to_owned(),
+        objects: bodies.into_iter().map(object).collect(),
+        lights,
+        camera,
+        lacking: Vec::new(),
+    }
 }
 
 /// Matter whose lengths are in mean free paths.
