@@ -1,5 +1,9 @@
 //! The device that everything runs on: which adapter, why that one, and how bytes come back from it.
 
+pub mod capture;
+mod device;
+
+pub use device::{ComputePass, Device, Encoder, RenderPass};
 use std::sync::OnceLock;
 
 /// Which adapter to run on (`--adapter`).
@@ -115,7 +119,7 @@ pub enum GpuError {
 #[derive(Debug)]
 pub struct Gpu {
     /// The device.
-    pub device: wgpu::Device,
+    pub device: Device,
     /// Its queue.
     pub queue: wgpu::Queue,
     /// What the device is, for reports.
@@ -141,6 +145,13 @@ impl Gpu {
         Ok(SHARED.get_or_init(|| gpu))
     }
 
+    /// A device that takes everything and does nothing: what is recorded on it says what would be done.
+    pub fn without_hardware() -> Self {
+        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let info = device.adapter_info();
+        Self { device: Device(device), queue, info, chosen: AdapterChoice::Any }
+    }
+
     fn open(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
         let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -160,7 +171,7 @@ impl Gpu {
                 ..wgpu::DeviceDescriptor::default()
             }))
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        Ok(Gpu { device, queue, info, chosen: choice.clone() })
+        Ok(Gpu { device: Device(device), queue, info, chosen: choice.clone() })
     }
 
     /// Whether this is lavapipe, whose accuracy bounds are tighter than the portable ones.
@@ -174,7 +185,7 @@ impl Gpu {
     }
 
     /// Runs `make`, and turns what the device says against it into an error instead of a panic.
-    pub fn guarded<T>(&self, what: &str, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
+    pub fn guarded<T>(&self, what: &str, make: impl FnOnce(&Device) -> T) -> Result<T, GpuError> {
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -195,7 +206,7 @@ impl Gpu {
         let size = buffer.size();
         let readback = self.guarded("reading a buffer back", |device| {
             let readback = device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
+                label: Some("words to read"),
                 size,
                 usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
                 mapped_at_creation: false,

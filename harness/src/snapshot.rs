@@ -158,7 +158,7 @@ pub fn render_shot(gpu: &Gpu, shot: &Shot, source: &str) -> Result<[Picture; 2],
 
 /// The same for another scene in the shot's place.
 pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Result<[Picture; 2], SnapshotError> {
-    let render = |side| render::render_with(gpu, scene, &shot.settings(side), source, &mut |_, _| {});
+    let render = |side| render::render_with(gpu, scene, &shot.settings(side), source);
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
 }
 

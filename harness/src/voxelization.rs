@@ -1,11 +1,11 @@
 //! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
 
+use crate::compute::Kernel;
 use crate::cookbook;
-use crate::dispatch::{self, DispatchError};
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
+use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_voxelization::VoxelizationGrid;
-use std::borrow::Cow;
 
 /// The recipe's name.
 const RECIPE: &str = "voxelization";
@@ -41,16 +41,15 @@ pub struct Voxelizer<'gpu> {
     gpu: &'gpu Gpu,
     cells: u32,
     most_triangles: u32,
-    layout: wgpu::BindGroupLayout,
     /// Of each triangle, of those over many columns, of each row.
-    pipelines: [wgpu::ComputePipeline; 3],
+    kernels: [Kernel; 3],
     grid: wgpu::Buffer,
     beyond: wgpu::Buffer,
     large: wgpu::Buffer,
     /// A bit for each voxel that is filled: [`VoxelGrid::words_per_row`] words a row.
     pub matter: wgpu::Buffer,
-    /// The same for the voxels that the surface touches.
-    pub surface: wgpu::Buffer,
+    /// The same for the voxels that the surface touches, where these are set too.
+    pub surface: Option<wgpu::Buffer>,
     /// Three counts, in the order of [`Status`].
     pub status: wgpu::Buffer,
 }
@@ -68,55 +67,34 @@ impl<'gpu> Voxelizer<'gpu> {
         grid: VoxelGrid,
         most_triangles: u32,
         effects: &[(&str, f64)],
-    ) -> Result<Self, DispatchError> {
+    ) -> Result<Self, ShaderError> {
         assert!(most_triangles <= MOST_TRIANGLES, "{most_triangles} triangles");
-        let (module, _) = dispatch::parse(&cookbook::recipe_source(RECIPE), &format!("recipe {RECIPE}"))?;
-        let constants = dispatch::declared(&module, effects);
+        let source = cookbook::recipe_source(RECIPE);
+        let kernel = |entry| Kernel::new(gpu, RECIPE, &source, entry, effects);
+        let kernels =
+            [kernel("voxelization_triangles")?, kernel("voxelization_large")?, kernel("voxelization_finish")?];
         let columns = u64::from(grid.cells) * u64::from(grid.cells);
         let bits = 4 * columns * u64::from(grid.words_per_row());
-        let voxelizer = gpu.guarded(&format!("compiling recipe `{RECIPE}`"), |device| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(RECIPE),
-                source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-            });
-            let layout = layout(device);
-            let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(RECIPE),
-                bind_group_layouts: &[Some(&layout)],
-                immediate_size: 0,
-            });
-            let pipelines = ["voxelization_triangles", "voxelization_large", "voxelization_finish"].map(|entry| {
-                device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(entry),
-                    layout: Some(&pipeline_layout),
-                    module: &module,
-                    entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &constants,
-                        ..Default::default()
-                    },
-                    cache: None,
-                })
-            });
+        let holds_surface = kernels.iter().any(|kernel| kernel.binds(0, 4));
+        let voxelizer = gpu.guarded("allocating voxels", |device| {
             use wgpu::BufferUsages as Usage;
-            let buffer = |size, usage| {
-                let descriptor = wgpu::BufferDescriptor { label: Some(RECIPE), size, usage, mapped_at_creation: false };
+            let buffer = |what, size, usage| {
+                let descriptor = wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: false };
                 device.create_buffer(&descriptor)
             };
-            let storage = |size| buffer(size, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+            let storage = |what, size| buffer(what, size, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
             Self {
                 gpu,
                 cells: grid.cells,
                 most_triangles,
-                layout,
-                pipelines,
-                grid: buffer(32, Usage::UNIFORM | Usage::COPY_DST),
-                beyond: storage(columns.div_ceil(32) * 4),
+                kernels,
+                grid: buffer("grid", 32, Usage::UNIFORM | Usage::COPY_DST),
+                beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
                 // A list of none still has a place.
-                large: storage(4 + 4 * u64::from(most_triangles.max(1))),
-                matter: storage(bits),
-                surface: storage(bits),
-                status: storage(STATUS_BYTES),
+                large: storage("large triangles", 4 + 4 * u64::from(most_triangles.max(1))),
+                matter: storage("matter", bits),
+                surface: holds_surface.then(|| storage("surface voxels", bits)),
+                status: storage("voxel counts", STATUS_BYTES),
             }
         })?;
         gpu.queue.write_buffer(&voxelizer.grid, 0, bytemuck::cast_slice(&grid.words()));
@@ -132,13 +110,13 @@ impl<'gpu> Voxelizer<'gpu> {
     /// Where there are more triangles than this was made for.
     pub fn encode(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
+        encoder: &mut Encoder,
         positions: &wgpu::Buffer,
         indices: &wgpu::Buffer,
-    ) -> Result<(), DispatchError> {
+    ) -> Result<(), ShaderError> {
         let triangles = indices.size() / 12;
         assert!(triangles <= u64::from(self.most_triangles), "{triangles} triangles");
-        for buffer in [&self.matter, &self.surface, &self.beyond, &self.status] {
+        for buffer in [&self.matter, &self.beyond, &self.status].into_iter().chain(&self.surface) {
             encoder.clear_buffer(buffer, 0, None);
         }
         // What the list held does not matter, only how much.
@@ -147,23 +125,30 @@ impl<'gpu> Voxelizer<'gpu> {
             return Ok(());
         }
         self.gpu.guarded("making voxels of a mesh", |device| {
-            let [grid, matter] = [&self.grid, &self.matter];
-            let buffers = [grid, positions, indices, matter, &self.surface, &self.beyond, &self.large, &self.status];
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-                .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            let surface = self.surface.as_ref().map(|surface| (4, surface));
+            let buffers = [
+                (0, &self.grid),
+                (1, positions),
+                (2, indices),
+                (3, &self.matter),
+                (5, &self.beyond),
+                (6, &self.large),
+                (7, &self.status),
+            ];
+            let resources: Vec<_> = buffers
+                .into_iter()
+                .chain(surface)
+                .map(|(binding, buffer)| (binding, buffer.as_entire_binding()))
                 .collect();
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some(RECIPE),
-                layout: &self.layout,
-                entries: &entries,
+                ..wgpu::ComputePassDescriptor::default()
             });
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             let rows = self.cells * self.cells;
             let workgroups = [(triangles as u32).div_ceil(WORKGROUP), LARGE_GROUPS, rows.div_ceil(WORKGROUP)];
-            for (pipeline, workgroups) in self.pipelines.iter().zip(workgroups) {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &group, &[]);
+            for (kernel, workgroups) in self.kernels.iter().zip(workgroups) {
+                pass.set_pipeline(&kernel.pipeline);
+                pass.set_bind_group(0, kernel.bind(device, 0, &resources).as_ref());
                 pass.dispatch_workgroups(workgroups, 1, 1);
             }
         })?;
@@ -173,36 +158,16 @@ impl<'gpu> Voxelizer<'gpu> {
     /// Bytes of its buffers.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let buffers = [&self.grid, &self.beyond, &self.large, &self.matter, &self.surface, &self.status];
-        buffers.into_iter().map(wgpu::Buffer::size).sum()
+        let buffers = [&self.grid, &self.beyond, &self.large, &self.matter, &self.status];
+        buffers.into_iter().chain(&self.surface).map(wgpu::Buffer::size).sum()
     }
 
     /// The counts of the last frame that was submitted. It waits for the device.
     ///
     /// # Errors
     /// Where the device does.
-    pub fn status(&self) -> Result<Status, DispatchError> {
+    pub fn status(&self) -> Result<Status, ShaderError> {
         let words = self.gpu.words(&self.status)?;
         Ok(Status { solid: words[0], surface: words[1], odd_columns: words[2] })
     }
-}
-
-/// One for all three kernels, so that one bind group serves them.
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding: u32| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: match binding {
-                0 => wgpu::BufferBindingType::Uniform,
-                1 | 2 => wgpu::BufferBindingType::Storage { read_only: true },
-                _ => wgpu::BufferBindingType::Storage { read_only: false },
-            },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let entries: Vec<wgpu::BindGroupLayoutEntry> = (0..8).map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(RECIPE), entries: &entries })
 }

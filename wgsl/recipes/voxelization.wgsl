@@ -157,7 +157,10 @@ fn voxelization_finish(@builtin(global_invocation_id) invocation: vec3u) {
         let all = voxelization_prefix(atomicLoad(&matter[row * words + word])) ^ inside;
         inside = select(0u, 0xffffffffu, all >> 31u == 1u);
         let filled = select(all & within, 0u, odd);
-        let skin = atomicLoad(&surface[row * words + word]);
+        var skin = 0u;
+        if EFFECT_SURFACE {
+            skin = atomicLoad(&surface[row * words + word]);
+        }
         atomicStore(&matter[row * words + word], filled | skin);
         solid += countOneBits(filled);
         touched += countOneBits(skin);

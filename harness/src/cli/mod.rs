@@ -1,12 +1,14 @@
 //! The commands. Each returns an [`Outcome`] or a [`Failure`]; this file turns those into exit codes: 0 for success, 1
 //! for a check that failed, 2 for bad usage or bad input, with one clear line on stderr.
 
+mod asked;
 mod check;
 mod copy;
 mod cost;
 mod gallery;
 mod list;
 mod output;
+mod plan;
 mod progress;
 mod render;
 mod scene;
@@ -55,6 +57,7 @@ enum Command {
     List(list::Arguments),
     Copy(copy::Arguments),
     Cost(cost::Arguments),
+    Plan(plan::Arguments),
     Render(render::Arguments),
     Scene(scene::Arguments),
     Snapshots(snapshots::Arguments),
@@ -90,6 +93,7 @@ pub(crate) fn run() -> ExitCode {
         Command::List(arguments) => list::run(&arguments),
         Command::Copy(arguments) => copy::run(&arguments),
         Command::Cost(arguments) => cost::run(&context, &arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
         Command::Render(arguments) => render::run(&context, &arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),

@@ -1,16 +1,14 @@
 //! `cook render`.
 
+use super::asked::Asked;
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cookbook;
 use lapidary_harness::nearest::suggest;
+use lapidary_harness::plan::Decisions;
 use lapidary_harness::random_walk::mesh::{Boundary, Origin};
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{
-    self, Curvature, Environment, GRAMMAR, Geometry, Reflectance, Rung, Settings, Spectrum, WalkedPicture,
-};
-use lapidary_harness::scene::environment_map::EnvironmentMap;
-use lapidary_harness::scene::{self, Scene};
+use lapidary_harness::render::{self, Curvature, Geometry, Reflectance, Rung, Settings, Spectrum, WalkedPicture};
+use lapidary_harness::scene::Scene;
 use std::path::PathBuf;
 
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
@@ -19,27 +17,14 @@ use std::path::PathBuf;
     after_help = "Examples:\n  ./cook render brilliant\n  ./cook render ruby --rung convex-8+tracker --from 0,0\n  ./cook render quartz --rung reference --size 256x256 --out quartz.exr\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
 )]
 pub(super) struct Arguments {
-    #[arg(help = format!("{}, or a glTF 2.0 file", scene::names()))]
-    scene: String,
-    /// In pixels.
-    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
-    size: (u32, u32),
+    #[command(flatten)]
+    asked: Asked,
     /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png where left out.
     #[arg(long, value_name = "F.png|F.exr")]
     out: Option<PathBuf>,
-    #[arg(
-        long,
-        value_parser = |text: &str| text.parse::<Rung>(),
-        help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out: proxy-4+tracker, accurate or godunov-64, by what the materials say")
-    )]
-    rung: Option<Rung>,
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
     #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
     from: Option<(f32, f32)>,
-    /// An effect that is left out though the scene calls for it: absorption in clear stones; environment (its light) or reflection (the
-    /// surface's) on what scatters light.
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = ["absorption", "environment", "reflection"])]
-    without: Vec<String>,
     /// Which curvature spreads the light of what scatters it: from the pixel's derivatives mean, towards
     /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
     #[arg(long, value_name = "FORM", default_value = "mean", value_parser = parse_curvature)]
@@ -62,9 +47,6 @@ pub(super) struct Arguments {
     /// The proxy's centre: stable, or the paper's eq. (4).
     #[arg(long, value_name = "FORM", default_value = "stable", value_parser = ["stable", "paper"])]
     centre: String,
-    /// A latitude-longitude .exr or .hdr image; the procedural studio where left out.
-    #[arg(long, value_name = "FILE")]
-    environment: Option<PathBuf>,
     /// Radiance is multiplied by this before the tone curve.
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
@@ -89,12 +71,6 @@ pub(super) struct Arguments {
     /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     energy_bound: Option<f64>,
-}
-
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
-    let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
-    parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
 }
 
 fn parse_from(text: &str) -> Result<(f32, f32), String> {
@@ -122,87 +98,76 @@ fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A flag that the rung does not obey would be believed to have been obeyed.
-fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> Result<(), Failure> {
-    let reference = rung == Rung::Reference;
-    let proxy = matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. });
-    // Nothing of the recipes' way inside.
-    let outside = reference || rung == Rung::Surface;
-    let diffuse = matches!(rung, Rung::Diffuse(_));
-    let paths = matches!(rung, Rung::OpticalPath(_));
-    let scattered = diffuse || paths;
-    let blurs = diffuse && rung != Rung::Diffuse(Reflectance::Lambert);
-    let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
-    let ignored = [
-        ("--wavelengths", (!reference || scatters) && arguments.wavelengths.is_some()),
-        ("--energy-bound", (!reference || scatters) && arguments.energy_bound.is_some()),
-        ("--walks", !(reference && scatters) && arguments.walks.is_some()),
-        ("--walks-from", !(reference && scatters) && arguments.walks_from.is_some()),
-        ("--seed", !(reference && scatters) && arguments.seed.is_some()),
-        ("--boundary", !(reference && scatters) && arguments.boundary.is_some()),
-        ("--without absorption", (outside || scattered) && without("absorption")),
-        ("--without environment", !(scattered || reference && scatters) && without("environment")),
-        ("--without reflection", !scattered && without("reflection")),
-        ("--curvature", !blurs && arguments.curvature != Curvature::Mean),
-        ("--rest dropped", (outside || scattered) && arguments.rest == "dropped"),
-        ("--distance-limit", (outside || scattered) && arguments.distance_limit.is_some()),
-        ("--deferred", (reference || scattered) && arguments.deferred),
-        ("--centre paper", !proxy && arguments.centre == "paper"),
-        ("--extinction-scale", !paths && arguments.extinction_scale.is_some()),
-        ("--strength", rung.spectrum() != Spectrum::Paper && arguments.strength != 1.0),
+/// A flag that no object's rung obeys would be believed to have been obeyed.
+fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
+    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings).rung).collect();
+    let any = |is: fn(&Rung) -> bool| rungs.iter().any(is);
+    let reference = any(|rung| *rung == Rung::Reference);
+    let walks = reference && render::scatters(scene);
+    let follows = reference && !walks;
+    let inside = any(|rung| matches!(rung, Rung::Inside { .. }));
+    let proxy = any(|rung| matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. }));
+    let gem = any(|rung| matches!(rung, Rung::Inside { .. } | Rung::Surface));
+    let blurs = any(|rung| matches!(rung, Rung::Diffuse(of) if *of != Reflectance::Lambert));
+    let paths = any(|rung| matches!(rung, Rung::OpticalPath(_)));
+    let paper = any(|rung| rung.spectrum() == Spectrum::Paper);
+    let flags = [
+        ("--wavelengths", follows, arguments.wavelengths.is_some()),
+        ("--energy-bound", follows, arguments.energy_bound.is_some()),
+        ("--walks", walks, arguments.walks.is_some()),
+        ("--walks-from", walks, arguments.walks_from.is_some()),
+        ("--seed", walks, arguments.seed.is_some()),
+        ("--boundary", walks, arguments.boundary.is_some()),
+        ("--curvature", blurs, arguments.curvature != Curvature::Mean),
+        ("--rest dropped", inside, arguments.rest == "dropped"),
+        ("--distance-limit", inside, arguments.distance_limit.is_some()),
+        ("--deferred", gem, arguments.deferred),
+        ("--centre paper", proxy, arguments.centre == "paper"),
+        ("--extinction-scale", paths, arguments.extinction_scale.is_some()),
+        ("--strength", paper, arguments.strength != 1.0),
     ];
-    match ignored.iter().find(|(_, ignored)| *ignored) {
-        Some((flag, _)) => Err(Failure(format!("rung `{rung}` knows no {flag}; leave it out or take another rung"))),
+    match flags.iter().find(|(_, obeyed, given)| *given && !obeyed) {
+        Some((flag, _, _)) => {
+            let rung = settings.rung;
+            Err(Failure(format!("rung `{rung}` knows no {flag} here; leave it out or take another rung")))
+        }
         None => Ok(()),
     }
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let mut scene = Scene::open(&arguments.scene)?;
+    let mut scene = Scene::open(&arguments.asked.scene)?;
     if let Some((polar, azimuth)) = arguments.from {
         scene = scene.seen_from(polar, azimuth);
     }
-    let rung = arguments.rung.unwrap_or_else(|| Rung::usual(&scene));
-    refuse_what_is_ignored(arguments, rung, render::scatters(&scene))?;
+    let asked = arguments.asked.settings(&scene)?;
+    refuse_what_is_ignored(arguments, &scene, &asked)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     Format::of_path(&out)?;
     file::check_writable(&out)?;
-    let environment = match &arguments.environment {
-        None => Environment::Studio,
-        Some(path) => Environment::Map(EnvironmentMap::load(path)?),
-    };
-    let (width, height) = arguments.size;
-    let usual = Settings::of_size(width, height);
-    let without = |effect: &str| arguments.without.iter().any(|left_out| left_out == effect);
     let settings = Settings {
-        rung,
         paper_centre: arguments.centre == "paper",
-        absorption: !without("absorption"),
-        light_from_environment: !without("environment"),
-        reflection: !without("reflection"),
         curvature: arguments.curvature,
-        extinction_scale: arguments.extinction_scale.unwrap_or(usual.extinction_scale),
+        extinction_scale: arguments.extinction_scale.unwrap_or(asked.extinction_scale),
         dispersion_strength: arguments.strength,
         rest_from_environment: arguments.rest == "environment",
         distance_limit: arguments.distance_limit,
         deferred: arguments.deferred,
-        environment,
         exposure: arguments.exposure,
         samples: arguments.samples,
-        wavelengths: arguments.wavelengths.unwrap_or(usual.wavelengths),
-        energy_bound: arguments.energy_bound.unwrap_or(usual.energy_bound),
-        walks: arguments.walks.unwrap_or(usual.walks),
-        walks_from: arguments.walks_from.unwrap_or(usual.walks_from),
-        seed: arguments.seed.unwrap_or(usual.seed),
+        wavelengths: arguments.wavelengths.unwrap_or(asked.wavelengths),
+        energy_bound: arguments.energy_bound.unwrap_or(asked.energy_bound),
+        walks: arguments.walks.unwrap_or(asked.walks),
+        walks_from: arguments.walks_from.unwrap_or(asked.walks_from),
+        seed: arguments.seed.unwrap_or(asked.seed),
         boundary: match arguments.boundary.as_deref() {
             Some("dielectric") => Boundary::Dielectric,
             _ => Boundary::Matched,
         },
-        ..usual
+        ..asked
     };
-    let source = cookbook::recipe_source(rung.recipe());
     let bar = progress::bar(0, "rendering");
-    let picture = render::render_with(context.gpu()?, &scene, &settings, &source, &mut |done, total| {
+    let picture = render::render_reporting(context.gpu()?, &scene, &settings, &mut |done, total| {
         bar.set_length(total);
         bar.set_position(done);
     })?;
@@ -210,6 +175,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     file::write(&picture, &out)?;
     for note in &picture.notes {
         eprintln!("cook: {note}");
+    }
+    for lacking in &scene.lacking {
+        eprintln!("cook: not drawn, though the file asks for it: {lacking}");
     }
     output::line(&out.display().to_string())?;
     if let Some(Lost { max, mean }) = picture.lost {

@@ -4,12 +4,10 @@ use super::timing::{self, Timed};
 use super::views::{self, View};
 use super::{Colours, CostError, Errors, Report, RungReport, choices, dispersion, reflection};
 use crate::cookbook;
-use crate::dispatch;
 use crate::gpu::Gpu;
 use crate::render::{self, Picture, Rung, Settings, Spectrum};
 use crate::scene::Scene;
-use crate::specialise::specialise;
-use crate::spirv_counts::spirv_counts;
+use crate::shader::Shader;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
 /// the loop over triangles give the planes' pictures, so a few rungs show what they take.
@@ -171,17 +169,16 @@ pub fn run(
 fn count(brilliant: &Scene, entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostError> {
     let rung = entry.settings.rung;
     let source = cookbook::recipe_source(rung.recipe());
-    let (ir, _) = dispatch::parse(&source, rung.recipe()).map_err(render::RenderError::from)?;
-    let constants = dispatch::declared(&ir, &render::constants(brilliant, &entry.settings));
-    let (ir, info) = specialise(ir, &constants, &["gem_vertex", "gem_fragment"])?;
-    let counts = spirv_counts(&ir, &info, "gem_vertex", "gem_fragment")?;
+    let constants = render::gem_constants(brilliant, &entry.settings);
+    let shader = Shader::new(rung.recipe(), &source, &["gem_vertex", "gem_fragment"], &constants);
+    let counts = shader.map_err(render::RenderError::from)?.counts()?;
     Ok(RungReport {
         rung: entry.name.clone(),
         errors,
         timing: None,
         fragment_instructions: counts.fragment_instructions,
         vertex_instructions: counts.vertex_instructions,
-        geometry_bytes: render::geometry_bytes(&brilliant.objects[0], &entry.settings)?,
+        geometry_bytes: render::geometry_bytes(&brilliant.objects[0], rung)?,
         dominated: false,
     })
 }

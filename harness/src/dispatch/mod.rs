@@ -201,7 +201,7 @@ impl<'gpu> Kernel<'gpu> {
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
                 pass.set_pipeline(&self.compiled.pipeline);
-                pass.set_bind_group(0, &bind_group, &[]);
+                pass.set_bind_group(0, &bind_group);
                 let workgroups = rows.div_ceil(kernel::WORKGROUP_SIZE as usize);
                 pass.dispatch_workgroups(u32::try_from(workgroups).expect("at most 1024 workgroups"), 1, 1);
             }

@@ -4,7 +4,6 @@ use super::{DispatchError, declared, parse};
 use crate::cookbook;
 use crate::gpu::Gpu;
 use std::borrow::Cow;
-use wgpu::util::DeviceExt as _;
 
 /// What stands at a binding; numbered from 0 in its group.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +88,7 @@ pub fn run_recipe<T>(gpu: &Gpu, run: &RecipeRun<'_>, read: impl FnOnce(&[u8]) ->
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
             for (index, group) in (0..).zip(&groups) {
-                pass.set_bind_group(index, group, &[]);
+                pass.set_bind_group(index, group);
             }
             let [x, y, z] = run.workgroups;
             pass.dispatch_workgroups(x, y, z);

@@ -1,12 +1,12 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
 use super::Method;
-use crate::compute::{Kernel, KernelError};
+use crate::compute::Kernel;
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
+use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};
-use wgpu::util::DeviceExt as _;
 
 /// Voxels along an edge of a solver's tile.
 const TILE: u32 = 4;
@@ -68,7 +68,7 @@ impl<'gpu> Solver<'gpu> {
         method: Method,
         heterogeneous: bool,
         most_passes: Option<u32>,
-    ) -> Result<Self, KernelError> {
+    ) -> Result<Self, ShaderError> {
         let recipe = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
         let source = cookbook::recipe_source(recipe);
         let flag = |value| f64::from(u8::from(value));
@@ -83,25 +83,30 @@ impl<'gpu> Solver<'gpu> {
             Method::PingPong(_) => "pull",
             Method::Tiled(_) | Method::Godunov => "update",
         };
-        let kernel = |entry: &str| Kernel::new(gpu, &source, &format!("{recipe}_{entry}"), &constants);
+        let kernel = |entry: &str| Kernel::new(gpu, recipe, &source, &format!("{recipe}_{entry}"), &constants);
         let [begin, next, pass] = [kernel("begin")?, kernel("next")?, kernel(pass)?];
         let tiles = u64::from(grid.cells / TILE).pow(3);
         let voxels = grid.count() as u64;
-        let sizes = if method.is_tiled() { vec![8 * tiles, 4 * tiles, 8 * tiles] } else { vec![4 * voxels] };
+        let sizes = if method.is_tiled() {
+            vec![("matter of tiles", 8 * tiles), ("listed tiles", 4 * tiles), ("lists of tiles", 8 * tiles)]
+        } else {
+            vec![("work", 4 * voxels)]
+        };
         let (fresh, progress, workgroups, own) = gpu.guarded("allocating a solver's buffers", |device| {
             use wgpu::BufferUsages as Usage;
-            let buffer = |size, usage| {
-                device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+            let buffer = |what, size, usage| {
+                let descriptor = wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: false };
+                device.create_buffer(&descriptor)
             };
             let unreached = mirror::encode(OPTICAL_PATH_UNREACHED);
             let fresh = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: None,
+                label: Some("fresh progress"),
                 contents: bytemuck::cast_slice(&[0, 0, 0, 0, 0, unreached, unreached]),
                 usage: Usage::COPY_SRC,
             });
-            let progress = buffer(4 * PROGRESS_WORDS, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
-            let workgroups = buffer(12, Usage::STORAGE | Usage::INDIRECT);
-            let own = sizes.iter().map(|size| buffer(*size, Usage::STORAGE)).collect();
+            let progress = buffer("progress", 4 * PROGRESS_WORDS, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+            let workgroups = buffer("workgroups", 12, Usage::STORAGE | Usage::INDIRECT);
+            let own = sizes.iter().map(|(what, size)| buffer(what, *size, Usage::STORAGE)).collect();
             (fresh, progress, workgroups, own)
         })?;
         let most_passes = most_passes.unwrap_or_else(|| Self::default_passes(method, grid.cells));
@@ -124,12 +129,12 @@ impl<'gpu> Solver<'gpu> {
     /// Where the solver is heterogeneous and there is no density.
     pub fn encode(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
+        encoder: &mut Encoder,
         matter: &wgpu::Buffer,
         density: Option<&wgpu::Buffer>,
         cost: &wgpu::Buffer,
         extinction: f32,
-    ) -> Result<(), KernelError> {
+    ) -> Result<(), ShaderError> {
         assert!(density.is_some() || !self.heterogeneous, "a heterogeneous body has a density");
         let cells = self.grid.cells;
         let whole = [cells / SWEEP_GROUP, cells / SWEEP_GROUP, cells];
@@ -137,7 +142,7 @@ impl<'gpu> Solver<'gpu> {
         self.gpu.guarded("recording a solve", |device| {
             let words = [cells, extinction.to_bits(), self.grid.spacing.to_bits(), 0];
             let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: None,
+                label: Some("solve"),
                 contents: bytemuck::cast_slice(&words),
                 usage: wgpu::BufferUsages::UNIFORM,
             });
@@ -161,17 +166,20 @@ impl<'gpu> Solver<'gpu> {
             // Whichever way they end, the costs are where they belong.
             let passes = if exchanged.is_some() { self.most_passes.next_multiple_of(2) } else { self.most_passes };
             encoder.copy_buffer_to_buffer(&self.fresh, 0, &self.progress, 0, 4 * PROGRESS_WORDS);
-            let mut recorder = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let mut recorder = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("solve"),
+                ..wgpu::ComputePassDescriptor::default()
+            });
             recorder.set_pipeline(&self.begin.pipeline);
-            recorder.set_bind_group(0, &groups[0], &[]);
+            recorder.set_bind_group(0, groups[0].as_ref());
             recorder.dispatch_workgroups(begin[0], begin[1], begin[2]);
             for pass in 0..passes {
                 recorder.set_pipeline(&self.next.pipeline);
-                recorder.set_bind_group(0, &groups[1], &[]);
+                recorder.set_bind_group(0, groups[1].as_ref());
                 recorder.dispatch_workgroups(1, 1, 1);
                 recorder.set_pipeline(&self.pass.pipeline);
                 let group = exchanged.as_ref().filter(|_| pass % 2 == 1).unwrap_or(&groups[2]);
-                recorder.set_bind_group(0, group, &[]);
+                recorder.set_bind_group(0, group.as_ref());
                 recorder.dispatch_workgroups_indirect(&self.workgroups, 0);
             }
         })?;
@@ -189,7 +197,7 @@ impl<'gpu> Solver<'gpu> {
     ///
     /// # Errors
     /// Where the device is lost.
-    pub fn status(&self) -> Result<Status, KernelError> {
+    pub fn status(&self) -> Result<Status, ShaderError> {
         let kept = self.kept_status()?;
         self.gpu.guarded("reading a solve's status", |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -203,10 +211,10 @@ impl<'gpu> Solver<'gpu> {
     ///
     /// # Errors
     /// Where the device refuses the memory.
-    pub fn kept_status(&self) -> Result<wgpu::Buffer, KernelError> {
+    pub fn kept_status(&self) -> Result<wgpu::Buffer, ShaderError> {
         Ok(self.gpu.guarded("allocating a solve's status", |device| {
             device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
+                label: Some("kept progress"),
                 size: 4 * PROGRESS_WORDS,
                 usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
                 mapped_at_creation: false,
@@ -215,7 +223,7 @@ impl<'gpu> Solver<'gpu> {
     }
 
     /// Records that how far the solve before came is kept, though others follow. Nothing waits.
-    pub fn keep_status(&self, encoder: &mut wgpu::CommandEncoder, kept: &wgpu::Buffer) {
+    pub fn keep_status(&self, encoder: &mut Encoder, kept: &wgpu::Buffer) {
         encoder.copy_buffer_to_buffer(&self.progress, 0, kept, 0, 4 * PROGRESS_WORDS);
     }
 
@@ -223,7 +231,7 @@ impl<'gpu> Solver<'gpu> {
     ///
     /// # Errors
     /// Where the device is lost.
-    pub fn status_of(&self, kept: &wgpu::Buffer) -> Result<Status, KernelError> {
+    pub fn status_of(&self, kept: &wgpu::Buffer) -> Result<Status, ShaderError> {
         Ok(self.gpu.read_back(kept, 4 * PROGRESS_WORDS, |bytes| {
             let words: &[u32] = bytemuck::cast_slice(bytes);
             let parity = (words[0] & 1) as usize;

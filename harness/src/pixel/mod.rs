@@ -10,6 +10,7 @@ mod surface;
 pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
+use crate::plan::Effect;
 use crate::render::{Environment, Rung, Settings, Spectrum};
 use crate::scene::Material;
 use geometry::{Entry, Hit, Place};
@@ -123,7 +124,7 @@ impl<'a> Shading<'a> {
             },
             wavelengths: wavelengths.iter().map(matrix).collect(),
             settings,
-            absorbs: settings.absorption && material.absorbs(),
+            absorbs: !settings.without.has(Effect::Absorption) && material.absorbs(),
         }
     }
 

@@ -1,9 +1,10 @@
 //! The deferred way (the paper's section 4.3.4): the gem recipe fills a geometry buffer, and a lighting pass makes the picture.
 
-use super::device::{self, PipelineSource};
+use super::device::{self, Pipeline, PipelineSource};
+use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, TILE};
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
 use glam::{Mat4, Vec3};
 
 /// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
@@ -18,8 +19,8 @@ pub(super) const TARGETS: usize = 3;
 /// The geometry buffer of one tile and the lighting pass.
 pub(super) struct DeferredPass<'gpu> {
     gpu: &'gpu Gpu,
-    pipeline: wgpu::RenderPipeline,
-    environment: wgpu::TextureView,
+    pipeline: Pipeline,
+    environment: Option<wgpu::TextureView>,
     emission: wgpu::TextureView,
     normal: wgpu::TextureView,
     reflectance: wgpu::TextureView,
@@ -28,7 +29,12 @@ pub(super) struct DeferredPass<'gpu> {
 
 impl<'gpu> DeferredPass<'gpu> {
     /// For the settings' environment and samples; `source` is the composed recipe of the lighting pass.
-    pub(super) fn new(gpu: &'gpu Gpu, settings: &Settings, source: &str) -> Result<Self, RenderError> {
+    pub(super) fn new(
+        gpu: &'gpu Gpu,
+        lighting: &Lighting<'_>,
+        settings: &Settings,
+        source: &str,
+    ) -> Result<Self, RenderError> {
         let map = f64::from(u8::from(matches!(settings.environment, Environment::Map(_))));
         let pipeline = device::pipeline(
             gpu,
@@ -43,17 +49,23 @@ impl<'gpu> DeferredPass<'gpu> {
         )?;
         let size = [TILE * settings.samples; 2];
         let [emission, normal, reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
-            [GEOMETRY_FORMAT, GEOMETRY_FORMAT, GEOMETRY_FORMAT, DEPTH_FORMAT]
-                .map(|format| device::view(&device::target(device, size, format, wgpu::TextureUsages::TEXTURE_BINDING)))
+            let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+            [
+                ("emission", GEOMETRY_FORMAT),
+                ("normal", GEOMETRY_FORMAT),
+                ("reflectance", GEOMETRY_FORMAT),
+                ("geometry's depth", DEPTH_FORMAT),
+            ]
+            .map(|(what, format)| device::view(&device::target(device, what, size, format, usage)))
         })?;
-        let environment = super::environment::texture(gpu, &settings.environment)?;
+        let environment = pipeline.binds(0, 1).then(|| lighting.environment().cloned()).transpose()?;
         Ok(Self { gpu, pipeline, environment, emission, normal, reflectance, depth })
     }
 
     /// Fills the geometry buffer, then lights it.
     pub(super) fn draw(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
+        encoder: &mut Encoder,
         gem: &ScenePass<'_>,
         clip_from_world: Mat4,
         eye: Vec3,
@@ -71,19 +83,21 @@ impl<'gpu> DeferredPass<'gpu> {
         // In f64: the inverse of a perspective matrix loses digits that the depth still holds.
         let mut values = clip_from_world.as_dmat4().inverse().as_mat4().to_cols_array().to_vec();
         values.extend([eye.x, eye.y, eye.z, 0.0, size[0] as f32, size[1] as f32]);
-        let uniform = device::uniform(device, &values);
-        let textures = [&self.environment, &self.emission, &self.normal, &self.reflectance, &self.depth];
-        let mut resources = vec![uniform.as_entire_binding()];
-        resources.extend(textures.map(wgpu::BindingResource::TextureView));
-        let group = device::bind_group(device, &self.pipeline, 0, resources);
+        let uniform = device::uniform(device, "composite's view", &values);
+        let textures = [(2, &self.emission), (3, &self.normal), (4, &self.reflectance), (5, &self.depth)];
+        let environment = self.environment.as_ref().map(|view| (1, view));
+        let mut resources = vec![(0, uniform.as_entire_binding())];
+        let textures = textures.into_iter().chain(environment);
+        resources.extend(textures.map(|(binding, view)| (binding, wgpu::BindingResource::TextureView(view))));
+        let group = self.pipeline.bind(device, 0, &resources);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("gem_composite"),
             color_attachments: &[device::cleared(samples)],
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_viewport(0.0, 0.0, size[0] as f32, size[1] as f32, 0.0, 1.0);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
+        pass.set_viewport([0.0, 0.0, size[0] as f32, size[1] as f32], 0.0..1.0);
+        pass.set_pipeline(&self.pipeline.raw);
+        pass.set_bind_group(0, &group);
         pass.draw(0..3, 0..1);
     }
 }
@@ -114,7 +128,8 @@ mod tests {
             let rung = "proxy-1".parse().expect("a rung");
             let settings = Settings { rung, samples: 1, deferred: true, ..Settings::of_size(128, 128) };
             let gem = cookbook::recipe_source(rung.recipe());
-            let picture = render_from(gpu, &scene, &settings, [&gem, &planted], &mut |_, _| {}).expect("rendered");
+            let picture =
+                render_from(gpu, &scene, &settings, (Some(&gem), &planted), &mut |_, _| {}).expect("rendered");
             let viewer = Viewer::new(&scene, 128, 128);
             let (mut worst, mut seen) = (0f32, 0);
             for (index, &[x, y, z, alpha]) in (0..).zip(&picture.linear) {

@@ -1,11 +1,9 @@
 //! Pipelines and buffers, made in one way for every pass.
 
 use super::RenderError;
-use crate::dispatch::{self, DispatchError};
-use crate::gpu::Gpu;
+use crate::gpu::{Device, Gpu, capture};
 use crate::scene::Object;
-use std::borrow::Cow;
-use wgpu::util::DeviceExt as _;
+use crate::shader::{Bindings, Shader};
 
 /// What a pass is compiled from.
 pub(super) struct PipelineSource<'a> {
@@ -23,8 +21,32 @@ pub(super) struct PipelineSource<'a> {
     pub(super) depth: Option<wgpu::TextureFormat>,
 }
 
+/// A compiled pass, and the bindings that are left of its recipe.
+#[derive(Debug)]
+pub(super) struct Pipeline {
+    pub(super) raw: wgpu::RenderPipeline,
+    bindings: Bindings,
+}
+
+impl Pipeline {
+    /// Whether it reads this binding.
+    pub(super) fn binds(&self, group: u32, binding: u32) -> bool {
+        self.bindings.has(group, binding)
+    }
+
+    /// The bind group of those of `resources`, by number, that it reads. Nothing where it reads none in this group.
+    pub(super) fn bind(
+        &self,
+        device: &Device,
+        group: u32,
+        resources: &[(u32, wgpu::BindingResource<'_>)],
+    ) -> Option<wgpu::BindGroup> {
+        self.bindings.bind(device, |group| self.raw.get_bind_group_layout(group), group, resources)
+    }
+}
+
 /// Compiles a pass. A closed body shows its front; a full-screen triangle has no back to speak of.
-pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<wgpu::RenderPipeline, RenderError> {
+pub(super) fn pipeline(gpu: &Gpu, from: &PipelineSource<'_>) -> Result<Pipeline, RenderError> {
     pipeline_culling(gpu, from, from.depth.map(|_| wgpu::Face::Back))
 }
 
@@ -33,31 +55,21 @@ pub(super) fn pipeline_culling(
     gpu: &Gpu,
     from: &PipelineSource<'_>,
     cull_mode: Option<wgpu::Face>,
-) -> Result<wgpu::RenderPipeline, RenderError> {
+) -> Result<Pipeline, RenderError> {
     let name = from.recipe;
-    let (module, _) = dispatch::parse(from.source, &format!("recipe {name}"))?;
-    let constants = dispatch::declared(&module, from.constants);
-    for entry in from.entries {
-        if !module.entry_points.iter().any(|point| point.name == entry) {
-            return Err(DispatchError::Source(format!("recipe {name}: no entry point `{entry}`")).into());
-        }
-    }
+    let shader = Shader::new(name, from.source, &from.entries, from.constants)?;
     let [vertex, fragment] = from.entries;
-    let pipeline = gpu.guarded(&format!("compiling recipe `{name}`"), |device| {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(name),
-            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-        });
+    let raw = gpu.guarded(&format!("compiling recipe `{name}`"), |device| {
+        let module = shader.upload(device);
         let targets: Vec<Option<wgpu::ColorTargetState>> =
             from.formats.iter().map(|format| Some((*format).into())).collect();
-        let compilation_options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(name),
             layout: None,
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some(vertex),
-                compilation_options: compilation_options(),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[],
             },
             primitive: wgpu::PrimitiveState { cull_mode, ..wgpu::PrimitiveState::default() },
@@ -72,30 +84,32 @@ pub(super) fn pipeline_culling(
             fragment: Some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(fragment),
-                compilation_options: compilation_options(),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
                 targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
         })
     })?;
-    Ok(pipeline)
+    capture::render_pipeline(&raw, || shader.description(name));
+    Ok(Pipeline { raw, bindings: shader.bindings() })
 }
 
-/// A buffer with contents.
-pub(super) fn buffer(device: &wgpu::Device, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+/// A buffer with contents, by what it holds.
+pub(super) fn buffer(device: &Device, what: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage })
 }
 
 /// A texture with contents, to be sampled or loaded: of this width, height and depth or number of layers, layer by layer.
 pub(super) fn texture(
     gpu: &Gpu,
+    what: &str,
     (dimension, format): (wgpu::TextureDimension, wgpu::TextureFormat),
     [width, height, depth_or_array_layers]: [u32; 3],
     contents: &[u8],
 ) -> wgpu::Texture {
     let descriptor = wgpu::TextureDescriptor {
-        label: None,
+        label: Some(what),
         size: wgpu::Extent3d { width, height, depth_or_array_layers },
         mip_level_count: 1,
         sample_count: 1,
@@ -127,48 +141,22 @@ pub(super) fn mesh_vertices<'a>(
 }
 
 /// A uniform buffer; uniform structs are padded to 16 bytes.
-pub(super) fn uniform(device: &wgpu::Device, values: &[f32]) -> wgpu::Buffer {
+pub(super) fn uniform(device: &Device, what: &str, values: &[f32]) -> wgpu::Buffer {
     let mut contents = values.to_vec();
     contents.resize(values.len().next_multiple_of(4), 0.0);
-    buffer(device, bytemuck::cast_slice(&contents), wgpu::BufferUsages::UNIFORM)
-}
-
-/// A bind group of `pipeline` whose bindings are numbered from 0.
-pub(super) fn bind_group(
-    device: &wgpu::Device,
-    pipeline: &wgpu::RenderPipeline,
-    group: u32,
-    resources: Vec<wgpu::BindingResource<'_>>,
-) -> wgpu::BindGroup {
-    bind_group_from(device, pipeline, group, 0, resources)
-}
-
-/// The same, numbered from `first`.
-pub(super) fn bind_group_from(
-    device: &wgpu::Device,
-    pipeline: &wgpu::RenderPipeline,
-    group: u32,
-    first: u32,
-    resources: Vec<wgpu::BindingResource<'_>>,
-) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> =
-        (first..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(group),
-        entries: &entries,
-    })
+    buffer(device, what, bytemuck::cast_slice(&contents), wgpu::BufferUsages::UNIFORM)
 }
 
 /// A texture that can be drawn to, `size` being width and height.
 pub(super) fn target(
-    device: &wgpu::Device,
+    device: &Device,
+    what: &str,
     [width, height]: [u32; 2],
     format: wgpu::TextureFormat,
     usage: wgpu::TextureUsages,
 ) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
+        label: Some(what),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,

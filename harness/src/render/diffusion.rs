@@ -1,11 +1,12 @@
 //! Texture diffusion of one object: the recipe `texture_irradiance` draws what arrives, the recipe `texture_diffusion` blurs it.
 
 use super::RenderError;
-use super::device::{self, PipelineSource, bind_group, bind_group_from};
+use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::capture::OfObject;
+use crate::gpu::{Encoder, Gpu};
 use crate::scene::Object;
 use crate::scene::layout::Layout;
 
@@ -18,9 +19,11 @@ pub(super) const SIDE: u32 = 1024;
 pub(super) struct Diffusion<'gpu> {
     gpu: &'gpu Gpu,
     textures: TextureDiffusion<'gpu>,
-    pipeline: wgpu::RenderPipeline,
+    /// Of its object.
+    name: String,
+    pipeline: Pipeline,
     /// Lights and harmonics, then the mesh.
-    groups: [wgpu::BindGroup; 2],
+    groups: [Option<wgpu::BindGroup>; 2],
     vertices: u32,
     taps: Taps,
     charts: Vec<Chart>,
@@ -37,8 +40,8 @@ impl<'gpu> Diffusion<'gpu> {
     /// For `object`, which has texture coordinates, under these lights and harmonics, with the overrides that go with them.
     pub(super) fn new(
         gpu: &'gpu Gpu,
-        object: &Object,
-        (lighting, constants): (&Lighting, &[(&str, f64)]),
+        (object, name): (&Object, &str),
+        (lighting, constants): (&Lighting<'_>, &[(&str, f64)]),
         mesh: &MeshBuffers<'_>,
     ) -> Result<Self, RenderError> {
         let pipeline = device::pipeline(
@@ -57,15 +60,24 @@ impl<'gpu> Diffusion<'gpu> {
         // Halos first, so that of two that touch a texel the chart's own triangle stays.
         let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
         let vertices = device::mesh_vertices(gpu, object, &drawn, [bytemuck::cast_slice(&drawn)])?;
+        let lights = if pipeline.binds(0, 2) { Some((2, lighting.lights()?)) } else { None };
+        let harmonics = if pipeline.binds(0, 3) { Some((3, lighting.harmonics()?)) } else { None };
         let groups = gpu.guarded("uploading a mesh", |device| {
-            let indices = device::buffer(device, bytemuck::cast_slice(&drawn), wgpu::BufferUsages::STORAGE);
-            let shared = [&lighting.lights, &lighting.harmonics].map(wgpu::Buffer::as_entire_binding);
-            let own = [mesh.positions, &indices, mesh.normals, mesh.uvs].map(wgpu::Buffer::as_entire_binding);
-            [bind_group_from(device, &pipeline, 0, 2, shared.into()), bind_group(device, &pipeline, 1, own.into())]
+            let contents = bytemuck::cast_slice(&drawn);
+            let indices = device::buffer(device, "indices with halos", contents, wgpu::BufferUsages::STORAGE);
+            let shared: Vec<_> = lights.into_iter().chain(harmonics).collect();
+            let own = [(0, mesh.positions), (1, &indices), (2, mesh.normals), (3, mesh.uvs)];
+            let bind = |group, buffers: &[(u32, &wgpu::Buffer)]| {
+                let resources: Vec<_> =
+                    buffers.iter().map(|(binding, buffer)| (*binding, buffer.as_entire_binding())).collect();
+                pipeline.bind(device, group, &resources)
+            };
+            [bind(0, &shared), bind(1, &own)]
         })?;
         Ok(Self {
             gpu,
             textures,
+            name: name.to_owned(),
             pipeline,
             groups,
             vertices,
@@ -80,7 +92,8 @@ impl<'gpu> Diffusion<'gpu> {
     }
 
     /// Draws what arrives and blurs it.
-    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+    pub(super) fn encode(&self, encoder: &mut Encoder) -> Result<(), RenderError> {
+        let _of = OfObject::named(&self.name);
         let targets = [&self.textures.irradiance, &self.textures.stretch].map(device::view);
         self.gpu.guarded("drawing irradiance", |_| {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -88,9 +101,9 @@ impl<'gpu> Diffusion<'gpu> {
                 color_attachments: &targets.each_ref().map(device::cleared),
                 ..wgpu::RenderPassDescriptor::default()
             });
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(&self.pipeline.raw);
             for (group, bind_group) in (0..).zip(&self.groups) {
-                pass.set_bind_group(group, bind_group, &[]);
+                pass.set_bind_group(group, bind_group.as_ref());
             }
             pass.draw(0..self.vertices, 0..1);
         })?;

@@ -1,17 +1,17 @@
 //! The display recipe's pass, and reading a tile back.
 
-use super::device::{self, PipelineSource};
+use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, TILE, Tile};
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
 
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Averages samples, encodes them, and brings both pictures back.
 pub(super) struct DisplayPass<'gpu> {
     gpu: &'gpu Gpu,
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     /// Samples of one tile.
     samples: wgpu::Texture,
     samples_view: wgpu::TextureView,
@@ -36,11 +36,11 @@ impl<'gpu> DisplayPass<'gpu> {
         use wgpu::TextureUsages as Usage;
         let [samples, linear, encoded] = gpu.guarded("allocating a tile", |device| {
             [
-                (TILE * samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
-                (TILE, SAMPLE_FORMAT, Usage::COPY_SRC),
-                (TILE, ENCODED_FORMAT, Usage::COPY_SRC),
+                ("samples", TILE * samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
+                ("linear picture", TILE, SAMPLE_FORMAT, Usage::COPY_SRC),
+                ("encoded picture", TILE, ENCODED_FORMAT, Usage::COPY_SRC),
             ]
-            .map(|(side, format, usage)| device::target(device, [side; 2], format, usage))
+            .map(|(what, side, format, usage)| device::target(device, what, [side; 2], format, usage))
         })?;
         let samples_view = device::view(&samples);
         Ok(Self { gpu, pipeline, samples, samples_view, linear, encoded })
@@ -72,7 +72,7 @@ impl<'gpu> DisplayPass<'gpu> {
     /// Ends a tile: from the samples to the picture.
     pub(super) fn finish(
         &self,
-        mut encoder: wgpu::CommandEncoder,
+        mut encoder: Encoder,
         tile: Tile,
         settings: &Settings,
         picture: &mut Picture,
@@ -80,12 +80,12 @@ impl<'gpu> DisplayPass<'gpu> {
         let frame =
             [tile.left as f32, tile.top as f32, settings.width as f32, settings.height as f32, settings.exposure];
         let [linear, encoded] = self.gpu.guarded("displaying a tile", |device| {
-            let uniform = device::uniform(device, &frame);
-            let resources = vec![uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&self.samples_view)];
-            let group = device::bind_group(device, &self.pipeline, 0, resources);
-            self.draw(&mut encoder, tile, &group);
-            let linear = self.copy_out(&mut encoder, &self.linear, 16, tile);
-            let encoded = self.copy_out(&mut encoder, &self.encoded, 4, tile);
+            let uniform = device::uniform(device, "frame", &frame);
+            let samples = wgpu::BindingResource::TextureView(&self.samples_view);
+            let group = self.pipeline.bind(device, 0, &[(0, uniform.as_entire_binding()), (1, samples)]);
+            self.draw(&mut encoder, tile, group.as_ref());
+            let linear = self.copy_out(&mut encoder, "linear picture to read", &self.linear, 16, tile);
+            let encoded = self.copy_out(&mut encoder, "encoded picture to read", &self.encoded, 4, tile);
             self.gpu.queue.submit([encoder.finish()]);
             [linear, encoded]
         })?;
@@ -104,30 +104,31 @@ impl<'gpu> DisplayPass<'gpu> {
         })
     }
 
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tile: Tile, group: &wgpu::BindGroup) {
+    fn draw(&self, encoder: &mut Encoder, tile: Tile, group: Option<&wgpu::BindGroup>) {
         let (linear, encoded) = (device::view(&self.linear), device::view(&self.encoded));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("display"),
             color_attachments: &[device::cleared(&linear), device::cleared(&encoded)],
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_viewport(0.0, 0.0, tile.width as f32, tile.height as f32, 0.0, 1.0);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, group, &[]);
+        pass.set_viewport([0.0, 0.0, tile.width as f32, tile.height as f32], 0.0..1.0);
+        pass.set_pipeline(&self.pipeline.raw);
+        pass.set_bind_group(0, group);
         pass.draw(0..3, 0..1);
     }
 
     /// Copies the tile's part of `texture` to a new buffer that can be mapped.
     fn copy_out(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
+        encoder: &mut Encoder,
+        what: &str,
         texture: &wgpu::Texture,
         pixel_bytes: u32,
         tile: Tile,
     ) -> Readback {
         let row_bytes = (tile.width * pixel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("tile"),
+            label: Some(what),
             size: u64::from(row_bytes) * u64::from(tile.height),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,

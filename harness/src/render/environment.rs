@@ -4,7 +4,7 @@ use super::device::{self, view};
 use super::{Environment, RenderError};
 use crate::gpu::Gpu;
 
-/// The environment map as a texture; one black texel where the studio stands in.
+/// The environment map as a texture; one black texel where the studio stands in, for a recipe's text that reads it all the same.
 pub(super) fn texture(gpu: &Gpu, environment: &Environment) -> Result<wgpu::TextureView, RenderError> {
     let black = [[0f32; 4]];
     let (width, height, pixels): (u32, u32, &[[f32; 4]]) = match environment {
@@ -19,7 +19,7 @@ pub(super) fn texture(gpu: &Gpu, environment: &Environment) -> Result<wgpu::Text
     }
     let texture = gpu.guarded("uploading the environment", |_| {
         let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
-        device::texture(gpu, format, [width, height, 1], bytemuck::cast_slice(pixels))
+        device::texture(gpu, "environment map", format, [width, height, 1], bytemuck::cast_slice(pixels))
     })?;
     Ok(view(&texture))
 }

@@ -1,10 +1,11 @@
 //! One frame of a rung's recipe, alone or with the display recipe, to be timed: drawn again and again, nothing brought back.
 
-use super::device::PipelineSource;
-use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::device::{Pipeline, PipelineSource};
+use super::lighting::Lighting;
+use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
 use super::{RenderError, Settings, Stage, camera, device, scene_pass};
 use crate::cookbook;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Encoder, Gpu, GpuError};
 use crate::optical_path::Status;
 use crate::scene::Scene;
 use std::time::{Duration, Instant};
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 pub struct Frame<'gpu> {
     gpu: &'gpu Gpu,
     pass: ScenePass<'gpu>,
-    view: wgpu::BindGroup,
+    view: View,
     color: wgpu::TextureView,
     depth: wgpu::TextureView,
     size: [u32; 2],
@@ -22,8 +23,8 @@ pub struct Frame<'gpu> {
 
 /// The display recipe over a whole frame.
 struct Display {
-    pipeline: wgpu::RenderPipeline,
-    group: wgpu::BindGroup,
+    pipeline: Pipeline,
+    group: Option<wgpu::BindGroup>,
     targets: [wgpu::TextureView; DISPLAY_FORMATS.len()],
 }
 
@@ -44,22 +45,24 @@ impl Display {
         let pipeline = device::pipeline(gpu, &source)?;
         let size = [settings.width, settings.height];
         let (group, targets) = gpu.guarded("allocating a screen", |device| {
-            let frame = device::uniform(device, &[0.0, 0.0, size[0] as f32, size[1] as f32, settings.exposure]);
-            let resources = vec![frame.as_entire_binding(), wgpu::BindingResource::TextureView(color)];
-            let target = |format| device::view(&device::target(device, size, format, wgpu::TextureUsages::empty()));
-            (device::bind_group(device, &pipeline, 0, resources), DISPLAY_FORMATS.map(target))
+            let values = [0.0, 0.0, size[0] as f32, size[1] as f32, settings.exposure];
+            let frame = device::uniform(device, "frame", &values);
+            let resources = [(0, frame.as_entire_binding()), (1, wgpu::BindingResource::TextureView(color))];
+            let target =
+                |format| device::view(&device::target(device, "screen", size, format, wgpu::TextureUsages::empty()));
+            (pipeline.bind(device, 0, &resources), DISPLAY_FORMATS.map(target))
         })?;
         Ok(Self { pipeline, group, targets })
     }
 
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
+    fn draw(&self, encoder: &mut Encoder) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("display"),
             color_attachments: &self.targets.each_ref().map(device::cleared),
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_pipeline(&self.pipeline.raw);
+        pass.set_bind_group(0, self.group.as_ref());
         pass.draw(0..3, 0..1);
     }
 }
@@ -79,17 +82,21 @@ impl<'gpu> Frame<'gpu> {
 
     /// Compiles the rung and uploads the scene.
     pub fn new(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
-        Self::of_source(gpu, scene, settings, &cookbook::recipe_source(settings.rung.recipe()))
+        Self::of(gpu, scene, settings, None)
     }
 
     /// The same of another text of the rung's recipe.
     pub fn of_source(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Self, RenderError> {
-        let pass = scene_pass(gpu, scene, settings, source)?;
+        Self::of(gpu, scene, settings, Some(source))
+    }
+
+    fn of(gpu: &'gpu Gpu, scene: &Scene, settings: &Settings, source: Option<&str>) -> Result<Self, RenderError> {
+        let pass = scene_pass(gpu, &Lighting::new(gpu, scene, settings), scene, settings, source)?;
         let size = [settings.width, settings.height];
         let [color, depth] = gpu.guarded("allocating a frame", |device| {
             use wgpu::TextureUsages as Usage;
-            [(SAMPLE_FORMAT, Usage::TEXTURE_BINDING), (DEPTH_FORMAT, Usage::empty())]
-                .map(|(format, usage)| device::view(&device::target(device, size, format, usage)))
+            [("samples", SAMPLE_FORMAT, Usage::TEXTURE_BINDING), ("depth", DEPTH_FORMAT, Usage::empty())]
+                .map(|(what, format, usage)| device::view(&device::target(device, what, size, format, usage)))
         })?;
         let matrix =
             camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
@@ -129,7 +136,7 @@ impl<'gpu> Frame<'gpu> {
         Ok(Some(times))
     }
 
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
+    fn draw(&self, encoder: &mut Encoder) {
         let target = SceneTarget { colors: vec![&self.color], depth: &self.depth, keep_depth: false, size: self.size };
         self.pass.draw(encoder, &self.view, &target);
         if let Some(display) = &self.display {
@@ -138,10 +145,7 @@ impl<'gpu> Frame<'gpu> {
     }
 
     /// Submits what `record` does and waits.
-    fn timed(
-        &self,
-        record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), RenderError>,
-    ) -> Result<FrameTime, RenderError> {
+    fn timed(&self, record: impl FnOnce(&mut Encoder) -> Result<(), RenderError>) -> Result<FrameTime, RenderError> {
         let start = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         record(&mut encoder)?;

@@ -1,62 +1,57 @@
 //! The gem recipes' pass.
 
 use super::device::{self, PipelineSource};
-use super::pass::{Body, DEPTH_FORMAT, ScenePass, Shared};
-use super::{Environment, Geometry, RenderError, Rung, Settings, Spectrum, stone};
+use super::lighting::Lighting;
+use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
+use super::variant::{Drawn, Part};
+use super::{Geometry, RenderError, Rung, Settings, Spectrum, stone};
 use crate::gpu::Gpu;
-use crate::scene::Scene;
+use crate::plan::Decisions;
 
-/// The overrides of the gem recipes for these settings.
-pub(crate) fn constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
-    let flag = |on: bool| if on { 1.0 } else { 0.0 };
-    let rung = settings.rung;
-    let inside = flag(rung != Rung::Surface);
-    let absorbs = settings.absorption && scene.objects.iter().any(|object| object.material.absorbs());
-    let (disperses, form, wavelengths) = match rung.spectrum() {
-        Spectrum::One => (false, 1, 3),
-        Spectrum::Paper => (true, 0, 3),
-        Spectrum::Tracker => (true, 1, 3),
-        Spectrum::Separate(count) => (true, 2, count),
+/// The overrides of the gem recipes for an object.
+pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'static str, f64)> {
+    let flag = |on: bool| f64::from(u8::from(on));
+    let (form, wavelengths) = match rung.spectrum() {
+        Spectrum::One | Spectrum::Tracker => (1, 3),
+        Spectrum::Paper => (0, 3),
+        Spectrum::Separate(count) => (2, count),
     };
-    vec![
-        ("EFFECT_PROXY_GEOMETRY", inside),
-        ("EFFECT_CONVEX_TRACE", inside),
-        ("EFFECT_BVH_TRACE", inside),
+    let mut constants = decisions.constants();
+    constants.extend([
         ("TRAVERSAL_LOOP", flag(rung.geometry() == Geometry::Triangles)),
-        ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
-        ("EFFECT_ABSORPTION", flag(absorbs)),
-        ("EFFECT_DISPERSION", flag(disperses)),
         ("DISPERSION_FORM", f64::from(form)),
         ("WAVELENGTHS", f64::from(wavelengths)),
         ("BOUNCES", f64::from(rung.hits())),
         ("REST_FROM_ENVIRONMENT", flag(settings.rest_from_environment)),
         ("LIMIT_DISTANCE", flag(settings.distance_limit.is_some())),
         ("CENTRE_PAPER", flag(settings.paper_centre)),
-    ]
+    ]);
+    constants
 }
 
-/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, and uploads the scene's stones.
+/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, for the effects of each stone, and uploads the stones.
 pub(super) fn pass<'gpu>(
     gpu: &'gpu Gpu,
-    scene: &Scene,
-    settings: &Settings,
+    lighting: &Lighting<'_>,
+    part: &Part<'_>,
     source: &str,
-    fragment: &str,
-    formats: &[wgpu::TextureFormat],
+    (fragment, formats): (&str, &[wgpu::TextureFormat]),
 ) -> Result<ScenePass<'gpu>, RenderError> {
-    let pipeline = device::pipeline(
-        gpu,
-        &PipelineSource {
-            recipe: settings.rung.recipe(),
+    let compiled = |(constants, objects): (Vec<(&str, f64)>, Vec<&Drawn<'_>>)| {
+        let from = PipelineSource {
+            recipe: part.rung.recipe(),
             source,
             entries: ["gem_vertex", fragment],
-            constants: &constants(scene, settings),
+            constants: &constants,
             formats,
             depth: Some(DEPTH_FORMAT),
-        },
-    )?;
-    let shared = vec![Shared::Texture(super::environment::texture(gpu, &settings.environment)?)];
-    let bodies: Result<Vec<Body>, RenderError> =
-        scene.objects.iter().map(|object| stone::upload(gpu, &pipeline, object, settings)).collect();
-    Ok(ScenePass { gpu, pipeline, shared, bodies: bodies?, before: Vec::new() })
+        };
+        let pipeline = device::pipeline(gpu, &from)?;
+        let upload = |drawn: &Drawn<'_>| stone::upload(gpu, &pipeline, drawn, part.rung, part.settings);
+        let bodies = objects.into_iter().map(upload).collect::<Result<Vec<_>, _>>()?;
+        Ok(Variant { shared: lighting.shared(&pipeline)?, pipeline, bodies })
+    };
+    let variants = part.variants(|drawn| constants(&drawn.decisions, part.rung, part.settings));
+    let variants = variants.into_iter().map(compiled).collect::<Result<_, RenderError>>()?;
+    Ok(ScenePass { gpu, variants, before: Vec::new() })
 }

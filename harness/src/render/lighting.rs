@@ -1,58 +1,80 @@
-//! What shines on a scene, on the device: its lights and the environment, as the recipes for what scatters light bind them.
+//! What shines on a scene, on the device: its lights and the environment, as the recipes bind them. Each is made when
+//! the first pipeline reads it, and once for all.
 
-use super::device::{buffer, uniform};
+use super::device::{Pipeline, buffer, uniform};
 use super::pass::Shared;
-use super::{Environment, RenderError, Settings, environment, harmonics};
+use super::{RenderError, Settings, environment, harmonics};
 use crate::gpu::Gpu;
 use crate::scene::light::Falloff;
 use crate::scene::{Light, Scene};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
+use std::cell::OnceCell;
 
 /// The parts `surroundings`, `lights` and `harmonics`.
-pub(super) struct Lighting {
-    environment: wgpu::TextureView,
-    pub(super) lights: wgpu::Buffer,
-    pub(super) harmonics: wgpu::Buffer,
+pub(super) struct Lighting<'a> {
+    gpu: &'a Gpu,
+    scene: &'a Scene,
+    settings: &'a Settings,
+    environment: OnceCell<wgpu::TextureView>,
+    lights: OnceCell<wgpu::Buffer>,
+    harmonics: OnceCell<wgpu::Buffer>,
 }
 
-impl Lighting {
+impl<'a> Lighting<'a> {
     /// The scene's lights and the settings' environment.
-    pub(super) fn upload(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
-        let environment = environment::texture(gpu, &settings.environment)?;
-        let coefficients = if settings.light_from_environment {
-            harmonics::project(&settings.environment)
-        } else {
-            [DVec3::ZERO; harmonics::COUNT]
-        };
-        let coefficients: Vec<f32> =
-            coefficients.iter().flat_map(|coefficient| coefficient.as_vec3().extend(0.0).to_array()).collect();
-        let [lights, harmonics] = gpu.guarded("uploading lights", |device| {
-            let lights = buffer(device, bytemuck::cast_slice(&lights(scene)), wgpu::BufferUsages::STORAGE);
-            [lights, uniform(device, &coefficients)]
-        })?;
-        Ok(Self { environment, lights, harmonics })
+    pub(super) fn new(gpu: &'a Gpu, scene: &'a Scene, settings: &'a Settings) -> Self {
+        let (environment, lights, harmonics) = Default::default();
+        Self { gpu, scene, settings, environment, lights, harmonics }
     }
 
-    /// Bindings 1 to 3 of group 0.
-    pub(super) fn shared(self) -> Vec<Shared> {
-        vec![Shared::Texture(self.environment), Shared::Buffer(self.lights), Shared::Buffer(self.harmonics)]
+    /// The environment's image.
+    pub(super) fn environment(&self) -> Result<&wgpu::TextureView, RenderError> {
+        once(&self.environment, || environment::texture(self.gpu, &self.settings.environment))
+    }
+
+    /// The list of lights.
+    pub(super) fn lights(&self) -> Result<&wgpu::Buffer, RenderError> {
+        once(&self.lights, || {
+            let lights = lights(self.scene);
+            let upload =
+                |device: &_| buffer(device, "lights", bytemuck::cast_slice(&lights), wgpu::BufferUsages::STORAGE);
+            Ok(self.gpu.guarded("uploading lights", upload)?)
+        })
+    }
+
+    /// The environment's diffuse light.
+    pub(super) fn harmonics(&self) -> Result<&wgpu::Buffer, RenderError> {
+        once(&self.harmonics, || {
+            let coefficients = harmonics::project(&self.settings.environment);
+            let coefficients: Vec<f32> =
+                coefficients.iter().flat_map(|coefficient| coefficient.as_vec3().extend(0.0).to_array()).collect();
+            Ok(self.gpu.guarded("uploading lights", |device| uniform(device, "harmonics", &coefficients))?)
+        })
+    }
+
+    /// What `pipeline` reads of bindings 1 to 3 of group 0.
+    pub(super) fn shared(&self, pipeline: &Pipeline) -> Result<Vec<(u32, Shared)>, RenderError> {
+        let mut shared = Vec::new();
+        if pipeline.binds(0, 1) {
+            shared.push((1, Shared::Texture(self.environment()?.clone())));
+        }
+        if pipeline.binds(0, 2) {
+            shared.push((2, Shared::Buffer(self.lights()?.clone())));
+        }
+        if pipeline.binds(0, 3) {
+            shared.push((3, Shared::Buffer(self.harmonics()?.clone())));
+        }
+        Ok(shared)
     }
 }
 
-/// The overrides of the parts `surroundings`, `lights` and `reflection`, and of the environment's diffuse light.
-pub(super) fn constants(scene: &Scene, settings: &Settings) -> [(&'static str, f64); 5] {
-    let flag = |on: bool| f64::from(u8::from(on));
-    let materials = || scene.objects.iter().map(|object| &object.material);
-    let polished = materials().any(|material| material.roughness == 0.0 && material.ior > 1.0);
-    let rough = materials().any(|material| material.roughness > 0.0 && material.ior > 1.0);
-    let spots = scene.lights.iter().any(|light| matches!(light, Light::Spot { .. }));
-    [
-        ("EFFECT_ENVIRONMENT", flag(settings.light_from_environment)),
-        ("EFFECT_ENVIRONMENT_MAP", flag(matches!(settings.environment, Environment::Map(_)))),
-        ("EFFECT_MICROFACET", flag(settings.reflection && rough)),
-        ("EFFECT_REFLECTION", flag(settings.reflection && polished)),
-        ("EFFECT_SPOT", flag(spots)),
-    ]
+/// What is in the cell, made now where nothing is.
+fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, RenderError>) -> Result<&T, RenderError> {
+    if let Some(known) = cell.get() {
+        return Ok(known);
+    }
+    let made = make()?;
+    Ok(cell.get_or_init(|| made))
 }
 
 /// `Light` of the recipe, 12 floats each; one black light where there is none.

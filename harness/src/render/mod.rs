@@ -21,9 +21,11 @@ mod rung;
 mod stone;
 pub mod texture_diffusion;
 mod translucent;
+mod variant;
 
 use crate::cookbook;
 use crate::gpu::{Gpu, GpuError};
+use crate::plan::{Decisions, Effect, Effects, Scattering};
 use crate::random_walk::mesh::{self, Rendering as Walked};
 use crate::reference::{self, Lost, Rendering};
 use crate::scene::Scene;
@@ -31,15 +33,17 @@ use crate::scene::environment_map::EnvironmentMap;
 use deferred::DeferredPass;
 use display::DisplayPass;
 pub use frame::{Frame, FrameTime};
-pub(crate) use gem::constants;
+use lighting::Lighting;
 pub use note::Note;
 pub use optical_path::{Paths, Stage};
 use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
+use std::borrow::Cow;
 use std::sync::Mutex;
 pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
-pub(crate) use translucent::constants as translucent_constants;
+use variant::Part;
+pub(crate) use variant::names as object_names;
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
@@ -79,20 +83,18 @@ pub struct Settings {
     pub paper_centre: bool,
     /// Factor of the paper's eq. (12); 1 as printed.
     pub dispersion_strength: f32,
-    /// Light is absorbed inside where the material says so.
-    pub absorption: bool,
+    /// What is left out though a material calls for it.
+    pub without: Effects,
+    /// How bodies that scatter light are drawn whatever their thickness, where the rung is each material's own.
+    pub scattering: Option<Scattering>,
     /// What a ray still carries at the last hit comes from the environment along it; dropped otherwise.
     pub rest_from_environment: bool,
     /// In units of length: a ray ends that has travelled farther inside.
     pub distance_limit: Option<f32>,
     /// By a geometry buffer and a lighting pass instead of in one.
     pub deferred: bool,
-    /// What scatters light is lit by the environment too, not by the scene's lights alone.
-    pub light_from_environment: bool,
     /// The environment's light is summed for each vertex, not for each pixel.
     pub environment_at_vertices: bool,
-    /// The surface of what scatters light reflects: a polished one the environment, a rough one the lights.
-    pub reflection: bool,
     /// Which curvature spreads the light of what scatters it.
     pub curvature: Curvature,
     /// What light loses along its way through a body is this times its extinction and twice that of diffused light.
@@ -125,13 +127,12 @@ impl Settings {
             rung: Rung::PAPER,
             paper_centre: false,
             dispersion_strength: 1.0,
-            absorption: true,
+            without: Effects::NONE,
+            scattering: None,
             rest_from_environment: true,
             distance_limit: None,
             deferred: false,
-            light_from_environment: true,
             environment_at_vertices: true,
-            reflection: true,
             curvature: Curvature::Mean,
             extinction_scale: EXTINCTION_SCALE,
             environment: Environment::Studio,
@@ -228,9 +229,19 @@ pub enum RenderError {
         /// What is possible.
         limit: u32,
     },
-    /// A compute pass is not valid.
+    /// A recipe is not valid.
     #[error(transparent)]
-    Kernel(#[from] crate::compute::KernelError),
+    Kernel(#[from] crate::shader::ShaderError),
+    /// A geometry buffer holds clear stones alone.
+    #[error(
+        "object `{object}` is drawn by rung `{rung}`, and only clear stones are drawn by way of a geometry buffer; leave --deferred out"
+    )]
+    NotDeferred {
+        /// Its name.
+        object: String,
+        /// Its rung.
+        rung: Rung,
+    },
     /// A material that a rung for scattering cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \
@@ -279,8 +290,8 @@ pub enum RenderError {
     /// The reference of what scatters light refuses.
     #[error(transparent)]
     Walk(#[from] mesh::WalkError),
-    /// The recipe is not valid WGSL.
-    #[error("{0}")]
+    /// A recipe that is run for its result is not valid.
+    #[error(transparent)]
     Recipe(#[from] crate::dispatch::DispatchError),
     /// The device refused.
     #[error(transparent)]
@@ -289,27 +300,31 @@ pub enum RenderError {
 
 /// Renders `scene` with the cookbook's recipe.
 pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, RenderError> {
-    let source = cookbook::recipe_source(settings.rung.recipe());
-    render_with(gpu, scene, settings, &source, &mut |_, _| {})
+    render_reporting(gpu, scene, settings, &mut |_, _| {})
 }
 
-/// Renders `scene` with another text of the rung's recipe, and says how many of how many steps are done.
-pub fn render_with(
+/// The same, saying how many of how many steps are done.
+pub fn render_reporting(
     gpu: &Gpu,
     scene: &Scene,
     settings: &Settings,
-    source: &str,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
-    render_from(gpu, scene, settings, [source, &cookbook::recipe_source(deferred::COMPOSITE)], progress)
+    render_from(gpu, scene, settings, (None, &cookbook::recipe_source(deferred::COMPOSITE)), progress)
 }
 
-/// The same with both texts: of the rung's recipe, and of the lighting pass.
+/// Renders `scene` with another text of the rung's recipe.
+pub fn render_with(gpu: &Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Picture, RenderError> {
+    let composite = cookbook::recipe_source(deferred::COMPOSITE);
+    render_from(gpu, scene, settings, (Some(source), &composite), &mut |_, _| {})
+}
+
+/// The same with both texts: of the rung's recipe, where it is another than the cookbook's, and of the lighting pass.
 fn render_from(
     gpu: &Gpu,
     scene: &Scene,
     settings: &Settings,
-    [source, composite]: [&str; 2],
+    (source, composite): (Option<&str>, &str),
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
     let (width, height) = (settings.width, settings.height);
@@ -333,16 +348,12 @@ fn render_from(
         return Ok(picture);
     }
     let display = DisplayPass::new(gpu, settings.samples)?;
-    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, settings, composite)).transpose()?;
-    let pass = if deferred.is_some() {
-        let formats = [deferred::GEOMETRY_FORMAT; deferred::TARGETS];
-        gem::pass(gpu, scene, settings, source, "gem_deferred_fragment", &formats)?
-    } else {
-        scene_pass(gpu, scene, settings, source)?
-    };
+    let lighting = Lighting::new(gpu, scene, settings);
+    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, &lighting, settings, composite)).transpose()?;
+    let pass = scene_pass(gpu, &lighting, scene, settings, source)?;
     let depth = gpu.guarded("allocating a tile", |device| {
         let size = [TILE * settings.samples; 2];
-        device::view(&device::target(device, size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
+        device::view(&device::target(device, "depth", size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
     })?;
     let tiles: Vec<Tile> = Tile::all(width, height).collect();
     for (done, tile) in (1..).zip(&tiles) {
@@ -369,18 +380,47 @@ fn render_from(
     Ok(picture)
 }
 
-/// The pass of the settings' rung, in one go.
+/// Everything that draws the scene's objects, each by its rung; `source` is another text of the recipe where they all have one.
 fn scene_pass<'gpu>(
     gpu: &'gpu Gpu,
+    lighting: &Lighting<'_>,
     scene: &Scene,
     settings: &Settings,
-    source: &str,
+    source: Option<&str>,
 ) -> Result<ScenePass<'gpu>, RenderError> {
-    match settings.rung {
-        Rung::Diffuse(reflectance) => translucent::pass(gpu, scene, settings, reflectance, source),
-        Rung::OpticalPath(paths) => optical_path::pass(gpu, scene, settings, paths, source),
-        _ => gem::pass(gpu, scene, settings, source, "gem_fragment", &[SAMPLE_FORMAT]),
+    let mut all = ScenePass::empty(gpu);
+    for part in Part::all(scene, settings) {
+        let composed = || Cow::Owned(cookbook::recipe_source(part.rung.recipe()));
+        let source = &*source.map_or_else(composed, Cow::Borrowed);
+        let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
+        let forward = &[SAMPLE_FORMAT][..];
+        all.append(match part.rung {
+            Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.deferred => {
+                return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
+            }
+            Rung::Diffuse(reflectance) => translucent::pass(gpu, lighting, &part, reflectance, source)?,
+            Rung::OpticalPath(paths) => optical_path::pass(gpu, lighting, &part, paths, source)?,
+            _ if settings.deferred => gem::pass(gpu, lighting, &part, source, ("gem_deferred_fragment", deferred))?,
+            _ => gem::pass(gpu, lighting, &part, source, ("gem_fragment", forward))?,
+        });
     }
+    Ok(all)
+}
+
+/// The overrides of the gem recipes for a scene's first object.
+pub(crate) fn gem_constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
+    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, settings));
+    decisions.map_or_else(Vec::new, |decisions| gem::constants(&decisions, decisions.rung, settings))
+}
+
+/// The same of the recipe `cdrf_shading`.
+pub(crate) fn translucent_constants(
+    scene: &Scene,
+    settings: &Settings,
+    reflectance: Reflectance,
+) -> Vec<(&'static str, f64)> {
+    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, settings));
+    decisions.map_or_else(Vec::new, |decisions| translucent::constants(&decisions, settings, reflectance))
 }
 
 /// Whether a body of `scene` scatters light.
@@ -400,7 +440,7 @@ fn walk(
         samples_per_pixel: settings.walks,
         origin: settings.walks_from,
         seed: settings.seed,
-        environment: settings.light_from_environment.then_some(&settings.environment),
+        environment: (!settings.without.has(Effect::Environment)).then_some(&settings.environment),
         boundary: settings.boundary,
     };
     Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)

@@ -5,15 +5,18 @@ mod density;
 mod seeds;
 mod stage;
 
-use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices};
+use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices};
 use super::light_views::{self, LightView};
-use super::lighting::{self, Lighting};
-use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared};
+use super::lighting::Lighting;
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
-use super::{Note, RenderError, Settings};
-use crate::gpu::Gpu;
+use super::variant::{Drawn, Part};
+use super::{Note, RenderError, Rung, Settings};
+use crate::gpu::capture::OfObject;
+use crate::gpu::{Encoder, Gpu};
 use crate::optical_path::{Method, Solver, Status};
-use crate::scene::{Bounds, Density, Light, Material, Medium, Object, Scene};
+use crate::plan::Effect;
+use crate::scene::{Bounds, Density, Light, Material, Medium, Object};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
 use density::Densities;
@@ -40,7 +43,8 @@ pub struct Paths {
 pub(super) struct OpticalPaths<'gpu> {
     gpu: &'gpu Gpu,
     maps: ReflectiveShadowMaps<'gpu>,
-    seeds: Seeds,
+    /// Of each variant.
+    seeds: Vec<Seeds>,
     bodies: Vec<BodyPaths<'gpu>>,
 }
 
@@ -55,6 +59,8 @@ struct BodyPaths<'gpu> {
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
     channels: Vec<Channel>,
+    /// Which of the seeds' variants.
+    variant: usize,
     /// What the surface sends back where the cost is 0, for each channel: linear radiance.
     brightest: Vec3,
 }
@@ -68,65 +74,84 @@ struct Channel {
     status: wgpu::Buffer,
 }
 
-/// Compiles `source`, the composed recipe, and uploads the scene.
+/// Compiles `source`, the composed recipe, for the effects of each body, and uploads the bodies.
 pub(super) fn pass<'gpu>(
     gpu: &'gpu Gpu,
-    scene: &Scene,
-    settings: &Settings,
+    lighting: &Lighting<'_>,
+    part: &Part<'_>,
     paths: Paths,
     source: &str,
 ) -> Result<ScenePass<'gpu>, RenderError> {
-    let extinctions = extinctions(scene, settings)?;
-    let bounds = scene.bounds();
+    for drawn in &part.objects {
+        check(drawn.object, part.rung)?;
+    }
+    let bounds = part.bounds();
     // A sun without light stands in where there is no light.
     let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
-    let lights = if scene.lights.is_empty() { &dark[..] } else { &scene.lights };
+    let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
     let views = light_views::views(lights, bounds);
     let largest = light_views::largest_irradiance(lights, bounds);
-    let color = is_colored(&extinctions, lights);
-    let constants = constants(scene, settings, color);
-    let pipeline = device::pipeline(
-        gpu,
-        &PipelineSource {
-            recipe: settings.rung.recipe(),
+    let side = map_side(part, paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
+    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
+    let views = gpu.guarded("uploading views", |device| {
+        buffer(device, "views of lights", &view_bytes(&views), wgpu::BufferUsages::STORAGE)
+    })?;
+    let lit = Lit { views, maps: maps.view(), lights: lighting.lights()?.clone() };
+    let mut pass = ScenePass::empty(gpu);
+    let (mut seeds, mut bodies) = (Vec::new(), Vec::new());
+    for (constants, objects) in part.variants(|drawn| drawn.decisions.constants()) {
+        let from = PipelineSource {
+            recipe: part.rung.recipe(),
             source,
             entries: ["optical_path_vertex", "optical_path_fragment"],
             constants: &constants,
             formats: &[SAMPLE_FORMAT],
             depth: Some(DEPTH_FORMAT),
-        },
-    )?;
-    let lighting = Lighting::upload(gpu, scene, settings)?;
-    let side = map_side(scene, paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
-    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
-    let views =
-        gpu.guarded("uploading views", |device| buffer(device, &view_bytes(&views), wgpu::BufferUsages::STORAGE))?;
-    let seeds = Seeds::new(gpu, &constants)?;
-    let lit = Lit { views, maps: maps.view(), lights: lighting.lights.clone() };
-    let upload =
-        Upload { gpu, pipeline: &pipeline, seeds: &seeds, paths, lit: &lit, largest, color, dense: is_dense(scene) };
-    let (mut bodies, mut of_bodies) = (Vec::new(), Vec::new());
-    // An object without triangles has nothing to draw, and no buffer is empty.
-    let objects = scene.objects.iter().zip(&extinctions).filter(|(object, _)| !object.mesh.indices.is_empty());
-    for (object, extinction) in objects {
-        let (body, of_body) = upload.body(object, *extinction, &mut maps)?;
-        bodies.push(body);
-        of_bodies.push(of_body);
+        };
+        let pipeline = device::pipeline(gpu, &from)?;
+        let mut shared = lighting.shared(&pipeline)?;
+        shared.extend([(4, Shared::Buffer(lit.views.clone())), (5, Shared::Texture(lit.maps.clone()))]);
+        let follows = objects.iter().any(|drawn| drawn.decisions.has(Effect::OpticalPath));
+        let variant = seeds.len();
+        if follows {
+            seeds.push(Seeds::new(gpu, &constants)?);
+        }
+        let seeds = seeds.get(variant);
+        let upload =
+            Upload { gpu, pipeline: &pipeline, seeds, variant, paths, lit: &lit, largest, settings: part.settings };
+        let mut drawn_bodies = Vec::new();
+        for drawn in objects {
+            let (body, of_body) = upload.body(drawn, &mut maps)?;
+            drawn_bodies.push(body);
+            bodies.extend(of_body);
+        }
+        pass.variants.push(Variant { pipeline, shared, bodies: drawn_bodies });
     }
-    let mut bound = lighting.shared();
-    bound.extend([Shared::Buffer(lit.views), Shared::Texture(lit.maps)]);
-    let before = vec![Before::Paths(OpticalPaths { gpu, maps, seeds, bodies: of_bodies })];
-    Ok(ScenePass { gpu, pipeline, shared: bound, bodies, before })
+    pass.before.push(Before::Paths(OpticalPaths { gpu, maps, seeds, bodies }));
+    Ok(pass)
+}
+
+/// Refuses a body through which no light can be followed.
+fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
+    let Object { name, material, mesh } = object;
+    if material.medium.is_none() {
+        return Err(RenderError::NoMedium { object: name.clone(), material: material.name.clone(), rung });
+    }
+    if mesh.triangle_count() > MOST_TRIANGLES as usize {
+        let [bytes, limit] = [mesh.triangle_count() as u64, MOST_TRIANGLES.into()].map(|count| 12 * count);
+        return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
+    }
+    Ok(())
 }
 
 /// Texels along the sides of the lights' maps, which show all bodies: so many that the smallest one's voxels are seen.
-fn map_side(scene: &Scene, cells: u32) -> u32 {
-    let widest = 2.0 / 3f32.sqrt() * scene.bounds().radius();
-    let extent = |object: &Object| {
-        let bounds = Bounds::of(object.mesh.positions.iter().copied());
+fn map_side(part: &Part<'_>, cells: u32) -> u32 {
+    let widest = 2.0 / 3f32.sqrt() * part.bounds().radius();
+    let extent = |drawn: &Drawn<'_>| {
+        let bounds = Bounds::of(drawn.object.mesh.positions.iter().copied());
         (bounds.max - bounds.min).max_element()
     };
-    let extents = scene.objects.iter().filter(|object| !object.mesh.indices.is_empty()).map(extent);
+    let extents = part.objects.iter().map(extent);
     let least = extents.filter(|extent| *extent > 0.0).fold(widest, f32::min);
     let side = TEXELS_PER_VOXEL * cells;
     if least < widest { (side as f32 * (widest / least)).min(MOST_TEXELS.max(side) as f32) as u32 } else { side }
@@ -135,67 +160,90 @@ fn map_side(scene: &Scene, cells: u32) -> u32 {
 /// What sending a body to the device takes beside the body.
 struct Upload<'a, 'gpu> {
     gpu: &'gpu Gpu,
-    pipeline: &'a wgpu::RenderPipeline,
-    seeds: &'a Seeds,
+    pipeline: &'a Pipeline,
+    /// Of this variant, where it follows light through bodies.
+    seeds: Option<&'a Seeds>,
+    variant: usize,
     paths: Paths,
     lit: &'a Lit,
     /// The irradiance whose cost is 0, for each channel.
     largest: Vec3,
-    /// Each channel has costs of its own.
-    color: bool,
-    /// Some body's density differs from place to place.
-    dense: bool,
+    settings: &'a Settings,
 }
 
 impl<'gpu> Upload<'_, 'gpu> {
-    /// A body to be drawn, and what finds the light's ways through it. The maps are to show it too.
+    /// A body to be drawn, and what finds the light's ways through it, where any are followed. The maps are to show it too.
     fn body(
         &self,
-        object: &Object,
-        extinction: Vec3,
+        drawn: &Drawn<'_>,
         maps: &mut ReflectiveShadowMaps<'gpu>,
-    ) -> Result<(Body, BodyPaths<'gpu>), RenderError> {
+    ) -> Result<(Body, Option<BodyPaths<'gpu>>), RenderError> {
         let gpu = self.gpu;
-        let Object { mesh, material, name } = object;
+        let Drawn { object: Object { mesh, material, .. }, name, .. } = drawn;
+        let _of = OfObject::named(name);
+        let extinction = extinction(material, self.settings);
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.paths.cells);
-        let parts: [&[u8]; 3] = [
-            bytemuck::cast_slice(&mesh.positions),
-            bytemuck::cast_slice(&mesh.indices),
-            bytemuck::cast_slice(&mesh.normals),
+        let parts: [(&str, &[u8]); 3] = [
+            ("positions", bytemuck::cast_slice(&mesh.positions)),
+            ("indices", bytemuck::cast_slice(&mesh.indices)),
+            ("normals", bytemuck::cast_slice(&mesh.normals)),
         ];
-        let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
+        let vertices = mesh_vertices(gpu, drawn.object, &mesh.indices, parts.map(|(_, contents)| contents))?;
         let [positions, indices, normals] = gpu.guarded("uploading a mesh", |device| {
-            parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE))
+            parts.map(|(what, part)| buffer(device, what, part, wgpu::BufferUsages::STORAGE))
         })?;
-        maps.add([&positions, &indices, &normals], vertices)?;
-        if mesh.triangle_count() > MOST_TRIANGLES as usize {
-            let [bytes, limit] = [mesh.triangle_count() as u64, MOST_TRIANGLES.into()].map(|count| 12 * count);
-            return Err(RenderError::TooLarge { what: format!("mesh `{name}`"), bytes, limit });
-        }
-        let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &[])?;
-        let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
-        let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
-        let solver = Solver::new(gpu, grid, self.paths.method, densities.is_some(), None)?;
-        let same = gpu.guarded("allocating densities", |device| {
-            // Beside bodies whose density differs, one whose does not has it too; in a scene of the latter nobody reads it.
-            let count = if self.dense && densities.is_none() { grid.count() } else { 1 };
-            buffer(device, bytemuck::cast_slice(&vec![1f32; count]), wgpu::BufferUsages::STORAGE)
-        })?;
-        let density = densities.as_ref().map_or(&same, |densities| &densities.buffer);
-        let channels = (0..if self.color { 3 } else { 1 })
-            .map(|channel| self.channel(channel, extinction[channel], grid, [&voxelizer.matter, density], &solver))
-            .collect::<Result<Vec<_>, _>>()?;
+        maps.add(name, [&positions, &indices, &normals], vertices)?;
+        let of_body = match self.seeds {
+            Some(seeds) => Some(self.paths(drawn, seeds, grid, extinction, [&positions, &indices])?),
+            None => None,
+        };
         let group = gpu.guarded("uploading a material", |device| {
             let uniform = body_bytes(grid, material, extinction, self.largest);
-            let uniform = buffer(device, &uniform, wgpu::BufferUsages::UNIFORM);
-            let costs = |channel: usize| &channels.get(channel).unwrap_or(&channels[0]).costs;
-            let buffers = [&uniform, &positions, &indices, &normals, costs(0), costs(1), costs(2), density];
-            bind_group(device, self.pipeline, 1, buffers.map(wgpu::Buffer::as_entire_binding).into())
+            let uniform = buffer(device, "material", &uniform, wgpu::BufferUsages::UNIFORM);
+            let mut buffers = vec![(0, &uniform), (1, &positions), (2, &indices), (3, &normals)];
+            if let Some(of_body) = &of_body {
+                buffers.extend((4..).zip(of_body.channels.iter().map(|channel| &channel.costs)));
+                buffers.extend(of_body.densities.as_ref().map(|densities| (7, &densities.buffer)));
+            }
+            let resources: Vec<_> =
+                buffers.into_iter().map(|(binding, buffer)| (binding, buffer.as_entire_binding())).collect();
+            self.pipeline.bind(device, 1, &resources)
         })?;
-        let brightest = FRAC_1_PI * material.base_color * self.largest;
-        let name = name.clone();
-        let of_body = BodyPaths { name, grid, voxelizer, densities, solver, positions, indices, channels, brightest };
-        Ok((Body { groups: vec![group], vertices }, of_body))
+        Ok((Body { name: name.clone(), groups: vec![group], vertices }, of_body))
+    }
+
+    /// What finds the light's ways through a body.
+    fn paths(
+        &self,
+        drawn: &Drawn<'_>,
+        seeds: &Seeds,
+        grid: VoxelGrid,
+        extinction: Vec3,
+        [positions, indices]: [&wgpu::Buffer; 2],
+    ) -> Result<BodyPaths<'gpu>, RenderError> {
+        let gpu = self.gpu;
+        let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
+        let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &decisions.constants())?;
+        let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
+        let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
+        let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
+        let solver = Solver::new(gpu, grid, self.paths.method, densities.is_some(), None)?;
+        let of_voxels = (&voxelizer.matter, densities.as_ref().map(|densities| &densities.buffer));
+        let channels = (0..if decisions.has(Effect::Color) { 3 } else { 1 })
+            .map(|channel| self.channel(channel, extinction[channel], grid, of_voxels, (seeds, &solver)))
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(BodyPaths {
+            name: name.clone(),
+            grid,
+            voxelizer,
+            densities,
+            solver,
+            positions: positions.clone(),
+            indices: indices.clone(),
+            channels,
+            variant: self.variant,
+            brightest: FRAC_1_PI * material.base_color * self.largest,
+        })
     }
 
     fn channel(
@@ -203,68 +251,38 @@ impl<'gpu> Upload<'_, 'gpu> {
         number: usize,
         extinction: f32,
         grid: VoxelGrid,
-        [matter, density]: [&wgpu::Buffer; 2],
-        solver: &Solver<'_>,
+        (matter, density): (&wgpu::Buffer, Option<&wgpu::Buffer>),
+        (seeds, solver): (&Seeds, &Solver<'_>),
     ) -> Result<Channel, RenderError> {
         let status = solver.kept_status()?;
         Ok(self.gpu.guarded("allocating costs", |device| {
             let costs = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("costs"),
+                label: Some(["costs of red", "costs of green", "costs of blue"][number]),
                 size: 4 * grid.count() as u64,
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             });
             let largest = self.largest[number];
             let seeded = Seeded { grid, matter, density, costs: &costs, extinction, largest, channel: number as u32 };
-            let groups = self.seeds.bind(device, self.lit, &seeded);
+            let groups = seeds.bind(device, self.lit, &seeded);
             Channel { extinction, costs, groups, status }
         })?)
     }
 }
 
-/// The overrides of the recipes for these settings.
-pub(crate) fn constants(scene: &Scene, settings: &Settings, color: bool) -> Vec<(&'static str, f64)> {
-    let mut constants = vec![
-        ("EFFECT_OPTICAL_PATH", 1.0),
-        ("EFFECT_COLOR", f64::from(u8::from(color))),
-        ("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(is_dense(scene)))),
-    ];
-    constants.extend(lighting::constants(scene, settings));
-    constants
-}
-
 /// Beside the extinction itself, how often that of diffused light, √(3 absorption × extinction), counts: docs/optical_path_shading.md has the fit.
 const EFFECTIVE_WEIGHT: f32 = 2.0;
 
-/// What each object takes from light on its way, per unit of length: the settings' scale times what scattering and absorption take, and absorption
+/// What a body takes from light on its way, per unit of length: the settings' scale times what scattering and absorption take, and absorption
 /// once more as it acts on light that is scattered all along.
-fn extinctions(scene: &Scene, settings: &Settings) -> Result<Vec<Vec3>, RenderError> {
-    let of = |object: &Object| {
-        let Some(Medium { scattering, absorption, anisotropy, .. }) = &object.material.medium else {
-            return Err(RenderError::NoMedium {
-                object: object.name.clone(),
-                material: object.material.name.clone(),
-                rung: settings.rung,
-            });
-        };
-        // Light that is scattered forwards goes on: similarity theory.
-        let extinction = *scattering * (1.0 - anisotropy) + *absorption;
-        let effective = (3.0 * *absorption * extinction).map(f32::sqrt);
-        Ok(settings.extinction_scale * (extinction + EFFECTIVE_WEIGHT * effective))
+fn extinction(material: &Material, settings: &Settings) -> Vec3 {
+    let Some(Medium { scattering, absorption, anisotropy, .. }) = &material.medium else {
+        return Vec3::ZERO;
     };
-    scene.objects.iter().map(of).collect()
-}
-
-/// Whether any body's density differs from place to place.
-fn is_dense(scene: &Scene) -> bool {
-    let media = scene.objects.iter().filter_map(|object| object.material.medium.as_ref());
-    media.into_iter().any(|medium| medium.density != Density::Uniform)
-}
-
-/// Whether red, green and blue differ in any body's extinction or any light.
-fn is_colored(extinctions: &[Vec3], lights: &[Light]) -> bool {
-    let grey = |color: Vec3| color.x == color.y && color.y == color.z;
-    !(extinctions.iter().copied().all(grey) && lights.iter().map(Light::power).all(grey))
+    // Light that is scattered forwards goes on: similarity theory.
+    let extinction = *scattering * (1.0 - anisotropy) + *absorption;
+    let effective = (3.0 * *absorption * extinction).map(f32::sqrt);
+    settings.extinction_scale * (extinction + EFFECTIVE_WEIGHT * effective)
 }
 
 /// `OpticalPathBody` of the recipe.
@@ -288,12 +306,12 @@ fn view_bytes(views: &[LightView]) -> Vec<u8> {
 
 impl OpticalPaths<'_> {
     /// Everything that the frame's picture looks up, from the meshes and lights alone.
-    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+    pub(super) fn encode(&self, encoder: &mut Encoder) -> Result<(), RenderError> {
         Stage::ALL.into_iter().try_for_each(|stage| self.encode_stage(encoder, stage))
     }
 
     /// One stage of it, after those before. Nothing of [`Stage::Shade`], which is no part of it.
-    pub(super) fn encode_stage(&self, encoder: &mut wgpu::CommandEncoder, stage: Stage) -> Result<(), RenderError> {
+    pub(super) fn encode_stage(&self, encoder: &mut Encoder, stage: Stage) -> Result<(), RenderError> {
         match stage {
             Stage::Voxels => self.bodies.iter().try_for_each(|body| self.encode_voxels(encoder, body)),
             Stage::Maps => Ok(self.gpu.guarded("drawing reflective shadow maps", |_| self.maps.encode(encoder))?),
@@ -303,6 +321,7 @@ impl OpticalPaths<'_> {
             }
             Stage::Solve => {
                 for body in &self.bodies {
+                    let _of = OfObject::named(&body.name);
                     let density = body.densities.as_ref().map(|densities| &densities.buffer);
                     for Channel { costs, extinction, status, .. } in &body.channels {
                         body.solver.encode(encoder, &body.voxelizer.matter, density, costs, *extinction)?;
@@ -315,7 +334,8 @@ impl OpticalPaths<'_> {
         }
     }
 
-    fn encode_voxels(&self, encoder: &mut wgpu::CommandEncoder, body: &BodyPaths<'_>) -> Result<(), RenderError> {
+    fn encode_voxels(&self, encoder: &mut Encoder, body: &BodyPaths<'_>) -> Result<(), RenderError> {
+        let _of = OfObject::named(&body.name);
         body.voxelizer.encode(encoder, &body.positions, &body.indices)?;
         if let Some(densities) = &body.densities {
             self.gpu.guarded("finding densities", |_| densities.encode(encoder))?;
@@ -323,14 +343,10 @@ impl OpticalPaths<'_> {
         Ok(())
     }
 
-    fn encode_seeds(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        body: &BodyPaths<'_>,
-        channel: &Channel,
-    ) -> Result<(), RenderError> {
+    fn encode_seeds(&self, encoder: &mut Encoder, body: &BodyPaths<'_>, channel: &Channel) -> Result<(), RenderError> {
+        let _of = OfObject::named(&body.name);
         Ok(self.gpu.guarded("seeding costs", |_| {
-            self.seeds.encode(encoder, &channel.groups, body.grid.cells, self.maps.size());
+            self.seeds[body.variant].encode(encoder, &channel.groups, body.grid.cells, self.maps.size());
         })?)
     }
 

@@ -1,9 +1,11 @@
-//! A scene on the device under one compiled recipe, and drawing it.
+//! A scene on the device under compiled recipes, and drawing it.
 
+use super::device::{self, Pipeline};
 use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
-use super::{Note, RenderError, device};
-use crate::gpu::Gpu;
+use super::{Note, RenderError};
+use crate::gpu::capture::OfObject;
+use crate::gpu::{Encoder, Gpu, RenderPass};
 use glam::{Mat4, Vec3};
 
 /// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.
@@ -12,6 +14,7 @@ pub(super) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba3
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// What a recipe binds in group 0 beside the view.
+#[derive(Clone)]
 pub(super) enum Shared {
     /// A texture.
     Texture(wgpu::TextureView),
@@ -21,28 +24,36 @@ pub(super) enum Shared {
 
 /// One object on the device.
 pub(super) struct Body {
-    /// Group 1, then group 2 where the recipe has one.
-    pub(super) groups: Vec<wgpu::BindGroup>,
+    /// The object's.
+    pub(super) name: String,
+    /// From group 1 on; nothing where the pipeline reads nothing of a group.
+    pub(super) groups: Vec<Option<wgpu::BindGroup>>,
     pub(super) vertices: u32,
 }
 
 impl Body {
     /// Draws it, in one call.
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, pass: &mut RenderPass<'_>) {
+        let _of = OfObject::named(&self.name);
         for (group, bind_group) in (1..).zip(&self.groups) {
-            pass.set_bind_group(group, bind_group, &[]);
+            pass.set_bind_group(group, bind_group.as_ref());
         }
         pass.draw(0..self.vertices, 0..1);
     }
 }
 
-/// A compiled recipe and the scene's objects.
+/// A recipe compiled for the effects that some objects call for, and these.
+pub(super) struct Variant {
+    pub(super) pipeline: Pipeline,
+    /// Of group 0, by binding, from 1 on: what the pipeline reads.
+    pub(super) shared: Vec<(u32, Shared)>,
+    pub(super) bodies: Vec<Body>,
+}
+
+/// Compiled recipes and the scene's objects.
 pub(super) struct ScenePass<'gpu> {
     pub(super) gpu: &'gpu Gpu,
-    pub(super) pipeline: wgpu::RenderPipeline,
-    /// Group 0 from binding 1 on.
-    pub(super) shared: Vec<Shared>,
-    pub(super) bodies: Vec<Body>,
+    pub(super) variants: Vec<Variant>,
     pub(super) before: Vec<Before<'gpu>>,
 }
 
@@ -64,23 +75,40 @@ pub(super) struct SceneTarget<'a> {
     pub(super) size: [u32; 2],
 }
 
-impl ScenePass<'_> {
-    /// The recipe's group 0 as `eye` sees it.
-    pub(super) fn view(&self, clip_from_world: Mat4, eye: Vec3) -> wgpu::BindGroup {
+/// Group 0 of each variant, as one eye sees it.
+pub(super) struct View(Vec<Option<wgpu::BindGroup>>);
+
+impl<'gpu> ScenePass<'gpu> {
+    /// Without objects.
+    pub(super) fn empty(gpu: &'gpu Gpu) -> Self {
+        Self { gpu, variants: Vec::new(), before: Vec::new() }
+    }
+
+    /// Takes another's objects too.
+    pub(super) fn append(&mut self, other: Self) {
+        self.variants.extend(other.variants);
+        self.before.extend(other.before);
+    }
+
+    /// The recipes' group 0 as `eye` sees it.
+    pub(super) fn view(&self, clip_from_world: Mat4, eye: Vec3) -> View {
         let device = &self.gpu.device;
         let mut values = clip_from_world.to_cols_array().to_vec();
         values.extend(eye.to_array());
-        let uniform = device::uniform(device, &values);
-        let mut resources = vec![uniform.as_entire_binding()];
-        resources.extend(self.shared.iter().map(|shared| match shared {
-            Shared::Texture(view) => wgpu::BindingResource::TextureView(view),
-            Shared::Buffer(buffer) => buffer.as_entire_binding(),
-        }));
-        device::bind_group(device, &self.pipeline, 0, resources)
+        let uniform = device::uniform(device, "view", &values);
+        let of_variant = |variant: &Variant| {
+            let mut resources = vec![(0, uniform.as_entire_binding())];
+            resources.extend(variant.shared.iter().map(|(binding, shared)| match shared {
+                Shared::Texture(view) => (*binding, wgpu::BindingResource::TextureView(view)),
+                Shared::Buffer(buffer) => (*binding, buffer.as_entire_binding()),
+            }));
+            variant.pipeline.bind(device, 0, &resources)
+        };
+        View(self.variants.iter().map(of_variant).collect())
     }
 
     /// Does what comes before, in passes of its own.
-    pub(super) fn prepare(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
+    pub(super) fn prepare(&self, encoder: &mut Encoder) -> Result<(), RenderError> {
         self.before.iter().try_for_each(|before| match before {
             Before::Diffusion(diffusion) => diffusion.encode(encoder),
             Before::Paths(paths) => paths.encode(encoder),
@@ -104,8 +132,8 @@ impl ScenePass<'_> {
         self.before.iter().map(of).collect::<Result<Vec<_>, _>>().map(|notes| notes.concat())
     }
 
-    /// Draws the objects: one draw call for each.
-    pub(super) fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, target: &SceneTarget<'_>) {
+    /// Draws the objects in one pass: one draw call for each, under its own variant.
+    pub(super) fn draw(&self, encoder: &mut Encoder, view: &View, target: &SceneTarget<'_>) {
         let colors: Vec<_> = target.colors.iter().map(|view| device::cleared(view)).collect();
         let store = if target.keep_depth { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -114,12 +142,14 @@ impl ScenePass<'_> {
             depth_stencil_attachment: Some(device::cleared_depth(target.depth, store)),
             ..wgpu::RenderPassDescriptor::default()
         });
-        let [width, height] = target.size;
-        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, view, &[]);
-        for body in &self.bodies {
-            body.draw(&mut pass);
+        let [width, height] = target.size.map(|side| side as f32);
+        pass.set_viewport([0.0, 0.0, width, height], 0.0..1.0);
+        for (variant, group) in self.variants.iter().zip(&view.0) {
+            pass.set_pipeline(&variant.pipeline.raw);
+            pass.set_bind_group(0, group.as_ref());
+            for body in &variant.bodies {
+                body.draw(&mut pass);
+            }
         }
     }
 
@@ -129,6 +159,7 @@ impl ScenePass<'_> {
             Before::Diffusion(diffusion) => diffusion.draw_calls(),
             Before::Paths(paths) => paths.draw_calls(),
         });
-        self.bodies.len() + before.sum::<usize>()
+        let bodies: usize = self.variants.iter().map(|variant| variant.bodies.len()).sum();
+        bodies + before.sum::<usize>()
     }
 }

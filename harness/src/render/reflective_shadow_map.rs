@@ -1,11 +1,12 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
 use super::RenderError;
-use super::device::{self, PipelineSource, bind_group, buffer};
+use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::capture::OfObject;
+use crate::gpu::{Encoder, Gpu};
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
 const RECIPE: &str = "reflective_shadow_map";
@@ -15,13 +16,13 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// The maps and how they are drawn.
 pub(super) struct ReflectiveShadowMaps<'gpu> {
     gpu: &'gpu Gpu,
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     texture: wgpu::Texture,
     depth: wgpu::TextureView,
     /// One for each view, in order.
-    views: Vec<wgpu::BindGroup>,
-    /// Each object's mesh, and how many vertices draw it.
-    meshes: Vec<(wgpu::BindGroup, u32)>,
+    views: Vec<Option<wgpu::BindGroup>>,
+    /// Each object's name and mesh, and how many vertices draw it.
+    meshes: Vec<(String, Option<wgpu::BindGroup>, u32)>,
 }
 
 impl<'gpu> ReflectiveShadowMaps<'gpu> {
@@ -45,7 +46,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
         )?;
         let (texture, depth, views) = gpu.guarded("allocating reflective shadow maps", |device| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(RECIPE),
+                label: Some("reflective shadow maps"),
                 size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: views.len() as u32 },
                 mip_level_count: 1,
                 sample_count: 1,
@@ -54,22 +55,24 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             });
-            let depth = device::view(&device::target(device, [side; 2], DEPTH_FORMAT, wgpu::TextureUsages::empty()));
+            let depth = device::target(device, "depth of maps", [side; 2], DEPTH_FORMAT, wgpu::TextureUsages::empty());
+            let depth = device::view(&depth);
             let group = |view: &LightView| {
-                let uniform = buffer(device, &bytes(view.view), wgpu::BufferUsages::UNIFORM);
-                bind_group(device, &pipeline, 0, vec![uniform.as_entire_binding()])
+                let uniform = buffer(device, "view of a light", &bytes(view.view), wgpu::BufferUsages::UNIFORM);
+                pipeline.bind(device, 0, &[(0, uniform.as_entire_binding())])
             };
             (texture, depth, views.iter().map(group).collect())
         })?;
         Ok(Self { gpu, pipeline, texture, depth, views, meshes: Vec::new() })
     }
 
-    /// Adds an object: its positions, indices and normals, and how many vertices draw it.
-    pub(super) fn add(&mut self, mesh: [&wgpu::Buffer; 3], vertices: u32) -> Result<(), RenderError> {
+    /// Adds an object: its name, its positions, indices and normals, and how many vertices draw it.
+    pub(super) fn add(&mut self, name: &str, mesh: [&wgpu::Buffer; 3], vertices: u32) -> Result<(), RenderError> {
         let group = self.gpu.guarded("binding a mesh", |device| {
-            bind_group(device, &self.pipeline, 1, mesh.map(wgpu::Buffer::as_entire_binding).into())
+            let [positions, indices, normals] = mesh.map(wgpu::Buffer::as_entire_binding);
+            self.pipeline.bind(device, 1, &[(0, positions), (1, indices), (2, normals)])
         })?;
-        self.meshes.push((group, vertices));
+        self.meshes.push((name.to_owned(), group, vertices));
         Ok(())
     }
 
@@ -88,7 +91,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
     }
 
     /// Draws all maps.
-    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn encode(&self, encoder: &mut Encoder) {
         for (layer, group) in (0..).zip(&self.views) {
             let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
@@ -108,10 +111,11 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
                 depth_stencil_attachment: Some(device::cleared_depth(&self.depth, wgpu::StoreOp::Discard)),
                 ..wgpu::RenderPassDescriptor::default()
             });
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, group, &[]);
-            for (mesh, vertices) in &self.meshes {
-                pass.set_bind_group(1, mesh, &[]);
+            pass.set_pipeline(&self.pipeline.raw);
+            pass.set_bind_group(0, group.as_ref());
+            for (name, mesh, vertices) in &self.meshes {
+                let _of = OfObject::named(name);
+                pass.set_bind_group(1, mesh.as_ref());
                 pass.draw(0..*vertices, 0..1);
             }
         }

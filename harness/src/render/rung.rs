@@ -4,7 +4,6 @@ use super::optical_path::Paths;
 use super::reflectance::{REFLECTANCES, Reflectance};
 use crate::nearest;
 use crate::optical_path::Method;
-use crate::scene::Scene;
 use crate::voxel_grid::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 use std::fmt;
 use std::str::FromStr;
@@ -12,6 +11,8 @@ use std::str::FromStr;
 /// A step of the ladder from cheap to exact: geometry, hits that are followed, and how colours are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rung {
+    /// Each object by what its material calls for: [`crate::plan`].
+    ByMaterial,
     /// Reflection at the surface alone (the paper's Fig. 2).
     Surface,
     /// Light through the stone, by one of the gem recipes.
@@ -62,7 +63,8 @@ pub const MOST_HITS: u32 = 64;
 /// Most wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs that are offered when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 30] = [
+pub const NAMES: [&str; 31] = [
+    "by-material",
     "surface",
     "proxy-0",
     "proxy-1",
@@ -111,26 +113,16 @@ impl Rung {
     /// The paper's rung: the proxy, one internal hit, no dispersion.
     pub const PAPER: Self = Self::Inside { geometry: Geometry::Proxy, hits: 1, spectrum: Spectrum::One };
 
-    /// The rung for a scene where none is asked for: the accurate reflectance where bodies say how widely they spread light, ways through
-    /// them where they only say how they scatter it, else the proxy.
-    pub fn usual(scene: &Scene) -> Self {
-        if scene.objects.iter().any(|object| object.material.sigma0.is_some()) {
-            return Self::Diffuse(Reflectance::Accurate);
-        }
-        if super::scatters(scene) {
-            return Self::OpticalPath(Paths { cells: 64, method: Method::Godunov });
-        }
-        Self::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker }
-    }
-
-    /// The recipe that draws it.
+    /// The recipe that draws it; by each material's call, the clear ones'.
     pub fn recipe(self) -> &'static str {
         match self {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
             Self::Diffuse(_) => "cdrf_shading",
             Self::OpticalPath(_) => "optical_path_shading",
-            Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => "gem",
+            Self::ByMaterial | Self::Surface | Self::Reference | Self::Inside { geometry: Geometry::Proxy, .. } => {
+                "gem"
+            }
         }
     }
 
@@ -154,6 +146,7 @@ impl fmt::Display for Rung {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (geometry, hits, spectrum) = match self {
             Self::Inside { geometry, hits, spectrum } => (geometry, hits, spectrum),
+            Self::ByMaterial => return f.write_str("by-material"),
             Self::Surface => return f.write_str("surface"),
             Self::Diffuse(reflectance) => return f.write_str(reflectance.name()),
             Self::OpticalPath(Paths { cells, method }) => return write!(f, "{method}-{cells}"),
@@ -175,6 +168,7 @@ impl FromStr for Rung {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
+            "by-material" => return Ok(Self::ByMaterial),
             "surface" => return Ok(Self::Surface),
             "reference" => return Ok(Self::Reference),
             _ => {}

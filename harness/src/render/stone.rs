@@ -1,52 +1,62 @@
 //! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{bind_group, buffer, mesh_vertices, uniform};
+use super::device::{Pipeline, buffer, mesh_vertices, uniform};
 use super::pass::Body;
+use super::variant::Drawn;
 use super::{Geometry, RenderError, Rung, Settings, Spectrum};
 use crate::gpu::Gpu;
+use crate::gpu::capture::OfObject;
 use crate::reference::spectrum;
 use crate::scene::{Bvh, Convex, Material, Object};
 use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use std::borrow::Cow;
 
-/// Sends an object to the device.
+/// Sends an object to the device: what `pipeline` reads of it.
 pub(super) fn upload(
     gpu: &Gpu,
-    pipeline: &wgpu::RenderPipeline,
-    object: &Object,
+    pipeline: &Pipeline,
+    Drawn { object, name, .. }: &Drawn<'_>,
+    rung: Rung,
     settings: &Settings,
 ) -> Result<Body, RenderError> {
+    let _of = OfObject::named(name);
     let mesh = &object.mesh;
-    let Geometries { indices, own, steps } = Geometries::of(object, settings)?;
-    check_steps(gpu, settings.rung, steps)?;
-    let material = material(&object.material, settings);
-    let wavelengths = wavelengths(&object.material, settings.rung.spectrum());
-    let shared: [&[u8]; 3] =
-        [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&indices), bytemuck::cast_slice(&wavelengths)];
-    let vertices = mesh_vertices(gpu, object, &indices, shared.into_iter().chain(own.iter().map(|part| &part[..])))?;
+    let Geometries { indices, own, steps } = Geometries::of(object, rung)?;
+    check_steps(gpu, rung, steps)?;
+    let wavelengths = wavelengths(&object.material, rung.spectrum());
+    let shared: [(&str, &[u8]); 3] = [
+        ("positions", bytemuck::cast_slice(&mesh.positions)),
+        ("indices", bytemuck::cast_slice(&indices)),
+        ("wavelengths", bytemuck::cast_slice(&wavelengths)),
+    ];
+    let own = own.iter().map(|(what, part)| (*what, &part[..]));
+    let parts = (1..).zip(shared).map(|(binding, part)| (1, binding, part));
+    let parts: Vec<_> = parts.chain((0..).zip(own).map(|(binding, part)| (2, binding, part))).collect();
+    let parts: Vec<_> = parts.into_iter().filter(|(group, binding, _)| pipeline.binds(*group, *binding)).collect();
+    let vertices = mesh_vertices(gpu, object, &indices, parts.iter().map(|(_, _, (_, contents))| *contents))?;
     let groups = gpu.guarded("uploading a mesh", |device| {
-        let storage = |contents: &[u8]| buffer(device, contents, wgpu::BufferUsages::STORAGE);
-        let first: Vec<wgpu::Buffer> = std::iter::once(uniform(device, &material)).chain(shared.map(storage)).collect();
-        let second: Vec<wgpu::Buffer> = own.iter().map(|part| storage(part)).collect();
-        let bind = |group: u32, buffers: &[wgpu::Buffer]| {
-            let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
-            bind_group(device, pipeline, group, resources)
+        let material = uniform(device, "material", &material(&object.material, settings));
+        let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
+            (group, binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
-        let mut groups = vec![bind(1, &first)];
-        if !second.is_empty() {
-            groups.push(bind(2, &second));
-        }
-        groups
+        let mut buffers = vec![(1, 0, material)];
+        buffers.extend(parts.iter().map(storage));
+        let of_group = |group: u32| {
+            let own = buffers.iter().filter(|(of, _, _)| *of == group);
+            let resources: Vec<_> = own.map(|(_, binding, buffer)| (*binding, buffer.as_entire_binding())).collect();
+            pipeline.bind(device, group, &resources)
+        };
+        vec![of_group(1), of_group(2)]
     })?;
-    Ok(Body { groups, vertices })
+    Ok(Body { name: name.clone(), groups, vertices })
 }
 
 /// What a rung's geometry needs of a mesh, beside its positions.
 struct Geometries<'a> {
     indices: Cow<'a, [u32]>,
     /// The buffers of group 2.
-    own: Vec<Cow<'a, [u8]>>,
+    own: Vec<(&'static str, Cow<'a, [u8]>)>,
     /// Turns of loops that finding one hit takes.
     steps: u64,
 }
@@ -66,36 +76,40 @@ fn check_steps(gpu: &Gpu, rung: Rung, steps: u64) -> Result<(), RenderError> {
 }
 
 impl<'a> Geometries<'a> {
-    fn of(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
+    fn of(object: &'a Object, rung: Rung) -> Result<Self, RenderError> {
         let mesh = &object.mesh;
-        let bytes = |parts: &[&[u8]]| parts.iter().map(|part| Cow::Owned(part.to_vec())).collect();
         let indices = Cow::Borrowed(&mesh.indices[..]);
-        Ok(match settings.rung.geometry() {
-            Geometry::Proxy => Self { indices, own: vec![bytemuck::cast_slice(&mesh.normals).into()], steps: 0 },
+        Ok(match rung.geometry() {
+            Geometry::Proxy => {
+                Self { indices, own: vec![("normals", bytemuck::cast_slice(&mesh.normals).into())], steps: 0 }
+            }
             Geometry::Convex => {
                 let not_convex = || RenderError::NotConvex { object: object.name.clone() };
                 let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
-                let own = bytes(&[bytemuck::cast_slice(&planes), bytemuck::cast_slice(&convex.face_of_triangle)]);
+                let faces: &[u8] = bytemuck::cast_slice(&convex.face_of_triangle);
+                let planes: &[u8] = bytemuck::cast_slice(&planes);
+                let own = vec![("planes", planes.to_vec().into()), ("face of triangle", faces.to_vec().into())];
                 Self { indices, own, steps: convex.planes.len() as u64 }
             }
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(mesh);
-                let own = bytes(&[bytemuck::cast_slice(&bvh.nodes)]);
+                let nodes: &[u8] = bytemuck::cast_slice(&bvh.nodes);
+                let own = vec![("nodes", nodes.to_vec().into())];
                 // Triangles are numbered as the leaves hold them, by the recipe too.
                 let triangles = mesh.triangle_count() as u64;
                 // A ray's way through a hierarchy has no useful bound; few take as many as 16 turns for each of its levels.
                 let levels = u64::from(triangles.ilog2()) + 1;
-                let steps = if settings.rung.geometry() == Geometry::Bvh { 16 * levels } else { triangles };
+                let steps = if rung.geometry() == Geometry::Bvh { 16 * levels } else { triangles };
                 Self { indices: Cow::Owned(bvh.indices), own, steps }
             }
         })
     }
 }
 
-/// The bytes that the geometry of the settings' rung needs on the device for `object`, beside positions and indices.
-pub(crate) fn geometry_bytes(object: &Object, settings: &Settings) -> Result<u64, RenderError> {
-    Ok(Geometries::of(object, settings)?.own.iter().map(|part| part.len() as u64).sum())
+/// The bytes that a rung's geometry needs on the device for `object`, beside positions and indices.
+pub(crate) fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
+    Ok(Geometries::of(object, rung)?.own.iter().map(|(_, part)| part.len() as u64).sum())
 }
 
 /// `GemMaterial` of the recipe.

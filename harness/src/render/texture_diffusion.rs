@@ -1,9 +1,9 @@
 //! The recipe `texture_diffusion`: its textures, and its passes from drawn irradiance to what shading looks up.
 
 use super::RenderError;
-use super::device::{self, PipelineSource};
+use super::device::{self, Pipeline, PipelineSource};
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
 use glam::{Vec2, Vec3};
 use lapidary_texture_diffusion as mirror;
 
@@ -70,8 +70,8 @@ pub struct TextureDiffusion<'gpu> {
     gpu: &'gpu Gpu,
     size: [u32; 2],
     repeats: [bool; 2],
-    blur: wgpu::RenderPipeline,
-    dilate: wgpu::RenderPipeline,
+    blur: Pipeline,
+    dilate: Pipeline,
     sampler: wgpu::Sampler,
     /// The pass that lights the surface draws the irradiance here. The blur overwrites it.
     pub irradiance: wgpu::Texture,
@@ -102,7 +102,7 @@ impl<'gpu> TextureDiffusion<'gpu> {
                 let address =
                     |repeats| if repeats { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
                 let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-                    label: Some(RECIPE),
+                    label: Some("texture sampler"),
                     address_mode_u: address(repeats[0]),
                     address_mode_v: address(repeats[1]),
                     mag_filter: wgpu::FilterMode::Linear,
@@ -111,8 +111,12 @@ impl<'gpu> TextureDiffusion<'gpu> {
                 });
                 use wgpu::TextureUsages as Usage;
                 let usage = Usage::TEXTURE_BINDING | Usage::COPY_SRC | Usage::COPY_DST;
-                let formats = [IRRADIANCE_FORMAT, STRETCH_FORMAT, IRRADIANCE_FORMAT];
-                (sampler, formats.map(|format| device::target(device, size, format, usage)))
+                let textures = [
+                    ("irradiance", IRRADIANCE_FORMAT),
+                    ("stretch", STRETCH_FORMAT),
+                    ("diffused irradiance", IRRADIANCE_FORMAT),
+                ];
+                (sampler, textures.map(|(what, format)| device::target(device, what, size, format, usage)))
             })?;
         Ok(Self { gpu, size, repeats, blur, dilate, sampler, irradiance, stretch, diffused })
     }
@@ -121,12 +125,12 @@ impl<'gpu> TextureDiffusion<'gpu> {
     ///
     /// # Errors
     /// Where the device refuses a pass: a chart that is not inside the texture.
-    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, taps: &Taps, charts: &[Chart]) -> Result<(), RenderError> {
+    pub fn encode(&self, encoder: &mut Encoder, taps: &Taps, charts: &[Chart]) -> Result<(), RenderError> {
         let views = [&self.irradiance, &self.diffused, &self.irradiance].map(device::view);
         let stretch = device::view(&self.stretch);
         self.gpu.guarded("blurring irradiance", |device| {
             for (direction, textures) in [Vec2::X, Vec2::Y].into_iter().zip(views.windows(2)) {
-                let groups: Vec<(wgpu::BindGroup, Chart)> = charts
+                let groups: Vec<(Option<wgpu::BindGroup>, Chart)> = charts
                     .iter()
                     .map(|chart| {
                         let bound = |corner: [u32; 2], unbounded: f32| {
@@ -135,21 +139,21 @@ impl<'gpu> TextureDiffusion<'gpu> {
                         };
                         let uniform =
                             taps.uniform(direction, bound(chart.low, -UNBOUNDED), bound(chart.high, UNBOUNDED));
-                        let uniform = device::buffer(device, &uniform, wgpu::BufferUsages::UNIFORM);
-                        let resources = vec![
-                            wgpu::BindingResource::TextureView(&textures[0]),
-                            uniform.as_entire_binding(),
-                            wgpu::BindingResource::Sampler(&self.sampler),
-                            wgpu::BindingResource::TextureView(&stretch),
+                        let uniform = device::buffer(device, "taps", &uniform, wgpu::BufferUsages::UNIFORM);
+                        let resources = [
+                            (0, wgpu::BindingResource::TextureView(&textures[0])),
+                            (1, uniform.as_entire_binding()),
+                            (2, wgpu::BindingResource::Sampler(&self.sampler)),
+                            (3, wgpu::BindingResource::TextureView(&stretch)),
                         ];
-                        (device::bind_group(device, &self.blur, 0, resources), *chart)
+                        (self.blur.bind(device, 0, &resources), *chart)
                     })
                     .collect();
                 draw(encoder, &textures[1], &self.blur, &groups);
             }
-            let resources = vec![wgpu::BindingResource::TextureView(&views[0])];
+            let resources = [(0, wgpu::BindingResource::TextureView(&views[0]))];
             let whole = Chart { low: [0, 0], high: self.size };
-            draw(encoder, &views[1], &self.dilate, &[(device::bind_group(device, &self.dilate, 0, resources), whole)]);
+            draw(encoder, &views[1], &self.dilate, &[(self.dilate.bind(device, 0, &resources), whole)]);
         })?;
         Ok(())
     }
@@ -157,20 +161,20 @@ impl<'gpu> TextureDiffusion<'gpu> {
 
 /// A pass over the charts' rectangles.
 fn draw(
-    encoder: &mut wgpu::CommandEncoder,
+    encoder: &mut Encoder,
     target: &wgpu::TextureView,
-    pipeline: &wgpu::RenderPipeline,
-    groups: &[(wgpu::BindGroup, Chart)],
+    pipeline: &Pipeline,
+    groups: &[(Option<wgpu::BindGroup>, Chart)],
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(RECIPE),
         color_attachments: &[device::cleared(target)],
         ..wgpu::RenderPassDescriptor::default()
     });
-    pass.set_pipeline(pipeline);
+    pass.set_pipeline(&pipeline.raw);
     for (group, Chart { low, high }) in groups {
-        pass.set_scissor_rect(low[0], low[1], high[0].saturating_sub(low[0]), high[1].saturating_sub(low[1]));
-        pass.set_bind_group(0, group, &[]);
+        pass.set_scissor_rect([low[0], low[1], high[0].saturating_sub(low[0]), high[1].saturating_sub(low[1])]);
+        pass.set_bind_group(0, group.as_ref());
         pass.draw(0..3, 0..1);
     }
 }

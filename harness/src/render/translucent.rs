@@ -1,120 +1,130 @@
-//! The recipe `cdrf_shading`'s pass: what scatters light, under the scene's lights and the environment.
+//! The recipe `cdrf_shading`'s pass: what scatters light, and what is opaque, under the scene's lights and the environment.
 
-use super::device::{self, PipelineSource, bind_group, buffer, mesh_vertices, uniform};
+use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, uniform};
 use super::diffusion::{Diffusion, MeshBuffers};
-use super::lighting::{self, Lighting};
-use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass};
-use super::{Curvature, Reflectance, RenderError, Settings};
+use super::lighting::Lighting;
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
+use super::variant::{Drawn, Part};
+use super::{Reflectance, RenderError, Rung, Settings};
 use crate::cdrf::table::{self, Format};
 use crate::gpu::Gpu;
+use crate::gpu::capture::OfObject;
+use crate::plan::{Decisions, thickness};
 use crate::scene::curvatures::vertex_curvatures;
-use crate::scene::{Material, Object, Scene};
+use crate::scene::{Material, Object};
 use glam::{UVec2, Vec2, Vec3};
 
-/// Compiles `source`, the composed recipe, and uploads the scene.
+/// Compiles `source`, the composed recipe, for the effects of each object, and uploads the objects.
 pub(super) fn pass<'gpu>(
     gpu: &'gpu Gpu,
-    scene: &Scene,
-    settings: &Settings,
+    lighting: &Lighting<'_>,
+    part: &Part<'_>,
     reflectance: Reflectance,
     source: &str,
 ) -> Result<ScenePass<'gpu>, RenderError> {
-    for Object { name, material, mesh } in &scene.objects {
-        if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
-            return Err(RenderError::NoTextureCoordinates { object: name.clone() });
-        }
-        let inside = |uv: &Vec2| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all();
-        if reflectance == Reflectance::Blur && !mesh.uvs.iter().all(inside) {
-            return Err(RenderError::TextureCoordinatesOutside { object: name.clone() });
-        }
-        if material.sigma0.is_none() && reflectance != Reflectance::Lambert {
-            return Err(RenderError::NoSigma0 {
-                object: name.clone(),
-                material: material.name.clone(),
-                rung: settings.rung,
-            });
-        }
+    for drawn in &part.objects {
+        check(drawn.object, part.rung, reflectance)?;
     }
-    let pipeline = device::pipeline(
-        gpu,
-        &PipelineSource {
-            recipe: settings.rung.recipe(),
+    let mut pass = ScenePass::empty(gpu);
+    for (constants, objects) in part.variants(|drawn| constants(&drawn.decisions, part.settings, reflectance)) {
+        let from = PipelineSource {
+            recipe: part.rung.recipe(),
             source,
             entries: ["cdrf_vertex", "cdrf_fragment"],
-            constants: &constants(scene, settings, reflectance),
+            constants: &constants,
             formats: &[SAMPLE_FORMAT],
             depth: Some(DEPTH_FORMAT),
-        },
-    )?;
-    let lighting = Lighting::upload(gpu, scene, settings)?;
-    let irradiance = lighting::constants(scene, settings);
-    let (mut bodies, mut before) = (Vec::new(), Vec::new());
-    for object in &scene.objects {
-        let (body, diffusion) = upload(gpu, &pipeline, object, settings, reflectance, (&lighting, &irradiance))?;
-        bodies.push(body);
-        before.extend(diffusion.map(Before::Diffusion));
+        };
+        let pipeline = device::pipeline(gpu, &from)?;
+        let mut bodies = Vec::new();
+        for drawn in objects {
+            let (body, diffusion) = upload(gpu, &pipeline, drawn, reflectance, (lighting, &constants))?;
+            bodies.push(body);
+            pass.before.extend(diffusion.map(Before::Diffusion));
+        }
+        pass.variants.push(Variant { shared: lighting.shared(&pipeline)?, pipeline, bodies });
     }
-    Ok(ScenePass { gpu, pipeline, shared: lighting.shared(), bodies, before })
+    Ok(pass)
 }
 
-/// The overrides of the recipe for these settings.
-pub(crate) fn constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
-    let flag = |on: bool| f64::from(u8::from(on));
-    let materials = || scene.objects.iter().map(|object| &object.material);
-    let scatters = materials().any(|material| material.sigma0.is_some_and(|sigma0| sigma0 != Vec3::ZERO));
-    let mut constants = vec![
-        ("EFFECT_CDRF", flag(scatters && reflectance.form().is_some())),
-        ("EFFECT_TEXTURE_DIFFUSION", flag(reflectance == Reflectance::Blur)),
+/// Refuses what the rung cannot draw.
+fn check(object: &Object, rung: Rung, reflectance: Reflectance) -> Result<(), RenderError> {
+    let Object { name, material, mesh } = object;
+    if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
+        return Err(RenderError::NoTextureCoordinates { object: name.clone() });
+    }
+    let inside = |uv: &Vec2| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all();
+    if reflectance == Reflectance::Blur && !mesh.uvs.iter().all(inside) {
+        return Err(RenderError::TextureCoordinatesOutside { object: name.clone() });
+    }
+    if thickness::sigma0(material).is_none() && reflectance != Reflectance::Lambert {
+        return Err(RenderError::NoSigma0 { object: name.clone(), material: material.name.clone(), rung });
+    }
+    Ok(())
+}
+
+/// The overrides of the recipe for an object.
+pub(crate) fn constants(
+    decisions: &Decisions,
+    settings: &Settings,
+    reflectance: Reflectance,
+) -> Vec<(&'static str, f64)> {
+    let mut constants = decisions.constants();
+    constants.extend([
         ("CDRF_FORM", f64::from(reflectance.form().unwrap_or_default())),
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
-        ("ENVIRONMENT_AT_VERTICES", flag(settings.environment_at_vertices)),
-    ];
-    constants.extend(lighting::constants(scene, settings));
+        ("ENVIRONMENT_AT_VERTICES", f64::from(u8::from(settings.environment_at_vertices))),
+    ]);
     constants
 }
 
-/// Sends an object to the device.
+/// Sends an object to the device: what `pipeline` reads of it.
 fn upload<'gpu>(
     gpu: &'gpu Gpu,
-    pipeline: &wgpu::RenderPipeline,
-    object: &Object,
-    settings: &Settings,
+    pipeline: &Pipeline,
+    Drawn { object, name, .. }: &Drawn<'_>,
     reflectance: Reflectance,
-    lighting: (&Lighting, &[(&str, f64)]),
+    lighting: (&Lighting<'_>, &[(&str, f64)]),
 ) -> Result<(Body, Option<Diffusion<'gpu>>), RenderError> {
+    let _of = OfObject::named(name);
     let Object { mesh, material, .. } = object;
-    let curvatures = if settings.curvature == Curvature::Vertex { vertex_curvatures(mesh) } else { vec![0.0] };
-    let unread = [0.0f32; 2];
-    let uvs: &[u8] = match reflectance {
-        Reflectance::Blur => bytemuck::cast_slice(&mesh.uvs),
-        _ => bytemuck::cast_slice(&unread),
-    };
-    let parts: [&[u8]; 5] = [
-        bytemuck::cast_slice(&mesh.positions),
-        bytemuck::cast_slice(&mesh.indices),
-        bytemuck::cast_slice(&mesh.normals),
-        bytemuck::cast_slice(&curvatures),
-        uvs,
+    let curvatures = if pipeline.binds(1, 7) { vertex_curvatures(mesh) } else { Vec::new() };
+    let parts: [(u32, &str, &[u8]); 5] = [
+        (1, "positions", bytemuck::cast_slice(&mesh.positions)),
+        (2, "indices", bytemuck::cast_slice(&mesh.indices)),
+        (3, "normals", bytemuck::cast_slice(&mesh.normals)),
+        (7, "curvatures", bytemuck::cast_slice(&curvatures)),
+        (8, "uvs", bytemuck::cast_slice(&mesh.uvs)),
     ];
-    let vertices = mesh_vertices(gpu, object, &mesh.indices, parts)?;
-    let (filtered, texels) = match reflectance {
-        Reflectance::Table(side, Format::R32Float) => (empty(gpu)?, baked(gpu, material, side, Format::R32Float)?),
-        Reflectance::Table(side, format) => (baked(gpu, material, side, format)?, empty(gpu)?),
-        _ => (empty(gpu)?, empty(gpu)?),
-    };
-    let [positions, indices, normals, curvatures, uvs] =
-        gpu.guarded("uploading a mesh", |device| parts.map(|part| buffer(device, part, wgpu::BufferUsages::STORAGE)))?;
-    let diffusion = match reflectance {
-        Reflectance::Blur => {
-            let mesh = MeshBuffers { positions: &positions, normals: &normals, uvs: &uvs };
-            Some(Diffusion::new(gpu, object, lighting, &mesh)?)
+    // What arrives is drawn with these, whatever shading still reads of them.
+    let blurs = pipeline.binds(1, 9);
+    let is_read = |binding: u32| pipeline.binds(1, binding) || blurs && [1, 3, 8].contains(&binding);
+    let read = || parts.into_iter().filter(|(binding, _, _)| is_read(*binding));
+    let vertices = mesh_vertices(gpu, object, &mesh.indices, read().map(|(_, _, contents)| contents))?;
+    let buffers: Vec<(u32, wgpu::Buffer)> = gpu.guarded("uploading a mesh", |device| {
+        let storage = |(binding, what, contents): (u32, &str, &[u8])| {
+            (binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
+        };
+        read().map(storage).chain([(0, uniform(device, "material", &uniform_of(material)))]).collect()
+    })?;
+    let mut textures = Vec::new();
+    if let Reflectance::Table(side, format) = reflectance {
+        let binding = if format == Format::R32Float { 6 } else { 4 };
+        if pipeline.binds(1, binding) {
+            textures.push((binding, baked(gpu, material, side, format)?));
         }
-        _ => None,
-    };
-    let diffused = diffusion.as_ref().map_or_else(|| empty(gpu), |diffusion| Ok(diffusion.diffused()))?;
+    }
+    let mut diffusion = None;
+    let of = |wanted: u32| buffers.iter().find(|(binding, _)| *binding == wanted).map(|(_, buffer)| buffer);
+    if let (true, Some(positions), Some(normals), Some(uvs)) = (blurs, of(1), of(3), of(8)) {
+        let made = Diffusion::new(gpu, (object, name), lighting, &MeshBuffers { positions, normals, uvs })?;
+        textures.push((9, made.diffused()));
+        diffusion = Some(made);
+    }
     let group = gpu.guarded("uploading a material", |device| {
-        let sampler = |address| {
+        let sampler = |what: &str, address| {
             device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(what),
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 address_mode_u: address,
@@ -122,26 +132,18 @@ fn upload<'gpu>(
                 ..wgpu::SamplerDescriptor::default()
             })
         };
-        let clamping = sampler(wgpu::AddressMode::ClampToEdge);
         // Charts keep off the texture's edges but where it repeats, and at a sphere's poles, where either is as good.
-        let repeating = sampler(wgpu::AddressMode::Repeat);
-        let uniform = uniform(device, &uniform_of(material));
-        let resources = vec![
-            uniform.as_entire_binding(),
-            positions.as_entire_binding(),
-            indices.as_entire_binding(),
-            normals.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&filtered),
-            wgpu::BindingResource::Sampler(&clamping),
-            wgpu::BindingResource::TextureView(&texels),
-            curvatures.as_entire_binding(),
-            uvs.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&diffused),
-            wgpu::BindingResource::Sampler(&repeating),
-        ];
-        bind_group(device, pipeline, 1, resources)
+        let samplers =
+            [(5, "table sampler", wgpu::AddressMode::ClampToEdge), (10, "diffused sampler", wgpu::AddressMode::Repeat)];
+        let samplers = samplers.into_iter().filter(|(binding, _, _)| pipeline.binds(1, *binding));
+        let samplers: Vec<_> = samplers.map(|(binding, what, address)| (binding, sampler(what, address))).collect();
+        let mut resources: Vec<(u32, wgpu::BindingResource<'_>)> = Vec::new();
+        resources.extend(buffers.iter().map(|(binding, buffer)| (*binding, buffer.as_entire_binding())));
+        resources.extend(textures.iter().map(|(binding, view)| (*binding, wgpu::BindingResource::TextureView(view))));
+        resources.extend(samplers.iter().map(|(binding, of)| (*binding, wgpu::BindingResource::Sampler(of))));
+        pipeline.bind(device, 1, &resources)
     })?;
-    Ok((Body { groups: vec![group], vertices }, diffusion))
+    Ok((Body { name: name.clone(), groups: vec![group], vertices }, diffusion))
 }
 
 /// `CdrfMaterial` of the recipe.
@@ -154,13 +156,8 @@ fn uniform_of(material: &Material) -> [f32; 12] {
 
 /// The material's widths, made safe.
 fn safe_sigma0(material: &Material) -> Vec3 {
-    let sigma0 = material.sigma0.unwrap_or_default();
+    let sigma0 = thickness::sigma0(material).unwrap_or_default();
     Vec3::from_array(sigma0.to_array().map(|sigma0| lapidary_cdrf::sigma(sigma0, 1.0)))
-}
-
-/// One black texel, where a recipe binds what its form does not read.
-fn empty(gpu: &Gpu) -> Result<wgpu::TextureView, RenderError> {
-    texture(gpu, 1, Format::Rgba8, &[Vec3::ZERO])
 }
 
 /// The table of a material's channels.
@@ -178,7 +175,7 @@ fn baked(gpu: &Gpu, material: &Material, side: u32, format: Format) -> Result<wg
 fn texture(gpu: &Gpu, side: u32, format: Format, texels: &[Vec3]) -> Result<wgpu::TextureView, RenderError> {
     let (format, bytes) = format.texture(texels);
     let texture = gpu.guarded("uploading a table", |_| {
-        device::texture(gpu, (wgpu::TextureDimension::D2, format), [side, side, 1], &bytes)
+        device::texture(gpu, "table", (wgpu::TextureDimension::D2, format), [side, side, 1], &bytes)
     })?;
     Ok(device::view(&texture))
 }

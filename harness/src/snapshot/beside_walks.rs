@@ -5,6 +5,7 @@ use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
 use crate::cost::best_exposure;
 use crate::gpu::Gpu;
+use crate::plan::{Effect, Effects};
 use crate::render::{self, Picture, Rung, Settings};
 use crate::scene::Scene;
 
@@ -49,8 +50,7 @@ pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
 pub fn settings(rung: &str) -> Settings {
     Settings {
         rung: rung.parse::<Rung>().unwrap_or_else(|error| panic!("{rung}: {error}")),
-        light_from_environment: false,
-        reflection: false,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
         exposure: LIGHTS_ALONE,
         ..Settings::of_size(EXR_SIDE, EXR_SIDE)
     }

@@ -1,6 +1,7 @@
 //! Pictures of one scene each, and the commands that render them.
 
 use super::folder;
+use crate::plan::{Effect, Effects};
 use crate::render::{Curvature, Rung, Settings};
 use crate::scene::{Scene, SceneError};
 use std::path::PathBuf;
@@ -181,8 +182,9 @@ impl Shot {
         Settings {
             rung,
             paper_centre: self.paper_centre,
-            light_from_environment: !self.lights_alone,
-            reflection: !self.matte,
+            without: [(self.lights_alone, Effects::of(&[Effect::Environment])), (self.matte, Effects::SHEEN)]
+                .into_iter()
+                .fold(Effects::NONE, |all, (left_out, effects)| if left_out { all.and(effects) } else { all }),
             exposure: self.exposure,
             curvature: self.curvature,
             ..Settings::of_size(side, side)

@@ -4,6 +4,7 @@ use super::SnapshotError;
 use super::frames::{halved, side_by_side};
 use crate::gpu::Gpu;
 use crate::optical_path::Method;
+use crate::plan::{Effect, Effects};
 use crate::render::{self, Paths, Picture, Rung, Settings};
 use crate::scene::deform::{merging, twisting};
 use crate::scene::{Bounds, Light, Object, Scene, SceneError};
@@ -64,7 +65,7 @@ fn sun(azimuth: f32, height: f32) -> Light {
 pub fn settings() -> Settings {
     Settings {
         rung: Rung::OpticalPath(Paths { cells: 64, method: Method::Godunov }),
-        light_from_environment: false,
+        without: Effects::of(&[Effect::Environment]),
         exposure: 1.5,
         ..Settings::of_size(SIDE, SIDE)
     }

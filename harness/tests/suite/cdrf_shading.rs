@@ -5,6 +5,7 @@ use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
 use lapidary_harness::cost::exposed_distance;
+use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::light::Arrival;
@@ -16,7 +17,12 @@ const SIDE: u32 = 160;
 
 fn settings(rung: &str) -> Settings {
     let rung = rung.parse().expect(rung);
-    Settings { rung, samples: 1, light_from_environment: false, reflection: false, ..Settings::of_size(SIDE, SIDE) }
+    Settings {
+        rung,
+        samples: 1,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
+        ..Settings::of_size(SIDE, SIDE)
+    }
 }
 
 fn draw(scene: &Scene, settings: &Settings) -> Picture {
@@ -157,7 +163,7 @@ fn the_environment_is_the_integral_of_the_spherical_form() {
     let albedo = scene.objects[0].material.base_color.as_dvec3();
     for at_vertices in [false, true] {
         let lit = |environment: &Environment| Settings {
-            light_from_environment: true,
+            without: Effects::SHEEN,
             environment_at_vertices: at_vertices,
             environment: environment.clone(),
             ..settings("spherical")
@@ -273,7 +279,7 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
             })
             .collect();
         let picture =
-            draw(&scene.seen_from(90.0, 0.0), &Settings { light_from_environment: true, curvature, ..settings(rung) });
+            draw(&scene.seen_from(90.0, 0.0), &Settings { without: Effects::SHEEN, curvature, ..settings(rung) });
         let mut seen = 0;
         for pixel in picture.linear.iter().filter(|pixel| pixel[3] == 1.0) {
             let finite = pixel.iter().all(|value| value.is_finite() && *value >= 0.0);
@@ -289,9 +295,9 @@ fn what_is_off_leaves_no_trace() {
     let scene = ball(10.0, Vec3::ZERO);
     let bits = |settings: &Settings| draw(&scene, settings).linear;
     assert_eq!(bits(&settings("accurate")), bits(&settings("lambert")), "no width, no scattering");
-    let lit = Settings { light_from_environment: true, ..settings("lambert") };
+    let lit = Settings { without: Effects::SHEEN, ..settings("lambert") };
     assert_ne!(bits(&lit), bits(&settings("lambert")));
-    let reflecting = Settings { reflection: true, ..settings("lambert") };
+    let reflecting = Settings { without: Effects::of(&[Effect::Environment]), ..settings("lambert") };
     assert_ne!(bits(&reflecting), bits(&settings("lambert")));
     let mut matched = ball(10.0, Vec3::ZERO);
     matched.objects[0].material.ior = 1.0;
@@ -310,7 +316,7 @@ fn a_polished_and_a_rough_body_do_not_mix() {
     let mut scene = ball(10.0, Vec3::ONE);
     scene.objects = vec![of(0.0, -12.0), of(0.4, 12.0)];
     let scene = scene.seen_from(90.0, 0.0);
-    let reflecting = Settings { reflection: true, ..settings("accurate") };
+    let reflecting = Settings { without: Effects::of(&[Effect::Environment]), ..settings("accurate") };
     let both = draw(&scene, &reflecting).linear;
     for keep in 0..2 {
         let alone = Scene { objects: vec![scene.objects[keep].clone()], ..scene.clone() };

@@ -7,6 +7,7 @@ mod notes;
 mod shadows;
 
 use glam::Vec3;
+use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Picture, Settings};
 use lapidary_harness::scene::surfaces::sphere;
 use lapidary_harness::scene::{Light, Material, Medium, Mesh, Object, Scene};
@@ -21,8 +22,7 @@ fn settings(rung: &str) -> Settings {
     Settings {
         rung: rung.parse().expect(rung),
         samples: 1,
-        light_from_environment: false,
-        reflection: false,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
         extinction_scale: 1.0,
         ..Settings::of_size(SIDE, SIDE)
     }

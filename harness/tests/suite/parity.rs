@@ -2,6 +2,7 @@
 
 use lapidary_harness::pixel::parity::{self, Parity};
 use lapidary_harness::pixel::{Shading, Stone, Viewer};
+use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Environment, Settings};
 use lapidary_harness::scene::Scene;
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -78,7 +79,7 @@ fn so_it_is_with_every_choice() {
     check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.20);
     let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
     check("brilliant", "paper's centre", &compare("brilliant", paper), 0.01);
-    let clear = Settings { absorption: false, ..of_rung("convex-4") };
+    let clear = Settings { without: Effects::of(&[Effect::Absorption]), ..of_rung("convex-4") };
     check("sapphire", "no absorption", &compare("sapphire", clear), 0.01);
     let pixel = |k: usize| [(k % 7) as f32 / 3.0, (k % 5) as f32 / 2.0, (k % 3) as f32, 1.0];
     let map = EnvironmentMap { width: 16, height: 8, pixels: (0..128).map(pixel).collect() };
@@ -163,7 +164,7 @@ fn a_wrong_picture_is_seen() {
         let source = lapidary_harness::cookbook::recipe_source(settings.rung.recipe());
         assert!(source.contains(right), "{rung}: {what}");
         let planted = source.replace(right, wrong);
-        let picture = render::render_with(super::gpu(), &scene, &settings, &planted, &mut |_, _| {}).expect("rendered");
+        let picture = render::render_with(super::gpu(), &scene, &settings, &planted).expect("rendered");
         let parity = parity::compare(&scene, &settings, &picture, PIXELS, 1).expect("compared");
         println!("{rung:18} {what:46} {:4} of {} fail", parity.failed.len(), parity.compared);
         assert!(parity.failed.len() > parity.compared / 20, "{rung}, {what}: {} fail", parity.failed.len());

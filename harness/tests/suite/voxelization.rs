@@ -7,7 +7,6 @@ use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_harness::voxelization::{Status, Voxelizer};
 use lapidary_voxelization::{kernels, oracle};
 use rayon::prelude::*;
-use wgpu::util::DeviceExt as _;
 
 /// How near to the surface a centre may lie for rounding to decide, in voxels: in a grid of 64, vertices are off by 6 last places of 64 at most,
 /// the crossing of an edge and of a column by 8 each.
@@ -59,7 +58,10 @@ fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
     Voxels {
         grid,
         matter: super::gpu().words(&voxelizer.matter).expect("read back"),
-        surface: super::gpu().words(&voxelizer.surface).expect("read back"),
+        surface: voxelizer.surface.as_ref().map_or_else(
+            || vec![0; (grid.words_per_row() * grid.cells * grid.cells) as usize],
+            |surface| super::gpu().words(surface).expect("read back"),
+        ),
         status: voxelizer.status().expect("read back"),
     }
 }

@@ -4,6 +4,7 @@ use super::{CostError, Options, RungReport, shader};
 use crate::cookbook;
 use crate::cost::timing::{self, Timed, Timing};
 use crate::gpu::Gpu;
+use crate::plan::{Effect, Effects};
 use crate::render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
 use crate::render::{Curvature, Frame, Reflectance, RenderError, Rung, Settings};
 use crate::scene::{Camera, Scene, SceneError};
@@ -149,8 +150,7 @@ fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflect
     Settings {
         samples: 1,
         rung: Rung::Diffuse(reflectance),
-        light_from_environment: whole,
-        reflection: whole,
+        without: if whole { Effects::NONE } else { Effects::of(&[Effect::Environment]).and(Effects::SHEEN) },
         curvature: curvature.map_or(Curvature::Mean, CurvatureSource::curvature),
         ..Settings::of_size(frame[0], frame[1])
     }

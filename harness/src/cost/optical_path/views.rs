@@ -3,6 +3,7 @@
 use super::FINEST;
 use crate::cost::CostError;
 use crate::gpu::Gpu;
+use crate::plan::{Effect, Effects};
 use crate::render::{self, Picture, RenderError, Rung, Settings};
 use crate::scene::surfaces::sphere;
 use crate::scene::{Light, Material, Medium, Object, Scene, SceneError};
@@ -95,7 +96,12 @@ impl View {
 
 /// One sample a pixel, by the scene's lights alone, and nothing mirrors.
 pub(super) fn settings(rung: Rung, side: u32) -> Settings {
-    Settings { rung, samples: 1, light_from_environment: false, reflection: false, ..Settings::of_size(side, side) }
+    Settings {
+        rung,
+        samples: 1,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
+        ..Settings::of_size(side, side)
+    }
 }
 
 /// The scene white and with one extinction for all channels, the green one's.

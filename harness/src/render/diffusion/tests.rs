@@ -1,6 +1,7 @@
 use super::super::pass::Before;
 use super::*;
 use crate::gpu::AdapterChoice;
+use crate::plan::{Effect, Effects};
 use crate::render::{Reflectance, Rung, Settings, scene_pass};
 use crate::scene::surfaces::sphere;
 use crate::scene::{Light, Mesh, Scene, atlas};
@@ -29,8 +30,8 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     scene.objects[0].material.sigma0 = Some(Vec3::splat(SIGMA0));
     scene.lights = vec![Light::Directional { toward, irradiance: Vec3::ONE }];
     let rung = Rung::Diffuse(Reflectance::Blur);
-    let settings = Settings { rung, light_from_environment: false, ..Settings::of_size(8, 8) };
-    let pass = scene_pass(gpu, &scene, &settings, &cookbook::recipe_source(rung.recipe())).expect("the recipe");
+    let settings = Settings { rung, without: Effects::of(&[Effect::Environment]), ..Settings::of_size(8, 8) };
+    let pass = scene_pass(gpu, &Lighting::new(gpu, &scene, &settings), &scene, &settings, None).expect("the recipe");
     let row = 8 * SIDE;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,

@@ -4,7 +4,7 @@ use super::super::RenderError;
 use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::{Encoder, Gpu};
 use crate::scene::{Density, DensityGrid};
 use crate::voxel_grid::VoxelGrid;
 use lapidary_veins::VeinsPattern;
@@ -34,27 +34,27 @@ impl Densities {
             Density::Veins(pattern) => Source::Veins(*pattern),
             Density::Grid(values) => Source::Texture(values),
         };
-        let kernel = Kernel::new(gpu, &cookbook::recipe_source(RECIPE), RECIPE, &constants)?;
+        let kernel = Kernel::new(gpu, RECIPE, &cookbook::recipe_source(RECIPE), RECIPE, &constants)?;
         let (group, of_voxels) = gpu.guarded("allocating densities", |device| {
             let of_voxels = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(RECIPE),
+                label: Some("densities"),
                 size: 4 * grid.count() as u64,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
-            let uniform = |bytes: &[u8]| buffer(device, bytes, wgpu::BufferUsages::UNIFORM);
-            let place = uniform(bytemuck::cast_slice(&grid.words()));
+            let uniform = |what, bytes: &[u8]| buffer(device, what, bytes, wgpu::BufferUsages::UNIFORM);
+            let place = uniform("grid of densities", bytemuck::cast_slice(&grid.words()));
             let first =
                 [(0, place.as_entire_binding()), (1, matter.as_entire_binding()), (2, of_voxels.as_entire_binding())];
             let group = match source {
                 Source::Veins(pattern) => {
-                    let pattern = uniform(&pattern_bytes(pattern));
+                    let pattern = uniform("veins", &pattern_bytes(pattern));
                     kernel.bind(device, 0, &[&first[..], &[(3, pattern.as_entire_binding())]].concat())
                 }
                 Source::Texture(values) => {
                     let texture = view(&texture(gpu, values));
                     let [least, greatest] = values.bounds().map(|corner| corner.extend(0.0).to_array());
-                    let extent = uniform(bytemuck::cast_slice(&[least, greatest]));
+                    let extent = uniform("box of densities", bytemuck::cast_slice(&[least, greatest]));
                     let own = [(4, wgpu::BindingResource::TextureView(&texture)), (5, extent.as_entire_binding())];
                     kernel.bind(device, 0, &[&first[..], &own].concat())
                 }
@@ -65,10 +65,13 @@ impl Densities {
     }
 
     /// Records it, once the voxels are known.
-    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pub(super) fn encode(&self, encoder: &mut Encoder) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("densities"),
+            ..wgpu::ComputePassDescriptor::default()
+        });
         pass.set_pipeline(&self.kernel.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_bind_group(0, self.group.as_ref());
         pass.dispatch_workgroups(1, self.cells, self.cells);
     }
 }
@@ -87,7 +90,7 @@ fn pattern_bytes(pattern: VeinsPattern) -> Vec<u8> {
 
 fn texture(gpu: &Gpu, grid: &DensityGrid) -> wgpu::Texture {
     let format = (wgpu::TextureDimension::D3, wgpu::TextureFormat::R32Float);
-    device::texture(gpu, format, grid.size().to_array(), bytemuck::cast_slice(grid.densities()))
+    device::texture(gpu, "measured densities", format, grid.size().to_array(), bytemuck::cast_slice(grid.densities()))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
-use crate::compute::{Kernel, KernelError};
+use crate::compute::Kernel;
 use crate::cookbook;
-use crate::gpu::Gpu;
+use crate::gpu::{Device, Encoder, Gpu};
 use crate::render::device::buffer;
+use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 
 const RECIPE: &str = "optical_path_seed";
@@ -27,7 +28,8 @@ pub(super) struct Lit {
 pub(super) struct Seeded<'a> {
     pub(super) grid: VoxelGrid,
     pub(super) matter: &'a wgpu::Buffer,
-    pub(super) density: &'a wgpu::Buffer,
+    /// Where it differs from voxel to voxel.
+    pub(super) density: Option<&'a wgpu::Buffer>,
     pub(super) costs: &'a wgpu::Buffer,
     /// Per unit of length where the density is 1.
     pub(super) extinction: f32,
@@ -41,14 +43,15 @@ pub(super) struct Seeded<'a> {
 pub(super) type Groups = [[Option<wgpu::BindGroup>; 2]; 2];
 
 impl Seeds {
-    pub(super) fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, KernelError> {
+    pub(super) fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
         let source = cookbook::recipe_source(RECIPE);
-        let kernel = |entry: &str| Kernel::new(gpu, &source, entry, constants);
+        let kernel = |entry: &str| Kernel::new(gpu, RECIPE, &source, entry, constants);
         Ok(Self { clear: kernel("optical_path_clear")?, seed: kernel("optical_path_seed_texel")? })
     }
 
-    pub(super) fn bind(&self, device: &wgpu::Device, lit: &Lit, seeded: &Seeded<'_>) -> Groups {
-        let uniform = buffer(device, &seeded.bytes(), wgpu::BufferUsages::UNIFORM);
+    pub(super) fn bind(&self, device: &Device, lit: &Lit, seeded: &Seeded<'_>) -> Groups {
+        let what = ["seeding of red", "seeding of green", "seeding of blue"][seeded.channel as usize];
+        let uniform = buffer(device, what, &seeded.bytes(), wgpu::BufferUsages::UNIFORM);
         let resources = [
             vec![
                 (0, uniform.as_entire_binding()),
@@ -56,25 +59,27 @@ impl Seeds {
                 (4, lit.views.as_entire_binding()),
                 (5, wgpu::BindingResource::TextureView(&lit.maps)),
             ],
-            vec![
-                (0, seeded.costs.as_entire_binding()),
-                (1, seeded.matter.as_entire_binding()),
-                (2, seeded.density.as_entire_binding()),
-            ],
+            [(0, Some(seeded.costs)), (1, Some(seeded.matter)), (2, seeded.density)]
+                .into_iter()
+                .filter_map(|(binding, buffer)| Some((binding, buffer?.as_entire_binding())))
+                .collect(),
         ];
         [&self.clear, &self.seed]
             .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])))
     }
 
     /// For maps of this width, height and number of layers.
-    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder, groups: &Groups, cells: u32, maps: [u32; 3]) {
+    pub(super) fn encode(&self, encoder: &mut Encoder, groups: &Groups, cells: u32, maps: [u32; 3]) {
         let [width, height, layers] = maps;
         let sizes = [[1, cells, cells], [width.div_ceil(GROUP), height.div_ceil(GROUP), layers]];
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("seeds"),
+            ..wgpu::ComputePassDescriptor::default()
+        });
         for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(groups).zip(sizes) {
             pass.set_pipeline(&kernel.pipeline);
             for (index, group) in (0..).zip(groups) {
-                pass.set_bind_group(index, group, &[]);
+                pass.set_bind_group(index, group.as_ref());
             }
             pass.dispatch_workgroups(x, y, z);
         }

@@ -7,7 +7,6 @@ use lapidary_harness::scene::{Bounds, Scene};
 use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_optical_path::kernels::Body;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};
-use wgpu::util::DeviceExt as _;
 
 /// A body in a grid, with its seeds.
 #[derive(Clone, Debug)]

@@ -9,7 +9,6 @@ use lapidary_harness::scene::{Averaging, Bounds, Light, Mesh, Scene};
 use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_harness::voxelization::Voxelizer;
 use std::f64::consts::PI;
-use wgpu::util::DeviceExt as _;
 
 fn is_black(picture: &Picture) -> bool {
     picture.linear.iter().all(|pixel| pixel[..3] == [0.0; 3])

@@ -86,17 +86,18 @@ fn mirror(
 fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
     let scene = Scene { lights: lights(), ..Scene::named("bunny").expect("built in") };
-    let lighting = Lighting::upload(gpu, &scene, &Settings::of_size(8, 8)).expect("uploaded");
+    let settings = Settings::of_size(8, 8);
+    let lighting = Lighting::new(gpu, &scene, &settings);
     let grid = VoxelGrid::about(bounds(), CELLS);
     let views = light_views::views(&lights(), bounds());
     assert_eq!(views.len(), 8);
     let texels = texels(views.len() * (SIDE * SIDE) as usize, grid);
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
-    let maps = texture(gpu, format, [SIDE, SIDE, views.len() as u32], bytemuck::cast_slice(&texels));
+    let maps = texture(gpu, "maps", format, [SIDE, SIDE, views.len() as u32], bytemuck::cast_slice(&texels));
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
-    let storage = |contents: &[u8]| buffer(&gpu.device, contents, wgpu::BufferUsages::STORAGE);
-    let lit = Lit { lights: lighting.lights, views: storage(&view_bytes(&views)), maps };
+    let storage = |contents: &[u8]| buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
+    let lit = Lit { lights: lighting.lights().expect("uploaded").clone(), views: storage(&view_bytes(&views)), maps };
     // Every third voxel is air, and densities differ from one to the next.
     let matter: Vec<bool> = (0..grid.count()).map(|index| index * 7 % 3 != 0).collect();
     let words = grid.words_per_row();
@@ -110,11 +111,11 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
         let seeds = Seeds::new(gpu, &[("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(dense)))]).expect("compiled");
         // Left over from another frame.
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let costs = buffer(&gpu.device, bytemuck::cast_slice(&vec![0u32; grid.count()]), usage);
+        let costs = buffer(&gpu.device, "costs", bytemuck::cast_slice(&vec![0u32; grid.count()]), usage);
         let seeded = Seeded {
             grid,
             matter: &matter_buffer,
-            density: &density_buffer,
+            density: dense.then_some(&density_buffer),
             costs: &costs,
             extinction: EXTINCTION,
             largest: 5.0,

@@ -1,0 +1,140 @@
+//! `cook plan`.
+
+use super::asked::Asked;
+use super::{Failure, Outcome, output};
+use lapidary_harness::gpu::capture::{Kind, Pipeline, Resource, Step};
+use lapidary_harness::plan::{Decision, Plan, PlannedObject};
+use lapidary_harness::scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Which effects a scene calls for and why, and which passes, pipelines and resources follow. Needs no GPU.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  ./cook plan vitrine\n  ./cook plan wax --with cdrf\n  ./cook plan my_stone.glb --without dispersion --json"
+)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    asked: Asked,
+    /// One JSON document on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    scene: &'a str,
+    objects: Vec<ObjectRow<'a>>,
+    effects: Vec<EffectRow<'a>>,
+    passes: Vec<PassRow<'a>>,
+    pipelines: Vec<PipelineRow<'a>>,
+    resources: Vec<ResourceRow<'a>>,
+    lacking: &'a [String],
+}
+
+#[derive(Serialize)]
+struct ObjectRow<'a> {
+    object: &'a str,
+    material: &'a str,
+    rung: String,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct EffectRow<'a> {
+    object: &'a str,
+    material: &'a str,
+    effect: &'static str,
+    on: bool,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct PassRow<'a> {
+    name: &'a str,
+    pipeline: &'a str,
+    object: Option<&'a str>,
+    material: Option<&'a str>,
+    resources: &'a [String],
+    times: u32,
+}
+
+#[derive(Serialize)]
+struct PipelineRow<'a> {
+    name: &'a str,
+    recipe: &'a str,
+    entries: &'a [String],
+    overrides: BTreeMap<&'a str, f64>,
+    instructions: usize,
+}
+
+#[derive(Serialize)]
+struct ResourceRow<'a> {
+    name: &'a str,
+    kind: &'static str,
+    bytes: u64,
+}
+
+impl<'a> Document<'a> {
+    fn of(plan: &'a Plan) -> Self {
+        let object = |planned: &'a PlannedObject| ObjectRow {
+            object: &planned.object,
+            material: &planned.material,
+            rung: planned.decisions.rung.to_string(),
+            reason: &planned.decisions.reason,
+        };
+        let effects = plan.objects.iter().flat_map(|planned| {
+            planned.decisions.effects.iter().map(|Decision { effect, on, reason }| EffectRow {
+                object: &planned.object,
+                material: &planned.material,
+                effect: effect.name(),
+                on: *on,
+                reason,
+            })
+        });
+        let pass = |step: &'a Step| PassRow {
+            name: &step.pass,
+            pipeline: &step.pipeline,
+            object: Some(step.object.as_str()).filter(|object| !object.is_empty()),
+            material: plan.material_of(&step.object),
+            resources: &step.resources,
+            times: step.times,
+        };
+        let pipeline = |pipeline: &'a Pipeline| PipelineRow {
+            name: &pipeline.name,
+            recipe: &pipeline.recipe,
+            entries: &pipeline.entries,
+            overrides: pipeline.overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect(),
+            instructions: pipeline.instructions,
+        };
+        let resource = |Resource { name, kind, bytes }: &'a Resource| ResourceRow {
+            name,
+            kind: match kind {
+                Kind::Buffer => "buffer",
+                Kind::Texture => "texture",
+                Kind::Sampler => "sampler",
+            },
+            bytes: *bytes,
+        };
+        Self {
+            scene: &plan.scene,
+            objects: plan.objects.iter().map(object).collect(),
+            effects: effects.collect(),
+            passes: plan.capture.steps.iter().map(pass).collect(),
+            pipelines: plan.capture.pipelines.iter().map(pipeline).collect(),
+            resources: plan.capture.resources.iter().map(resource).collect(),
+            lacking: &plan.lacking,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let scene = Scene::open(&arguments.asked.scene)?;
+    let plan = Plan::of(&scene, &arguments.asked.settings(&scene)?)?;
+    if arguments.json {
+        output::line(&serde_json::to_string_pretty(&Document::of(&plan))?)?;
+    } else {
+        output::line(plan.to_string().trim_end())?;
+    }
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,421 @@
+//! What a material calls for: its technique, and for each effect whether it is on, with the property that decides.
+
+use super::effect::{Effect, Effects};
+use super::thickness::Thickness;
+use crate::optical_path::Method;
+use crate::render::{Environment, Geometry, Paths, Reflectance, Rung, Settings, Spectrum};
+use crate::scene::{Density, Dispersion, Light, Material, Medium, Object, Scene};
+use glam::Vec3;
+
+/// Whether an effect is on, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// Which.
+    pub effect: Effect,
+    /// Whether it is compiled, bound and run.
+    pub on: bool,
+    /// The property of the material, scene or request that decides.
+    pub reason: String,
+}
+
+/// What one object calls for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decisions {
+    /// The technique and its rung.
+    pub rung: Rung,
+    /// Why this one.
+    pub reason: String,
+    /// Of every effect, in the order of [`Effect::ALL`].
+    pub effects: Vec<Decision>,
+}
+
+/// The technique for scattering bodies that a user wants whatever their thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scattering {
+    /// By curvature.
+    Cdrf,
+    /// By ways through the body.
+    OpticalPath,
+}
+
+impl Decisions {
+    /// For an object of `scene`.
+    #[must_use]
+    pub fn of(object: &Object, scene: &Scene, settings: &Settings) -> Self {
+        let (rung, reason) = technique(object, scene, settings);
+        let case = Case { object, material: &object.material, lights: &scene.lights, settings, rung };
+        let decide = |effect: Effect| {
+            let (on, reason) = case.decide(effect);
+            if on && settings.without.has(effect) {
+                return Decision { effect, on: false, reason: format!("left out on request, though {reason}") };
+            }
+            Decision { effect, on, reason }
+        };
+        Self { rung, reason, effects: Effect::ALL.map(decide).into() }
+    }
+
+    /// Whether an effect is on.
+    #[must_use]
+    pub fn has(&self, effect: Effect) -> bool {
+        self.effects.iter().any(|decision| decision.effect == effect && decision.on)
+    }
+
+    /// The effects that are on.
+    #[must_use]
+    pub fn on(&self) -> Effects {
+        let on = self.effects.iter().filter(|decision| decision.on);
+        on.fold(Effects::NONE, |set, decision| set.and(Effects::of(&[decision.effect])))
+    }
+
+    /// The recipes' overrides.
+    pub(crate) fn constants(&self) -> Vec<(&'static str, f64)> {
+        let of = |decision: &Decision| (decision.effect.override_name(), f64::from(u8::from(decision.on)));
+        self.effects.iter().map(of).collect()
+    }
+}
+
+/// How a body that is drawn by its material's call alone is drawn.
+const CLEAR: Rung = Rung::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker };
+const THIN: Rung = Rung::Surface;
+const OPAQUE: Rung = Rung::Diffuse(Reflectance::Lambert);
+const CURVED: Rung = Rung::Diffuse(Reflectance::Accurate);
+const THROUGH: Rung = Rung::OpticalPath(Paths { cells: 64, method: Method::Godunov });
+
+/// The rung for an object, and why.
+fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+    let material = &object.material;
+    if settings.rung != Rung::ByMaterial {
+        return (settings.rung, "asked for".to_owned());
+    }
+    if material.sigma0.is_some() || material.medium.is_some() {
+        return scattering(object, scene, settings);
+    }
+    if material.transmission == 0.0 {
+        return (OPAQUE, "opaque: transmission 0, and nothing inside scatters".to_owned());
+    }
+    let share = format!("clear: transmission {}", material.transmission);
+    if material.thickness == 0.0 {
+        return (THIN, format!("{share}, and a thin wall: thickness 0"));
+    }
+    (CLEAR, format!("{share}, thickness {}", material.thickness))
+}
+
+/// The rung for a body that scatters light, and why.
+fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+    let Some(medium) = &object.material.medium else {
+        return (CURVED, "sigma0 alone: no scattering and absorption to follow light through it by".to_owned());
+    };
+    if let Some(asked) = settings.scattering {
+        let rung = if asked == Scattering::Cdrf { CURVED } else { THROUGH };
+        return (rung, "asked for, whatever its thickness".to_owned());
+    }
+    if scene.lights.is_empty() {
+        return (CURVED, "no light but the environment, which goes no way through bodies".to_owned());
+    }
+    let thickness = Thickness::of(object, medium);
+    let free = thickness.mean_free_path;
+    let paths = thickness.mean_free_paths();
+    let most = super::thickness::MOST_MEAN_FREE_PATHS;
+    let size = if thickness.is_given {
+        format!("thickness {}", short(thickness.thickness))
+    } else {
+        format!("{} thick or more but for a tenth of its surface", short(thickness.thickness))
+    };
+    if thickness.shows_through() {
+        let reason = format!(
+            "{size}: {} mean free paths of {}, no more than {most}: light comes through",
+            short(paths),
+            short(free)
+        );
+        return (THROUGH, reason);
+    }
+    let reason = format!(
+        "{size}: {} mean free paths of {}, more than {most}: light stays near the surface, whose curvature tells enough",
+        short(paths),
+        short(free)
+    );
+    (CURVED, reason)
+}
+
+/// Three digits.
+pub(super) fn short(value: f32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+fn triple(value: Vec3) -> String {
+    let [red, green, blue] = value.to_array().map(short);
+    if red == green && green == blue { red } else { format!("({red}, {green}, {blue})") }
+}
+
+/// One object under one rung.
+struct Case<'a> {
+    object: &'a Object,
+    material: &'a Material,
+    lights: &'a [Light],
+    settings: &'a Settings,
+    rung: Rung,
+}
+
+type Answer = (bool, String);
+
+fn on(reason: impl Into<String>) -> Answer {
+    (true, reason.into())
+}
+
+fn off(reason: impl Into<String>) -> Answer {
+    (false, reason.into())
+}
+
+impl Case<'_> {
+    fn is_gem(&self) -> bool {
+        matches!(self.rung, Rung::Inside { .. } | Rung::Surface)
+    }
+
+    fn decide(&self, effect: Effect) -> Answer {
+        match effect {
+            Effect::ProxyGeometry => self.inside(effect, Geometry::Proxy),
+            Effect::ConvexTrace => self.inside(effect, Geometry::Convex),
+            Effect::BvhTrace => self.inside(effect, Geometry::Bvh),
+            Effect::ThinWall => self.thin_wall(),
+            Effect::Absorption => self.absorption(),
+            Effect::Dispersion => self.dispersion(),
+            Effect::Cdrf => self.cdrf(),
+            Effect::TextureDiffusion => self.texture_diffusion(),
+            Effect::OpticalPath => self.optical_path(),
+            Effect::Surface => self.through("keeps parts that are thinner than a voxel"),
+            Effect::Color => self.color(),
+            Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
+            Effect::Environment => self.environment(),
+            Effect::EnvironmentMap => self.environment_map(),
+            Effect::Microfacet => self.microfacet(),
+            Effect::Reflection => self.reflection(),
+            Effect::Spot => self.spot(),
+        }
+    }
+
+    /// Why nothing of what is for clear bodies is on.
+    fn not_clear(&self) -> String {
+        match self.rung {
+            Rung::Diffuse(_) | Rung::OpticalPath(_) if self.material.medium.is_some() => "light scatters inside",
+            Rung::Diffuse(_) | Rung::OpticalPath(_) if self.material.sigma0.is_some() => "light scatters inside",
+            _ => "transmission 0: opaque",
+        }
+        .to_owned()
+    }
+
+    fn inside(&self, effect: Effect, geometry: Geometry) -> Answer {
+        let Rung::Inside { geometry: used, .. } = self.rung else {
+            return off(if self.rung == Rung::Surface { self.no_inside() } else { self.not_clear() });
+        };
+        let serves = used == geometry || used == Geometry::Triangles && effect == Effect::BvhTrace;
+        if !serves {
+            return off(format!("the rung {} finds facets another way", self.rung));
+        }
+        on(format!("transmission {}, thickness {}", self.material.transmission, self.material.thickness))
+    }
+
+    /// Why a clear body's inside is not looked into.
+    fn no_inside(&self) -> String {
+        if self.settings.rung == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }.to_owned()
+    }
+
+    fn thin_wall(&self) -> Answer {
+        match self.rung {
+            Rung::Surface if self.settings.rung != Rung::Surface => {
+                on(format!("transmission {}, thickness 0", self.material.transmission))
+            }
+            Rung::Surface => off(self.no_inside()),
+            Rung::Inside { .. } => off(format!("thickness {}", self.material.thickness)),
+            _ => off(self.not_clear()),
+        }
+    }
+
+    fn absorption(&self) -> Answer {
+        let material = self.material;
+        match self.rung {
+            Rung::Surface => off(self.no_inside()),
+            Rung::Inside { .. } if material.attenuation_color == Vec3::ONE => off("attenuation white"),
+            Rung::Inside { .. } if material.attenuation_distance.is_infinite() => off("attenuation distance infinite"),
+            Rung::Inside { .. } => on(format!(
+                "attenuation {} after {}",
+                triple(material.attenuation_color),
+                short(material.attenuation_distance)
+            )),
+            Rung::OpticalPath(_) => off("part of the way's cost, with what scattering takes"),
+            Rung::Diffuse(_) if material.medium.is_some() => off("part of the base colour and of sigma0"),
+            _ => off(self.not_clear()),
+        }
+    }
+
+    fn dispersion(&self) -> Answer {
+        let spectrum = match self.rung {
+            Rung::Inside { spectrum, .. } => spectrum,
+            Rung::Surface => return off(self.no_inside()),
+            _ => return off(self.not_clear()),
+        };
+        let called = match self.material.dispersion {
+            Dispersion::None => return off("dispersion 0"),
+            Dispersion::Abbe(value) => format!("dispersion {} (V_d {})", short(value), short(20.0 / value)),
+            Dispersion::Sellmeier(mineral) => {
+                format!("Sellmeier equation of {} (V_d {})", mineral.name(), short(mineral.abbe_number()))
+            }
+        };
+        if spectrum == Spectrum::One {
+            return off(format!("the rung {} follows one index, though {called}", self.rung));
+        }
+        on(called)
+    }
+
+    fn cdrf(&self) -> Answer {
+        let Rung::Diffuse(reflectance) = self.rung else {
+            return match self.rung {
+                Rung::OpticalPath(_) => off("light is followed through the body instead"),
+                _ => off("nothing inside scatters"),
+            };
+        };
+        let Some(sigma0) = super::thickness::sigma0(self.material) else {
+            return off("nothing inside scatters");
+        };
+        if sigma0 == Vec3::ZERO {
+            return off("sigma0 0");
+        }
+        match reflectance {
+            Reflectance::Lambert => return off("the rung is Lambert's law"),
+            Reflectance::Blur => return off("light is blurred in the texture instead"),
+            _ => {}
+        }
+        if self.is_flat() {
+            return off("curvature everywhere 0");
+        }
+        let from = if self.material.sigma0.is_some() { "" } else { " from scattering and absorption" };
+        on(format!("sigma0 {}{from}", triple(sigma0)))
+    }
+
+    /// Whether no normal differs from its triangle's others: no curvature spreads anything then.
+    fn is_flat(&self) -> bool {
+        let normals = &self.object.mesh.normals;
+        let normal = |index: &u32| normals.get(*index as usize);
+        self.object.mesh.indices.chunks_exact(3).all(|corners| {
+            let first = normal(&corners[0]);
+            corners.iter().all(|corner| normal(corner) == first)
+        })
+    }
+
+    fn texture_diffusion(&self) -> Answer {
+        match self.rung {
+            Rung::Diffuse(Reflectance::Blur) => on("the rung is blur"),
+            Rung::Diffuse(_) if self.material.sigma0.is_some() || self.material.medium.is_some() => {
+                off(format!("the rung {} spreads light by curvature", self.rung))
+            }
+            Rung::OpticalPath(_) => off("light is followed through the body instead"),
+            _ => off("nothing inside scatters"),
+        }
+    }
+
+    fn through(&self, called: &str) -> Answer {
+        match self.rung {
+            Rung::OpticalPath(_) => on(called),
+            Rung::Diffuse(_) if self.material.medium.is_some() || self.material.sigma0.is_some() => {
+                off("no light is followed through the body")
+            }
+            _ => off("nothing inside scatters"),
+        }
+    }
+
+    fn optical_path(&self) -> Answer {
+        let called = self.material.medium.as_ref().map(|Medium { scattering, absorption, .. }| {
+            format!("scattering {}, absorption {}", triple(*scattering), triple(*absorption))
+        });
+        let (through, reason) = self.through(called.as_deref().unwrap_or("the rung"));
+        if through && self.lights.is_empty() {
+            return off("no light but the environment, which goes no way through bodies");
+        }
+        (through, reason)
+    }
+
+    fn color(&self) -> Answer {
+        let (through, reason) = self.optical_path();
+        let Some(medium) = self.material.medium.as_ref().filter(|_| through) else {
+            return off(reason);
+        };
+        let grey = |color: Vec3| color.x == color.y && color.y == color.z;
+        if !grey(medium.scattering) || !grey(medium.absorption) {
+            return on("scattering or absorption differs from colour to colour");
+        }
+        if !self.lights.iter().map(Light::power).all(grey) {
+            return on("a light is coloured");
+        }
+        off("scattering, absorption and lights are grey")
+    }
+
+    fn extinction_per_voxel(&self) -> Answer {
+        let (through, reason) = self.optical_path();
+        match self.material.medium.as_ref().filter(|_| through).map(|medium| &medium.density) {
+            None => off(reason),
+            Some(Density::Uniform) => off("density the same everywhere"),
+            Some(Density::Veins(_)) => on("veins"),
+            Some(Density::Grid(_)) => on("a grid of densities"),
+        }
+    }
+
+    fn environment(&self) -> Answer {
+        if self.is_gem() { off("a clear surface sends nothing back diffusely") } else { on("an environment") }
+    }
+
+    fn environment_map(&self) -> Answer {
+        match self.settings.environment {
+            Environment::Studio => off("the environment is the procedural studio"),
+            Environment::Map(_) if self.is_gem() => on("the environment is an image"),
+            Environment::Map(_) if self.reflection().0 => on("the environment is an image, which the surface reflects"),
+            Environment::Map(_) => off("of the image only its diffuse light is needed, which harmonics hold"),
+        }
+    }
+
+    fn microfacet(&self) -> Answer {
+        let Material { ior, roughness, .. } = *self.material;
+        if self.is_gem() {
+            return off("clear bodies are drawn polished");
+        }
+        if ior == 1.0 {
+            return off("ior 1: nothing reflects");
+        }
+        if roughness == 0.0 {
+            return off("roughness 0: polished");
+        }
+        if self.lights.is_empty() {
+            return off("no lights");
+        }
+        on(format!("roughness {}, ior {}", short(roughness), short(ior)))
+    }
+
+    fn reflection(&self) -> Answer {
+        let Material { ior, roughness, .. } = *self.material;
+        if self.is_gem() {
+            return off("a clear surface's reflection is part of its recipe");
+        }
+        if ior == 1.0 {
+            return off("ior 1: nothing reflects");
+        }
+        if roughness > 0.0 {
+            return off(format!("roughness {}: the environment's image would be blurred", short(roughness)));
+        }
+        on(format!("roughness 0, ior {}", short(ior)))
+    }
+
+    fn spot(&self) -> Answer {
+        let spots = self.lights.iter().filter(|light| matches!(light, Light::Spot { .. })).count();
+        if self.is_gem() {
+            return off("clear bodies are lit by the environment");
+        }
+        match spots {
+            0 => off("no light is a spot"),
+            1 => on("a light is a spot"),
+            many => on(format!("{many} lights are spots")),
+        }
+    }
+}

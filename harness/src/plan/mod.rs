@@ -1,0 +1,79 @@
+//! From a scene to what is compiled, bound and run for it: each material's technique, its effects with the property that calls for each or
+//! rules it out, and the passes, pipelines and resources that follow.
+//!
+//! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is not foretold but found: the renderer
+//! itself draws the scene on a device that does nothing, and everything that it makes and runs is written down.
+
+mod decision;
+mod effect;
+mod text;
+pub mod thickness;
+
+pub use decision::{Decision, Decisions, Scattering};
+pub use effect::{Effect, Effects, UnknownEffect};
+
+use crate::gpu::Gpu;
+use crate::gpu::capture::{Capture, capture};
+use crate::render::{self, RenderError, Rung, Settings};
+use crate::scene::Scene;
+
+/// What one object is drawn with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedObject {
+    /// Its name; with `#2` and so on where others before it have the same.
+    pub object: String,
+    /// Its material's name.
+    pub material: String,
+    /// What it calls for.
+    pub decisions: Decisions,
+}
+
+/// What drawing a scene takes, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The scene's name.
+    pub scene: String,
+    /// Of the picture, in pixels.
+    pub size: [u32; 2],
+    /// The objects, in the scene's order.
+    pub objects: Vec<PlannedObject>,
+    /// Passes, pipelines and resources.
+    pub capture: Capture,
+    /// What the scene's file asks for and nothing here draws.
+    pub lacking: Vec<String>,
+}
+
+impl Plan {
+    /// What drawing `scene` with these settings takes. The reference, which is computed on the CPU, takes nothing of a device.
+    ///
+    /// # Errors
+    /// Where the scene cannot be drawn so.
+    pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        let planned = |(object, name): (&crate::scene::Object, String)| PlannedObject {
+            object: name,
+            material: object.material.name.clone(),
+            decisions: Decisions::of(object, scene, settings),
+        };
+        let capture = if settings.rung == Rung::Reference {
+            Capture::default()
+        } else {
+            let gpu = Gpu::without_hardware();
+            let (picture, captured) = capture(|| render::render(&gpu, scene, settings));
+            picture?;
+            captured
+        };
+        Ok(Self {
+            scene: scene.name.clone(),
+            size: [settings.width, settings.height],
+            objects: scene.objects.iter().zip(render::object_names(scene)).map(planned).collect(),
+            capture,
+            lacking: scene.lacking.clone(),
+        })
+    }
+
+    /// The material of an object; nothing for what all objects share.
+    #[must_use]
+    pub fn material_of(&self, object: &str) -> Option<&str> {
+        self.objects.iter().find(|planned| planned.object == object).map(|planned| planned.material.as_str())
+    }
+}

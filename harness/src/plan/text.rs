@@ -1,0 +1,187 @@
+//! A plan to be read.
+
+use super::{Decision, Plan, PlannedObject};
+use crate::gpu::capture::{Kind, Pipeline, Resource, Step};
+use std::fmt;
+
+/// Columns of a line that lists names.
+const WIDTH: usize = 118;
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        writeln!(f, "{}: {}, {width}x{height}", self.scene, count(self.objects.len(), "object"))?;
+        for group in alike(&self.objects) {
+            writeln!(f)?;
+            self.object(f, &group)?;
+        }
+        self.passes(f)?;
+        self.pipelines(f)?;
+        self.resources(f)?;
+        if !self.lacking.is_empty() {
+            writeln!(f, "\nasked for by the file, and not drawn")?;
+            for lacking in &self.lacking {
+                writeln!(f, "  {lacking}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `1 object`, `2 objects`.
+fn count(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
+}
+
+/// Objects of one material that call for the same, together.
+fn alike(objects: &[PlannedObject]) -> Vec<Vec<&PlannedObject>> {
+    let mut groups: Vec<Vec<&PlannedObject>> = Vec::new();
+    for object in objects {
+        let same = |group: &&mut Vec<&PlannedObject>| {
+            group[0].material == object.material && group[0].decisions == object.decisions
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(object),
+            None => groups.push(vec![object]),
+        }
+    }
+    groups
+}
+
+impl Plan {
+    fn object(&self, f: &mut fmt::Formatter<'_>, group: &[&PlannedObject]) -> fmt::Result {
+        let first = group[0];
+        let names: Vec<&str> = group.iter().map(|object| object.object.as_str()).collect();
+        writeln!(f, "{} (material `{}`)", names.join(", "), first.material)?;
+        let rung = first.decisions.rung;
+        writeln!(f, "  by rung {rung}, recipe {}: {}", rung.recipe(), first.decisions.reason)?;
+        let (on, off): (Vec<&Decision>, Vec<&Decision>) =
+            first.decisions.effects.iter().partition(|decision| decision.on);
+        for decision in on {
+            writeln!(f, "  on   {:<22} {}", decision.effect.name(), decision.reason)?;
+        }
+        let mut told: Vec<&str> = Vec::new();
+        for decision in &off {
+            if told.contains(&decision.reason.as_str()) {
+                continue;
+            }
+            told.push(&decision.reason);
+            let same = off.iter().filter(|other| other.reason == decision.reason);
+            let names: Vec<&str> = same.map(|other| other.effect.name()).collect();
+            let reason = &decision.reason;
+            if let [name] = names[..] {
+                writeln!(f, "  off  {name:<22} {reason}")?;
+            } else {
+                writeln!(f, "  off  {}\n       {:<22} {reason}", names.join(", "), "")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn passes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let steps = &self.capture.steps;
+        if steps.is_empty() {
+            return writeln!(f, "\npasses\n  none: this rung is computed on the CPU");
+        }
+        let wide = |of: fn(&Step) -> &str| steps.iter().map(|step| of(step).len()).max().unwrap_or(0);
+        let [pass, object] = [wide(|step| &step.pass), wide(|step| &step.object)];
+        writeln!(f, "\npasses, in order")?;
+        for (number, step) in (1..).zip(steps) {
+            let times = if step.times > 1 { format!(" x {}", step.times) } else { String::new() };
+            writeln!(f, "{number:>3}  {:<pass$}  {:<object$}  {}{times}", step.pass, step.object, step.pipeline)?;
+            let own = format!("{}/", step.object);
+            let names = step.resources.iter().map(|name| name.strip_prefix(&own).unwrap_or(name).to_owned());
+            list(f, "       ", names)?;
+        }
+        Ok(())
+    }
+
+    fn pipelines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pipelines = &self.capture.pipelines;
+        if pipelines.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\npipelines")?;
+        for Pipeline { name, recipe, overrides, instructions, .. } in pipelines {
+            let from = if name == recipe { String::new() } else { format!(" of recipe {recipe}") };
+            writeln!(f, "  {name}{from}: {}", count(*instructions, "instruction"))?;
+            let effect = |name: &str| name.strip_prefix("EFFECT_").map(str::to_lowercase);
+            let on = overrides.iter().filter(|(_, value)| *value != 0.0).filter_map(|(name, _)| effect(name));
+            let off = overrides.iter().filter(|(_, value)| *value == 0.0).filter_map(|(name, _)| effect(name));
+            let others = overrides.iter().filter(|(name, _)| effect(name).is_none());
+            list(f, "    on   ", on)?;
+            list(f, "    off  ", off)?;
+            list(f, "    with ", others.map(|(name, value)| format!("{name} {value}")))?;
+        }
+        Ok(())
+    }
+
+    fn resources(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let resources = &self.capture.resources;
+        if resources.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\nresources: {}", bytes(self.capture.bytes()))?;
+        let owner = |resource: &Resource| {
+            let names = self.objects.iter().map(|planned| planned.object.as_str());
+            let own = |name: &&str| resource.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('/'));
+            // Of `a` and `a/b` the longer.
+            names.filter(own).max_by_key(|name| name.len()).unwrap_or_default().to_owned()
+        };
+        let mut owners: Vec<String> = Vec::new();
+        for resource in resources {
+            let owner = owner(resource);
+            if !owners.contains(&owner) {
+                owners.push(owner);
+            }
+        }
+        owners.sort_by_key(|owner| self.objects.iter().position(|planned| planned.object == *owner));
+        for name in owners {
+            let own: Vec<&Resource> = resources.iter().filter(|resource| owner(resource) == name).collect();
+            let sum = own.iter().map(|resource| resource.bytes).sum();
+            writeln!(f, "  {}: {}", if name.is_empty() { "shared" } else { &name }, bytes(sum))?;
+            let prefix = format!("{name}/");
+            let shown = own.iter().map(|resource| {
+                let short = resource.name.strip_prefix(&prefix).unwrap_or(&resource.name);
+                if resource.kind == Kind::Sampler {
+                    short.to_owned()
+                } else {
+                    format!("{short} {}", bytes(resource.bytes))
+                }
+            });
+            list(f, "    ", shown)?;
+        }
+        Ok(())
+    }
+}
+
+/// Names with commas, in lines that begin alike; nothing where there are none.
+fn list(f: &mut fmt::Formatter<'_>, lead: &str, names: impl Iterator<Item = String>) -> fmt::Result {
+    let mut line = String::new();
+    let mut start = lead.to_owned();
+    for name in names {
+        if !line.is_empty() && start.len() + line.len() + 2 + name.len() > WIDTH {
+            writeln!(f, "{start}{line},")?;
+            start = " ".repeat(lead.len());
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push_str(", ");
+        }
+        line.push_str(&name);
+    }
+    if line.is_empty() { Ok(()) } else { writeln!(f, "{start}{line}") }
+}
+
+/// With the largest unit of which there is one: B, KiB, MiB.
+fn bytes(bytes: u64) -> String {
+    let [kibi, mebi] = [1024.0, 1024.0 * 1024.0];
+    let value = bytes as f64;
+    if value >= mebi {
+        format!("{:.1} MiB", value / mebi)
+    } else if value >= kibi {
+        format!("{:.1} KiB", value / kibi)
+    } else {
+        format!("{bytes} B")
+    }
+}

@@ -1,0 +1,67 @@
+//! The objects of a scene, by the technique and by the variant of its recipe that their materials call for.
+
+use super::{Rung, Settings};
+use crate::plan::Decisions;
+use crate::scene::{Bounds, Light, Object, Scene};
+
+/// An object and what it calls for.
+pub(super) struct Drawn<'a> {
+    pub(super) object: &'a Object,
+    /// Its name; with `#2` and so on where others before it have the same.
+    pub(super) name: String,
+    pub(super) decisions: Decisions,
+}
+
+/// The objects of a scene that are drawn by one rung.
+pub(super) struct Part<'a> {
+    pub(super) rung: Rung,
+    pub(super) lights: &'a [Light],
+    pub(super) settings: &'a Settings,
+    pub(super) objects: Vec<Drawn<'a>>,
+}
+
+impl<'a> Part<'a> {
+    /// The parts of a scene, in the order of their first objects.
+    pub(super) fn all(scene: &'a Scene, settings: &'a Settings) -> Vec<Self> {
+        // An object without triangles has nothing to draw, and no buffer is empty.
+        let shown = scene.objects.iter().zip(names(scene)).filter(|(object, _)| !object.mesh.indices.is_empty());
+        let drawn =
+            shown.map(|(object, name)| Drawn { object, name, decisions: Decisions::of(object, scene, settings) });
+        let part = |(rung, objects)| Part { rung, lights: &scene.lights, settings, objects };
+        grouped(drawn.collect(), |drawn| drawn.decisions.rung).into_iter().map(part).collect()
+    }
+
+    /// The smallest box about its objects.
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds::of(self.objects.iter().flat_map(|drawn| drawn.object.mesh.positions.iter().copied()))
+    }
+
+    /// Its objects, by what their variant of the recipe is compiled with.
+    pub(super) fn variants<K: PartialEq>(&self, key: impl Fn(&Drawn<'a>) -> K) -> Vec<(K, Vec<&Drawn<'a>>)> {
+        grouped(self.objects.iter().collect(), |drawn| key(drawn))
+    }
+}
+
+/// A name for each object that no other has.
+pub(crate) fn names(scene: &Scene) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for object in &scene.objects {
+        let numbered = (2..).map(|number| format!("{}#{number}", object.name));
+        let mut candidates = std::iter::once(object.name.clone()).chain(numbered);
+        names.extend(candidates.find(|name| !names.contains(name)));
+    }
+    names
+}
+
+/// Those of one key together, in the order of the first of each.
+fn grouped<T, K: PartialEq>(all: Vec<T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    for one in all {
+        let key = key(&one);
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, members)) => members.push(one),
+            None => groups.push((key, vec![one])),
+        }
+    }
+    groups
+}
