@@ -1,5 +1,9 @@
 //! A compute entry point of a recipe, specialised, and bound by what is left of its bindings.
 
+mod recipe;
+
+pub use recipe::{Binding, RecipeRun, run_recipe};
+
 use crate::gpu::{Device, Gpu, capture};
 use crate::shader::{Bindings, Shader, ShaderError};
 

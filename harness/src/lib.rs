@@ -22,7 +22,7 @@ pub mod random_walk;
 pub mod reference;
 pub mod render;
 pub mod scene;
-mod shader;
+pub mod shader;
 pub mod snapshot;
 pub mod specialise;
 pub mod spirv_counts;

@@ -1,7 +1,8 @@
 //! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
 
-use crate::dispatch::{self, Binding, DispatchError, RecipeRun};
+use crate::compute::{self, Binding, RecipeRun};
 use crate::gpu::Gpu;
+use crate::shader::ShaderError;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
 
@@ -51,7 +52,7 @@ impl Format {
 ///
 /// # Errors
 /// Where the device refuses the recipe or the memory.
-pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, DispatchError> {
+pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError> {
     // A vec3f is aligned to 16 bytes.
     let words = [size.x, size.y, 0, 0, tint.x.to_bits(), tint.y.to_bits(), tint.z.to_bits(), 0];
     let bytes = u64::from(size.x) * u64::from(size.y) * 16;
@@ -62,7 +63,7 @@ pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, DispatchErr
         bindings: &[&[Binding::Uniform(bytemuck::cast_slice(&words)), Binding::Result(bytes)]],
         workgroups: [size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1],
     };
-    dispatch::run_recipe(gpu, &run, |bytes| {
+    compute::run_recipe(gpu, &run, |bytes| {
         let texels: &[[f32; 4]] = bytemuck::cast_slice(bytes);
         texels.iter().map(|[red, green, blue, _]| Vec3::new(*red, *green, *blue)).collect()
     })

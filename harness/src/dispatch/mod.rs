@@ -2,12 +2,10 @@
 
 mod kernel;
 mod layout;
-mod recipe;
 pub mod shape;
 pub mod value;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
-pub use recipe::{Binding, RecipeRun, run_recipe};
 
 use crate::gpu::{Gpu, GpuError};
 use layout::Layout;

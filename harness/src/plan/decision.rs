@@ -116,25 +116,17 @@ fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Str
     let free = thickness.mean_free_path;
     let paths = thickness.mean_free_paths();
     let most = super::thickness::MOST_MEAN_FREE_PATHS;
-    let size = if thickness.is_given {
-        format!("thickness {}", short(thickness.thickness))
-    } else {
-        format!("{} thick or more but for a tenth of its surface", short(thickness.thickness))
-    };
-    if thickness.shows_through() {
-        let reason = format!(
-            "{size}: {} mean free paths of {}, no more than {most}: light comes through",
-            short(paths),
-            short(free)
-        );
-        return (THROUGH, reason);
-    }
-    let reason = format!(
-        "{size}: {} mean free paths of {}, more than {most}: light stays near the surface, whose curvature tells enough",
+    let source = if thickness.is_given { "given" } else { "measured" };
+    let compared = format!(
+        "{source} thickness {} is {} mean free paths of {}",
+        short(thickness.thickness),
         short(paths),
         short(free)
     );
-    (CURVED, reason)
+    if thickness.shows_through() {
+        return (THROUGH, format!("{compared}, at most {most}: light comes through the body"));
+    }
+    (CURVED, format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads"))
 }
 
 /// Three digits.

@@ -1,6 +1,6 @@
 //! A plan to be read.
 
-use super::{Decision, Plan, PlannedObject};
+use super::{Decision, Decisions, Plan, PlannedObject};
 use crate::gpu::capture::{Kind, Pipeline, Resource, Step};
 use std::fmt;
 
@@ -33,12 +33,14 @@ fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
-/// Objects of one material that call for the same, together.
+/// Objects of one material that are drawn alike, together.
 fn alike(objects: &[PlannedObject]) -> Vec<Vec<&PlannedObject>> {
     let mut groups: Vec<Vec<&PlannedObject>> = Vec::new();
     for object in objects {
         let same = |group: &&mut Vec<&PlannedObject>| {
-            group[0].material == object.material && group[0].decisions == object.decisions
+            let Decisions { rung, effects, .. } = &group[0].decisions;
+            let drawn_alike = *rung == object.decisions.rung && *effects == object.decisions.effects;
+            group[0].material == object.material && drawn_alike
         };
         match groups.iter_mut().find(same) {
             Some(group) => group.push(object),
@@ -53,10 +55,16 @@ impl Plan {
         let first = group[0];
         let names: Vec<&str> = group.iter().map(|object| object.object.as_str()).collect();
         writeln!(f, "{} (material `{}`)", names.join(", "), first.material)?;
-        let rung = first.decisions.rung;
-        writeln!(f, "  by rung {rung}, recipe {}: {}", rung.recipe(), first.decisions.reason)?;
-        let (on, off): (Vec<&Decision>, Vec<&Decision>) =
-            first.decisions.effects.iter().partition(|decision| decision.on);
+        let Decisions { rung, reason, effects } = &first.decisions;
+        if group.iter().all(|object| object.decisions.reason == *reason) {
+            writeln!(f, "  {reason}")?;
+        } else {
+            for object in group {
+                writeln!(f, "  {}: {}", object.object, object.decisions.reason)?;
+            }
+        }
+        writeln!(f, "  so drawn by rung {rung} of recipe {}", rung.recipe())?;
+        let (on, off): (Vec<&Decision>, Vec<&Decision>) = effects.iter().partition(|decision| decision.on);
         for decision in on {
             writeln!(f, "  on   {:<22} {}", decision.effect.name(), decision.reason)?;
         }
@@ -72,7 +80,7 @@ impl Plan {
             if let [name] = names[..] {
                 writeln!(f, "  off  {name:<22} {reason}")?;
             } else {
-                writeln!(f, "  off  {}\n       {:<22} {reason}", names.join(", "), "")?;
+                writeln!(f, "  off  {}:\n       {:<22} {reason}", names.join(", "), "")?;
             }
         }
         Ok(())

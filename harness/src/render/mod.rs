@@ -290,9 +290,6 @@ pub enum RenderError {
     /// The reference of what scatters light refuses.
     #[error(transparent)]
     Walk(#[from] mesh::WalkError),
-    /// A recipe that is run for its result is not valid.
-    #[error(transparent)]
-    Recipe(#[from] crate::dispatch::DispatchError),
     /// The device refused.
     #[error(transparent)]
     Gpu(#[from] GpuError),

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
 use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
-use lapidary_harness::dispatch::{self, Binding, RecipeRun};
+use lapidary_harness::compute::{self, Binding, RecipeRun};
 use lapidary_harness::gpu::Gpu;
 use lapidary_harness::property::draws::{Domain, Draws};
 use lapidary_harness::scene::{Bvh, Mesh, Scene};
@@ -130,7 +130,7 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
         bindings: &[&mesh, &rays],
         workgroups: [queries.len().div_ceil(64) as u32, 1, 1],
     };
-    let hits = dispatch::run_recipe(gpu, &run, |bytes| {
+    let hits = compute::run_recipe(gpu, &run, |bytes| {
         let words: &[[u32; 6]] = bytemuck::cast_slice(bytes);
         words
             .iter()

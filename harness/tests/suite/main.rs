@@ -20,6 +20,7 @@ mod optical_path;
 mod optical_path_shading;
 mod parity;
 mod pixels;
+mod plan;
 mod program;
 mod random_walk;
 mod reference;

@@ -1,0 +1,387 @@
+//! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is captured.
+
+use crate::gpu;
+use glam::Vec3;
+use lapidary_harness::gpu::capture::{Capture, Resource, capture};
+use lapidary_harness::plan::{Effect, Effects, Plan};
+use lapidary_harness::render::{self, Curvature, Environment, Settings};
+use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_harness::scene::light::Light;
+use lapidary_harness::scene::{Density, Material, Object, Scene};
+use std::collections::BTreeSet;
+
+fn settings() -> Settings {
+    Settings { samples: 1, rung: render::Rung::ByMaterial, ..Settings::of_size(32, 24) }
+}
+
+fn of_rung(rung: &str) -> Settings {
+    Settings { rung: rung.parse().expect(rung), ..settings() }
+}
+
+/// What `render` makes and runs on the real device.
+fn drawn(scene: &Scene, settings: &Settings) -> Capture {
+    let (picture, captured) = capture(|| render::render(gpu(), scene, settings));
+    picture.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    captured
+}
+
+fn planned(scene: &Scene, settings: &Settings) -> Capture {
+    Plan::of(scene, settings).unwrap_or_else(|error| panic!("{}: {error}", scene.name)).capture
+}
+
+fn named(name: &str) -> Scene {
+    Scene::named(name).expect("built in")
+}
+
+/// A small image of a sky.
+fn sky() -> Environment {
+    let pixels = (0..8 * 4).map(|pixel| [0.1 * (pixel % 5) as f32, 0.5, 1.0, 1.0]).collect();
+    Environment::Map(EnvironmentMap { width: 8, height: 4, pixels })
+}
+
+#[test]
+fn what_is_drawn_is_what_was_planned() {
+    let mapped = Settings { environment: sky(), ..settings() };
+    let deferred = Settings { deferred: true, ..settings() };
+    let cases = [
+        ("brilliant", settings()),
+        ("ruby", mapped.clone()),
+        ("prism_chain", deferred),
+        ("brilliant", of_rung("convex-8+3")),
+        ("bunny_stone", of_rung("bvh-2")),
+        ("wax", settings()),
+        ("skin_ring", of_rung("blur")),
+        ("jade", Settings { environment: sky(), ..of_rung("table-256-rgba8") }),
+        ("dragon", of_rung("tiled-26-32")),
+        ("bunny", of_rung("paper-16")),
+    ];
+    for (name, settings) in cases {
+        let scene = named(name);
+        let (drawn, planned) = (drawn(&scene, &settings), planned(&scene, &settings));
+        assert_eq!(drawn, planned, "{name} by {}", settings.rung);
+        assert!(!drawn.steps.is_empty() && !drawn.resources.is_empty() && !drawn.pipelines.is_empty(), "{name}");
+        let unnamed = drawn.resources.iter().find(|resource| resource.name.ends_with("unnamed"));
+        assert_eq!(unnamed, None, "{name}: every resource has a name");
+        for step in &drawn.steps {
+            assert!(!step.pass.is_empty(), "{name}: {step:?} has no pass");
+            assert!(drawn.pipelines.iter().any(|pipeline| pipeline.name == step.pipeline), "{name}: {step:?}");
+            for resource in &step.resources {
+                assert!(drawn.resource(resource).is_some(), "{name}: {step:?} binds what was not made");
+            }
+        }
+    }
+}
+
+fn names(capture: &Capture) -> BTreeSet<&str> {
+    capture.resources.iter().map(|resource| resource.name.as_str()).collect()
+}
+
+/// Recipe and entry points of each pipeline.
+fn compiled(capture: &Capture) -> BTreeSet<(&str, &[String])> {
+    capture.pipelines.iter().map(|pipeline| (pipeline.recipe.as_str(), &pipeline.entries[..])).collect()
+}
+
+fn passes(capture: &Capture) -> BTreeSet<&str> {
+    capture.steps.iter().map(|step| step.pass.as_str()).collect()
+}
+
+/// An effect where it is on, and what goes with it.
+struct Case {
+    effect: Effect,
+    scene: Scene,
+    settings: Settings,
+    /// Names of resources, without the object's; recipes; passes.
+    goes: [Vec<&'static str>; 3],
+}
+
+/// One body of a built-in scene.
+fn one(name: &str) -> Scene {
+    let scene = named(name);
+    Scene { objects: scene.objects[..1].to_vec(), ..scene }
+}
+
+fn cases() -> Vec<Case> {
+    let none = || [vec![], vec![], vec![]];
+    let of_voxels = vec![
+        "grid",
+        "columns crossed beyond",
+        "large triangles",
+        "matter",
+        "surface voxels",
+        "voxel counts",
+        "grid of densities",
+        "veins",
+        "densities",
+        "fresh progress",
+        "progress",
+        "workgroups",
+        "matter of tiles",
+        "listed tiles",
+        "lists of tiles",
+        "kept progress",
+        "costs of red",
+        "costs of green",
+        "costs of blue",
+        "seeding of red",
+        "seeding of green",
+        "seeding of blue",
+        "solve",
+        "words to read",
+    ];
+    let spot = Light::Spot {
+        position: Vec3::new(0.0, 200.0, 0.0),
+        direction: Vec3::NEG_Y,
+        intensity: Vec3::splat(1e4),
+        inner_angle: 0.2,
+        outer_angle: 0.5,
+    };
+    let spotlit = Scene { lights: vec![spot], ..one("wax") };
+    let mut thin = one("brilliant");
+    thin.objects[0].material.thickness = 0.0;
+    let tiled = || of_rung("tiled-6-16");
+    let case = |effect, scene, settings, goes| Case { effect, scene, settings, goes };
+    vec![
+        case(Effect::ProxyGeometry, one("brilliant"), of_rung("proxy-2"), [vec!["normals"], vec![], vec![]]),
+        case(Effect::ConvexTrace, one("brilliant"), of_rung("convex-2"), none()),
+        case(Effect::BvhTrace, one("brilliant"), of_rung("bvh-2"), [vec!["nodes"], vec![], vec![]]),
+        case(Effect::ThinWall, thin, settings(), none()),
+        case(Effect::Absorption, one("ruby"), settings(), none()),
+        case(Effect::Dispersion, one("brilliant"), of_rung("proxy-2+3"), [vec!["wavelengths"], vec![], vec![]]),
+        case(
+            Effect::Cdrf,
+            one("wax"),
+            Settings { curvature: Curvature::Vertex, ..of_rung("table-256-rgba8") },
+            [
+                vec![
+                    "table",
+                    "table sampler",
+                    "curvatures",
+                    "uniform of cdrf_table",
+                    "result of cdrf_table",
+                    "result to read of cdrf_table",
+                ],
+                vec!["cdrf_table"],
+                vec!["cdrf_table"],
+            ],
+        ),
+        case(
+            Effect::TextureDiffusion,
+            one("wax"),
+            of_rung("blur"),
+            [
+                vec![
+                    "uvs",
+                    "indices with halos",
+                    "texture sampler",
+                    "irradiance",
+                    "stretch",
+                    "diffused irradiance",
+                    "taps",
+                    "diffused sampler",
+                ],
+                vec!["texture_irradiance", "texture_diffusion"],
+                vec!["texture_irradiance", "texture_diffusion"],
+            ],
+        ),
+        case(
+            Effect::OpticalPath,
+            one("dragon"),
+            tiled(),
+            [
+                of_voxels,
+                vec!["voxelization", "optical_path_density", "optical_path_seed", "optical_path_tiles"],
+                vec!["voxelization", "densities", "seeds", "solve"],
+            ],
+        ),
+        case(Effect::Surface, one("bunny"), tiled(), [vec!["surface voxels"], vec![], vec![]]),
+        case(
+            Effect::Color,
+            one("bunny"),
+            tiled(),
+            [vec!["costs of green", "costs of blue", "seeding of green", "seeding of blue"], vec![], vec![]],
+        ),
+        case(
+            Effect::ExtinctionPerVoxel,
+            one("dragon"),
+            tiled(),
+            [vec!["grid of densities", "veins", "densities"], vec!["optical_path_density"], vec!["densities"]],
+        ),
+        case(Effect::Environment, one("wax"), of_rung("accurate"), [vec!["harmonics"], vec![], vec![]]),
+        case(
+            Effect::EnvironmentMap,
+            one("brilliant"),
+            Settings { environment: sky(), ..settings() },
+            [vec!["environment map"], vec![], vec![]],
+        ),
+        case(Effect::Microfacet, one("wax"), of_rung("accurate"), none()),
+        case(
+            Effect::Reflection,
+            one("jade"),
+            Settings { environment: sky(), ..of_rung("accurate") },
+            [vec!["environment map"], vec![], vec![]],
+        ),
+        case(Effect::Spot, spotlit, of_rung("accurate"), none()),
+    ]
+}
+
+#[test]
+fn an_effect_that_is_left_out_leaves_nothing_behind() {
+    let cases = cases();
+    let covered: Vec<Effect> = cases.iter().map(|case| case.effect).collect();
+    assert_eq!(covered, Effect::ALL, "every effect once");
+    for Case { effect, scene, settings, goes } in cases {
+        let on = drawn(&scene, &settings);
+        let off = drawn(&scene, &Settings { without: Effects::of(&[effect]), ..settings.clone() });
+        let [resources, recipes, gone_passes] = goes;
+        // Whatever is in the one and not in the other is the effect's, and all of the effect's is.
+        let short = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();
+        let gone: BTreeSet<String> = names(&on).difference(&names(&off)).map(|name| short(name)).collect();
+        assert_eq!(gone, resources.iter().map(|name| (*name).to_owned()).collect(), "{effect}: resources");
+        assert_eq!(names(&off).difference(&names(&on)).next(), None, "{effect}: nothing comes for what goes");
+        let gone: BTreeSet<&str> = compiled(&on).difference(&compiled(&off)).map(|(recipe, _)| *recipe).collect();
+        assert_eq!(gone, recipes.into_iter().collect(), "{effect}: recipes");
+        let gone: BTreeSet<&str> = passes(&on).difference(&passes(&off)).copied().collect();
+        assert_eq!(gone, gone_passes.into_iter().collect(), "{effect}: passes");
+        // What is left of every pipeline is compiled without it, and smaller where it was compiled with it.
+        let value = |capture: &Capture, value: f64| {
+            let name = effect.override_name();
+            let of = capture.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
+            of.filter(|(known, set)| known == name && *set == value).count()
+        };
+        assert!(value(&on, 1.0) > 0 && value(&off, 1.0) == 0, "{effect}: compiled with {}", value(&off, 1.0));
+        let instructions = |capture: &Capture| -> usize { capture.pipelines.iter().map(|p| p.instructions).sum() };
+        assert!(instructions(&off) < instructions(&on), "{effect}: {} of {}", instructions(&off), instructions(&on));
+        assert!(off.bytes() <= on.bytes(), "{effect}");
+    }
+}
+
+#[test]
+fn a_materials_variant_runs_on_its_own_draw_alone() {
+    let [mut diamond, ruby] = ["brilliant", "ruby"].map(|name| named(name));
+    diamond.objects.extend(ruby.objects);
+    let capture = drawn(&diamond, &settings());
+    let effects = |object: &str| {
+        let steps: Vec<_> = capture.steps.iter().filter(|step| step.object == object).collect();
+        let [step] = steps[..] else { panic!("{object}: {steps:?}") };
+        let pipeline = capture.pipelines.iter().find(|pipeline| pipeline.name == step.pipeline).expect("compiled");
+        let on = pipeline.overrides.iter().filter(|(name, value)| name.starts_with("EFFECT_") && *value == 1.0);
+        on.map(|(name, _)| name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(effects("brilliant"), ["EFFECT_PROXY_GEOMETRY", "EFFECT_DISPERSION"]);
+    assert_eq!(effects("ruby"), ["EFFECT_PROXY_GEOMETRY", "EFFECT_ABSORPTION", "EFFECT_DISPERSION"]);
+}
+
+/// The reason for which an effect is off.
+fn off(scene: &Scene, settings: &Settings, effect: Effect) -> String {
+    let plan = Plan::of(scene, settings).expect("a plan");
+    let decisions = &plan.objects[0].decisions.effects;
+    let decision = decisions.iter().find(|decision| decision.effect == effect).expect("every effect");
+    assert!(!decision.on, "{effect}: {}", decision.reason);
+    decision.reason.clone()
+}
+
+fn with_material(name: &str, change: impl Fn(&Material) -> Material) -> Scene {
+    let scene = one(name);
+    let objects = scene.objects.iter().map(|object| Object { material: change(&object.material), ..object.clone() });
+    Scene { objects: objects.collect(), ..scene.clone() }
+}
+
+#[test]
+fn what_is_off_says_why() {
+    let settings = settings();
+    assert_eq!(off(&one("brilliant"), &settings, Effect::Absorption), "attenuation white");
+    assert_eq!(off(&one("prism"), &settings, Effect::Cdrf), "nothing inside scatters");
+    let plain = with_material("ruby", |material| Material {
+        dispersion: lapidary_harness::scene::Dispersion::None,
+        ..material.clone()
+    });
+    assert_eq!(off(&plain, &settings, Effect::Dispersion), "dispersion 0");
+    let thin = with_material("ruby", |material| Material { thickness: 0.0, ..material.clone() });
+    for effect in [Effect::ProxyGeometry, Effect::Absorption, Effect::Dispersion] {
+        assert_eq!(off(&thin, &settings, effect), "thickness 0");
+    }
+    let endless = with_material("ruby", |m| Material { attenuation_distance: f32::INFINITY, ..m.clone() });
+    assert_eq!(off(&endless, &settings, Effect::Absorption), "attenuation distance infinite");
+    let opaque = with_material("ruby", |material| Material { transmission: 0.0, ..material.clone() });
+    assert_eq!(off(&opaque, &settings, Effect::ProxyGeometry), "transmission 0: opaque");
+    let matched = with_material("wax", |material| Material { ior: 1.0, ..material.clone() });
+    assert_eq!(off(&matched, &settings, Effect::Microfacet), "ior 1: nothing reflects");
+    let unlit = Scene { lights: Vec::new(), ..one("bunny") };
+    assert_eq!(
+        off(&unlit, &of_rung("godunov-16"), Effect::OpticalPath),
+        "no light but the environment, which goes no way through bodies"
+    );
+    assert_eq!(off(&one("bunny"), &settings, Effect::ExtinctionPerVoxel), "density the same everywhere");
+    let mut grey = one("bunny");
+    for medium in grey.objects.iter_mut().filter_map(|object| object.material.medium.as_mut()) {
+        medium.scattering = Vec3::splat(2.0);
+        medium.absorption = Vec3::splat(0.01);
+        medium.density = Density::Uniform;
+    }
+    assert_eq!(off(&grey, &settings, Effect::Color), "scattering, absorption and lights are grey");
+    // A body all of whose facets are flat has no curvature.
+    let mut flat = one("wax");
+    let mesh = named("octahedron").objects.remove(0).mesh;
+    let positions = mesh.indices.iter().map(|index| mesh.positions[*index as usize]).collect::<Vec<_>>();
+    let normals = positions.chunks_exact(3).flat_map(|t| [(t[1] - t[0]).cross(t[2] - t[0]).normalize(); 3]).collect();
+    let indices = (0..positions.len() as u32).collect();
+    flat.objects[0].mesh = lapidary_harness::scene::Mesh { positions, normals, indices, ..Default::default() };
+    assert_eq!(off(&flat, &of_rung("accurate"), Effect::Cdrf), "curvature everywhere 0");
+    let left_out = Settings { without: Effects::of(&[Effect::Dispersion]), ..settings.clone() };
+    let reason = off(&one("brilliant"), &left_out, Effect::Dispersion);
+    assert_eq!(reason, "left out on request, though Sellmeier equation of diamond (V_d 55.3)");
+}
+
+/// Resources by name and bytes, pipelines by what they are compiled with, steps by what they do.
+type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
+
+fn parts(scene: &Scene) -> Parts {
+    let capture = planned(scene, &settings());
+    // Pipelines are numbered in the order in which they come, so by their contents.
+    let key = |name: &str| {
+        let pipeline = capture.pipelines.iter().find(|pipeline| pipeline.name == name);
+        pipeline.map(|p| format!("{} {:?} {:?} {}", p.recipe, p.entries, p.overrides, p.instructions))
+    };
+    let steps = capture.steps.iter().map(|step| {
+        format!("{} {} {:?} {:?} x {}", step.pass, step.object, key(&step.pipeline), step.resources, step.times)
+    });
+    let pipelines = capture.pipelines.iter().filter_map(|pipeline| key(&pipeline.name));
+    (capture.resources.iter().cloned().collect(), pipelines.collect(), steps.collect())
+}
+
+/// A set of objects takes what each of them takes alone, and nothing else: so that removing one removes exactly what none of the others needs.
+#[test]
+fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
+    let vitrine = named("vitrine");
+    let subset = |kept: usize| {
+        let objects = vitrine.objects.iter().enumerate().filter(|(place, _)| kept >> place & 1 == 1);
+        Scene { objects: objects.map(|(_, object)| object.clone()).collect(), ..vitrine.clone() }
+    };
+    let count = vitrine.objects.len();
+    assert!(count >= 6, "{count} objects");
+    let alone: Vec<Parts> = (0..count).map(|place| parts(&subset(1 << place))).collect();
+    let shared = parts(&subset(0));
+    for kept in 0..1 << count {
+        let (resources, pipelines, steps) = parts(&subset(kept));
+        let mut expected = shared.clone();
+        for (_, (resources, pipelines, steps)) in alone.iter().enumerate().filter(|(place, _)| kept >> place & 1 == 1) {
+            expected.0.extend(resources.iter().cloned());
+            expected.1.extend(pipelines.iter().cloned());
+            expected.2.extend(steps.iter().cloned());
+        }
+        assert_eq!((resources, pipelines, steps), expected, "subset {kept:b}");
+    }
+    // And each has something of its own.
+    for (object, parts) in vitrine.objects.iter().zip(&alone) {
+        let own = |name: &str| name.starts_with(&format!("{}/", object.name));
+        assert!(parts.0.iter().any(|resource| own(&resource.name)), "{}", object.name);
+    }
+}
+
+#[test]
+fn the_vitrine_is_drawn_as_planned_and_explained() {
+    let vitrine = named("vitrine");
+    assert_eq!(drawn(&vitrine, &settings()), planned(&vitrine, &settings()));
+    let usual = Settings { rung: render::Rung::ByMaterial, ..Settings::of_size(512, 512) };
+    insta::assert_snapshot!("vitrine_plan", Plan::of(&vitrine, &usual).expect("a plan").to_string());
+}
