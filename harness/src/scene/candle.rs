@@ -1,7 +1,7 @@
 //! A candle that has burnt for a while: a bowl where the wax has melted about the wick, an uneven rim, and runs of wax down the side.
 //!
-//! Lengths are in millimetres; y is up and the candle stands on 0. The surface has continuous curvature, but for where two runs' far sides
-//! would meet: what spreads light by curvature shows no seams. Its least radius of curvature, of the runs, is some 2 mm.
+//! Lengths are in millimetres; y is up and the candle stands on 0. Its curvature is continuous, so that light which is spread by
+//! curvature shows no seams.
 
 use glam::{DVec2, DVec3, dvec2};
 use std::f64::consts::{PI, TAU};
@@ -10,7 +10,7 @@ use super::Mesh;
 use super::surfaces::grid;
 
 /// Quadrilaterals around, and along each span of the outline.
-const COLUMNS: u32 = 84;
+const COLUMNS: u32 = 64;
 const ROWS: u32 = 3;
 
 /// Where the side is before anything runs down it.
@@ -18,25 +18,21 @@ const RADIUS: f64 = 15.0;
 
 /// Distance from the axis and height of the points that control the outline, a uniform cubic B-spline, from the middle of the bowl to the
 /// middle of the foot. Denser where it bends more.
-const OUTLINE: [[f64; 2]; 19] = [
+const OUTLINE: [[f64; 2]; 15] = [
     [0.0, 51.0],
-    [4.5, 51.3],
-    [8.5, 53.2],
-    [11.0, 57.0],
-    [12.5, 60.2],
-    [14.2, 60.2],
-    [15.0, 57.2],
-    [15.0, 51.0],
-    [15.0, 44.0],
-    [15.0, 37.0],
-    [15.0, 30.0],
-    [15.0, 23.0],
-    [15.0, 15.0],
+    [5.5, 51.5],
+    [10.0, 55.0],
+    [12.4, 60.0],
+    [14.4, 60.0],
+    [15.0, 56.5],
+    [15.0, 49.0],
+    [15.0, 41.0],
+    [15.0, 33.0],
+    [15.0, 25.0],
+    [15.0, 16.0],
     [15.0, 7.0],
-    [15.2, 1.5],
-    [14.8, 0.0],
-    [12.5, 0.0],
-    [6.0, 0.0],
+    [15.3, 0.0],
+    [12.0, 0.0],
     [0.0, 0.0],
 ];
 
@@ -100,7 +96,7 @@ impl Run {
         let (aside, above) = (RADIUS * turn / self.half_width, (height - self.end) / self.half_width);
         // A drop has gathered at its end.
         let drop = 0.8 * (-(above - 0.9).powi(2)).exp();
-        (0.9 + drop) * step(3.0 * above) * (-aside * aside).exp()
+        (1.3 + drop) * step(3.0 * above) * (-aside * aside).exp()
     }
 }
 

@@ -10,20 +10,14 @@ use glam::{DQuat, DVec2, DVec3, dvec2, dvec3};
 /// The statue, 117 mm high.
 #[must_use]
 pub fn mesh() -> Mesh {
-    coarser(1.0)
+    surface(&field, &grid())
 }
 
-/// The statue in triangles `factor` times as wide, at least 1 times. Features that are narrower than those, such as the lips, are lost.
-#[must_use]
-pub fn coarser(factor: f64) -> Mesh {
-    surface(&field, &grid(1.28 * factor))
-}
-
-/// Cells of this `width` at the face, wider on the wings, and more than twice as wide at the plinth's foot.
-fn grid(width: f64) -> Grid {
+/// Cells of 1.3 mm at the face, wider on the wings, and more than twice as wide at the plinth's foot.
+fn grid() -> Grid {
     let scale = |height: f64| 1.0 + 1.5 * (1.0 - height / 82.0).clamp(0.0, 1.0);
     let stretch = |aside: f64| 1.0 + 0.25 * ((aside - 9.0) / 8.0).clamp(0.0, 1.0);
-    Grid::graded(dvec2(0.0, -1.0), dvec2(48.0, 20.0), [-4.0, 122.0], width, scale, stretch)
+    Grid::graded(dvec2(0.0, -1.0), dvec2(48.0, 20.0), [-4.0, 122.0], 1.28, scale, stretch)
 }
 
 /// Negative inside, positive outside.

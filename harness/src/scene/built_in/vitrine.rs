@@ -16,8 +16,6 @@ const DIAMOND: f32 = 17.0;
 const RUBY: f32 = 13.5;
 /// How many times as large as the built-in chain the chain is: a link is 18 mm wide.
 const CHAIN: f32 = 18.0;
-/// How many times as wide the figure's triangles are as the built-in figure's. The file has room for no more of them.
-const FIGURE: f64 = 1.3;
 /// Between the table and what stands on it, so that no two surfaces are one.
 const GAP: f64 = 0.02;
 
@@ -53,17 +51,17 @@ fn bodies() -> [(&'static str, Material); 6] {
 
 fn meshes() -> Result<[Mesh; 6], CutError> {
     let (half, rounding) = (DVec3::new(150.0, 7.0, 100.0), 2.5);
-    let table = rounded_box(half, rounding, 3).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
+    let table = rounded_box(half, rounding, 2).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
     let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?.to_mesh(Averaging::default());
     let chain = prisms::chain()?.scaled(CHAIN);
     Ok([
         table,
-        standing(&brilliant.scaled(DIAMOND), lying(18.0), [-17.0, 42.0]),
+        standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
         standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
-        standing(&candle::mesh(), turned(0.0), [-58.0, 2.0]),
-        standing(&figure::coarser(FIGURE), turned(8.0), [10.0, -28.0]),
+        standing(&candle::mesh(), turned(0.0), [-62.0, 2.0]),
+        standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
         // Its uppermost link passes the picture's edge.
-        chain.placed(DQuat::IDENTITY, DVec3::new(75.0, 136.0, 0.0)),
+        chain.placed(DQuat::IDENTITY, DVec3::new(71.0, 138.0, 0.0)),
     ])
 }
 
@@ -86,13 +84,13 @@ fn standing(mesh: &Mesh, rotation: DQuat, [x, z]: [f64; 2]) -> Mesh {
 }
 
 fn lights() -> Vec<Light> {
-    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 14_000.0 * Vec3::new(1.0, 0.8, 0.6) };
+    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 6_000.0 * Vec3::new(1.0, 0.8, 0.6) };
     vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), lamp]
 }
 
 /// For pictures of 4:3.
 fn camera() -> Camera {
-    Camera::upright(Vec3::new(18.0, 118.0, 335.0), Vec3::new(4.0, 47.0, 0.0), VERTICAL_FOV)
+    Camera::upright(Vec3::new(14.0, 118.0, 312.0), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
 }
 
 #[cfg(test)]

@@ -12,19 +12,6 @@ fn the_figure_is_one_closed_body_without_slivers() {
     assert!((10_000..15_000).contains(&mesh.triangle_count()));
 }
 
-/// As the vitrine has it.
-#[test]
-fn a_coarser_figure_is_one_closed_body_too() {
-    let [fine, coarse] = [1.0, 1.3].map(coarser);
-    let survey = survey(&coarse);
-    println!("{} triangles, {survey:?}", coarse.triangle_count());
-    assert!(survey.bodies == 1 && survey.least_angle > 3.0 && survey.turned < 0.02, "{survey:?}");
-    let fewer = coarse.triangle_count() as f64 / fine.triangle_count() as f64;
-    assert!((0.5..0.7).contains(&fewer), "{fewer}");
-    let volumes = [fine, coarse].map(|mesh| mesh.volume_and_area().0);
-    assert!((volumes[1] / volumes[0] - 1.0).abs() < 0.02, "{volumes:?}");
-}
-
 /// Each a place within the part and one in the open air beside it.
 #[test]
 fn arms_wings_and_wreath_are_free_of_the_body() {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::pixel::surface::Viewer;
+use crate::pixel::Viewer;
 use crate::scene::{Mineral, glb};
 
 fn made() -> Scene {
