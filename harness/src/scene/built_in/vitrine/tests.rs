@@ -52,6 +52,8 @@ fn each_body_calls_for_a_technique_of_its_own() {
     for (body, spreads) in [(candle, true), (figure, false)] {
         assert_eq!(body.material.sigma0.is_some(), spreads);
         assert_eq!(body.mesh.uvs.is_empty(), !spreads);
+        let solver = body.material.solver.expect("the file names it");
+        assert_eq!(solver.recipe(), if spreads { "cdrf_shading" } else { "optical_path_shading" });
         // Thick against the mean free path, here of the mean chord, 4 V/S.
         let (volume, area) = body.mesh.volume_and_area();
         let scattering = body.material.medium.as_ref().expect("scatters").scattering.min_element();
