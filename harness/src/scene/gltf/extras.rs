@@ -15,7 +15,7 @@ use serde_json::value::RawValue;
 
 use super::error::excerpt;
 use super::medium::medium;
-use crate::render::{NAMES, Rung};
+use crate::render::Rung;
 use crate::scene::material::draws_scattering;
 use crate::scene::{Dispersion, Material, Mineral};
 
@@ -153,11 +153,10 @@ fn mineral(json: &RawValue) -> Result<Mineral, String> {
 fn solver(json: &RawValue) -> Result<Rung, String> {
     let rung = serde_json::from_str::<String>(json.get()).ok().and_then(|name| name.parse().ok());
     rung.filter(|rung| draws_scattering(*rung)).ok_or_else(|| {
-        let offered = NAMES.iter().filter(|name| name.parse().is_ok_and(draws_scattering));
         format!(
-            "its extras.lapidary.solver is {}, but must be a rung for what scatters light, such as {}",
-            excerpt(json.get()),
-            offered.copied().collect::<Vec<_>>().join(", ")
+            "its extras.lapidary.solver is {}, but must be a rung for what scatters light, such as lambert, accurate, blur or \
+             godunov-64; `./cook render --help` says which there are",
+            excerpt(json.get())
         )
     })
 }

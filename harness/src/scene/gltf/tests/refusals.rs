@@ -333,7 +333,7 @@ fn solvers_that_draw_no_scattering() {
     let others = [json!(1), json!(null), json!(["accurate"]), json!("x\n".repeat(100_000))];
     for bad in names.map(Value::from).into_iter().chain(others) {
         material_refused("extras", with(bad.clone()), "its extras.lapidary.solver is ");
-        material_refused("extras", with(bad), "such as lambert, wrap, ");
+        material_refused("extras", with(bad), "such as lambert, accurate, blur or godunov-64; ");
     }
     let says = "its extras.lapidary has a solver, but nothing there scatters light";
     material_refused("extras", json!({"lapidary": {"solver": "accurate"}}), says);
