@@ -40,7 +40,8 @@ fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
     // Runs of some 25 by 5 by 1 mm add up to a few hundredths.
     assert!((1.0..1.05).contains(&(volume / expected)), "{volume}, {expected}");
     let bounds = Bounds::of(mesh.positions.iter().copied());
-    assert!(bounds.min.y == 0.0 && (59.0..62.0).contains(&bounds.max.y), "{bounds:?}");
+    // What is left at the foot of the rim's sag: 1 mm by exp(-45 / 2.5).
+    assert!(bounds.min.y.abs() < 2e-8 && (59.0..62.0).contains(&bounds.max.y), "{bounds:?}");
     assert!(bounds.max.with_y(0.0).max_element() < 17.5 && bounds.max.x > 15.0);
 }
 
