@@ -12,6 +12,7 @@ mod materials;
 mod prisms;
 mod stone;
 mod translucent;
+mod vitrine;
 
 /// A scene that needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes.
-pub const BUILT_IN: [BuiltIn; 27] = [
+pub const BUILT_IN: [BuiltIn; 28] = [
     BuiltIn {
         name: "brilliant",
         description: "A diamond in the round brilliant cut with Tolkowsky's proportions: 73 facets with \
@@ -144,6 +145,11 @@ pub const BUILT_IN: [BuiltIn; 27] = [
         description: "A winged figure of marble on a plinth, 117 mm high, who raises a wreath; parallel light from behind at the left passes \
             wings, arms and wreath. Made of smooth joins of simple bodies.",
     },
+    BuiltIn {
+        name: "vitrine",
+        description: "One picture for all techniques: on a table of slate a diamond that disperses light, a ruby that does not, a candle of \
+            wax and the marble figure; beside it hangs a chain of clear glass prisms. Lit by a sun from behind at the left and a warm lamp.",
+    },
 ];
 
 /// The names of all built-in scenes, as a list for a message.
@@ -163,7 +169,11 @@ const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 
 /// The scene called `name`, nothing of it from a file that it could be made without.
 pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
-    if name == "figure" { Ok(stone::made_figure(name)) } else { build(name) }
+    match name {
+        "figure" => Ok(stone::made_figure(name)),
+        "vitrine" => vitrine::made(name),
+        _ => build(name),
+    }
 }
 
 /// The scene called `name`.
@@ -196,6 +206,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "bunny" => stone::bunny(name),
         "dragon" => stone::dragon(name),
         "figure" => stone::figure(name),
+        "vitrine" => vitrine::stored(name),
         "brilliant_plain" => diamond(name, Averaging::Plain, Triangulation::Centroid),
         _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
     }

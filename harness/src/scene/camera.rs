@@ -21,6 +21,14 @@ const FILL_HEIGHT: f64 = 0.75;
 const FILL_WIDTH: f64 = 0.9;
 
 impl Camera {
+    /// A camera at `eye` that looks at `target`, another point not right above or below it, with its upward direction towards +y.
+    #[must_use]
+    pub fn upright(eye: Vec3, target: Vec3, vertical_fov: f32) -> Self {
+        let back = (eye - target).as_dvec3().normalize();
+        let right = DVec3::Y.cross(back).normalize();
+        Self { eye, target, up: back.cross(right).as_vec3(), vertical_fov }
+    }
+
     /// A camera that sees all `points`, from the direction `toward_eye`, with the given vertical field
     /// of view in radians (above 0, below π).
     ///
@@ -113,6 +121,17 @@ mod tests {
                 assert!(right > 0.8999 && left > 0.8999);
             }
         }
+    }
+
+    #[test]
+    fn an_upright_camera_has_its_target_in_the_middle_and_what_is_above_above() {
+        let (eye, target) = (Vec3::new(3.0, 8.0, -5.0), Vec3::new(-1.0, 2.0, 4.0));
+        let camera = Camera::upright(eye, target, 0.5);
+        assert!(camera.up.is_normalized() && camera.up.dot(eye - target).abs() < 1e-5);
+        let (x, y) = project(&camera, target);
+        assert!(x.abs() < 1e-6 && y.abs() < 1e-6);
+        let (x, y) = project(&camera, target + Vec3::Y);
+        assert!(x.abs() < 1e-6 && y > 0.1);
     }
 
     #[test]

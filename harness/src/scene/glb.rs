@@ -55,15 +55,15 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
 /// The bytes of a .glb with the scene's objects, their materials (see below), its lights and its camera.
 ///
-/// A clear material is fully transmissive by `KHR_materials_transmission`, has its refractive index by
-/// `KHR_materials_ior`, its attenuation by `KHR_materials_volume`, whose thickness also says that the body
-/// is solid, and its dispersion by `KHR_materials_dispersion`. A Sellmeier equation, which glTF cannot
-/// say, is named in `extras.lapidary.sellmeier`; the dispersion beside it is what others make of it. A material
-/// with a medium or a `sigma0` is not transmissive: others show its base colour, and `extras.lapidary` holds its
-/// numbers. Lights go by `KHR_lights_punctual`.
+/// A material is transmissive by `KHR_materials_transmission` and `KHR_materials_diffuse_transmission`, has its refractive index by
+/// `KHR_materials_ior`, its thickness and attenuation by `KHR_materials_volume`, and its dispersion by
+/// `KHR_materials_dispersion`. A Sellmeier equation, which glTF cannot say, is named in `extras.lapidary.sellmeier`; the dispersion beside it
+/// is what others make of it. A medium, a `sigma0` and a solver stand in `extras.lapidary`; others show the base colour. Lights
+/// go by `KHR_lights_punctual`.
 ///
 /// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes (without [`Mesh::halo`]), materials
-/// and lights back; of the camera it gives the same view, to rounding.
+/// and lights back; of the camera it gives the same view, to rounding. A material of diffuse transmission with an attenuation but without a
+/// medium comes back with the one that the loader derives.
 ///
 /// # Errors
 /// [`GlbError`], where a mesh or light is not well-formed or the file would pass 4 GiB.
@@ -151,7 +151,7 @@ impl Document {
                 "mode": 4,
             }],
         }));
-        self.materials.push(material::material(&object.material, material::thickness(mesh)));
+        self.materials.push(material::material(&object.material));
         Ok(())
     }
 

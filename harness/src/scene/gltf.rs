@@ -5,11 +5,10 @@
 //! instead. What a file can make the loader allocate is bounded by [`MAX_TRIANGLES`],
 //! [`MAX_FILE_BYTES`] and [`MAX_EXPANSION`].
 //!
-//! Loaded are triangles (also strips and fans) with their first texture coordinates, node transforms, the first
-//! perspective camera, directional and point lights (`gltf/light_node.rs`), and of materials the base colour factor,
-//! roughness, refractive index, dispersion, attenuation and scattering (`gltf/material.rs`). Points and lines have no
-//! surface and are passed over. Skins, morph targets and animations are not applied, textures not read: a body shows
-//! at rest.
+//! Loaded are triangles (also strips and fans) with their first texture coordinates, node transforms and instances
+//! (`gltf/instances.rs`), the first perspective camera, directional, point and spot lights (`gltf/light_node.rs`), and materials
+//! (`gltf/material.rs`). What a file asks for beside that is listed in [`Scene::lacking`] (`gltf/survey.rs`): textures, skins, morph targets,
+//! animations and more. A body shows at rest, in factors alone.
 
 use std::path::Path;
 
@@ -26,11 +25,15 @@ mod camera_node;
 mod container;
 mod error;
 mod extension;
+mod extras;
+mod instances;
+mod lacking;
 mod light_node;
 mod material;
 mod medium;
 mod nodes;
 mod primitive;
+mod survey;
 
 pub use error::GltfError;
 
@@ -49,14 +52,15 @@ pub const MAX_EXPANSION: u64 = 256;
 /// cross product, the largest number that the shaders form of them, is below 1.5·10³⁸ and fits f32.
 pub const MAX_COORDINATE: f32 = 1e9;
 
-/// The extensions that a file may require: what they say is read, or may be left out of a mesh.
-pub const KNOWN_EXTENSIONS: [&str; 6] = [
+/// The extensions that a file may require: what they say is read.
+pub const KNOWN_EXTENSIONS: [&str; 7] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_dispersion",
     "KHR_materials_diffuse_transmission",
     "KHR_lights_punctual",
+    "EXT_mesh_gpu_instancing",
 ];
 
 /// The vertical field of view of a scene without a camera of its own, in radians, and the direction
@@ -117,7 +121,7 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
         }
     };
     let lights = light_node::lights(&root, &shown.nodes)?;
-    Ok(Scene { name: shown.name, objects, lights, camera, lacking: Vec::new() })
+    Ok(Scene { name: shown.name, objects, lights, camera, lacking: survey::lacking(&root, &shown.nodes, &materials) })
 }
 
 fn check_asset(root: &Root) -> Result<(), GltfError> {

@@ -1,6 +1,7 @@
 //! What a body is made of, as far as glTF says it, and a little further.
 
 use super::Medium;
+use crate::render::Rung;
 use glam::Vec3;
 use lapidary_dispersion::oracle as dispersion;
 
@@ -36,6 +37,14 @@ pub struct Material {
     pub sigma0: Option<Vec3>,
     /// How the inside scatters light; `None` where the material does not say.
     pub medium: Option<Medium>,
+    /// By which rung the body is drawn, one for what scatters light; `None` where the material does not say. Only a body that scatters light has
+    /// one.
+    pub solver: Option<Rung>,
+}
+
+/// Whether a rung draws what scatters light, and that alone.
+pub(super) fn draws_scattering(rung: Rung) -> bool {
+    matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))
 }
 
 /// How a refractive index depends on the wavelength.
@@ -143,6 +152,7 @@ impl Material {
             roughness: 1.0,
             sigma0: None,
             medium: None,
+            solver: None,
         }
     }
 
@@ -183,6 +193,10 @@ impl Material {
             Some("its material's roughness is not between 0 and 1; mend it")
         } else if !self.sigma0.is_none_or(is_length) {
             Some("its material's sigma0 is not finite and at least 0; mend it")
+        } else if self.solver.is_some_and(|rung| !draws_scattering(rung)) {
+            Some("its material's solver is no rung for what scatters light; take another")
+        } else if self.solver.is_some() && self.medium.is_none() && self.sigma0.is_none() {
+            Some("its material has a solver, but does not scatter light; remove the solver")
         } else {
             self.medium.as_ref().and_then(Medium::problem)
         }

@@ -50,6 +50,12 @@ impl Mesh {
         }
     }
 
+    /// The mesh `factor` times as large, above 0, about the origin.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        Self { positions: self.positions.iter().map(|position| factor * *position).collect(), ..self.clone() }
+    }
+
     /// The mesh without `halo` and without the vertices of that alone.
     #[must_use]
     pub fn without_halo(&self) -> Self {

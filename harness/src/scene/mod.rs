@@ -12,6 +12,7 @@ pub mod atlas;
 mod built_in;
 pub mod bvh;
 mod camera;
+pub mod candle;
 pub mod convex;
 pub mod curvatures;
 pub mod cuts;

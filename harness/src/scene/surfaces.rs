@@ -1,7 +1,7 @@
-//! Smooth closed surfaces with exact normals and texture coordinates.
+//! Smooth closed surfaces with exact normals, round ones with texture coordinates.
 
 use glam::{DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 use super::Mesh;
 
@@ -28,9 +28,48 @@ pub fn torus(major: f64, minor: f64, columns: u32, rows: u32) -> Mesh {
     })
 }
 
+/// A box about the origin that reaches as far as `half` along the axes, its edges and corners rounded with `radius`, by `steps` quadrilaterals
+/// from the middle of an edge to each of its two faces. Its faces are flat up to their borders. Without texture coordinates.
+#[must_use]
+pub fn rounded_box(half: DVec3, radius: f64, steps: u32) -> Mesh {
+    // The tangent of the angle from a face's normal, at its greatest exactly 1, so that two faces meet in the same positions.
+    let tangent = |step: u32| if step == steps { 1.0 } else { (FRAC_PI_4 * f64::from(step) / f64::from(steps)).tan() };
+    // Across a face: about the edge on one side, then about the one on the other.
+    let lower = (0..=steps).rev().map(|step| (-1.0, -tangent(step)));
+    let places: Vec<(f64, f64)> = lower.chain((0..=steps).map(|step| (1.0, tangent(step)))).collect();
+    let mut mesh = Mesh::default();
+    for (axis, sign) in (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]) {
+        let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+        let first_vertex = mesh.positions.len() as u32;
+        for (side, tangent) in &places {
+            for (other_side, other_tangent) in &places {
+                let (mut corner, mut normal) = (DVec3::ZERO, DVec3::ZERO);
+                (corner[axis], normal[axis]) = (sign, sign);
+                (corner[second], normal[second]) = (*side, *tangent);
+                (corner[third], normal[third]) = (*other_side, *other_tangent);
+                let normal = normal.normalize();
+                mesh.positions.push((corner * (half - radius) + radius * normal).as_vec3());
+                mesh.normals.push(normal.as_vec3());
+            }
+        }
+        let count = places.len() as u32;
+        for (row, column) in (0..count - 1).flat_map(|row| (0..count - 1).map(move |column| (row, column))) {
+            let vertex = |down: u32, right: u32| first_vertex + (row + down) * count + column + right;
+            let [mut one, mut other] =
+                [[vertex(0, 0), vertex(1, 0), vertex(1, 1)], [vertex(0, 0), vertex(1, 1), vertex(0, 1)]];
+            if sign < 0.0 {
+                one.reverse();
+                other.reverse();
+            }
+            mesh.indices.extend([one, other].concat());
+        }
+    }
+    mesh
+}
+
 /// A grid of `size` quadrilaterals over the unit square, u to the right and v down as seen from outside, by position and unit normal.
 /// Triangles without area, as at a pole, are left out.
-fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3, DVec3)) -> Mesh {
+pub(super) fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3, DVec3)) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {
         for column in 0..=columns {
@@ -80,6 +119,33 @@ mod tests {
     #[test]
     fn a_sphere_has_its_volume_and_area() {
         check(&sphere(2.0, 128), 4.0 / 3.0 * PI * 8.0, 4.0 * PI * 4.0);
+    }
+
+    /// Steiner's formula: of what is within `r` of a box with edges a, b, c, the volume is abc + 2r(ab + bc + ca) + πr²(a + b + c) + 4/3πr³,
+    /// and the area its derivative by r.
+    #[test]
+    fn a_rounded_box_has_its_volume_its_area_and_flat_faces() {
+        let (half, r) = (DVec3::new(7.0, 2.0, 4.0), 0.75);
+        let mesh = rounded_box(half, r, 8);
+        assert!(crate::scene::convex::is_closed(&mesh));
+        let [a, b, c] = (2.0 * (half - r)).to_array();
+        let (sides, edges) = (a * b + b * c + c * a, a + b + c);
+        let (volume, area) = mesh.volume_and_area();
+        let expected = a * b * c + 2.0 * r * sides + PI * r * r * edges + 4.0 / 3.0 * PI * r.powi(3);
+        assert!(volume < expected && volume > 0.999 * expected, "{volume}, {expected}");
+        let expected = 2.0 * sides + TAU * r * edges + 4.0 * PI * r * r;
+        assert!(area < expected && area > 0.999 * expected, "{area}, {expected}");
+        for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
+            let inner = position.as_dvec3().clamp(r - half, half - r);
+            assert!((position.as_dvec3() - inner).distance(r * normal.as_dvec3()) < 1e-6);
+        }
+        let top = mesh.triangles().zip(mesh.indices.chunks_exact(3));
+        let top: Vec<_> = top.filter(|(corners, _)| corners.iter().all(|corner| corner.y == 2.0)).collect();
+        assert_eq!(top.len(), 2);
+        for (corners, triangle) in top {
+            assert!((corners[1] - corners[0]).cross(corners[2] - corners[0]).y > 0.0);
+            assert!(triangle.iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::Y));
+        }
     }
 
     #[test]

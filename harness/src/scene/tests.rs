@@ -210,14 +210,12 @@ fn every_built_in_is_closed() {
 
 #[test]
 fn translucent_bodies_have_texture_coordinates() {
-    // Those whose light goes through them, which no blur along the surface shows.
-    let stone = ["bunny", "dragon", "figure"];
+    // Where light only goes through, no blur along the surface shows it.
     for built_in in BUILT_IN {
         for object in &Scene::named(built_in.name).unwrap().objects {
             let vertices = object.mesh.positions.len();
-            let scatters = object.material.medium.is_some() && !stone.contains(&built_in.name);
-            let expected = if scatters { vertices } else { 0 };
-            assert_eq!(object.mesh.uvs.len(), expected, "{}", built_in.name);
+            let expected = if object.material.sigma0.is_some() { vertices } else { 0 };
+            assert_eq!(object.mesh.uvs.len(), expected, "{} {}", built_in.name, object.name);
         }
     }
 }
@@ -285,7 +283,8 @@ fn averagings_change_the_normals_alone() {
 
 #[test]
 fn built_in_cameras_frame_their_stones_tightly() {
-    for built_in in BUILT_IN {
+    // The vitrine's camera is set by hand; its own test says what it sees.
+    for built_in in BUILT_IN.iter().filter(|built_in| built_in.name != "vitrine") {
         let scene = Scene::named(built_in.name).unwrap();
         let camera = scene.camera;
         let forward = (camera.target - camera.eye).normalize();

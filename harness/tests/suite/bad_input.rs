@@ -73,6 +73,27 @@ const SCENES: &[Row] = &[
     ("{}/dark.gltf --out {}/out.png", One, &["dark.gltf: ", "its intensity is -1.0", "at least 0"]),
     ("{}/half.gltf --out {}/out.png", One, &["half.gltf: ", "material 0 \"wax\"", "scattering but no absorption"]),
     ("{}/sigma.gltf --out {}/out.png", One, &["sigma.gltf: ", "material 0 \"wax\"", "sigma0 is [1,null,1]"]),
+    ("{}/index_of_refraction.gltf --out {}/out.png", One, &["material 0 \"wax\": its ior is -1.0", "between 1 and 4"]),
+    ("{}/null.gltf --out {}/out.png", One, &["null.gltf: ", "material 0 \"wax\": its ior is null", "a number"]),
+    ("{}/thickness.gltf --out {}/out.png", One, &["thickness.gltf: ", "its thicknessFactor is -1.0", "at least 0"]),
+    ("{}/attenuation.gltf --out {}/out.png", One, &["attenuation.gltf: ", "its attenuationDistance is 0.0", "above 0"]),
+    ("{}/dispersion.gltf --out {}/out.png", One, &["dispersion.gltf: ", "its dispersion is -0.1", "at least 0"]),
+    ("{}/transmission.gltf --out {}/out.png", One, &["transmission.gltf: ", "transmissionFactor is 1.5", "0 to 1"]),
+    ("{}/diffuse.gltf --out {}/out.png", One, &["diffuse.gltf: ", "diffuseTransmissionFactor is 2.0", "0 to 1"]),
+    ("{}/unlit.gltf --out {}/out.png", One, &["KHR_materials_unlit excludes its KHR_materials_ior", "remove one"]),
+    ("{}/mineral.gltf --out {}/out.png", One, &["its dispersion is 0.1", "corundum", "leave one of them out"]),
+    ("{}/solver.gltf --out {}/out.png", One, &["its extras.lapidary.solver is \"bvh-8\"", "such as lambert"]),
+    ("{}/unsolved.gltf --out {}/out.png", One, &["has a solver, but nothing there scatters", "remove the solver"]),
+    ("{}/required.gltf --out {}/out.png", One, &["requires extensions", "VENDOR_x", "export it without"]),
+    ("{}/cycle.gltf --out {}/out.png", One, &["cycle.gltf: node 0: it is reached twice", "remove the cycle"]),
+    ("{}/uri.gltf --out {}/out.png", One, &["uri.gltf: buffer 0: its base64 is damaged", "export it again"]),
+    ("{}/lost.gltf --out {}/out.png", One, &["lost.gltf: buffer 0's file", "none.bin", "cannot be read"]),
+    ("{}/escape.gltf --out {}/out.png", One, &["escape.gltf: buffer 0: its uri", "leads out of the file's folder"]),
+    ("{}/absolute.gltf --out {}/out.png", One, &["absolute.gltf: buffer 0: its uri", "not a relative path"]),
+    ("{}/huge.gltf --out {}/out.png", One, &["huge.gltf: accessor 0: it has 178956970 elements", "export it again"]),
+    ("{}/instances.gltf --out {}/out.png", One, &["its EXT_mesh_gpu_instancing has none of TRANSLATION", "give one"]),
+    ("{}/counts.gltf --out {}/out.png", One, &["attributes have 3 and 1 elements", "give each as many"]),
+    ("{}/crowd.gltf --out {}/out.png", One, &["accessor 0: it has 2147483648 elements", "export it again"]),
     ("{}/json.gltf --out {}/out.png", One, &["json.gltf: ", "not valid glTF", "line 1"]),
     ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "not a regular file"]),
     ("briliant --out {}/out.png", One, &["\"briliant\"", "did you mean brilliant?"]),
@@ -300,8 +321,8 @@ const CORNERS: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
 type Change = fn(&mut Value);
 
-/// Files whose one fault is in what scattering bodies need, each as a change to a good one.
-const BAD_MEMBERS: [(&str, Change); 5] = [
+/// Files with one fault, each as a change to a good one.
+const BAD_MEMBERS: &[(&str, Change)] = &[
     ("uv.gltf", |d| {
         let uvs = [0.0, 0.0, 0.0, f32::NAN, 1.0, 0.0].into_iter().flat_map(f32::to_le_bytes);
         let data = base64::engine::general_purpose::STANDARD.encode(uvs.collect::<Vec<u8>>());
@@ -318,7 +339,50 @@ const BAD_MEMBERS: [(&str, Change); 5] = [
     ("dark.gltf", |d| add_light(d, json!({"type": "point", "intensity": -1}))),
     ("half.gltf", |d| add_wax(d, json!({"scattering": [1, 1, 1]}))),
     ("sigma.gltf", |d| add_wax(d, json!({"sigma0": [1, null, 1]}))),
+    ("index_of_refraction.gltf", |d| extend_wax(d, json!({"KHR_materials_ior": {"ior": -1}}))),
+    ("null.gltf", |d| extend_wax(d, json!({"KHR_materials_ior": {"ior": null}}))),
+    ("thickness.gltf", |d| extend_wax(d, json!({"KHR_materials_volume": {"thicknessFactor": -1}}))),
+    ("attenuation.gltf", |d| extend_wax(d, json!({"KHR_materials_volume": {"attenuationDistance": 0}}))),
+    ("dispersion.gltf", |d| extend_wax(d, json!({"KHR_materials_dispersion": {"dispersion": -0.1}}))),
+    ("transmission.gltf", |d| extend_wax(d, json!({"KHR_materials_transmission": {"transmissionFactor": 1.5}}))),
+    ("diffuse.gltf", |d| {
+        extend_wax(d, json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 2}}))
+    }),
+    ("unlit.gltf", |d| extend_wax(d, json!({"KHR_materials_unlit": {}, "KHR_materials_ior": {}}))),
+    ("mineral.gltf", |d| {
+        add_wax(d, json!({"sellmeier": "corundum"}));
+        d["materials"][0]["extensions"] = json!({"KHR_materials_dispersion": {"dispersion": 0.1}});
+    }),
+    ("solver.gltf", |d| add_wax(d, json!({"sigma0": [1, 1, 1], "solver": "bvh-8"}))),
+    ("unsolved.gltf", |d| add_wax(d, json!({"solver": "accurate"}))),
+    ("required.gltf", |d| d["extensionsRequired"] = json!(["VENDOR_x"])),
+    ("cycle.gltf", |d| d["nodes"][0]["children"] = json!([0])),
+    ("uri.gltf", |d| d["buffers"][0]["uri"] = json!("data:application/octet-stream;base64,!!!")),
+    ("lost.gltf", |d| d["buffers"][0]["uri"] = json!("none.bin")),
+    ("escape.gltf", |d| d["buffers"][0]["uri"] = json!("%2e%2e/text.hdr")),
+    ("absolute.gltf", |d| d["buffers"][0]["uri"] = json!("/dev/zero")),
+    ("huge.gltf", |d| d["accessors"][0]["count"] = json!(178_956_970)),
+    ("instances.gltf", |d| instance(d, json!({}))),
+    ("counts.gltf", |d| {
+        let mut one = d["accessors"][0].clone();
+        one["count"] = json!(1);
+        d["accessors"].as_array_mut().expect("a list").push(one);
+        instance(d, json!({"TRANSLATION": 0, "SCALE": 2}));
+    }),
+    ("crowd.gltf", |d| {
+        d["accessors"][0]["count"] = json!(1u64 << 31);
+        instance(d, json!({"TRANSLATION": 0}));
+    }),
 ];
+
+fn instance(document: &mut Value, attributes: Value) {
+    document["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": attributes}});
+}
+
+fn extend_wax(document: &mut Value, extensions: Value) {
+    add_wax(document, json!({}));
+    document["materials"][0]["extensions"] = extensions;
+}
 
 fn add_light(document: &mut Value, light: Value) {
     document["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});

@@ -57,6 +57,23 @@ pub(super) fn flint_glass() -> Material {
     by_abbe("flint glass", FLINT_GLASS, FLINT_GLASS_ABBE)
 }
 
+/// Crown glass as though it bent all colours alike.
+pub(super) fn clear_glass() -> Material {
+    Material { name: "clear glass".to_owned(), dispersion: Dispersion::None, ..crown_glass() }
+}
+
+/// Slate with an even, honed surface.
+pub(super) fn slate() -> Material {
+    let base_color = Vec3::new(0.085, 0.095, 0.11);
+    Material { name: "slate".to_owned(), base_color, roughness: 0.5, ..Material::standard() }
+}
+
+/// The same material in a stone whose girdle has this radius.
+pub(super) fn sized(material: Material, radius: f32) -> Material {
+    let [attenuation_distance, thickness] = [material.attenuation_distance, material.thickness].map(|l| radius * l);
+    Material { attenuation_distance, thickness, ..material }
+}
+
 fn measured(name: &str, mineral: Mineral) -> Material {
     let dispersion = Dispersion::Sellmeier(mineral);
     Material { name: name.to_owned(), ior: mineral.index(), dispersion, ..polished() }

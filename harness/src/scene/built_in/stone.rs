@@ -15,7 +15,7 @@ const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
 const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 
 /// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble.
-fn marble() -> Material {
+pub(super) fn marble() -> Material {
     scattering(
         "marble",
         Medium::isotropic(Vec3::new(2.19, 2.62, 3.0), Vec3::new(0.0021, 0.0041, 0.0071)),
@@ -74,6 +74,6 @@ fn stored(file: &[u8]) -> Result<Mesh, SceneError> {
 }
 
 /// A directional light under which a white, facing surface has this radiance.
-fn sun(toward: Vec3, radiance: f32) -> Light {
+pub(super) fn sun(toward: Vec3, radiance: f32) -> Light {
     Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(radiance * PI) }
 }

@@ -48,7 +48,7 @@ const GAP: f64 = 3.0;
 
 /// The material that a scene's name begins with. Its `sigma0` is the width that random walks through spheres of ten mean free paths
 /// give: docs/cdrf.md.
-fn material(name: &str) -> Material {
+pub(super) fn material(name: &str) -> Material {
     let (material, sigma0) = match name.split('_').next() {
         Some("skin") => (skin(), Vec3::new(5.8, 3.8, 2.3)),
         Some("wax") => (wax(), Vec3::new(4.0, 4.0, 4.1)),

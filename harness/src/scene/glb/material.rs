@@ -4,35 +4,34 @@ use glam::Vec3;
 use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
-use crate::scene::{Bounds, Density, Dispersion, Material, Mesh};
+use crate::scene::{Density, Dispersion, Material};
 
-/// The mean length of a straight way through a body, which renderers that do not trace it take as its
-/// thickness: 4 V/S for a convex body (Cauchy), and for several alike that of one. A body that encloses
-/// nothing gets the diagonal of its box; a 0 would call it thin-walled.
-pub(super) fn thickness(mesh: &Mesh) -> f32 {
-    let (volume, area) = mesh.volume_and_area();
-    let mean = (4.0 * volume / area) as f32;
-    let across = 2.0 * Bounds::of(mesh.positions.iter().copied()).radius();
-    if mean > 0.0 && mean <= across { mean } else { across }
-}
-
-/// The material of a body of this `thickness`.
-pub(super) fn material(material: &Material, thickness: f32) -> Value {
+/// The material, with the extensions that it needs.
+pub(super) fn material(material: &Material) -> Value {
     let mut extensions = json!({"KHR_materials_ior": {"ior": material.ior}});
-    let is_clear = material.sigma0.is_none() && material.medium.is_none();
-    if is_clear {
-        extensions["KHR_materials_transmission"] = json!({"transmissionFactor": 1.0});
+    if material.transmission > 0.0 {
+        extensions["KHR_materials_transmission"] = json!({"transmissionFactor": material.transmission});
     }
-    let attenuates = material.attenuation_color != Vec3::ONE || material.attenuation_distance.is_finite();
-    if is_clear || attenuates {
-        extensions["KHR_materials_volume"] = json!({
-            "thicknessFactor": thickness,
-            "attenuationColor": material.attenuation_color.to_array(),
+    let color = material.diffuse_transmission_color;
+    if material.diffuse_transmission > 0.0 || color != Vec3::ONE {
+        extensions["KHR_materials_diffuse_transmission"] = json!({
+            "diffuseTransmissionFactor": material.diffuse_transmission,
+            "diffuseTransmissionColorFactor": color.to_array(),
         });
     }
-    // JSON has no infinity: what is left out is glTF's default, which is that.
+    // JSON has no infinity: what is left out is glTF's default, which is that for the distance.
+    let mut volume = Map::new();
+    if material.thickness > 0.0 {
+        volume.insert("thicknessFactor".to_owned(), json!(material.thickness));
+    }
+    if material.attenuation_color != Vec3::ONE {
+        volume.insert("attenuationColor".to_owned(), json!(material.attenuation_color.to_array()));
+    }
     if material.attenuation_distance.is_finite() {
-        extensions["KHR_materials_volume"]["attenuationDistance"] = json!(material.attenuation_distance);
+        volume.insert("attenuationDistance".to_owned(), json!(material.attenuation_distance));
+    }
+    if !volume.is_empty() {
+        extensions["KHR_materials_volume"] = volume.into();
     }
     let mut extras = Map::new();
     let dispersion = match material.dispersion {
@@ -68,6 +67,9 @@ pub(super) fn material(material: &Material, thickness: f32) -> Value {
                 }),
             );
         }
+    }
+    if let Some(solver) = material.solver {
+        extras.insert("solver".to_owned(), json!(solver.to_string()));
     }
     let mut written = json!({
         "name": material.name,

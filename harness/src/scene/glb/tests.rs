@@ -1,4 +1,3 @@
-use super::material::thickness;
 use super::*;
 use crate::scene::{BUILT_IN, Density, DensityGrid, Dispersion, Light, Medium, Mineral, gltf};
 use lapidary_veins::VeinsPattern;
@@ -90,6 +89,21 @@ fn every_kind_of_material_survives_writing_and_loading() {
         Material { roughness: 1.0 / 3.0, ..standard.clone() },
         Material { sigma0: Some(Vec3::new(0.0, 1.0 / 3.0, f32::MAX)), ..standard.clone() },
         Material { medium: Some(medium()), ..standard.clone() },
+        Material { transmission: 1.0, ..standard.clone() },
+        Material { transmission: 1.0 / 3.0, thickness: 1.0 / 3.0, ..standard.clone() },
+        Material { thickness: f32::MIN_POSITIVE, ..standard.clone() },
+        Material { diffuse_transmission: 1.0 / 3.0, ..standard.clone() },
+        Material { diffuse_transmission_color: Vec3::new(0.0, 0.1, 1.0), ..standard.clone() },
+        Material { sigma0: Some(Vec3::ONE), solver: Some("table-256-rgba8".parse().unwrap()), ..standard.clone() },
+        Material { medium: Some(medium()), solver: Some("ping-pong-6-16".parse().unwrap()), ..standard.clone() },
+        Material {
+            diffuse_transmission: 1.0,
+            thickness: 2.0,
+            attenuation_distance: 2.0,
+            attenuation_color: Vec3::splat(0.7),
+            medium: Some(medium()),
+            ..standard.clone()
+        },
         Material {
             dispersion: Dispersion::Sellmeier(Mineral::Quartz),
             ior: Mineral::Quartz.index(),
@@ -121,17 +135,26 @@ fn materials_are_written_for_other_readers_too() {
     assert!((20.0 / dispersion - 72.3).abs() < 1e-4);
     let volume = &extensions["KHR_materials_volume"];
     assert_eq!(volume["attenuationDistance"], 2.0);
-    // Shorter than the stone is wide, longer than half its depth; a 0 would mean a thin wall.
-    let thickness = volume["thicknessFactor"].as_f64().unwrap();
-    assert!((0.5..1.5).contains(&thickness), "{thickness}");
+    assert_eq!(volume["thicknessFactor"], 1.0);
 
-    scene.objects[0].material = Material::standard();
+    scene.objects[0].material = Material { transmission: 1.0, thickness: 2.5, ..Material::standard() };
     let json = json_of(&scene);
     let used = json!(["KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume"]);
     assert_eq!(json["extensionsUsed"], used);
     assert_eq!(json["materials"][0]["extras"], Value::Null);
     let volume = &json["materials"][0]["extensions"]["KHR_materials_volume"];
-    assert_eq!(volume["attenuationDistance"], Value::Null, "JSON has no infinity");
+    assert_eq!(*volume, json!({"thicknessFactor": 2.5}), "JSON has no infinity");
+}
+
+#[test]
+fn opaque_bodies_and_thin_walls_are_written_as_such() {
+    let mut scene = Scene::named("octahedron").unwrap();
+    scene.objects[0].material = Material::standard();
+    assert_eq!(json_of(&scene)["extensionsUsed"], json!(["KHR_materials_ior"]));
+    scene.objects[0].material = Material { transmission: 0.5, ..Material::standard() };
+    let extensions = json_of(&scene)["materials"][0]["extensions"].clone();
+    assert_eq!(extensions["KHR_materials_transmission"], json!({"transmissionFactor": 0.5}));
+    assert_eq!(extensions["KHR_materials_volume"], Value::Null);
 }
 
 #[test]
@@ -200,20 +223,6 @@ fn every_kind_of_light_survives_writing_and_loading() {
 }
 
 #[test]
-fn thickness_is_the_mean_way_through_and_never_nothing() {
-    // The regular octahedron with its corners at distance 1: V = 4/3, S = 4√3.
-    let octahedron = Scene::named("octahedron").unwrap().objects.remove(0).mesh;
-    assert!((thickness(&octahedron) - 4.0 / 27f32.sqrt()).abs() < 1e-6);
-    let mut inside_out = octahedron.clone();
-    inside_out.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(0, 1));
-    let mut open = octahedron.clone();
-    open.indices.truncate(3);
-    for mesh in [inside_out, open] {
-        assert!((0.1..=2.0 * 3f32.sqrt() + 1e-6).contains(&thickness(&mesh)));
-    }
-}
-
-#[test]
 fn what_gltf_forbids_is_refused() {
     let good = Scene::named("octahedron").unwrap();
     let refused = |change: fn(&mut Scene)| {
@@ -234,6 +243,10 @@ fn what_gltf_forbids_is_refused() {
     assert!(refused(|s| s.objects[0].material.ior = f32::NAN).contains("refractive index"));
     assert!(refused(|s| s.objects[0].material.roughness = 1.1).contains("roughness"));
     assert!(refused(|s| s.objects[0].material.sigma0 = Some(Vec3::NEG_X)).contains("sigma0"));
+    assert!(refused(|s| s.objects[0].material.thickness = -1.0).contains("thickness"));
+    assert!(refused(|s| s.objects[0].material.transmission = f32::NAN).contains("transmission"));
+    assert!(refused(|s| s.objects[0].material.solver = "accurate".parse().ok()).contains("does not scatter light"));
+    assert!(refused(|s| s.objects[0].material.solver = "proxy-1".parse().ok()).contains("no rung for what scatters"));
     let broken = Medium { absorption: Vec3::NAN, ..medium() };
     let mut scene = good.clone();
     scene.objects[0].material.medium = Some(broken);

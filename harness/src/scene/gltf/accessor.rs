@@ -36,6 +36,13 @@ pub(super) const TEXTURE_COORDINATES: Kind = Kind {
     description: "VEC2 of float, or of normalised unsigned byte or short,",
 };
 
+/// Rotations of instances. Of whole numbers, the largest stands for 1.
+pub(super) const ROTATIONS: Kind = Kind {
+    type_: Type::Vec4,
+    components: &[ComponentType::F32, ComponentType::I8, ComponentType::I16],
+    description: "VEC4 of float, or of normalised byte or short,",
+};
+
 /// Indices.
 pub(super) const INDICES: Kind = Kind {
     type_: Type::Scalar,
@@ -138,6 +145,21 @@ impl<'a> Elements<'a> {
         self.elements().map(move |bytes| {
             let (first, second) = bytes.split_at(component.size());
             [number(first), number(second)]
+        })
+    }
+
+    /// The elements as quaternions, not yet of unit length. Meant for [`ROTATIONS`].
+    pub(super) fn quaternions(self) -> impl Iterator<Item = [f32; 4]> + 'a {
+        let component = self.component;
+        // glTF lets the number below -1 stand for -1.
+        let number = move |bytes: &[u8]| match component {
+            ComponentType::I8 => (f32::from(little_endian(bytes) as i8) / 127.0).max(-1.0),
+            ComponentType::I16 => (f32::from(little_endian(bytes) as i16) / 32767.0).max(-1.0),
+            _ => f32::from_bits(little_endian(bytes)),
+        };
+        self.elements().map(move |bytes| {
+            let mut components = bytes.chunks_exact(component.size()).map(number);
+            std::array::from_fn(|_| components.next().unwrap_or(0.0))
         })
     }
 

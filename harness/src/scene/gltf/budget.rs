@@ -32,7 +32,7 @@ impl Budget {
         self.triangles = left.ok_or(GltfError::TooManyTriangles)?;
         let left = self.vertices.checked_sub(vertices);
         self.vertices = left.ok_or(GltfError::TooManyTriangles)?;
-        // No overflow: both numbers are at most a buffer's length.
+        // No overflow: both numbers are within the bounds above by now.
         let bytes = vertices * vertex_bytes as u64 + triangles * 3 * 4 + OBJECT_BYTES;
         let left = self.bytes.checked_sub(bytes);
         self.bytes = left.ok_or(GltfError::Expansion { file_bytes: self.file_bytes })?;

@@ -70,6 +70,7 @@ impl<'a> Buffers<'a> {
                 Some(data) => decode(data).map_err(wrong)?,
                 None => {
                     let file = resolve(uri, base).map_err(wrong)?;
+                    inside(&file, base).map_err(wrong)?;
                     let bytes = read_named(&file, &format!("buffer {index}"), length as u64)?;
                     self.external_bytes += bytes.len() as u64;
                     bytes
@@ -108,9 +109,26 @@ fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
     if absolute || (!scheme.is_empty() && !scheme.contains('/')) {
         return Err(format!("its uri {shown:?} is not a relative path; put the file beside the .gltf"));
     }
+    if name.split(['/', '\\']).any(|part| part == "..") {
+        return Err(format!("its uri {shown:?} leads out of the file's folder; put the file beside the .gltf"));
+    }
     let base = base
         .ok_or_else(|| format!("its uri {shown:?} names a file, but the data did not come from a file; use a .glb"))?;
     Ok(base.join(name))
+}
+
+/// Whether a file that exists lies in the folder, also when links are followed.
+fn inside(file: &Path, base: Option<&Path>) -> Result<(), String> {
+    // The parent of a bare name.
+    let base = base.filter(|base| !base.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (file.canonicalize(), base.canonicalize()) {
+        (Ok(file), Ok(base)) if !file.starts_with(&base) => {
+            let shown = excerpt(&file.display().to_string());
+            Err(format!("its uri leads by a link to {shown:?}, out of the file's folder; put the file itself there"))
+        }
+        // What does not exist cannot be read, which is said where it is tried.
+        _ => Ok(()),
+    }
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {

@@ -47,6 +47,16 @@ impl<'a> Extension<'a> {
         Ok(Some(numbers))
     }
 
+    /// A share, 0 to 1.
+    pub(super) fn share(&self, key: &str) -> Result<Option<f32>, String> {
+        match self.number(key)? {
+            Some(share) if !(0.0..=1.0).contains(&share) => {
+                Err(format!("its {key} is {share:?}, but must lie from 0 to 1"))
+            }
+            share => Ok(share.map(|share| share as f32)),
+        }
+    }
+
     /// Linear RGB, each 0 to 1.
     pub(super) fn color(&self, key: &str) -> Result<Option<Vec3>, String> {
         let Some(color) = self.three_numbers(key)? else {

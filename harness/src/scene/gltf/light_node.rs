@@ -2,7 +2,7 @@
 //!
 //! Read are directional, point and spot lights. glTF states them in lux and candela; here the numbers are taken as
 //! radiometric, without a luminous efficacy: W/m² and W/sr, as the environment's are W/(m² sr). `range`, at which a
-//! renderer may cut a point or spot light off, is not read: the light falls off by the square of the distance alone. As glTF has
+//! renderer may cut a point or spot light off, does nothing: the light falls off by the square of the distance alone. As glTF has
 //! it, the scale of a node changes no intensity.
 
 use ::gltf::json::Root;
@@ -44,6 +44,14 @@ pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>,
         lights.push(light);
     }
     Ok(lights)
+}
+
+/// The light that a node refers to, with its number, if it does.
+pub(super) fn of_node<'a>(root: &'a Root, node: &ShownNode<'_>) -> Option<(usize, &'a Value)> {
+    let index = reference(node).ok()??;
+    let all = root.extensions.as_ref().map(|all| &all.others);
+    let list = Extension::of(all, NAME).and_then(|extension| extension.list("lights")).ok()?;
+    Some((index, list.get(index)?))
 }
 
 /// The number of the light that a node refers to, if it does.

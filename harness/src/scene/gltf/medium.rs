@@ -1,4 +1,4 @@
-//! A scattering medium of a file, from a material's `extras.lapidary`.
+//! A scattering medium of a file, from a material's `extras.lapidary`, or else from its diffuse transmission.
 
 use glam::Vec3;
 use lapidary_veins::VeinsPattern;
@@ -6,8 +6,8 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use super::error::excerpt;
-use super::material::{Lapidary, lengths};
-use crate::scene::{Density, Medium};
+use super::extras::{Lapidary, lengths};
+use crate::scene::{Density, Material, Medium};
 
 /// `extras.lapidary.veins`; every member must be there, so that none is misspelt.
 #[derive(Deserialize)]
@@ -46,6 +46,36 @@ pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
         (Some(_), None) => Err("its extras.lapidary has scattering but no absorption; give both or neither".to_owned()),
         (None, Some(_)) => Err("its extras.lapidary has absorption but no scattering; give both or neither".to_owned()),
     }
+}
+
+/// The medium behind a surface of diffuse transmission, where its volume attenuates: uniform and isotropic. Its extinction is the
+/// volume's, its albedo the one with which a half space shows the surface's colour.
+pub(super) fn derived(material: &Material) -> Result<Option<Medium>, String> {
+    let goes_in = material.diffuse_transmission > 0.0 && material.transmission == 0.0;
+    if !(goes_in && material.thickness > 0.0 && material.absorbs()) {
+        return Ok(None);
+    }
+    // The darkest colour with a finite logarithm, as in the module `absorption`.
+    let darkest = f64::from(f32::MIN_POSITIVE);
+    let distance = f64::from(material.attenuation_distance);
+    let extinction = material.attenuation_color.as_dvec3().map(|color| -color.max(darkest).ln() / distance);
+    let shown = (material.base_color * material.diffuse_transmission_color).as_dvec3();
+    let albedo = shown.map(single_scattering_albedo);
+    let scattering = extinction * albedo;
+    let medium = Medium::isotropic(scattering.as_vec3(), (extinction - scattering).as_vec3());
+    medium.problem().map_or(Ok(Some(medium)), |_| {
+        Err("its attenuationColor and attenuationDistance give an extinction that is not finite in single precision; make the distance \
+             longer"
+            .to_owned())
+    })
+}
+
+/// The share of light that survives a scattering in an isotropic medium, a half space of which sends back the share `multiple` of diffuse
+/// light. Kulla and Conty, "Revisiting Physically Based Shading at Imageworks" (2017), as in the draft of `KHR_materials_volume_scatter`.
+fn single_scattering_albedo(multiple: f64) -> f64 {
+    let root = (9.59217 + 41.6808 * multiple + 17.7126 * multiple * multiple).sqrt();
+    let s = 4.09712 + 4.20863 * multiple - root;
+    1.0 - s * s
 }
 
 fn anisotropy(json: &RawValue) -> Result<f32, String> {

@@ -91,12 +91,17 @@ fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
     }
+    composed(node.translation, node.rotation.map(|rotation| rotation.0), node.scale)
+}
+
+/// Translation · rotation (a quaternion, its real part last) · scale; one that is missing changes nothing.
+pub(super) fn composed(translation: Option<[f32; 3]>, rotation: Option<[f32; 4]>, scale: Option<[f32; 3]>) -> DMat4 {
     let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let scale = node.scale.map_or(DVec3::ONE, vector);
-    let translation = node.translation.map_or(DVec3::ZERO, vector);
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |rotation| {
-        let quaternion = DQuat::from_array(rotation.0.map(f64::from));
-        // Rounded in the file to f32, so that its length is only nearly 1. One without direction
+    let scale = scale.map_or(DVec3::ONE, vector);
+    let translation = translation.map_or(DVec3::ZERO, vector);
+    let rotation = rotation.map_or(DQuat::IDENTITY, |rotation| {
+        let quaternion = DQuat::from_array(rotation.map(f64::from));
+        // Rounded in the file, so that its length is only nearly 1. One without direction
         // turns nothing, which is what exporters mean by four zeros.
         let length = quaternion.length();
         if length > 0.0 { quaternion / length } else { DQuat::IDENTITY }

@@ -11,12 +11,13 @@ use super::accessor::{Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::error::{GltfError, designation, excerpt, item};
+use super::instances::Instances;
 use super::material::Materials;
 use super::nodes::ShownNode;
 use crate::scene::normals::{Averaging, shared_normals};
 use crate::scene::{Mesh, Object};
 
-/// Adds an object for each primitive of triangles that `node` shows.
+/// Adds an object for each primitive of triangles that `node` shows, with all instances of it in one mesh.
 pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
@@ -31,21 +32,31 @@ pub(super) fn add_objects(
     let mesh = item(&root.meshes, "mesh", mesh_index, || node.designation())?;
     let name = node.node.name.as_deref().or(mesh.name.as_deref());
     let name = name.map_or_else(|| format!("mesh {mesh_index}"), excerpt);
+    let instances = Instances::of(root, buffers, node)?;
+    let enlargement = instances.enlargement();
     for (index, primitive) in mesh.primitives.iter().enumerate() {
         let Some(arrangement) = Arrangement::of(primitive.mode) else {
+            // Passing it over takes time, and a small file may ask for it very often.
+            budget.take(0, 0, 0)?;
             continue;
         };
         let user = format!("{}, primitive {index}", designation("mesh", mesh_index, mesh.name.as_deref()));
         let mut reader = Reader { root, buffers, primitive, user: &user, budget };
-        let mesh_in_world = reader.mesh(arrangement, node.world)?;
+        let mesh_in_world = reader.mesh(arrangement, &instances)?;
         let material_index = primitive.material.map(|material| material.value());
+        let mut material = materials.get(material_index, &user)?;
+        // glTF states it in the mesh's space, unlike its other lengths.
+        if material.thickness > 0.0 {
+            let thickness = (f64::from(material.thickness) * enlargement) as f32;
+            material.thickness = thickness.min(f32::MAX);
+        }
         objects.push(Object {
             name: match mesh.primitives.len() {
                 1 => name.clone(),
                 _ => format!("{name} / {index}"),
             },
             mesh: mesh_in_world,
-            material: materials.get(material_index, &user)?,
+            material,
         });
     }
     Ok(())
@@ -98,7 +109,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn mesh(&mut self, arrangement: Arrangement, world: DMat4) -> Result<Mesh, GltfError> {
+    fn mesh(&mut self, arrangement: Arrangement, instances: &Instances<'_>) -> Result<Mesh, GltfError> {
         let positions = self
             .attribute(&Semantic::Positions, VECTORS)?
             .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
@@ -118,23 +129,34 @@ impl<'a> Reader<'a> {
         let corners = indices.map_or(vertices, |indices| indices.count());
         let triangles = arrangement.triangles(corners);
         let uv_bytes = if uvs.is_some() { size_of::<Vec2>() } else { 0 };
-        self.budget.take(vertices as u64, 2 * size_of::<Vec3>() + uv_bytes, triangles as u64)?;
+        // No overflow: each factor is at most a buffer's length, 2³⁰.
+        let times = instances.count() as u64;
+        self.budget.take(times * vertices as u64, 2 * size_of::<Vec3>() + uv_bytes, times * triangles as u64)?;
 
-        let positions = self.positions(positions, world)?;
         let corners = match indices {
             Some(indices) => self.in_range(indices, vertices)?,
             // The budget has bounded the vertices below 2²⁶.
             None => (0..vertices as u32).collect(),
         };
-        let linear = DMat3::from_mat4(world);
-        let mirrored = linear.determinant() < 0.0;
-        let indices = assemble(&corners, arrangement, mirrored);
-        let normals = match normals {
-            Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
-            None => shared_normals(&positions, &indices, Averaging::Angle),
-        };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
-        Ok(Mesh { positions, normals, uvs, indices, halo: Vec::new() })
+        let mut all = Mesh::default();
+        for (instance, transform) in instances.transforms().enumerate() {
+            let positions = self.positions(positions, transform, instances.is_list().then_some(instance))?;
+            let linear = DMat3::from_mat4(transform);
+            let mirrored = linear.determinant() < 0.0;
+            let indices = assemble(&corners, arrangement, mirrored);
+            let normals = match normals {
+                Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
+                None => shared_normals(&positions, &indices, Averaging::Angle),
+            };
+            let mesh = Mesh { positions, normals, uvs: uvs.clone(), indices, halo: Vec::new() };
+            if instance == 0 {
+                all = mesh;
+            } else {
+                all.append(&mesh);
+            }
+        }
+        Ok(all)
     }
 
     fn attribute(&self, semantic: &Semantic, kind: Kind) -> Result<Option<Elements<'a>>, GltfError> {
@@ -147,15 +169,16 @@ impl<'a> Reader<'a> {
         Elements::of(self.root, self.buffers, index, kind, self.user)
     }
 
-    fn positions(&self, elements: Elements<'_>, world: DMat4) -> Result<Vec<Vec3>, GltfError> {
+    fn positions(&self, elements: Elements<'_>, world: DMat4, instance: Option<usize>) -> Result<Vec<Vec3>, GltfError> {
         let mut positions = Vec::with_capacity(elements.count());
         for (vertex, local) in elements.vectors().enumerate() {
             let position = world.transform_point3(Vec3::from_array(local).as_dvec3()).as_vec3();
             // Written so that NaN fails it too.
             let placed = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
             if !placed {
+                let user = self.user;
                 return Err(GltfError::Position {
-                    primitive: self.user.to_owned(),
+                    primitive: instance.map_or_else(|| user.to_owned(), |k| format!("{user}, instance {k}")),
                     vertex,
                     position: position.to_array(),
                 });

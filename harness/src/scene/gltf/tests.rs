@@ -8,10 +8,13 @@ use crate::scene::normals::FALLBACK_NORMAL;
 use crate::scene::{Dispersion, Material, Medium, Mineral, glb};
 
 mod example;
+mod instancing;
+mod lacking;
 mod lights;
 mod refusals;
 mod refused_data;
 mod texture_coordinates;
+mod transmission;
 
 /// Three corners of a right triangle, then indices 0 1 2 0 as shorts.
 fn binary() -> Vec<u8> {
@@ -187,9 +190,11 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         "extensions": {
             "KHR_materials_ior": {"ior": 1.768},
             "KHR_materials_dispersion": {"dispersion": 0.1},
-            "KHR_materials_transmission": {"transmissionFactor": 1.0},
+            "KHR_materials_transmission": {"transmissionFactor": 0.75},
+            "KHR_materials_diffuse_transmission":
+                {"diffuseTransmissionFactor": 0.5, "diffuseTransmissionColorFactor": [0.5, 0, 1]},
             "KHR_materials_volume": {
-                "thicknessFactor": 1.0,
+                "thicknessFactor": 3.0,
                 "attenuationColor": [1, 0.25, 0],
                 "attenuationDistance": 0.5,
             },
@@ -199,6 +204,7 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
             "sigma0": [4.5, 0, 1],
             "scattering": [0.74, 0.88, 1.01],
             "absorption": [0.032, 0.17, 0],
+            "solver": "tiled-18-128",
         }},
     }));
     let expected = Material {
@@ -208,17 +214,22 @@ fn materials_say_colour_roughness_index_dispersion_attenuation_and_scattering() 
         dispersion: Dispersion::Abbe(0.1),
         attenuation_color: Vec3::new(1.0, 0.25, 0.0),
         attenuation_distance: 0.5,
+        transmission: 0.75,
+        diffuse_transmission: 0.5,
+        diffuse_transmission_color: Vec3::new(0.5, 0.0, 1.0),
+        thickness: 3.0,
         roughness: 0.25,
         sigma0: Some(Vec3::new(4.5, 0.0, 1.0)),
         medium: Some(Medium::isotropic(Vec3::new(0.74, 0.88, 1.01), Vec3::new(0.032, 0.17, 0.0))),
-        ..Material::standard()
+        solver: Some("tiled-18-128".parse().unwrap()),
     };
     assert_eq!(material.unwrap(), expected);
 }
 
 #[test]
 fn what_a_material_leaves_out_has_gltfs_default() {
-    let extensions = json!({"KHR_materials_volume": {}, "KHR_materials_dispersion": {}, "KHR_materials_ior": {}});
+    let extensions = json!({"KHR_materials_volume": {}, "KHR_materials_dispersion": {}, "KHR_materials_ior": {},
+        "KHR_materials_transmission": {}, "KHR_materials_diffuse_transmission": {}});
     let none = json!({"KHR_materials_dispersion": {"dispersion": 0}});
     // Too small for f32 is no dispersion either.
     let tiny = json!({"KHR_materials_dispersion": {"dispersion": 1e-60}});
@@ -248,11 +259,12 @@ fn a_measured_equation_is_named_in_the_extras() {
     for mineral in Mineral::ALL {
         let name = mineral.name();
         let index = (mineral.index() * 100.0).round() / 100.0;
+        let dispersion = 20.0 / mineral.abbe_number().round();
         for extensions in [
             json!({}),
             json!({"KHR_materials_ior": {"ior": mineral.index()}}),
             // As tables round it; and what renderers without the equation need beside it.
-            json!({"KHR_materials_ior": {"ior": index}, "KHR_materials_dispersion": {"dispersion": 0.3}}),
+            json!({"KHR_materials_ior": {"ior": index}, "KHR_materials_dispersion": {"dispersion": dispersion}}),
         ] {
             let material = material_of(json!({
                 "extensions": extensions,
@@ -320,6 +332,16 @@ fn a_deep_hierarchy_needs_no_stack() {
         d["nodes"] = chain.chain([json!({"mesh": 0})]).collect();
     });
     assert_eq!(scene.unwrap().objects.len(), 1);
+}
+
+#[test]
+fn ten_thousand_roots_load_as_so_many_bodies() {
+    let scene = load_changed(|d| {
+        d["nodes"] = vec![json!({"mesh": 0, "name": "one of many"}); 10_000].into();
+        d["scenes"][0]["nodes"] = (0..10_000).collect();
+    });
+    let scene = scene.unwrap();
+    assert_eq!((scene.objects.len(), scene.lacking.len()), (10_000, 1));
 }
 
 #[test]

@@ -106,7 +106,7 @@ fn nodes_that_are_no_tree() {
 fn materials_and_cameras_out_of_range() {
     for (ior, says) in [
         (0.0, "its ior is 0,"),
-        (0.9, "between 1 and 4"),
+        (0.9, "its ior is 0.9, but a stone's"),
         (-1.0, "between 1 and 4"),
         (4.1, "between 1 and 4"),
         (1e39, "between 1 and 4"),
@@ -263,11 +263,82 @@ fn media_and_widths_that_are_no_lengths() {
 }
 
 #[test]
-fn roughnesses_out_of_range() {
-    for roughness in [-0.1, 1.5, 1e39] {
-        let says = "its roughnessFactor is ";
-        material_refused("pbrMetallicRoughness", json!({"roughnessFactor": roughness}), says);
+fn factors_out_of_range() {
+    for factor in [-0.1, 1.5, 1e39] {
+        for name in ["roughnessFactor", "metallicFactor"] {
+            material_refused("pbrMetallicRoughness", json!({name: factor}), &format!("its {name} is "));
+        }
+        for (extension, name) in [
+            ("KHR_materials_transmission", "transmissionFactor"),
+            ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"),
+        ] {
+            let says = format!("its {name} is {factor:?}, but must lie from 0 to 1");
+            material_refused("extensions", json!({extension: {name: factor}}), &says);
+            let says = format!("its {name} is null, but must be a number");
+            material_refused("extensions", json!({extension: {name: null}}), &says);
+        }
     }
+    let diffuse = json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionColorFactor": [0, 2, 0]}});
+    material_refused("extensions", diffuse, "diffuseTransmissionColorFactor is [0.0, 2.0, 0.0], but each part");
+    for (thickness, says) in [
+        (json!(-1), "its thicknessFactor is -1.0, but must be at least 0"),
+        (json!(1e39), "finite in single precision"),
+        (json!(null), "its thicknessFactor is null, but must be a number"),
+    ] {
+        material_refused("extensions", json!({"KHR_materials_volume": {"thicknessFactor": thickness}}), says);
+    }
+    material_refused(
+        "extensions",
+        json!({"KHR_materials_ior": {"ior": null}}),
+        "its ior is null, but must be a number",
+    );
+    material_refused("alphaMode", json!("HALF"), "its alphaMode is not one of glTF's");
+}
+
+#[test]
+fn numbers_beyond_all_range() {
+    // JSON has no larger number than f64 has.
+    let text = document().to_string().replace("\"name\":\"gem\"", "\"extras\":{},\"emissiveFactor\":[1e999,0,0]");
+    let message = parse(text.as_bytes(), None).unwrap_err().to_string();
+    assert!(message.contains("its JSON is not valid glTF: number out of range at line 1"), "{message}");
+}
+
+#[test]
+fn members_that_contradict_one_another() {
+    for other in ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"] {
+        for physical in ["KHR_materials_ior", "KHR_materials_volume", "KHR_materials_clearcoat"] {
+            let says = format!("its {other} excludes its {physical}, by glTF's rules; remove one");
+            material_refused("extensions", json!({other: {}, physical: {}}), &says);
+        }
+    }
+    for dispersion in [0.0, 0.1, 0.4] {
+        let message = message(|d| {
+            d["meshes"][0]["primitives"][0]["material"] = json!(0);
+            d["materials"][0] = json!({
+                "extensions": {"KHR_materials_dispersion": {"dispersion": dispersion}},
+                "extras": {"lapidary": {"sellmeier": "corundum"}},
+            });
+        });
+        let says = format!(
+            "material 0: its dispersion is {dispersion:?}, but the Sellmeier equation of corundum in its extras gives 0.277"
+        );
+        assert!(message.starts_with(&says), "{message}");
+    }
+}
+
+#[test]
+fn solvers_that_draw_no_scattering() {
+    let with = |solver: Value| json!({"lapidary": {"sigma0": [1, 1, 1], "solver": solver}});
+    let names = ["convex-8", "reference", "surface", "proxy-1+tracker", "godunov-65", "Accurate", ""];
+    let others = [json!(1), json!(null), json!(["accurate"]), json!("x\n".repeat(100_000))];
+    for bad in names.map(Value::from).into_iter().chain(others) {
+        material_refused("extras", with(bad.clone()), "its extras.lapidary.solver is ");
+        material_refused("extras", with(bad), "such as lambert, accurate, blur or godunov-64; ");
+    }
+    let says = "its extras.lapidary has a solver, but nothing there scatters light";
+    material_refused("extras", json!({"lapidary": {"solver": "accurate"}}), says);
+    let clear = json!({"lapidary": {"solver": "godunov-64", "sellmeier": "quartz"}});
+    material_refused("extras", clear, says);
 }
 
 #[test]

@@ -6,7 +6,8 @@ use super::*;
 #[test]
 fn ranges_past_the_end_and_absurd_counts() {
     let huge = json!(u64::MAX);
-    for count in [json!(0), json!(4), json!(u64::MAX / 12 + 1), huge.clone()] {
+    // The fourth claims two gigabytes.
+    for count in [json!(0), json!(4), json!(u64::MAX / 12 + 1), json!((1u64 << 31) / 12), huge.clone()] {
         refused("/accessors/0/count", count, "accessor 0: it has");
     }
     refused("/accessors/0/byteOffset", json!(1), "accessor 0: it has");
@@ -69,6 +70,12 @@ fn buffers_that_cannot_be_had() {
         ("data:;base64,AAAA", "must have 44 bytes but has 3"),
         ("http://example.com/a.bin", "not a relative path"),
         ("/etc/passwd", "not a relative path"),
+        ("../stone.bin", "leads out of the file's folder"),
+        ("a/../../stone.bin", "leads out of the file's folder"),
+        ("%2e%2e/stone.bin", "leads out of the file's folder"),
+        ("%2E%2E%5Cstone.bin", "leads out of the file's folder"),
+        ("%2Fetc%2Fpasswd", "not a relative path"),
+        ("C:%5Cstone.bin", "not a relative path"),
         ("%zz", "is not valid"),
         ("%00", "is not valid"),
         ("stone.bin", "did not come from a file"),
@@ -84,6 +91,45 @@ fn buffers_that_cannot_be_had() {
     document["buffers"][0] = json!({"byteLength": 44});
     let message = parse(document.to_string().as_bytes(), None).unwrap_err().to_string();
     assert!(message.contains("no uri and no binary chunk"), "{message}");
+}
+
+#[test]
+#[cfg(unix)]
+fn links_may_not_lead_out_of_the_folder() {
+    let [inside, outside] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let secret = outside.path().join("secret.bin");
+    std::fs::write(&secret, binary()).unwrap();
+    std::fs::write(inside.path().join("own.bin"), binary()).unwrap();
+    let link = |target: &std::path::Path, name: &str| {
+        std::os::unix::fs::symlink(target, inside.path().join(name)).unwrap();
+    };
+    link(&secret, "far.bin");
+    link(outside.path(), "folder");
+    link(&inside.path().join("own.bin"), "near.bin");
+    let load = |uri: &str| {
+        let mut document = document();
+        document["buffers"][0]["uri"] = json!(uri);
+        parse(document.to_string().as_bytes(), Some(inside.path()))
+    };
+    for uri in ["far.bin", "folder/secret.bin"] {
+        let message = load(uri).unwrap_err().to_string();
+        assert!(
+            message.starts_with("buffer 0: its uri leads by a link to ") && message.contains("out of"),
+            "{message}"
+        );
+    }
+    assert_eq!(load("near.bin").unwrap().triangle_count(), 1);
+}
+
+#[test]
+fn many_nodes_of_many_lines_are_refused() {
+    let message = message(|d| {
+        let line = json!({"attributes": {"POSITION": 0}, "mode": 1});
+        d["meshes"][0]["primitives"] = vec![line; 20_000].into();
+        d["nodes"] = vec![json!({"mesh": 0}); 20_000].into();
+        d["scenes"][0]["nodes"] = (0..20_000).collect();
+    });
+    assert!(message.contains("show fewer instances"), "{message}");
 }
 
 #[test]

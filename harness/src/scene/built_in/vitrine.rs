@@ -1,0 +1,102 @@
+//! One scene with a body for each technique. Lengths are in millimetres; the top of the table is at 0.
+
+use glam::{DQuat, DVec3, Vec3};
+
+use super::{VERTICAL_FOV, materials, prisms, stone, translucent};
+use crate::optical_path::Method;
+use crate::render::{Paths, Reflectance, Rung};
+use crate::scene::cuts::{BrilliantParameters, CutError, round_brilliant};
+use crate::scene::surfaces::rounded_box;
+use crate::scene::{Averaging, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure};
+use crate::scene::{Bounds, gltf};
+
+/// What [`made`] makes, in a second or two.
+const VITRINE: &[u8] = include_bytes!("../../../assets/vitrine.glb");
+
+/// Radii of the stones' girdles.
+const DIAMOND: f32 = 17.0;
+const RUBY: f32 = 13.5;
+/// How many times as large as the built-in chain the chain is: a link is 18 mm wide.
+const CHAIN: f32 = 18.0;
+/// Between the table and what stands on it, so that no two surfaces are one.
+const GAP: f64 = 0.02;
+
+/// With the meshes of the stored file.
+pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
+    let objects = gltf::parse(VITRINE, None)?.objects;
+    Ok(scene(name, objects.into_iter().map(|object| object.mesh)))
+}
+
+/// With all meshes made anew.
+pub(super) fn made(name: &str) -> Result<Scene, SceneError> {
+    Ok(scene(name, meshes()?))
+}
+
+fn scene(name: &str, meshes: impl IntoIterator<Item = Mesh>) -> Scene {
+    let bodies = bodies().into_iter().zip(meshes);
+    let objects = bodies.map(|((name, material), mesh)| Object { name: name.to_owned(), mesh, material }).collect();
+    Scene { name: name.to_owned(), objects, lights: lights(), camera: camera(), lacking: Vec::new() }
+}
+
+/// Names and materials, in the order of [`meshes`].
+fn bodies() -> [(&'static str, Material); 6] {
+    let ruby = Material { dispersion: Dispersion::None, ..materials::ruby() };
+    let wax = Material { solver: Some(Rung::Diffuse(Reflectance::Accurate)), ..translucent::material("wax") };
+    let paths = Paths { cells: 64, method: Method::Godunov };
+    let marble = Material { solver: Some(Rung::OpticalPath(paths)), ..stone::marble() };
+    [
+        ("table", materials::slate()),
+        ("diamond", materials::sized(materials::diamond(), DIAMOND)),
+        ("ruby", materials::sized(ruby, RUBY)),
+        ("candle", wax),
+        ("figure", marble),
+        ("prism_chain", materials::sized(materials::clear_glass(), CHAIN)),
+    ]
+}
+
+fn meshes() -> Result<[Mesh; 6], CutError> {
+    let (half, rounding) = (DVec3::new(150.0, 7.0, 100.0), 2.5);
+    let table = rounded_box(half, rounding, 2).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
+    let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?.to_mesh(Averaging::default());
+    let chain = prisms::chain()?.scaled(CHAIN);
+    Ok([
+        table,
+        standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
+        standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
+        standing(&candle::mesh(), turned(0.0), [-62.0, 2.0]),
+        standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
+        // Its uppermost link passes the picture's edge.
+        chain.placed(DQuat::IDENTITY, DVec3::new(71.0, 131.0, 0.0)),
+    ])
+}
+
+/// About the vertical, in degrees from +z towards +x.
+fn turned(azimuth: f64) -> DQuat {
+    DQuat::from_rotation_y(azimuth.to_radians())
+}
+
+/// A brilliant on one of its pavilion's main facets, as a loose stone lies, its table towards this azimuth.
+fn lying(azimuth: f64) -> DQuat {
+    // The first of these facets is the one towards +x.
+    let leaning = DQuat::from_rotation_z(-BrilliantParameters::TOLKOWSKY.pavilion_degrees.to_radians());
+    turned(azimuth - 90.0) * leaning
+}
+
+/// The mesh turned, and moved to this x and z with its lowest point just above the table.
+fn standing(mesh: &Mesh, rotation: DQuat, [x, z]: [f64; 2]) -> Mesh {
+    let lowest = Bounds::of(mesh.placed(rotation, DVec3::ZERO).positions).min.y;
+    mesh.placed(rotation, DVec3::new(x, GAP - f64::from(lowest), z))
+}
+
+fn lights() -> Vec<Light> {
+    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 6_000.0 * Vec3::new(1.0, 0.8, 0.6) };
+    vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), lamp]
+}
+
+/// For pictures of 4:3.
+fn camera() -> Camera {
+    Camera::upright(Vec3::new(14.0, 118.0, 312.0), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+use super::*;
+use crate::pixel::Viewer;
+use crate::scene::{Mineral, glb};
+
+fn made() -> Scene {
+    Scene::made("vitrine").expect("built in")
+}
+
+/// `./cook scene vitrine --out harness/assets/vitrine.glb` brings it up to date.
+#[test]
+fn the_stored_vitrine_is_what_is_made() {
+    let made = made();
+    let read = |bytes: &[u8]| gltf::parse(bytes, None).expect("written here");
+    // Materials, lights and camera as the file says them, meshes as the scene has them.
+    let (stored, written) = (read(VITRINE), read(&glb::write(&made).expect("a scene that glTF can say")));
+    assert_eq!(stored.objects.len(), made.objects.len());
+    assert_eq!((&stored.lights, stored.camera, &stored.name), (&written.lights, written.camera, &written.name));
+    for ((stored, written), made) in stored.objects.iter().zip(&written.objects).zip(&made.objects) {
+        assert_eq!((&stored.name, &stored.material), (&written.name, &written.material));
+        assert_eq!(stored.name, made.name);
+        let (stored, made) = (&stored.mesh, &made.mesh);
+        assert_eq!((&stored.indices, stored.uvs.len()), (&made.indices, made.uvs.len()));
+        let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        // Sines differ in their last digit from one system to another.
+        assert!(furthest(&stored.positions, &made.positions) < 1e-3);
+        assert!(furthest(&stored.normals, &made.normals) < 1e-2);
+        assert!(stored.uvs.iter().zip(&made.uvs).all(|(a, b)| a.distance(*b) < 1e-6));
+    }
+    println!("{} bytes", VITRINE.len());
+    assert!(VITRINE.len() <= 512 * 1024, "{} bytes", VITRINE.len());
+}
+
+/// One body for each technique, each with what calls for it and nothing else.
+#[test]
+fn each_body_calls_for_a_technique_of_its_own() {
+    let scene = Scene::named("vitrine").expect("built in");
+    let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["table", "diamond", "ruby", "candle", "figure", "prism_chain"]);
+    let [table, diamond, ruby, candle, figure, chain] = &scene.objects[..] else { panic!("{names:?}") };
+    assert_eq!((table.material.transmission, table.material.thickness), (0.0, 0.0));
+    for stone in [diamond, ruby, chain] {
+        let material = &stone.material;
+        assert_eq!((material.transmission, material.roughness), (1.0, 0.0), "{}", stone.name);
+        assert!(material.thickness > 5.0 && material.medium.is_none() && material.sigma0.is_none());
+    }
+    assert_eq!(diamond.material.dispersion, Dispersion::Sellmeier(Mineral::Diamond));
+    assert_eq!((ruby.material.dispersion, ruby.material.ior), (Dispersion::None, Mineral::Corundum.index()));
+    assert_eq!(chain.material.dispersion, Dispersion::None);
+    assert_eq!([diamond, ruby, chain].map(|stone| stone.material.absorbs()), [false, true, false]);
+    // The ruby's colour is that of the built-in ruby: what is left after two girdle radii.
+    assert_eq!(ruby.material.attenuation_distance, 2.0 * RUBY);
+    for (body, spreads) in [(candle, true), (figure, false)] {
+        assert_eq!(body.material.sigma0.is_some(), spreads);
+        assert_eq!(body.mesh.uvs.is_empty(), !spreads);
+        let solver = body.material.solver.expect("the file names it");
+        assert_eq!(solver.recipe(), if spreads { "cdrf_shading" } else { "optical_path_shading" });
+        // Thick against the mean free path, here of the mean chord, 4 V/S.
+        let (volume, area) = body.mesh.volume_and_area();
+        let scattering = body.material.medium.as_ref().expect("scatters").scattering.min_element();
+        let paths = 4.0 * volume / area * f64::from(scattering);
+        println!("{}: {paths:.1} mean free paths", body.name);
+        assert!(paths > 10.0, "{}: {paths}", body.name);
+    }
+}
+
+/// Boxes about any two are apart, so that the bodies are.
+#[test]
+fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
+    let scene = Scene::named("vitrine").expect("built in");
+    let bounds = |object: &Object| Bounds::of(object.mesh.positions.iter().copied());
+    let table = bounds(&scene.objects[0]);
+    assert!(table.max.y.abs() < 1e-5);
+    for (k, object) in scene.objects.iter().enumerate().skip(1) {
+        let own = bounds(object);
+        let stands = (0.01..0.03).contains(&own.min.y);
+        let hangs = own.min.y > 5.0;
+        assert_eq!((stands, hangs), (object.name != "prism_chain", object.name == "prism_chain"), "{own:?}");
+        // Some way from the table's edge.
+        let margin = (own.min - table.min).min(table.max - own.max);
+        assert!(margin.x > 10.0 && margin.z > 10.0, "{}: {margin}", object.name);
+        for other in &scene.objects[k + 1..] {
+            let others = bounds(other);
+            let apart = own.max.cmplt(others.min).any() || others.max.cmplt(own.min).any();
+            assert!(apart, "{} and {}", object.name, other.name);
+        }
+    }
+    // The stones lie on a facet: as many vertices as its corners touch the table.
+    for stone in &scene.objects[1..3] {
+        let touching = stone.mesh.positions.iter().filter(|position| position.y < GAP as f32 + 1e-4).count();
+        assert_eq!(touching, 4, "{}", stone.name);
+    }
+}
+
+/// In a picture of 4:3, by a ray through every tenth pixel of 640 by 480.
+#[test]
+fn the_camera_sees_every_body() {
+    let (columns, rows) = (64, 48);
+    let scene = Scene::named("vitrine").expect("built in");
+    let viewer = Viewer::new(&scene, columns, rows);
+    let mut seen = vec![0; scene.objects.len()];
+    let mut at_an_edge = vec![false; scene.objects.len()];
+    for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row))) {
+        let distance = |object: &Object| {
+            let found = viewer.see(&object.mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
+            found.map(|point| point.position.distance(scene.camera.eye))
+        };
+        let found = scene.objects.iter().enumerate().filter_map(|(k, object)| Some((distance(object)?, k)));
+        if let Some((_, nearest)) = found.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            seen[nearest] += 1;
+            at_an_edge[nearest] |= column == 0 || column + 1 == columns || row == 0 || row + 1 == rows;
+        }
+    }
+    let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
+    println!("{shares:?}");
+    assert!(shares.iter().all(|(_, share)| *share > 0.012), "{shares:?}");
+    // The table goes on beyond the picture, and the chain hangs from above it.
+    assert_eq!(at_an_edge, [true, false, false, false, false, true]);
+}

@@ -1,0 +1,178 @@
+//! `extras.lapidary` of a material: what glTF has no words for.
+//!
+//! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`]. It gives the refractive index and the dispersion, with which the
+//! file's own, if it has some, must agree. `sigma0` is [`Material::sigma0`]; `scattering` and `absorption`, which come together,
+//! and with them `anisotropy` and `veins`, are [`Material::medium`]; `solver` is [`Material::solver`]. Lengths are those of the world: as
+//! with `attenuationDistance`, the scale of a node does not change them.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use ::gltf::json::material::Material as JsonMaterial;
+use glam::Vec3;
+use serde::{Deserialize, Deserializer};
+use serde_json::value::RawValue;
+
+use super::error::excerpt;
+use super::medium::medium;
+use crate::render::Rung;
+use crate::scene::material::draws_scattering;
+use crate::scene::{Dispersion, Material, Mineral};
+
+/// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
+const INDEX_AGREES: f64 = 0.005;
+/// How far, as a share, a file's dispersion may lie from its Sellmeier equation's: measured Abbe numbers of one mineral differ by
+/// some percent.
+const DISPERSION_AGREES: f64 = 0.05;
+
+/// What `extras` hold for this program. Kept as text, so that the extras of others cost nothing.
+#[derive(Deserialize)]
+struct Extras<'a> {
+    #[serde(borrow)]
+    lapidary: Option<&'a RawValue>,
+}
+
+/// `extras.lapidary`, of which a newer program may know more: [`unknown`].
+#[derive(Deserialize)]
+pub(super) struct Lapidary<'a> {
+    #[serde(borrow, default, deserialize_with = "present")]
+    sellmeier: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    sigma0: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    solver: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) scattering: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) absorption: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) anisotropy: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "present")]
+    pub(super) veins: Option<&'a RawValue>,
+}
+
+/// The members of [`Lapidary`].
+const MEMBERS: [&str; 7] = ["sellmeier", "sigma0", "solver", "scattering", "absorption", "anisotropy", "veins"];
+
+/// A member that is there, even where it is null: a writer that has no number for a NaN writes that.
+fn present<'de, D: Deserializer<'de>>(member: D) -> Result<Option<&'de RawValue>, D::Error> {
+    <&RawValue>::deserialize(member).map(Some)
+}
+
+impl Lapidary<'_> {
+    /// Adds what they say to `material`, whose extensions say `ior` and `dispersion`.
+    pub(super) fn apply(
+        &self,
+        material: &mut Material,
+        ior: Option<f64>,
+        dispersion: Option<f64>,
+    ) -> Result<(), String> {
+        if let Some(mineral) = self.sellmeier.map(mineral).transpose()? {
+            agree(mineral, ior, dispersion)?;
+            material.ior = mineral.index();
+            material.dispersion = Dispersion::Sellmeier(mineral);
+        }
+        material.sigma0 = self.sigma0.map(|json| lengths("sigma0", json)).transpose()?;
+        material.medium = medium(self)?;
+        material.solver = self.solver.map(solver).transpose()?;
+        if material.solver.is_some() && material.medium.is_none() && material.sigma0.is_none() {
+            return Err("its extras.lapidary has a solver, but nothing there scatters light; give scattering and absorption, or \
+                        sigma0, or remove the solver"
+                .to_owned());
+        }
+        Ok(())
+    }
+}
+
+/// Whether the file's own numbers are those of the mineral, as far as it has some.
+fn agree(mineral: Mineral, ior: Option<f64>, dispersion: Option<f64>) -> Result<(), String> {
+    let (name, index) = (mineral.name(), mineral.index());
+    if let Some(ior) = ior.filter(|ior| (ior - f64::from(index)).abs() > INDEX_AGREES) {
+        return Err(format!(
+            "its ior is {ior}, but the Sellmeier equation of {name} in its extras gives {index}; leave one of them out"
+        ));
+    }
+    let measured = 20.0 / f64::from(mineral.abbe_number());
+    if let Some(dispersion) = dispersion.filter(|given| (given / measured - 1.0).abs() > DISPERSION_AGREES) {
+        return Err(format!(
+            "its dispersion is {dispersion:?}, but the Sellmeier equation of {name} in its extras gives {measured:.3}; leave one of \
+             them out"
+        ));
+    }
+    Ok(())
+}
+
+/// The text of the material's `extras.lapidary`, if it has them.
+fn text(json: &JsonMaterial) -> Result<Option<&RawValue>, String> {
+    // glTF lets extras be anything; what is not an object is someone else's.
+    let Some(extras) = json.extras.as_deref().filter(|extras| is_object(extras)) else {
+        return Ok(None);
+    };
+    let extras: Extras<'_> = serde_json::from_str(extras.get()).map_err(|error| unreadable("extras", &error))?;
+    match extras.lapidary {
+        Some(lapidary) if !is_object(lapidary) => {
+            Err(format!("its extras.lapidary is {}, but must be an object", excerpt(lapidary.get())))
+        }
+        lapidary => Ok(lapidary),
+    }
+}
+
+/// The material's `extras.lapidary`, if it has them.
+pub(super) fn lapidary(json: &JsonMaterial) -> Result<Option<Lapidary<'_>>, String> {
+    let lapidary = text(json)?.map(|text| serde_json::from_str(text.get()));
+    lapidary.transpose().map_err(|error| unreadable("extras.lapidary", &error))
+}
+
+/// The members of the material's `extras.lapidary` that are none of [`Lapidary`]'s, sorted.
+pub(super) fn unknown(json: &JsonMaterial) -> Vec<String> {
+    let members = text(json).ok().flatten().and_then(|text| {
+        let members: Option<BTreeMap<Cow<'_, str>, &RawValue>> = serde_json::from_str(text.get()).ok();
+        members
+    });
+    let names = members.into_iter().flat_map(BTreeMap::into_keys);
+    names.filter(|name| !MEMBERS.contains(&name.as_ref())).map(Cow::into_owned).collect()
+}
+
+fn unreadable(what: &str, error: &serde_json::Error) -> String {
+    format!("its {what} cannot be read: {}", excerpt(&error.to_string()))
+}
+
+/// The mineral that `sellmeier` names.
+fn mineral(json: &RawValue) -> Result<Mineral, String> {
+    let mineral = serde_json::from_str::<String>(json.get()).ok().and_then(|name| Mineral::named(&name));
+    mineral.ok_or_else(|| {
+        format!(
+            "its extras.lapidary.sellmeier is {}, but must be one of {}",
+            excerpt(json.get()),
+            Mineral::ALL.map(|mineral| format!("{:?}", mineral.name())).join(", ")
+        )
+    })
+}
+
+/// The rung that `solver` names, one that draws what scatters light.
+fn solver(json: &RawValue) -> Result<Rung, String> {
+    let rung = serde_json::from_str::<String>(json.get()).ok().and_then(|name| name.parse().ok());
+    rung.filter(|rung| draws_scattering(*rung)).ok_or_else(|| {
+        format!(
+            "its extras.lapidary.solver is {}, but must be a rung for what scatters light, such as lambert, accurate, blur or \
+             godunov-64; `./cook render --help` says which there are",
+            excerpt(json.get())
+        )
+    })
+}
+
+/// The member `name`: numbers for red, green and blue that have a length unit.
+pub(super) fn lengths(name: &str, json: &RawValue) -> Result<Vec3, String> {
+    let numbers = serde_json::from_str::<[f64; 3]>(json.get()).ok();
+    let single = numbers.map(|numbers| Vec3::from_array(numbers.map(|number| number as f32)));
+    single.filter(|single| single.is_finite() && single.cmpge(Vec3::ZERO).all()).ok_or_else(|| {
+        format!(
+            "its extras.lapidary.{name} is {}, but must be three numbers of at least 0, finite in single precision",
+            excerpt(json.get())
+        )
+    })
+}
+
+fn is_object(json: &RawValue) -> bool {
+    json.get().starts_with('{')
+}

@@ -1,0 +1,214 @@
+//! Looks through the shown part of a file for what it asks for and nothing here draws.
+
+use std::collections::BTreeSet;
+
+use ::gltf::Semantic;
+use ::gltf::json::Root;
+use ::gltf::json::material::{AlphaMode, Material as JsonMaterial};
+use ::gltf::json::mesh::{Mode, Primitive};
+use ::gltf::json::validation::Checked;
+use serde_json::{Map, Value};
+
+use super::error::excerpt;
+use super::lacking::{Lacking, User};
+use super::material::{Materials, extensions};
+use super::nodes::ShownNode;
+use super::{KNOWN_EXTENSIONS, extras, instances, light_node};
+use crate::scene::Material;
+
+/// All that the file asks for in vain. Its references are known to be good.
+pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Materials<'_>) -> Vec<String> {
+    let mut lacking = Lacking::default();
+    let mut meshes = BTreeSet::new();
+    for node in nodes {
+        self::node(root, node, &mut lacking);
+        meshes.extend(node.node.mesh.map(|mesh| mesh.value()));
+    }
+    for (index, mesh) in meshes.into_iter().filter_map(|index| Some((index, root.meshes.get(index)?))) {
+        let user = User { kind: "mesh", index, name: mesh.name.as_deref() };
+        unknown_extensions(mesh.extensions.as_ref().map(|all| &all.others), user, &mut lacking);
+        mesh.primitives.iter().for_each(|primitive| self::primitive(primitive, user, &mut lacking));
+    }
+    for (index, json, material) in materials.read() {
+        let user = User { kind: "material", index, name: json.name.as_deref() };
+        textures(json, user, &mut lacking);
+        surface(json, material, user, &mut lacking);
+        inside(json, material, user, &mut lacking);
+    }
+    cameras(root, nodes, &mut lacking);
+    if !root.animations.is_empty() {
+        lacking.note("animations", root.animations.len().to_string(), "bodies are drawn at rest", User::FILE);
+    }
+    for name in root.extensions_used.iter().filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())) {
+        if !lacking.has(EXTENSIONS, &quoted(name)) {
+            lacking.note(EXTENSIONS, quoted(name), "not known", User::FILE);
+        }
+    }
+    lacking.clauses()
+}
+
+const EXTENSIONS: &str = "extensions";
+
+/// A name from the file.
+fn quoted(name: &str) -> String {
+    format!("`{}`", excerpt(name))
+}
+
+fn unknown_extensions(all: Option<&Map<String, Value>>, user: User<'_>, lacking: &mut Lacking) {
+    let names = all.into_iter().flat_map(Map::keys);
+    for name in names.filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())) {
+        lacking.note(EXTENSIONS, quoted(name), "not known", user);
+    }
+}
+
+fn node(root: &Root, shown: &ShownNode<'_>, lacking: &mut Lacking) {
+    let user = User { kind: "node", index: shown.index, name: shown.node.name.as_deref() };
+    let all = shown.node.extensions.as_ref().map(|all| &all.others);
+    unknown_extensions(all, user, lacking);
+    if shown.node.skin.is_some() {
+        lacking.note("skins", "`skin`".to_owned(), "the body is drawn at rest", user);
+    }
+    if shown.node.mesh.is_none() && all.is_some_and(|all| all.contains_key(instances::NAME)) {
+        lacking.note("instances", quoted(instances::NAME), "the node has no mesh", user);
+    }
+    let attributes = instances::attributes(shown).ok().flatten();
+    // One underscore marks what an application has for itself.
+    let known = |name: &&String| instances::PLACING.contains(&name.as_str()) || name.starts_with('_');
+    for name in attributes.into_iter().flat_map(Map::keys).filter(|name| !known(name)) {
+        lacking.note("instances", quoted(name), "all instances look alike", user);
+    }
+    if let Some((index, light)) = light_node::of_node(root, shown) {
+        let is_near = light.get("type").and_then(Value::as_str) != Some("directional");
+        if is_near && light.get("range").is_some() {
+            let user = User { kind: "light", index, name: light.get("name").and_then(Value::as_str) };
+            lacking.note("lights", "`range`".to_owned(), "light falls off by the square of the distance alone", user);
+        }
+    }
+}
+
+fn primitive(primitive: &Primitive, mesh: User<'_>, lacking: &mut Lacking) {
+    let modes = [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan];
+    if !modes.into_iter().any(|mode| primitive.mode == Checked::Valid(mode)) {
+        lacking.note("points and lines", "a primitive".to_owned(), "triangles alone are drawn", mesh);
+        return;
+    }
+    unknown_extensions(primitive.extensions.as_ref().map(|all| &all.others), mesh, lacking);
+    if primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(_)))) {
+        lacking.note("vertex colours", "`COLOR_n`".to_owned(), "the material's colour is drawn alone", mesh);
+    }
+    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
+        lacking.note("morph targets", "`targets`".to_owned(), "the body is drawn without them", mesh);
+    }
+    if primitive.material.is_none() {
+        let default = "the default material, a metal,".to_owned();
+        lacking.note("metal", default, DIELECTRIC, mesh);
+    }
+}
+
+const DIELECTRIC: &str = "drawn as a dielectric";
+
+fn textures(json: &JsonMaterial, user: User<'_>, lacking: &mut Lacking) {
+    let factors = &json.pbr_metallic_roughness;
+    let of_core = [
+        (factors.base_color_texture.is_some(), "baseColorTexture"),
+        (factors.metallic_roughness_texture.is_some(), "metallicRoughnessTexture"),
+        (json.normal_texture.is_some(), "normalTexture"),
+        (json.occlusion_texture.is_some(), "occlusionTexture"),
+        (json.emissive_texture.is_some(), "emissiveTexture"),
+    ];
+    let of_core = of_core.into_iter().filter_map(|(is_there, name)| is_there.then_some(name));
+    let read = extensions(json).into_iter().flatten().filter(|(name, _)| KNOWN_EXTENSIONS.contains(&name.as_str()));
+    let members = read.filter_map(|(_, extension)| extension.as_object()).flat_map(Map::keys);
+    let of_extensions = members.map(String::as_str).filter(|member| member.ends_with("Texture"));
+    for name in of_core.chain(of_extensions) {
+        lacking.note("textures", quoted(name), "a factor is drawn alone", user);
+    }
+}
+
+/// What a material's surface is beside a dielectric's.
+fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mut Lacking) {
+    unknown_extensions(extensions(json), user, lacking);
+    let factors = &json.pbr_metallic_roughness;
+    unknown_extensions(factors.extensions.as_ref().map(|all| &all.others), user, lacking);
+
+    // 1 is also what a file says that leaves the member out, as those of clear bodies do.
+    let metallic = factors.metallic_factor.0;
+    let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !scatters(material);
+    if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
+        lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
+    }
+    let mode = match json.alpha_mode {
+        Checked::Valid(AlphaMode::Blend) => Some("BLEND"),
+        Checked::Valid(AlphaMode::Mask) => Some("MASK"),
+        _ => None,
+    };
+    if let Some(mode) = mode {
+        lacking.note("alpha", format!("`alphaMode` {mode}"), "alpha is not read", user);
+    }
+    if json.emissive_factor.0.iter().any(|part| *part != 0.0) {
+        lacking.note("emission", "`emissiveFactor`".to_owned(), "nothing shines by itself", user);
+    }
+    for name in extras::unknown(json) {
+        lacking.note("extras", format!("{} in `extras.lapidary`", quoted(&name)), "not known", user);
+    }
+}
+
+/// What light does behind a material's surface beside what is drawn.
+fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mut Lacking) {
+    let is_share = |factor: f32| factor > 0.0 && factor < 1.0;
+    let &Material { transmission, diffuse_transmission, .. } = material;
+    let mut note = |kind, what: &str, instead| lacking.note(kind, what.to_owned(), instead, user);
+    if is_share(transmission) {
+        note("transmission", "`transmissionFactor` between 0 and 1", "drawn wholly clear");
+    }
+    if transmission > 0.0 && material.roughness > 0.0 {
+        note("transmission", "`roughnessFactor` above 0", "drawn polished");
+    }
+    // What passes straight through a wholly clear body is all light, and glTF takes it first.
+    let diffuse = "diffuse transmission";
+    if diffuse_transmission > 0.0 && is_share(transmission) {
+        note(diffuse, "`diffuseTransmissionFactor` beside a transmission", "not drawn");
+    } else if diffuse_transmission > 0.0 && transmission == 0.0 {
+        match &material.medium {
+            Some(_) if is_share(diffuse_transmission) => {
+                note(diffuse, "`diffuseTransmissionFactor` between 0 and 1", "drawn as if all light went in");
+            }
+            Some(_) => {}
+            None if material.thickness == 0.0 => {
+                note(diffuse, "`diffuseTransmissionFactor` without a thickness", "a thin wall is drawn opaque");
+            }
+            None => {
+                note(diffuse, "`diffuseTransmissionFactor` without an attenuation that scatters", "drawn opaque");
+            }
+        }
+    }
+    if material.absorbs() && transmission == 0.0 && diffuse_transmission == 0.0 && material.medium.is_none() {
+        note("attenuation", "`KHR_materials_volume`", "no light gets in without a transmission");
+    }
+    let has = |name: &str| extensions(json).is_some_and(|all| all.contains_key(name));
+    if material.dispersion != crate::scene::Dispersion::None
+        && has("KHR_materials_dispersion")
+        && !has("KHR_materials_volume")
+    {
+        note("dispersion", "`KHR_materials_dispersion` without a volume", "a thin wall disperses nothing");
+    }
+}
+
+fn scatters(material: &Material) -> bool {
+    material.medium.is_some() || material.sigma0.is_some()
+}
+
+fn cameras(root: &Root, nodes: &[ShownNode<'_>], lacking: &mut Lacking) {
+    let of_nodes = nodes.iter().filter_map(|node| node.node.camera.map(|camera| camera.value()));
+    let mut has_first = false;
+    for (index, camera) in of_nodes.filter_map(|index| Some((index, root.cameras.get(index)?))) {
+        let user = User { kind: "camera", index, name: camera.name.as_deref() };
+        unknown_extensions(camera.extensions.as_ref().map(|all| &all.others), user, lacking);
+        if camera.perspective.is_none() {
+            lacking.note("cameras", "`orthographic`".to_owned(), "passed over", user);
+        } else if std::mem::replace(&mut has_first, true) {
+            let what = "`perspective` after the first".to_owned();
+            lacking.note("cameras", what, "the scene is seen through the first", user);
+        }
+    }
+}
