@@ -116,7 +116,7 @@ fn instances_count_in_the_budgets() {
     document["buffers"][0]["byteLength"] = json!(data.len());
     let message = parse(&file(&document, &data), None).unwrap_err().to_string();
     assert!(message.contains("more than 16777216 triangles"), "{message}");
-    // A twentieth of them is within that, but a thousand times the file.
+    // A twentieth of them is within both bounds.
     document["accessors"][2]["count"] = json!(10_000);
     document["bufferViews"][2]["byteLength"] = json!(120_000);
     document["bufferViews"][2]["byteStride"] = json!(12);
