@@ -86,6 +86,7 @@ impl Shader {
             recipe: self.recipe.clone(),
             entries: self.entries.clone(),
             overrides: self.overrides.clone(),
+            bindings: self.bindings().0,
             instructions: counts,
         }
     }

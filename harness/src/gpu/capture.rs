@@ -40,6 +40,8 @@ pub struct Pipeline {
     pub entries: Vec<String>,
     /// The values of its overrides.
     pub overrides: Vec<(String, f64)>,
+    /// Group and number of what it reads and writes.
+    pub bindings: Vec<(u32, u32)>,
     /// Instructions of its SPIR-V.
     pub instructions: usize,
 }
@@ -174,7 +176,11 @@ impl Recorder {
 
     fn step(&mut self, pass: &str, pipeline: Option<String>, groups: &[Option<BindGroup>], targets: &[String]) {
         let mut resources: Vec<String> = Vec::new();
-        let bound = groups.iter().flatten().filter_map(|group| self.groups.get(group)).flatten();
+        let of = self.capture.pipelines.iter().find(|known| Some(&known.name) == pipeline.as_ref());
+        // What an earlier pipeline bound stays where this one has no such group.
+        let is_read = |group: u32| of.is_some_and(|of| of.bindings.iter().any(|(known, _)| *known == group));
+        let own = (0..).zip(groups).filter(|(index, _)| is_read(*index)).filter_map(|(_, group)| group.as_ref());
+        let bound = own.filter_map(|group| self.groups.get(group)).flatten();
         for name in bound.chain(targets) {
             if !resources.contains(name) {
                 resources.push(name.clone());

@@ -102,6 +102,9 @@ fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Stri
 
 /// The rung for a body that scatters light, and why.
 fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+    if let (Some(rung), None) = (object.material.solver, settings.scattering) {
+        return (rung, "extras.lapidary.solver names it".to_owned());
+    }
     let Some(medium) = &object.material.medium else {
         return (CURVED, "sigma0 alone: no scattering and absorption to follow light through it by".to_owned());
     };

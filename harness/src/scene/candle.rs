@@ -14,7 +14,7 @@ const COLUMNS: u32 = 64;
 const ROWS: u32 = 3;
 
 /// Where the side is before anything runs down it.
-const RADIUS: f64 = 15.0;
+pub(super) const RADIUS: f64 = 15.0;
 
 /// Distance from the axis and height of the points that control the outline, a uniform cubic B-spline, from the middle of the bowl to the
 /// middle of the foot. Denser where it bends more.

@@ -3,8 +3,6 @@
 use glam::{DQuat, DVec3, Vec3};
 
 use super::{VERTICAL_FOV, materials, prisms, stone, translucent};
-use crate::optical_path::Method;
-use crate::render::{Paths, Reflectance, Rung};
 use crate::scene::cuts::{BrilliantParameters, CutError, round_brilliant};
 use crate::scene::surfaces::rounded_box;
 use crate::scene::{Averaging, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure};
@@ -41,15 +39,14 @@ fn scene(name: &str, meshes: impl IntoIterator<Item = Mesh>) -> Scene {
 /// Names and materials, in the order of [`meshes`].
 fn bodies() -> [(&'static str, Material); 6] {
     let ruby = Material { dispersion: Dispersion::None, ..materials::ruby() };
-    let wax = Material { solver: Some(Rung::Diffuse(Reflectance::Accurate)), ..translucent::material("wax") };
-    let paths = Paths { cells: 64, method: Method::Godunov };
-    let marble = Material { solver: Some(Rung::OpticalPath(paths)), ..stone::marble() };
+    // All but its rim is as thick as this.
+    let wax = Material { thickness: 2.0 * candle::RADIUS as f32, ..translucent::material("wax") };
     [
         ("table", materials::slate()),
         ("diamond", materials::sized(materials::diamond(), DIAMOND)),
         ("ruby", materials::sized(ruby, RUBY)),
         ("candle", wax),
-        ("figure", marble),
+        ("figure", stone::marble()),
         ("prism_chain", materials::sized(materials::clear_glass(), CHAIN)),
     ]
 }
