@@ -69,7 +69,7 @@ impl Committed {
     /// Where its scene does not load, or the device refuses.
     pub fn render(self, gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
         match self {
-            Self::Shot(shot) => render_shot(gpu, shot, &shot.source()),
+            Self::Shot(shot) => render_shot(gpu, shot),
             Self::Strip => strip::render(gpu),
             Self::BesideWalks => beside_walks::render(gpu),
         }
@@ -151,12 +151,14 @@ impl Comparison {
     }
 }
 
-/// Renders `shot` with `source`, the composed recipe, as PNG and as EXR would hold it.
-pub fn render_shot(gpu: &Gpu, shot: &Shot, source: &str) -> Result<[Picture; 2], SnapshotError> {
-    render_scene(gpu, shot, &shot.open()?, source)
+/// Renders `shot` as PNG and as EXR would hold it.
+pub fn render_shot(gpu: &Gpu, shot: &Shot) -> Result<[Picture; 2], SnapshotError> {
+    let scene = shot.open()?;
+    let render = |side| render::render(gpu, &scene, &shot.settings(side));
+    Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
 }
 
-/// The same for another scene in the shot's place.
+/// The same for another scene in the shot's place, with `source`, another text of its recipe.
 pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Result<[Picture; 2], SnapshotError> {
     let render = |side| render::render_with(gpu, scene, &shot.settings(side), source);
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])

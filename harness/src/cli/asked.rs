@@ -70,9 +70,10 @@ impl Asked {
             });
         }
         let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
-        if let Some(effect) = self.without.iter().find(|effect| !all.iter().any(|decisions| decisions.has(**effect))) {
+        let is_called = |effect: &Effect| all.iter().any(|decisions| decisions.has(*effect));
+        if let (Some(effect), false) = (self.without.first(), self.without.iter().any(is_called)) {
             return Err(Failure(format!(
-                "nothing in scene `{}` has {effect}, drawn by rung `{}`: --without {effect} has no meaning; leave it out",
+                "nothing in scene `{}` calls for {effect} by rung `{}`, so --without {effect} has no meaning; leave it out",
                 scene.name, settings.rung
             )));
         }

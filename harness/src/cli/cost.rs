@@ -1,6 +1,7 @@
 //! `cook cost`.
 
 mod cdrf;
+mod effects;
 mod gem;
 mod optical_path;
 mod sphere;
@@ -22,13 +23,15 @@ use std::path::{Path, PathBuf};
 ///
 /// `optical_path`: the ladder of light's ways through stone, by solver, neighbours and size of the grid. Takes minutes.
 ///
+/// `effects`: each effect alone, none, and all: time, instructions and bytes.
+///
 /// `sphere`: the curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost sphere --out target/cost"
 )]
 pub(super) struct Arguments {
-    /// What to measure: gem, cdrf, optical_path or sphere.
+    /// What to measure: gem, cdrf, optical_path, effects or sphere.
     #[arg(default_value = "gem")]
     technique: String,
     /// gem, cdrf, optical_path: rungs to measure, comma-separated; all where left out.
@@ -37,7 +40,7 @@ pub(super) struct Arguments {
     /// gem: views to compare in, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
-    /// gem, cdrf, optical_path: rounds of timing, 7 where left out, 5 of optical_path; 0 leaves times out.
+    /// gem, cdrf, optical_path, effects: rounds of timing, 7 where left out, 5 of optical_path; 0 leaves times out.
     #[arg(long)]
     rounds: Option<u32>,
     /// sphere: random walks through each sphere, 1000000 where left out.
@@ -82,6 +85,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         "gem" => gem::run(context, arguments),
         "cdrf" => cdrf::run(context, arguments),
         "optical_path" => optical_path::run(context, arguments),
+        "effects" => effects::run(context, arguments),
         "sphere" => sphere::run(arguments),
         other => Err(CostError::Technique(other.to_owned()).into()),
     }

@@ -28,7 +28,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let mut pictures = Vec::new();
     for shot in &SHOTS {
         bar.set_message(shot.name);
-        let [seen, _] = snapshot::render_shot(gpu, shot, &shot.source())?;
+        let [seen, _] = snapshot::render_shot(gpu, shot)?;
         let path = rendered.path().join(format!("{}.png", shot.name));
         file::write(&seen, &path)?;
         let of_scene =

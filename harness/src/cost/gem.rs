@@ -142,7 +142,7 @@ pub fn run(
             .map(|entry| Timed {
                 settings: Settings { width, height, samples: 1, ..entry.settings.clone() },
                 scene: &filled,
-                source: cookbook::recipe_source(entry.settings.rung.recipe()),
+                source: None,
                 displayed: false,
                 scales: true,
             })

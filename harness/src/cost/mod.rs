@@ -4,6 +4,7 @@ pub mod cdrf;
 mod choices;
 mod dispersion;
 pub mod drawing;
+pub mod effects;
 mod error;
 mod gem;
 mod gem_tables;
@@ -180,7 +181,7 @@ fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// No such ladder.
-    #[error("no ladder `{0}`; there are gem, cdrf, optical_path and sphere")]
+    #[error("no ladder `{0}`; there are gem, cdrf, optical_path, effects and sphere")]
     Technique(String),
     /// A record of spheres that nothing can be compared with.
     #[error(

@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::cdrf::CdrfReport;
+use super::effects::EffectsReport;
 use super::optical_path::OpticalPathReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
@@ -32,7 +33,7 @@ fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(of::<OpticalPathReport>()).collect()
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(of::<OpticalPathReport>()).chain(of::<EffectsReport>()).collect()
 }
 
 /// Whether a page's marks are sound.

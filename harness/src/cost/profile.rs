@@ -49,7 +49,7 @@ pub fn profile(
             let settings = Settings { rung, samples: 1, ..Settings::of_size(width, height) };
             let source = if right.is_empty() { source } else { source.replace(right, cut) };
             places.push((row, column));
-            timed.push(Timed { settings, scene: &scene, source, displayed: false, scales: true });
+            timed.push(Timed { settings, scene: &scene, source: Some(source), displayed: false, scales: true });
         }
     }
     let timings = timing::time(gpu, &timed, rounds, progress)?;

@@ -32,8 +32,8 @@ pub struct Timed<'a> {
     pub settings: Settings,
     /// What.
     pub scene: &'a Scene,
-    /// The composed recipe of the settings' rung, or another text of it.
-    pub source: String,
+    /// Another text of the recipe of the settings' rung.
+    pub source: Option<String>,
     /// With the display recipe on top.
     pub displayed: bool,
     /// Whether its time goes with its pixels, so that it may be timed on fewer of them.
@@ -42,7 +42,10 @@ pub struct Timed<'a> {
 
 impl Timed<'_> {
     fn frame<'gpu>(&self, gpu: &'gpu Gpu, settings: &Settings) -> Result<Frame<'gpu>, RenderError> {
-        let frame = Frame::of_source(gpu, self.scene, settings, &self.source)?;
+        let frame = match &self.source {
+            None => Frame::new(gpu, self.scene, settings)?,
+            Some(source) => Frame::of_source(gpu, self.scene, settings, source)?,
+        };
         if self.displayed { frame.displayed(settings) } else { Ok(frame) }
     }
 

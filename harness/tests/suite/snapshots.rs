@@ -79,7 +79,7 @@ fn swapped_channels_are_seen() {
 #[test]
 fn a_missing_reference_fails_and_is_not_made() {
     let empty = tempfile::tempdir().expect("a folder");
-    let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
+    let pictures = snapshot::render_shot(super::gpu(), brilliant()).expect("rendered");
     let error = snapshot::compare("brilliant", &pictures, empty.path()).expect_err("no reference");
     assert!(matches!(error, SnapshotError::Missing(_)), "{error}");
     assert_eq!(std::fs::read_dir(empty.path()).expect("the folder").count(), 0);
@@ -89,7 +89,7 @@ fn a_missing_reference_fails_and_is_not_made() {
 fn an_unreadable_reference_fails() {
     let copy = copy_of(&brilliant().folder());
     std::fs::write(copy.path().join("brilliant.png"), b"not a picture").expect("written");
-    let pictures = snapshot::render_shot(super::gpu(), brilliant(), &source()).expect("rendered");
+    let pictures = snapshot::render_shot(super::gpu(), brilliant()).expect("rendered");
     let error = snapshot::compare("brilliant", &pictures, copy.path()).expect_err("no picture");
     assert!(matches!(error, SnapshotError::Unreadable { .. }), "{error}");
 }

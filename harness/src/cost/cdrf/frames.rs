@@ -192,7 +192,7 @@ pub(super) fn time(
         for frame in &rung.frames {
             let settings = settings(frame.part, frame.curvature, reflectance, options.frame);
             timed.push(Timed {
-                source: cookbook::recipe_source(settings.rung.recipe()),
+                source: None,
                 settings,
                 scene: scenes.of(frame.part),
                 displayed: frame.part == Part::Whole,
