@@ -56,6 +56,10 @@ pub(super) struct Arguments {
     /// In units of length: a ray ends that has travelled farther inside.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     distance_limit: Option<f32>,
+    /// Whether a ray inside ends when what it carries can no longer be seen; where left out, from the number of hits on at which that saves
+    /// time.
+    #[arg(long, value_name = "WHETHER", value_parser = ["on", "off"])]
+    throughput_limit: Option<String>,
     /// By a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
     deferred: bool,
@@ -146,6 +150,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, rung: Rung, scatters: bool) -> 
         ("--curvature", !blurs && arguments.curvature != Curvature::Mean),
         ("--rest dropped", (outside || scattered) && arguments.rest == "dropped"),
         ("--distance-limit", (outside || scattered) && arguments.distance_limit.is_some()),
+        ("--throughput-limit", (outside || scattered) && arguments.throughput_limit.is_some()),
         ("--deferred", (reference || scattered) && arguments.deferred),
         ("--centre paper", !proxy && arguments.centre == "paper"),
         ("--extinction-scale", !paths && arguments.extinction_scale.is_some()),
@@ -185,6 +190,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         dispersion_strength: arguments.strength,
         rest_from_environment: arguments.rest == "environment",
         distance_limit: arguments.distance_limit,
+        limit_throughput: arguments.throughput_limit.as_deref().map(|whether| whether == "on"),
         deferred: arguments.deferred,
         environment,
         exposure: arguments.exposure,

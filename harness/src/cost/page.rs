@@ -3,6 +3,7 @@
 use super::Report;
 use super::cdrf::CdrfReport;
 use super::optical_path::OpticalPathReport;
+use super::restraint::RestraintReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
@@ -32,7 +33,8 @@ fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(of::<OpticalPathReport>()).collect()
+    let paths = of::<OpticalPathReport>().chain(of::<RestraintReport>());
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(paths).collect()
 }
 
 /// Whether a page's marks are sound.

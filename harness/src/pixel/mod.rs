@@ -10,7 +10,7 @@ mod surface;
 pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
-use crate::render::{Environment, Rung, Settings, Spectrum};
+use crate::render::{self, Environment, Rung, Settings, Spectrum};
 use crate::scene::Material;
 use geometry::{Entry, Hit, Place};
 use glam::{Mat3, UVec2, Vec3};
@@ -44,6 +44,7 @@ pub struct Shading<'a> {
     wavelengths: Vec<(Mat3, f32)>,
     settings: &'a Settings,
     absorbs: bool,
+    limits_throughput: bool,
 }
 
 /// `GemMaterial` of the recipe.
@@ -54,6 +55,7 @@ struct GemMaterial {
     distance_limit: f32,
     channel_indices: Vec3,
     dispersion_strength: f32,
+    throughput_limit: f32,
 }
 
 /// `GemRay` of the recipe, and what it met.
@@ -78,11 +80,6 @@ impl Ray {
         self.throughput *= 1.0 - share;
     }
 
-    fn reflect(&mut self, hit: &Hit) {
-        self.position = hit.point;
-        self.direction = refraction::reflect(self.direction, hit.normal);
-    }
-
     fn end(&mut self, outside: Vec3) {
         self.radiance += self.throughput * outside;
     }
@@ -105,9 +102,9 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
 impl<'a> Shading<'a> {
     /// The shading of `material` under `settings`.
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
-        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength] =
-            crate::render::material_uniform(material, settings);
-        let wavelengths = crate::render::wavelength_table(material, settings.rung.spectrum());
+        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength, throughput_limit, ..] =
+            render::material_uniform(material, settings);
+        let wavelengths = render::wavelength_table(material, settings.rung.spectrum());
         let matrix = |w: &[f32; 16]| {
             let column = |k: usize| Vec3::new(w[k], w[k + 1], w[k + 2]);
             (Mat3::from_cols(column(0), column(4), column(8)), w[12])
@@ -120,10 +117,12 @@ impl<'a> Shading<'a> {
                 distance_limit,
                 channel_indices: Vec3::new(red, green, blue),
                 dispersion_strength,
+                throughput_limit,
             },
             wavelengths: wavelengths.iter().map(matrix).collect(),
             settings,
             absorbs: settings.absorption && material.absorbs(),
+            limits_throughput: render::restraint::limits_throughput(settings),
         }
     }
 
@@ -164,10 +163,21 @@ impl<'a> Shading<'a> {
         hit
     }
 
+    fn reflect(&self, ray: &mut Ray, hit: &Hit) {
+        ray.position = hit.point;
+        ray.direction = refraction::reflect(ray.direction, hit.normal);
+        if self.limits_throughput {
+            ray.followed = ray.throughput.max_element() >= self.material.throughput_limit;
+        }
+    }
+
     fn trace(&self, entry: &Entry<'_>, direction: Vec3, index: f32) -> Ray {
         let mut place = entry.enter();
         let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -177,7 +187,7 @@ impl<'a> Shading<'a> {
             if exit.share > 0.0 {
                 ray.leave(Vec3::splat(exit.share), self.environment(exit.direction));
             }
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
         }
         if self.settings.rest_from_environment {
             ray.end(self.environment(ray.direction));
@@ -197,6 +207,9 @@ impl<'a> Shading<'a> {
         let mut ray = Ray::new(entry.position, inside);
         let mut gradient = dispersion::enter(direction, entry.face_normal, self.material.index);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -209,7 +222,7 @@ impl<'a> Shading<'a> {
             if share.cmpgt(Vec3::ZERO).any() {
                 ray.leave(share, self.environment_channels(red.direction, green.direction, blue.direction));
             }
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
             gradient = dispersion::reflect(gradient, hit.normal);
         }
         if self.settings.rest_from_environment {
@@ -238,6 +251,9 @@ impl<'a> Shading<'a> {
         let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
         let mut spread = dispersion::paper_enter(direction, ray.direction);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -249,7 +265,7 @@ impl<'a> Shading<'a> {
                 ray.leave(Vec3::splat(exit.share), self.environment_paper(exit.direction, leaving, ray.travelled));
             }
             spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
         }
         if self.settings.rest_from_environment {
             ray.end(self.environment_paper(ray.direction, spread, ray.travelled));

@@ -2,7 +2,7 @@
 
 use super::device::{self, PipelineSource};
 use super::pass::{Body, DEPTH_FORMAT, ScenePass, Shared};
-use super::{Environment, Geometry, RenderError, Rung, Settings, Spectrum, stone};
+use super::{Environment, Geometry, RenderError, Rung, Settings, Spectrum, restraint, stone};
 use crate::gpu::Gpu;
 use crate::scene::Scene;
 
@@ -31,6 +31,7 @@ pub(crate) fn constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str
         ("BOUNCES", f64::from(rung.hits())),
         ("REST_FROM_ENVIRONMENT", flag(settings.rest_from_environment)),
         ("LIMIT_DISTANCE", flag(settings.distance_limit.is_some())),
+        ("LIMIT_THROUGHPUT", flag(restraint::limits_throughput(settings))),
         ("CENTRE_PAPER", flag(settings.paper_centre)),
     ]
 }

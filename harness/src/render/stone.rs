@@ -2,7 +2,7 @@
 
 use super::device::{bind_group, buffer, mesh_vertices, uniform};
 use super::pass::Body;
-use super::{Geometry, RenderError, Rung, Settings, Spectrum};
+use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint};
 use crate::gpu::Gpu;
 use crate::reference::spectrum;
 use crate::scene::{Bvh, Convex, Material, Object};
@@ -99,14 +99,16 @@ pub(crate) fn geometry_bytes(object: &Object, settings: &Settings) -> Result<u64
 }
 
 /// `GemMaterial` of the recipe.
-pub(crate) fn material(material: &Material, settings: &Settings) -> [f32; 12] {
+pub(crate) fn material(material: &Material, settings: &Settings) -> [f32; 16] {
     let [r, g, b] = material.base_color.to_array();
     let [ar, ag, ab] =
         lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance).to_array();
     let [red, green, blue] = channel_indices(material).to_array();
     // Nothing travels as far as this.
     let limit = settings.distance_limit.unwrap_or(f32::MAX);
-    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, settings.dispersion_strength]
+    let strength = settings.dispersion_strength;
+    let throughput_limit = restraint::throughput_limit(material, settings);
+    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, strength, throughput_limit, 0.0, 0.0, 0.0]
 }
 
 /// The indices at the wavelengths that stand for the three channels.
