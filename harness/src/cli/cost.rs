@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     /// gem: views to compare in, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
-    /// gem, cdrf, optical_path, restraint: rounds of timing, 7 where left out, 5 of optical_path; 0 leaves times out.
+    /// gem, cdrf, optical_path, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out.
     #[arg(long)]
     rounds: Option<u32>,
     /// sphere: random walks through each sphere, 1000000 where left out.

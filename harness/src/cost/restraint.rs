@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// The ladder's name.
 pub const TECHNIQUE: &str = "restraint";
 /// The rungs whose rays are ended by what they carry: few hits and many, by each geometry.
-pub const RUNGS: [&str; 5] = ["proxy-4", "proxy-8", "convex-8", "convex-64", "bvh-16"];
+pub const RUNGS: [&str; 6] = ["proxy-4", "proxy-8", "convex-8", "convex-16", "convex-64", "bvh-16"];
 /// The scenes: a stone that reflects totally, one that absorbs, and one with few facets.
 pub const SCENES: [&str; 3] = ["brilliant", "ruby", "prism"];
 
@@ -33,7 +33,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
-        Self { rounds: 7, frame: [960, 540], rungs }
+        Self { rounds: 5, frame: [960, 540], rungs }
     }
 }
 

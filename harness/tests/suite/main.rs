@@ -23,6 +23,7 @@ mod pixels;
 mod program;
 mod random_walk;
 mod reference;
+mod restraint;
 mod snapshots;
 mod specialise;
 mod text;
