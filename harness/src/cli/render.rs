@@ -56,8 +56,8 @@ pub(super) struct Arguments {
     /// In units of length: a ray ends that has travelled farther inside.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     distance_limit: Option<f32>,
-    /// Whether a ray inside ends when what it carries can no longer be seen; where left out, from the number of hits on at which that saves
-    /// time.
+    /// Whether a ray inside ends when what it carries can no longer be seen; where left out, from 16 hits
+    /// on, which that makes faster.
     #[arg(long, value_name = "WHETHER", value_parser = ["on", "off"])]
     throughput_limit: Option<String>,
     /// By a geometry buffer and a lighting pass, as a deferred renderer does.

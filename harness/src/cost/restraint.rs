@@ -33,7 +33,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
-        Self { rounds: 5, frame: [960, 540], rungs }
+        Self { rounds: 5, frame: [480, 270], rungs }
     }
 }
 

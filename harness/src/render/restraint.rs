@@ -16,9 +16,14 @@ pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
 /// 0.26 there.
 pub const STUDIO_LARGEST: f32 = 20.4;
 
-/// Whether rays end by their throughput: as the settings say, or else from so many hits on as it was measured to save time.
+/// From so many hits on rays end by their throughput, where nothing else is said: the fewest at which that saved time in every scene and by
+/// every geometry that was measured (docs/gem.md). With fewer, a diamond's rays keep what they carry, and nothing is gained.
+pub const LEAST_HITS: u32 = 16;
+
+/// Whether rays end by their throughput.
 pub fn limits_throughput(settings: &Settings) -> bool {
-    matches!(settings.rung, Rung::Inside { .. }) && settings.limit_throughput.unwrap_or(false)
+    let Rung::Inside { hits, .. } = settings.rung else { return false };
+    settings.limit_throughput.unwrap_or(hits >= LEAST_HITS)
 }
 
 /// A radiance that no channel of the environment exceeds from any direction. A map's is that of a texel, since what is mixed of texels lies between them.
@@ -47,4 +52,33 @@ pub(crate) fn throughput_limit(material: &Material, settings: &Settings) -> f32 
     let shown = f64::from(settings.exposure) * f64::from(radiance) * largest_weight(material, settings.rung.spectrum());
     // Of darkness nothing can be seen.
     (LEAST_DIFFERENCE / shown).min(f64::from(f32::MAX)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rungs_of_many_hits_are_limited_where_nothing_is_said() {
+        let limits = |rung: &str, limit_throughput| {
+            let rung = rung.parse().expect(rung);
+            limits_throughput(&Settings { rung, limit_throughput, ..Settings::of_size(1, 1) })
+        };
+        assert_eq!(
+            ["proxy-15", "convex-16", "bvh-64+3", "surface"].map(|rung| limits(rung, None)),
+            [false, true, true, false]
+        );
+        assert_eq!(["proxy-1", "convex-64", "surface"].map(|rung| limits(rung, Some(true))), [true, true, false]);
+        assert!(!limits("convex-64", Some(false)));
+    }
+
+    #[test]
+    fn the_limit_is_the_least_difference_over_all_that_follows() {
+        let material = Material { base_color: glam::Vec3::new(0.25, 0.5, 0.125), ..Material::standard() };
+        let rung = "convex-16".parse().expect("a rung");
+        let settings = Settings { rung, exposure: 4.0, ..Settings::of_size(1, 1) };
+        let found = f64::from(throughput_limit(&material, &settings));
+        assert!((found * 510.0 * 4.0 * 20.4 * 0.5 - 1.0).abs() < 1e-6, "{found}");
+        assert_eq!(throughput_limit(&material, &Settings { limit_throughput: Some(false), ..settings }), 0.0);
+    }
 }

@@ -18,7 +18,7 @@ fn compare(scene: &str, settings: Settings) -> Parity {
 }
 
 fn of_rung(rung: &str) -> Settings {
-    Settings { rung: rung.parse().expect(rung), ..Settings::of_size(SIDE, SIDE) }
+    Settings { rung: rung.parse().expect(rung), limit_throughput: Some(false), ..Settings::of_size(SIDE, SIDE) }
 }
 
 fn check(scene: &str, what: &str, parity: &Parity, most_at_an_edge: f64) {

@@ -19,7 +19,7 @@ impl Tables for RestraintReport {
 }
 
 fn milliseconds(timing: Timing) -> String {
-    format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" })
+    format!("{:.1}", timing.ms)
 }
 
 /// The cells of each line after the scene and the rung.
@@ -80,8 +80,7 @@ fn throughput(report: &RestraintReport) -> String {
     throughput_lines(report).for_each(|cells| row(&mut table, &cells));
     let _ = writeln!(
         table,
-        "\nMilliseconds for {width} × {height} pixels filled by the stone, the least of {} interleaved rounds, on {}. * timed on 1/16 of the \
-         pixels and scaled.",
+        "\nMilliseconds for {width} × {height} pixels filled by the stone, the least of {} interleaved rounds, on {}.",
         report.rounds, report.adapter
     );
     table
@@ -117,8 +116,7 @@ pub(super) fn text(report: &RestraintReport) -> String {
     aligned(&mut text, &THROUGHPUT, &throughput_lines(report).collect::<Vec<_>>());
     text.push_str(
         "facets: looked for by a ray, in the mean. time: with the limit, against without. largest / bound: the largest difference of radiance times \
-         exposure, in 1/510.\nsteps of 8 bits: the largest difference once encoded for a screen, and the share of pixels that differ. * timed on 1/16 of \
-         the pixels and scaled.\n",
+         exposure, in 1/510.\nsteps of 8 bits: the largest difference once encoded for a screen, and the share of pixels that differ.\n",
     );
     text.push_str("\nWays through stone, sought in fewer tiles\n");
     aligned(&mut text, &TILES, &tile_lines(report).collect::<Vec<_>>());
