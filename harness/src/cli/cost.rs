@@ -4,6 +4,7 @@ mod cdrf;
 mod effects;
 mod gem;
 mod optical_path;
+mod restraint;
 mod sphere;
 
 use super::{Context, Failure, Outcome, output, progress};
@@ -25,22 +26,25 @@ use std::path::{Path, PathBuf};
 ///
 /// `effects`: each effect alone, none, and all: time, instructions and bytes.
 ///
+/// `restraint`: what is saved by work that a pixel or a tile has no use for: rays that end when what they carry can no longer be seen, and ways
+/// through stone sought in tiles with matter alone. Takes minutes.
+///
 /// `sphere`: the curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost sphere --out target/cost"
+    after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost restraint --rungs convex-64 --rounds 3\n  ./cook cost sphere --out target/cost"
 )]
 pub(super) struct Arguments {
-    /// What to measure: gem, cdrf, optical_path, effects or sphere.
+    /// What to measure: gem, cdrf, optical_path, effects, restraint or sphere.
     #[arg(default_value = "gem")]
     technique: String,
-    /// gem, cdrf, optical_path: rungs to measure, comma-separated; all where left out.
+    /// gem, cdrf, optical_path, restraint: rungs to measure, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung)]
     rungs: Vec<Rung>,
     /// gem: views to compare in, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
-    /// gem, cdrf, optical_path, effects: rounds of timing, 7 where left out, 5 of optical_path; 0 leaves times out.
+    /// gem, cdrf, optical_path, effects, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out.
     #[arg(long)]
     rounds: Option<u32>,
     /// sphere: random walks through each sphere, 1000000 where left out.
@@ -49,7 +53,7 @@ pub(super) struct Arguments {
     /// sphere: the same seed gives the same walks; 1 where left out.
     #[arg(long)]
     seed: Option<u64>,
-    /// Show an earlier run's gem.json, cdrf.json, optical_path.json or sphere.json again instead of measuring.
+    /// Show an earlier run's gem.json, cdrf.json, optical_path.json, restraint.json or sphere.json again instead of measuring.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds", "walks", "seed"])]
     from: Option<PathBuf>,
     /// One JSON document on stdout, a row for each thing measured, and nothing else.
@@ -86,6 +90,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         "cdrf" => cdrf::run(context, arguments),
         "optical_path" => optical_path::run(context, arguments),
         "effects" => effects::run(context, arguments),
+        "restraint" => restraint::run(context, arguments),
         "sphere" => sphere::run(arguments),
         other => Err(CostError::Technique(other.to_owned()).into()),
     }

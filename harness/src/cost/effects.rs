@@ -9,7 +9,6 @@ use crate::plan::{Effect, Effects, Plan};
 use crate::render::{Curvature, Environment, Rung, Settings};
 use crate::scene::environment_map::EnvironmentMap;
 use crate::scene::{Light, Scene};
-use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// The ladder's name.
@@ -130,7 +129,6 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
     for object in &mut veined.objects {
         object.material.roughness = 0.3;
     }
-    const CLEAR: &[Effect] = &[Effect::Absorption, Effect::Dispersion, Effect::EnvironmentMap];
     Ok(vec![
         Case {
             name: "ruby",
@@ -143,14 +141,14 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             name: "ruby",
             scene: one("ruby")?,
             settings: settings("convex-4+tracker"),
-            effects: &[Effect::ConvexTrace, CLEAR[0], CLEAR[1], CLEAR[2]],
+            effects: &[Effect::ConvexTrace, Effect::Absorption, Effect::Dispersion, Effect::EnvironmentMap],
             stands_on: &[(Effect::Absorption, Effect::ConvexTrace), (Effect::Dispersion, Effect::ConvexTrace)],
         },
         Case {
             name: "ruby",
             scene: one("ruby")?,
             settings: settings("bvh-4+tracker"),
-            effects: &[Effect::BvhTrace, CLEAR[0], CLEAR[1], CLEAR[2]],
+            effects: &[Effect::BvhTrace, Effect::Absorption, Effect::Dispersion, Effect::EnvironmentMap],
             stands_on: &[(Effect::Absorption, Effect::BvhTrace), (Effect::Dispersion, Effect::BvhTrace)],
         },
         Case {
@@ -247,13 +245,7 @@ pub fn run(
                 bytes: capture.bytes(),
                 timing: None,
             });
-            timed.push(Timed {
-                source: None,
-                settings,
-                scene: &case.scene,
-                displayed: true,
-                scales: false,
-            });
+            timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
         }
         studies.push(Study { scene: case.name.to_owned(), rung: case.settings.rung.to_string(), frames });
     }

@@ -13,6 +13,7 @@ pub mod page;
 pub mod plot;
 mod profile;
 mod reflection;
+pub mod restraint;
 pub mod sphere;
 mod table;
 mod timing;
@@ -181,7 +182,7 @@ fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// No such ladder.
-    #[error("no ladder `{0}`; there are gem, cdrf, optical_path, effects and sphere")]
+    #[error("no ladder `{0}`; there are gem, cdrf, optical_path, effects, restraint and sphere")]
     Technique(String),
     /// A record of spheres that nothing can be compared with.
     #[error(

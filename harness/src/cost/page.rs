@@ -4,6 +4,7 @@ use super::Report;
 use super::cdrf::CdrfReport;
 use super::effects::EffectsReport;
 use super::optical_path::OpticalPathReport;
+use super::restraint::RestraintReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
@@ -33,7 +34,8 @@ fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(of::<OpticalPathReport>()).chain(of::<EffectsReport>()).collect()
+    let paths = of::<OpticalPathReport>().chain(of::<RestraintReport>()).chain(of::<EffectsReport>());
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(paths).collect()
 }
 
 /// Whether a page's marks are sound.

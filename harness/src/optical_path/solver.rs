@@ -17,6 +17,11 @@ const SWEEP_GROUP: u32 = 8;
 /// The struct `OpticalPathProgress`, in words.
 const PROGRESS_WORDS: u64 = 7;
 
+/// What the method's passes are written in.
+fn recipe(method: Method) -> &'static str {
+    if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" }
+}
+
 /// How far a solve came.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
@@ -69,8 +74,23 @@ impl<'gpu> Solver<'gpu> {
         heterogeneous: bool,
         most_passes: Option<u32>,
     ) -> Result<Self, ShaderError> {
-        let recipe = if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" };
-        let source = cookbook::recipe_source(recipe);
+        let source = cookbook::recipe_source(recipe(method));
+        Self::of_source(gpu, grid, method, heterogeneous, most_passes, &source)
+    }
+
+    /// The same of another text of the method's recipe.
+    ///
+    /// # Errors
+    /// Where the device refuses the text or the memory.
+    pub fn of_source(
+        gpu: &'gpu Gpu,
+        grid: VoxelGrid,
+        method: Method,
+        heterogeneous: bool,
+        most_passes: Option<u32>,
+        source: &str,
+    ) -> Result<Self, ShaderError> {
+        let recipe = recipe(method);
         let flag = |value| f64::from(u8::from(value));
         let constants = [
             ("OPTICAL_PATH_STENCIL", f64::from(method.stencil().neighbours())),
@@ -83,7 +103,7 @@ impl<'gpu> Solver<'gpu> {
             Method::PingPong(_) => "pull",
             Method::Tiled(_) | Method::Godunov => "update",
         };
-        let kernel = |entry: &str| Kernel::new(gpu, recipe, &source, &format!("{recipe}_{entry}"), &constants);
+        let kernel = |entry: &str| Kernel::new(gpu, recipe, source, &format!("{recipe}_{entry}"), &constants);
         let [begin, next, pass] = [kernel("begin")?, kernel("next")?, kernel(pass)?];
         let tiles = u64::from(grid.cells / TILE).pow(3);
         let voxels = grid.count() as u64;

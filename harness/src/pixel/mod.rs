@@ -11,7 +11,7 @@ pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
 use crate::plan::Effect;
-use crate::render::{Environment, Rung, Settings, Spectrum};
+use crate::render::{self, Environment, Rung, Settings, Spectrum};
 use crate::scene::Material;
 use geometry::{Entry, Hit, Place};
 use glam::{Mat3, UVec2, Vec3};
@@ -45,6 +45,7 @@ pub struct Shading<'a> {
     wavelengths: Vec<(Mat3, f32)>,
     settings: &'a Settings,
     absorbs: bool,
+    limits_throughput: bool,
 }
 
 /// `GemMaterial` of the recipe.
@@ -55,6 +56,7 @@ struct GemMaterial {
     distance_limit: f32,
     channel_indices: Vec3,
     dispersion_strength: f32,
+    throughput_limit: f32,
 }
 
 /// `GemRay` of the recipe, and what it met.
@@ -79,11 +81,6 @@ impl Ray {
         self.throughput *= 1.0 - share;
     }
 
-    fn reflect(&mut self, hit: &Hit) {
-        self.position = hit.point;
-        self.direction = refraction::reflect(self.direction, hit.normal);
-    }
-
     fn end(&mut self, outside: Vec3) {
         self.radiance += self.throughput * outside;
     }
@@ -106,9 +103,9 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
 impl<'a> Shading<'a> {
     /// The shading of `material` under `settings`.
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
-        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength] =
-            crate::render::material_uniform(material, settings);
-        let wavelengths = crate::render::wavelength_table(material, settings.rung.spectrum());
+        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength, throughput_limit, ..] =
+            render::material_uniform(material, settings.rung, settings);
+        let wavelengths = render::wavelength_table(material, settings.rung.spectrum());
         let matrix = |w: &[f32; 16]| {
             let column = |k: usize| Vec3::new(w[k], w[k + 1], w[k + 2]);
             (Mat3::from_cols(column(0), column(4), column(8)), w[12])
@@ -121,10 +118,12 @@ impl<'a> Shading<'a> {
                 distance_limit,
                 channel_indices: Vec3::new(red, green, blue),
                 dispersion_strength,
+                throughput_limit,
             },
             wavelengths: wavelengths.iter().map(matrix).collect(),
             settings,
             absorbs: !settings.without.has(Effect::Absorption) && material.absorbs(),
+            limits_throughput: render::restraint::limits_throughput(settings.rung, settings),
         }
     }
 
@@ -165,10 +164,21 @@ impl<'a> Shading<'a> {
         hit
     }
 
+    fn reflect(&self, ray: &mut Ray, hit: &Hit) {
+        ray.position = hit.point;
+        ray.direction = refraction::reflect(ray.direction, hit.normal);
+        if self.limits_throughput {
+            ray.followed = ray.throughput.max_element() >= self.material.throughput_limit;
+        }
+    }
+
     fn trace(&self, entry: &Entry<'_>, direction: Vec3, index: f32) -> Ray {
         let mut place = entry.enter();
         let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -178,7 +188,7 @@ impl<'a> Shading<'a> {
             if exit.share > 0.0 {
                 ray.leave(Vec3::splat(exit.share), self.environment(exit.direction));
             }
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
         }
         if self.settings.rest_from_environment {
             ray.end(self.environment(ray.direction));
@@ -198,6 +208,9 @@ impl<'a> Shading<'a> {
         let mut ray = Ray::new(entry.position, inside);
         let mut gradient = dispersion::enter(direction, entry.face_normal, self.material.index);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -210,7 +223,7 @@ impl<'a> Shading<'a> {
             if share.cmpgt(Vec3::ZERO).any() {
                 ray.leave(share, self.environment_channels(red.direction, green.direction, blue.direction));
             }
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
             gradient = dispersion::reflect(gradient, hit.normal);
         }
         if self.settings.rest_from_environment {
@@ -239,6 +252,9 @@ impl<'a> Shading<'a> {
         let mut ray = Ray::new(entry.position, refraction::refract(direction, entry.face_normal, index).direction);
         let mut spread = dispersion::paper_enter(direction, ray.direction);
         for _ in 0..self.settings.rung.hits() {
+            if !ray.followed {
+                break;
+            }
             let hit = self.next(&mut ray, &mut place);
             if !ray.followed {
                 break;
@@ -250,7 +266,7 @@ impl<'a> Shading<'a> {
                 ray.leave(Vec3::splat(exit.share), self.environment_paper(exit.direction, leaving, ray.travelled));
             }
             spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
-            ray.reflect(&hit);
+            self.reflect(&mut ray, &hit);
         }
         if self.settings.rest_from_environment {
             ray.end(self.environment_paper(ray.direction, spread, ray.travelled));

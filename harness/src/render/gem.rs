@@ -4,7 +4,7 @@ use super::device::{self, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
 use super::variant::{Drawn, Part};
-use super::{Geometry, RenderError, Rung, Settings, Spectrum, stone};
+use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint, stone};
 use crate::gpu::Gpu;
 use crate::plan::Decisions;
 
@@ -24,6 +24,7 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
         ("BOUNCES", f64::from(rung.hits())),
         ("REST_FROM_ENVIRONMENT", flag(settings.rest_from_environment)),
         ("LIMIT_DISTANCE", flag(settings.distance_limit.is_some())),
+        ("LIMIT_THROUGHPUT", flag(restraint::limits_throughput(rung, settings))),
         ("CENTRE_PAPER", flag(settings.paper_centre)),
     ]);
     constants

@@ -17,6 +17,7 @@ mod optical_path;
 mod pass;
 mod reflectance;
 mod reflective_shadow_map;
+pub mod restraint;
 mod rung;
 mod stone;
 pub mod texture_diffusion;
@@ -91,6 +92,8 @@ pub struct Settings {
     pub rest_from_environment: bool,
     /// In units of length: a ray ends that has travelled farther inside.
     pub distance_limit: Option<f32>,
+    /// A ray inside a stone ends when what it carries can no longer be seen; where nothing is said, by [`restraint::limits_throughput`].
+    pub limit_throughput: Option<bool>,
     /// By a geometry buffer and a lighting pass instead of in one.
     pub deferred: bool,
     /// The environment's light is summed for each vertex, not for each pixel.
@@ -131,6 +134,7 @@ impl Settings {
             scattering: None,
             rest_from_environment: true,
             distance_limit: None,
+            limit_throughput: None,
             deferred: false,
             environment_at_vertices: true,
             curvature: Curvature::Mean,

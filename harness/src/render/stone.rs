@@ -3,7 +3,7 @@
 use super::device::{Pipeline, buffer, mesh_vertices, uniform};
 use super::pass::Body;
 use super::variant::Drawn;
-use super::{Geometry, RenderError, Rung, Settings, Spectrum};
+use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint};
 use crate::gpu::Gpu;
 use crate::gpu::capture::OfObject;
 use crate::reference::spectrum;
@@ -36,7 +36,7 @@ pub(super) fn upload(
     let parts: Vec<_> = parts.into_iter().filter(|(group, binding, _)| pipeline.binds(*group, *binding)).collect();
     let vertices = mesh_vertices(gpu, object, &indices, parts.iter().map(|(_, _, (_, contents))| *contents))?;
     let groups = gpu.guarded("uploading a mesh", |device| {
-        let material = uniform(device, "material", &material(&object.material, settings));
+        let material = uniform(device, "material", &material(&object.material, rung, settings));
         let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
             (group, binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
@@ -113,14 +113,16 @@ pub(crate) fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderE
 }
 
 /// `GemMaterial` of the recipe.
-pub(crate) fn material(material: &Material, settings: &Settings) -> [f32; 12] {
+pub(crate) fn material(material: &Material, rung: Rung, settings: &Settings) -> [f32; 16] {
     let [r, g, b] = material.base_color.to_array();
     let [ar, ag, ab] =
         lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance).to_array();
     let [red, green, blue] = channel_indices(material).to_array();
     // Nothing travels as far as this.
     let limit = settings.distance_limit.unwrap_or(f32::MAX);
-    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, settings.dispersion_strength]
+    let strength = settings.dispersion_strength;
+    let throughput_limit = restraint::throughput_limit(material, rung, settings);
+    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, strength, throughput_limit, 0.0, 0.0, 0.0]
 }
 
 /// The indices at the wavelengths that stand for the three channels.

@@ -4,6 +4,7 @@ use crate::program::{folder, succeeds};
 use lapidary_harness::cost::cdrf::{self, CdrfReport};
 use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
+use lapidary_harness::cost::restraint::RestraintReport;
 use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
 use lapidary_harness::cost::{MEASURES, Report, views};
 use lapidary_harness::random_walk::{self, Form};
@@ -89,6 +90,28 @@ fn a_profile_cuts_every_frame() {
     assert_eq!(times.count(), 7, "{text}");
 }
 
+/// Tiles without matter, or that cannot change, cost time and change no cost; rays that are followed on cost time and change nothing that can
+/// be seen.
+#[test]
+fn restraint_changes_nothing() {
+    let folder = folder();
+    let arguments = ["cost", "restraint", "--rungs", "proxy-8", "--rounds", "1", "--out", "."];
+    succeeds(folder.path(), &arguments);
+    let report = std::fs::read_to_string(folder.path().join("restraint.json")).expect("a report");
+    let report: RestraintReport = serde_json::from_str(&report).expect("a report");
+    assert_eq!((report.limited.len(), report.tiles.len()), (3, 3));
+    for limited in &report.limited {
+        let fewer = limited.facets_limited < limited.facets_unlimited;
+        assert!(fewer && (0.0..=1.0).contains(&limited.largest), "{limited:?}");
+    }
+    for tiles in &report.tiles {
+        assert!((0.05..0.95).contains(&tiles.with_matter), "{tiles:?}");
+        assert!(tiles.ways.iter().all(|way| way.differing == 0 && way.passes > 2), "{tiles:?}");
+        let [one, other, all] = [0, 1, 2].map(|way: usize| tiles.ways[way].updates);
+        assert!(one < all / 2 && other < all / 2, "{tiles:?}");
+    }
+}
+
 /// The records of the repository, and the pages that show them.
 #[test]
 fn the_pages_show_the_record() {
@@ -100,6 +123,9 @@ fn the_pages_show_the_record() {
     let paths: OpticalPathReport = record("measurements/lavapipe/optical_path.json");
     holds(&paths, "optical_path", "lavapipe", &["optical_path_ladder.md"]);
     assert_eq!(docs("measurements/lavapipe/optical_path.txt"), paths.text());
+    let restraint: RestraintReport = record("measurements/lavapipe/restraint.json");
+    holds(&restraint, "restraint", "lavapipe", &["gem.md", "optical_path.md"]);
+    assert_eq!(docs("measurements/lavapipe/restraint.txt"), restraint.text());
     let sphere: SphereReport = record("measurements/random_walk/sphere.json");
     holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
 }

@@ -74,8 +74,9 @@ fn the_papers_dispersion_depends_on_size() {
 fn less_is_left_after_more_hits() {
     let scene = Scene::named("brilliant").expect("built in");
     let dropped = |rung: &str| {
-        let settings =
-            Settings { rung: rung.parse().expect(rung), rest_from_environment: false, ..Settings::of_size(128, 128) };
+        let rung = rung.parse().expect(rung);
+        let usual = Settings::of_size(128, 128);
+        let settings = Settings { rung, rest_from_environment: false, limit_throughput: Some(false), ..usual };
         let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
         picture.linear.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
     };

@@ -24,6 +24,7 @@ mod plan;
 mod program;
 mod random_walk;
 mod reference;
+mod restraint;
 mod snapshots;
 mod specialise;
 mod text;

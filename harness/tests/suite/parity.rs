@@ -19,7 +19,7 @@ fn compare(scene: &str, settings: Settings) -> Parity {
 }
 
 fn of_rung(rung: &str) -> Settings {
-    Settings { rung: rung.parse().expect(rung), ..Settings::of_size(SIDE, SIDE) }
+    Settings { rung: rung.parse().expect(rung), limit_throughput: Some(false), ..Settings::of_size(SIDE, SIDE) }
 }
 
 fn check(scene: &str, what: &str, parity: &Parity, most_at_an_edge: f64) {
@@ -75,6 +75,16 @@ fn so_it_is_with_every_choice() {
         let limited = Settings { distance_limit: Some(1.2), dispersion_strength: 0.02, ..of_rung(rung) };
         check("brilliant", "limited, colours", &compare("brilliant", limited), 0.20);
     }
+    for (scene, rung, most_at_an_edge) in [
+        ("brilliant", "proxy-8+tracker", 0.50),
+        ("brilliant", "convex-16+tracker", 0.10),
+        ("brilliant", "convex-8+3", 0.10),
+        ("ruby", "bvh-16", 0.20),
+        ("brilliant", "convex-8+paper", 0.10),
+    ] {
+        let limited = Settings { limit_throughput: Some(true), ..of_rung(rung) };
+        check(scene, "limited by throughput", &compare(scene, limited), most_at_an_edge);
+    }
     let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
     check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.20);
     let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
@@ -101,7 +111,7 @@ const fn fault(scene_rung: [&'static str; 2], what: &'static str, right: &'stati
     Fault { scene, rung, what, right, wrong }
 }
 
-const FAULTS: [Fault; 15] = [
+const FAULTS: [Fault; 17] = [
     fault(
         ["brilliant", "proxy-1"],
         "another index",
@@ -151,6 +161,18 @@ const FAULTS: [Fault; 15] = [
         "gem_transmittance(hit.distance)",
         "gem_transmittance(1.0f)",
     ),
+    fault(
+        ["ruby", "convex-16"],
+        "rays end by blue alone",
+        "max(max(throughput.r, throughput.g), throughput.b)",
+        "throughput.b",
+    ),
+    fault(
+        ["brilliant", "convex-16"],
+        "rays end by thirty times the limit",
+        ">= material.throughput_limit",
+        ">= 30.0f * material.throughput_limit",
+    ),
     fault(["brilliant", "proxy-4+paper"], "a ray that has ended goes on", "if ((*ray).followed) {", "if (true) {"),
 ];
 
@@ -160,7 +182,8 @@ fn a_wrong_picture_is_seen() {
     for Fault { scene, rung, what, right, wrong } in FAULTS {
         let scene = Scene::named(scene).expect("built in");
         let distance_limit = what.contains("has ended").then_some(1.2);
-        let settings = Settings { samples: 1, distance_limit, ..of_rung(rung) };
+        let limit_throughput = Some(what.contains("rays end by"));
+        let settings = Settings { samples: 1, distance_limit, limit_throughput, ..of_rung(rung) };
         let source = lapidary_harness::cookbook::recipe_source(settings.rung.recipe());
         assert!(source.contains(right), "{rung}: {what}");
         let planted = source.replace(right, wrong);

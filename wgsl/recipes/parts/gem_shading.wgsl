@@ -20,6 +20,8 @@ override BOUNCES: u32 = 1u;
 override REST_FROM_ENVIRONMENT: bool = true;
 // A ray also ends when it has travelled material.distance_limit inside.
 override LIMIT_DISTANCE: bool = false;
+// A ray also ends when what it carries can no longer be seen: when no channel's throughput reaches material.throughput_limit.
+override LIMIT_THROUGHPUT: bool = false;
 
 const GEM_DISPERSION_PAPER: u32 = 0u;
 const GEM_DISPERSION_SEPARATE: u32 = 2u;
@@ -42,6 +44,9 @@ struct GemMaterial {
     channel_indices: vec3f,
     // The paper's tracker: factor of eq. (12); 1 as printed.
     dispersion_strength: f32,
+    // Where a ray ends, with LIMIT_THROUGHPUT: the least difference that can be seen, over exposure, largest base colour and largest radiance
+    // of the environment; with separate wavelengths also over the largest sum of absolute values in a row of all their weights.
+    throughput_limit: f32,
 }
 
 // One wavelength of form 2.
@@ -116,7 +121,8 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
     return GemRay(position, direction, 0.0f, vec3f(1.0f), vec3f(0.0f), true);
 }
 
-// Follows a ray to the next facet. The loops below have no `break`: a compiler may unroll them, and rays seldom end before the last bounce.
+// Follows a ray to the next facet. The loops below have a `break` with LIMIT_THROUGHPUT alone: without one a compiler may unroll them, and few
+// rays end before the last bounce for other reasons.
 fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHit {
     let hit = gem_hit(place, (*ray).position, (*ray).direction);
     if ((*ray).followed) {
@@ -135,10 +141,14 @@ fn gem_leave(ray: ptr<function, GemRay>, share: vec3f, outside: vec3f) {
     (*ray).throughput *= 1.0f - share;
 }
 
-// The rest is reflected.
+// The rest is reflected, and followed further where it can be seen.
 fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
     (*ray).position = hit.point;
     (*ray).direction = refraction_reflect((*ray).direction, hit.normal);
+    if (LIMIT_THROUGHPUT) {
+        let throughput = (*ray).throughput;
+        (*ray).followed = max(max(throughput.r, throughput.g), throughput.b) >= material.throughput_limit;
+    }
 }
 
 // All that a ray has found when its following has ended, with the environment in place of what was not followed.
@@ -152,6 +162,9 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        if (LIMIT_THROUGHPUT && !ray.followed) {
+            break;
+        }
         let hit = gem_next(&ray, &place);
         if (ray.followed) {
             let exit = gem_exit(ray.direction, hit.normal, index);
@@ -181,6 +194,9 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, material.index).direction);
     var gradient = dispersion_enter(direction, input.face_normal, material.index);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        if (LIMIT_THROUGHPUT && !ray.followed) {
+            break;
+        }
         let hit = gem_next(&ray, &place);
         if (ray.followed) {
             let red = gem_exit(dispersion_direction(ray.direction, gradient, offsets.r), hit.normal, material.channel_indices.r);
@@ -220,6 +236,9 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
     var spread = dispersion_paper_enter(direction, ray.direction);
     for (var bounce = 0u; bounce < BOUNCES; bounce++) {
+        if (LIMIT_THROUGHPUT && !ray.followed) {
+            break;
+        }
         let hit = gem_next(&ray, &place);
         if (ray.followed) {
             let exit = gem_exit(ray.direction, hit.normal, index);

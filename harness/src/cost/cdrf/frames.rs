@@ -1,7 +1,6 @@
 //! The frames that a rung draws, to be timed, and the memory that they need beside mesh and material.
 
 use super::{CostError, Options, RungReport, shader};
-use crate::cookbook;
 use crate::cost::timing::{self, Timed, Timing};
 use crate::gpu::Gpu;
 use crate::plan::{Effect, Effects};

@@ -1,5 +1,7 @@
 use super::*;
 use crate::pixel::Viewer;
+use crate::plan::Decisions;
+use crate::render::{Rung, Settings};
 use crate::scene::{Mineral, glb};
 
 fn made() -> Scene {

@@ -1,0 +1,167 @@
+//! Rays that end when what they carry can no longer be seen.
+
+use super::{Options, SCENES};
+use crate::cookbook;
+use crate::cost::timing::{self, Timed, Timing};
+use crate::cost::{CostError, views};
+use crate::gpu::Gpu;
+use crate::pixel::{Shading, Stone, Viewer};
+use crate::render::restraint::LEAST_DIFFERENCE;
+use crate::render::{self, RenderError, Rung, Settings};
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// Side of the pictures that are compared.
+const SIDE: u32 = 256;
+/// Width and height of the coarse picture over whose pixels facets are counted.
+const COUNTED: [u32; 2] = [96, 54];
+/// How a loop is left early in the recipes' text, and the same loop gone through to its end.
+const BREAK: [&str; 2] = ["if (LIMIT_THROUGHPUT && !ray.followed) {", "if (LIMIT_THROUGHPUT && false) {"];
+
+/// One rung in one scene, with the limit and without.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limited {
+    /// The scene's name.
+    pub scene: String,
+    /// The rung's.
+    pub rung: String,
+    /// Facets that a ray looks for, in the mean over the covered pixels of the timed frame, without the limit ...
+    pub facets_unlimited: f64,
+    /// ... and with it.
+    pub facets_limited: f64,
+    /// The largest difference of radiance times exposure over the scene's own picture, in units of the bound.
+    pub largest: f64,
+    /// The largest difference of that picture in steps of 8 bits, encoded for a screen.
+    pub largest_encoded: u8,
+    /// Share of its covered pixels that differ by a step of 8 bits or more.
+    pub changed: f64,
+    /// The frame without the limit.
+    pub unlimited: Timing,
+    /// With it, and loops that are left early.
+    pub limited: Timing,
+    /// With it, and loops that go through to their end.
+    pub limited_without_break: Timing,
+}
+
+impl Limited {
+    /// What each way is called, its largest difference, and its time.
+    pub fn ways(&self) -> impl Iterator<Item = (&'static str, f64, Timing)> {
+        let largest = self.largest * LEAST_DIFFERENCE;
+        [
+            ("unlimited", 0.0, self.unlimited),
+            ("limited", largest, self.limited),
+            ("limited without break", largest, self.limited_without_break),
+        ]
+        .into_iter()
+    }
+
+    /// The part of the time without the limit that it saves; below 0 where it costs time.
+    #[must_use]
+    pub fn saved(&self) -> f64 {
+        1.0 - self.limited.ms / self.unlimited.ms
+    }
+}
+
+/// The facets that a ray looks for, in the mean over the rays of the pixels that show the scene's one stone, by the mirror, at every
+/// pixel of a picture of the settings' size.
+///
+/// # Errors
+/// Where the rung cannot draw the stone.
+pub fn facets(scene: &Scene, settings: &Settings) -> Result<f64, RenderError> {
+    let viewer = Viewer::new(scene, settings.width, settings.height);
+    let (mut rays, mut facets) = (0, 0);
+    if let [object] = &scene.objects[..] {
+        let shading = Shading::new(&object.material, settings);
+        let stone = Stone::new(object, settings)?;
+        for (line, column) in (0..settings.height).flat_map(|line| (0..settings.width).map(move |x| (line, x))) {
+            let (x, y) = (f64::from(column) + 0.5, f64::from(line) + 0.5);
+            let Some(seen) = viewer.see(&object.mesh, x, y) else { continue };
+            let pixel = shading.pixel(&stone, seen, scene.camera.eye);
+            rays += pixel.rays.len();
+            facets += pixel.rays.iter().map(Vec::len).sum::<usize>();
+        }
+    }
+    Ok(facets as f64 / rays as f64)
+}
+
+fn settings(rung: Rung, limited: bool, [width, height]: [u32; 2]) -> Settings {
+    Settings { rung, samples: 1, limit_throughput: Some(limited), ..Settings::of_size(width, height) }
+}
+
+/// Largest difference in bounds, largest difference encoded, and share of covered pixels that differ encoded.
+fn differences(gpu: &Gpu, scene: &Scene, rung: Rung) -> Result<(f64, u8, f64), CostError> {
+    let picture = |limited| render::render(gpu, scene, &settings(rung, limited, [SIDE; 2]));
+    let (one, other) = (picture(false)?, picture(true)?);
+    let (mut largest, mut largest_encoded, mut changed, mut covered) = (0.0, 0, 0, 0);
+    let encoded = one.encoded.iter().zip(&other.encoded);
+    for ((a, b), (seen_a, seen_b)) in one.linear.iter().zip(&other.linear).zip(encoded) {
+        largest = (0..3).map(|k| f64::from((a[k] - b[k]).abs())).fold(largest, f64::max);
+        let steps = (0..3).map(|k| seen_a[k].abs_diff(seen_b[k])).fold(0, u8::max);
+        largest_encoded = largest_encoded.max(steps);
+        covered += usize::from(a[3] > 0.0);
+        changed += usize::from(steps > 0);
+    }
+    Ok((largest / LEAST_DIFFERENCE, largest_encoded, changed as f64 / covered as f64))
+}
+
+/// All scenes and rungs, timed in one run.
+pub(super) fn measure(
+    gpu: &Gpu,
+    options: &Options,
+    progress: &mut dyn FnMut(&'static str, u64, u64),
+) -> Result<Vec<Limited>, CostError> {
+    let mut scenes = Vec::new();
+    for name in SCENES {
+        let scene = Scene::named(name)?;
+        scenes.push((name, views::filled(&scene), scene));
+    }
+    let pairs: Vec<_> = scenes.iter().flat_map(|scene| options.rungs.iter().map(move |&rung| (scene, rung))).collect();
+    let timed: Vec<Timed<'_>> = pairs
+        .iter()
+        .flat_map(|((_, filled, _), rung)| {
+            let source = cookbook::recipe_source(rung.recipe());
+            let through = source.replace(BREAK[0], BREAK[1]);
+            [(false, source.clone()), (true, source), (true, through)].map(|(limited, source)| Timed {
+                settings: settings(*rung, limited, options.frame),
+                scene: filled,
+                source: Some(source),
+                displayed: false,
+                // Ways that are compared are timed on the same pixels.
+                scales: false,
+            })
+        })
+        .collect();
+    let timings = timing::time(gpu, &timed, options.rounds.max(1), &mut |done, total| progress("timing", done, total))?;
+    let mut found = Vec::new();
+    for ((&((name, filled, scene), rung), timings), done) in pairs.iter().zip(timings.chunks_exact(3)).zip(1..) {
+        let counted = |limited| facets(filled, &settings(rung, limited, COUNTED));
+        let (largest, largest_encoded, changed) = differences(gpu, scene, rung)?;
+        found.push(Limited {
+            scene: (*name).to_owned(),
+            rung: rung.to_string(),
+            facets_unlimited: counted(false)?,
+            facets_limited: counted(true)?,
+            largest,
+            largest_encoded,
+            changed,
+            unlimited: timings[0],
+            limited: timings[1],
+            limited_without_break: timings[2],
+        });
+        progress("comparing", done, pairs.len() as u64);
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_recipe_has_the_break_that_is_taken_out() {
+        for rung in super::super::RUNGS {
+            let rung: Rung = rung.parse().expect(rung);
+            assert_eq!(cookbook::recipe_source(rung.recipe()).matches(BREAK[0]).count(), 3, "{rung}");
+        }
+    }
+}

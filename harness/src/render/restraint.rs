@@ -1,0 +1,84 @@
+//! Where a ray inside a stone ends because what it carries can no longer be seen.
+//!
+//! Whatever a ray finds from some place on lies, in each channel, between 0 and its throughput there times the largest radiance of the
+//! environment: shares and what is left after them add up to 1 at most, and so it is with the rest taken from the environment, or dropped.
+//! The same holds for what replaces it where the ray ends. So the two differ by no more than throughput × largest radiance. A pixel
+//! weighs a ray by the share that its surface lets through, at most 1, by the base colour, and by the exposure; of separate wavelengths also by their
+//! matrices, whose entries may be negative, so that magnitudes add up. [`throughput_limit`] divides by all of these.
+
+use super::{Environment, Rung, Settings, Spectrum, stone};
+use crate::scene::Material;
+
+/// The least difference in radiance times exposure that counts: half a step of a display of 8 bits, taken linearly.
+pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
+
+/// No radiance of the procedural studio is larger, in any channel: no two of its lights overlap, the brightest has 20 in red, and the tent at most
+/// 0.26 there.
+pub const STUDIO_LARGEST: f32 = 20.4;
+
+/// From so many hits on rays end by their throughput, where nothing else is said: the fewest at which that saved time in every scene and by
+/// every geometry that was measured (docs/gem.md). With fewer, a diamond's rays keep what they carry, and nothing is gained.
+pub const LEAST_HITS: u32 = 16;
+
+/// Whether rays end by their throughput.
+pub fn limits_throughput(rung: Rung, settings: &Settings) -> bool {
+    let Rung::Inside { hits, .. } = rung else { return false };
+    settings.limit_throughput.unwrap_or(hits >= LEAST_HITS)
+}
+
+/// A radiance that no channel of the environment exceeds from any direction. A map's is that of a texel, since what is mixed of texels lies between them.
+pub fn largest_radiance(environment: &Environment) -> f32 {
+    match environment {
+        Environment::Studio => STUDIO_LARGEST,
+        Environment::Map(map) => map.pixels.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, f32::max),
+    }
+}
+
+/// By how much the pixel's sum weighs the rays of all wavelengths: the largest sum of absolute values in a row of their matrices.
+pub fn largest_weight(material: &Material, spectrum: Spectrum) -> f64 {
+    let Spectrum::Separate(_) = spectrum else { return 1.0 };
+    let table = stone::wavelengths(material, spectrum);
+    let row =
+        |row: usize| table.iter().flat_map(|w| [w[row], w[4 + row], w[8 + row]]).map(|w| f64::from(w.abs())).sum();
+    (0..3).map(row).fold(0.0, f64::max)
+}
+
+/// `throughput_limit` of the recipe's `GemMaterial`; 0, which ends no ray, where the settings know no such limit.
+pub(crate) fn throughput_limit(material: &Material, rung: Rung, settings: &Settings) -> f32 {
+    if !limits_throughput(rung, settings) {
+        return 0.0;
+    }
+    let radiance = largest_radiance(&settings.environment) * material.base_color.max_element();
+    let shown = f64::from(settings.exposure) * f64::from(radiance) * largest_weight(material, rung.spectrum());
+    // Of darkness nothing can be seen.
+    (LEAST_DIFFERENCE / shown).min(f64::from(f32::MAX)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rungs_of_many_hits_are_limited_where_nothing_is_said() {
+        let limits = |rung: &str, limit_throughput| {
+            let rung = rung.parse().expect(rung);
+            limits_throughput(rung, &Settings { rung, limit_throughput, ..Settings::of_size(1, 1) })
+        };
+        assert_eq!(
+            ["proxy-15", "convex-16", "bvh-64+3", "surface"].map(|rung| limits(rung, None)),
+            [false, true, true, false]
+        );
+        assert_eq!(["proxy-1", "convex-64", "surface"].map(|rung| limits(rung, Some(true))), [true, true, false]);
+        assert!(!limits("convex-64", Some(false)));
+    }
+
+    #[test]
+    fn the_limit_is_the_least_difference_over_all_that_follows() {
+        let material = Material { base_color: glam::Vec3::new(0.25, 0.5, 0.125), ..Material::standard() };
+        let rung = "convex-16".parse().expect("a rung");
+        let settings = Settings { rung, exposure: 4.0, ..Settings::of_size(1, 1) };
+        let found = f64::from(throughput_limit(&material, rung, &settings));
+        assert!((found * 510.0 * 4.0 * 20.4 * 0.5 - 1.0).abs() < 1e-6, "{found}");
+        assert_eq!(throughput_limit(&material, rung, &Settings { limit_throughput: Some(false), ..settings }), 0.0);
+    }
+}
