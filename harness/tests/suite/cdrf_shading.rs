@@ -361,7 +361,8 @@ fn bad_input_is_refused() {
         matches!(error, RenderError::NoTextureCoordinates { .. }) && error.to_string().contains("TEXCOORD_0"),
         "{error}"
     );
-    scene.objects[0].material.sigma0 = None;
+    // Neither a width nor what one follows from.
+    (scene.objects[0].material.sigma0, scene.objects[0].material.medium) = (None, None);
     let error = refused(&scene, "accurate");
     assert!(matches!(error, RenderError::NoSigma0 { .. }) && error.to_string().contains("sigma0"), "{error}");
     scene.objects[0].material.medium = None;
