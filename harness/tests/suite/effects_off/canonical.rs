@@ -88,7 +88,8 @@ pub fn of_words(words: &[u32]) -> Canonical {
     while let Some(function) = names.reached.get(written).copied() {
         written += 1;
         names.local.clear();
-        body.extend(bodies[&function].iter().map(|instruction| names.write(instruction)));
+        let ordered = names.in_order(bodies[&function]);
+        body.extend(ordered.into_iter().map(|instruction| names.write(instruction)));
     }
     Canonical { declarations, body }
 }
@@ -229,6 +230,24 @@ impl Names {
             assert!(known.is_none(), "id {result} is declared twice");
         }
         text
+    }
+
+    /// The instructions of a function, with those sorted that fetch what the function needs of the bindings before it does
+    /// anything: naga writes them in the order in which the bindings are declared.
+    fn in_order<'a>(&mut self, function: &'a [Instruction]) -> Vec<&'a Instruction> {
+        let opens =
+            |it: &&Instruction| matches!(it.op, Op::Function | Op::FunctionParameter | Op::Label | Op::Variable);
+        let first = function.iter().take_while(opens).count();
+        let is_global = |operand: &Operand| match operand {
+            Operand::Id(id) => self.global.contains_key(id),
+            Operand::Literal(_) | Operand::Text(_) => true,
+        };
+        let fetches =
+            |it: &&Instruction| matches!(it.op, Op::AccessChain | Op::Load) && it.operands.iter().all(is_global);
+        let count = function[first..].iter().take_while(fetches).count();
+        let mut ordered: Vec<&Instruction> = function.iter().collect();
+        ordered[first..first + count].sort_by_cached_key(|instruction| self.spell_instruction(instruction));
+        ordered
     }
 
     /// Writes an instruction inside a function.
