@@ -21,13 +21,12 @@ impl Canonical {
     /// The first line in which another differs, of both; nothing where none does.
     pub fn difference(&self, other: &Canonical) -> Option<String> {
         let parts = [(&self.declarations, &other.declarations), (&self.body, &other.body)];
-        let lines = parts.into_iter().find_map(|(left, right)| {
+        parts.into_iter().find_map(|(left, right)| {
             let place = (0..left.len().max(right.len())).find(|line| left.get(*line) != right.get(*line))?;
             let spell = |lines: &[String]| lines.get(place).map_or("nothing", String::as_str).to_owned();
             let counts = format!("line {place} of {} and {}", left.len(), right.len());
             Some(format!("{counts}:\n  {}\n  {}", spell(left), spell(right)))
-        });
-        lines
+        })
     }
 }
 

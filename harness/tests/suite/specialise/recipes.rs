@@ -92,8 +92,11 @@ fn a_recipes_function_gives_the_same_bits_specialised() {
             let kernel = KernelModule::reflect(&source, recipe.name, &name).unwrap_or_else(|error| panic!("{error}"));
             let words = dispatch::Kernel::new(crate::gpu(), kernel.clone()).expect("compiles").argument_words();
             let mut draws = Draws::of_row(SEED, run.len() as u64);
-            let mut word =
-                |place: usize| if place % 7 == 6 { draws.bits() } else { draws.between(-2.0, 2.0).to_bits() };
+            // Row by row floats, and single bits: any other pattern sets every flag that there is.
+            let mut word = |place: usize| match place / words % 2 {
+                0 => draws.between(-2.0, 2.0).to_bits(),
+                _ => draws.pick(&[0, 1]) << draws.below(32),
+            };
             let arguments: Vec<u32> = (0..ROWS * words).map(&mut word).collect();
             for choice in 0..1 << overrides.len() {
                 let value = |(place, name): (usize, &String)| values(&module, name)[choice >> place & 1];
