@@ -410,12 +410,12 @@ struct Between {
     @location(1) second: vec3f,
     @location(2) third: f32,
 }
-fn read(between: Between) -> f32 { return between.third; }
+fn third_of(between: Between) -> f32 { return between.third; }
 @vertex fn vertex(@builtin(vertex_index) i: u32) -> Between {
     return Between(vec4f(0.0), f32(i), table[i], 2.0 * f32(i));
 }
 @fragment fn fragment(between: Between) -> @location(0) vec4f {
-    var sum = read(between);
+    var sum = third_of(between);
     if (A) { sum += between.second.x; }
     return vec4f(sum);
 }
