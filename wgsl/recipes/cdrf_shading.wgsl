@@ -8,26 +8,28 @@
 // applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
 
 // Light that crosses inside from the lit side to the dark one. Called for by extras.lapidary.sigma0 above 0.
-override EFFECT_CDRF: bool = true;
+override EFFECT_CDRF: bool = true;  //+cdrf
 // Its form: 0 wrap lighting, 1 a table through a sampler, 2 a table by hand (formats that no sampler filters), 3 cheap, 4 accurate,
 // 5 quadrature, 6 spherical.
-override CDRF_FORM: u32 = 4u;
+override CDRF_FORM: u32 = 4u;  //+cdrf
 // Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|, all from the pixel's derivatives; 3 mean, given for each
 // vertex. Derivatives need no data and jump from triangle to triangle of a coarse mesh; what vertices hold does not.
 override CURVATURE_FORM: u32 = 0u;
 // All that arrives was drawn into the mesh's own texture and blurred there, instead: the recipes texture_irradiance and texture_diffusion.
-override EFFECT_TEXTURE_DIFFUSION: bool = false;
+override EFFECT_TEXTURE_DIFFUSION: bool = false;  //+texture_diffusion
 // Light from all around, beside the lights. Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;
+override EFFECT_ENVIRONMENT: bool = true;  //+environment
 // Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
-override ENVIRONMENT_AT_VERTICES: bool = true;
+override ENVIRONMENT_AT_VERTICES: bool = true;  //+environment
 
+//+cdrf {
 const CDRF_FORM_WRAP: u32 = 0u;
 const CDRF_FORM_TABLE: u32 = 1u;
 const CDRF_FORM_TEXELS: u32 = 2u;
 const CDRF_FORM_CHEAP: u32 = 3u;
 const CDRF_FORM_QUADRATURE: u32 = 5u;
 const CDRF_FORM_SPHERICAL: u32 = 6u;
+//+cdrf }
 const CURVATURE_FORM_TOWARDS: u32 = 1u;
 const CURVATURE_FORM_NAIVE: u32 = 2u;
 const CURVATURE_FORM_VERTEX: u32 = 3u;
@@ -57,17 +59,17 @@ struct CdrfMaterial {
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
 // Baked by the recipe cdrf_table with this material's tint.
-@group(1) @binding(4) var table: texture_2d<f32>;
-@group(1) @binding(5) var table_sampler: sampler;
+@group(1) @binding(4) var table: texture_2d<f32>;  //+cdrf
+@group(1) @binding(5) var table_sampler: sampler;  //+cdrf
 // Baked with the tint (1, 1, 1) for every material, of one channel, in a format that no sampler filters.
-@group(1) @binding(6) var table_texels: texture_2d<f32>;
+@group(1) @binding(6) var table_texels: texture_2d<f32>;  //+cdrf
 // Mean curvature of each vertex, for the form that takes it from there; per unit of length.
 @group(1) @binding(7) var<storage, read> curvatures: array<f32>;
 // Two floats a vertex, for texture diffusion.
-@group(1) @binding(8) var<storage, read> uvs: array<f32>;
+@group(1) @binding(8) var<storage, read> uvs: array<f32>;  //+texture_diffusion
 // Irradiance, blurred.
-@group(1) @binding(9) var diffused: texture_2d<f32>;
-@group(1) @binding(10) var diffused_sampler: sampler;
+@group(1) @binding(9) var diffused: texture_2d<f32>;  //+texture_diffusion
+@group(1) @binding(10) var diffused_sampler: sampler;  //+texture_diffusion
 
 struct CdrfVertex {
     @builtin(position) clip: vec4f,
@@ -75,11 +77,11 @@ struct CdrfVertex {
     @location(1) normal: vec3f,
     @location(2) curvature: f32,
     // HarmonicsAround, where it is summed for each vertex.
-    @location(3) around_zeroth: vec3f,
-    @location(4) around_first: vec3f,
-    @location(5) around_second: vec3f,
-    @location(6) around_fourth: vec3f,
-    @location(7) uv: vec2f,
+    @location(3) around_zeroth: vec3f,  //+environment
+    @location(4) around_first: vec3f,  //+environment
+    @location(5) around_second: vec3f,  //+environment
+    @location(6) around_fourth: vec3f,  //+environment
+    @location(7) uv: vec2f,  //+texture_diffusion
 }
 
 @vertex
@@ -91,16 +93,30 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     if (CURVATURE_FORM == CURVATURE_FORM_VERTEX) {
         curvature = curvatures[index];
     }
+    //+environment {
     var around = HarmonicsAround(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
     if (EFFECT_ENVIRONMENT && ENVIRONMENT_AT_VERTICES) {
         around = harmonics_around(normal * inverseSqrt(max(dot(normal, normal), 1e-12f)));
     }
+    //+environment }
+    //+texture_diffusion {
     var uv = vec2f(0.0f);
     if (EFFECT_TEXTURE_DIFFUSION) {
         uv = vec2f(uvs[2u * index], uvs[2u * index + 1u]);
     }
+    //+texture_diffusion }
     let clip = view.clip_from_world * vec4f(position, 1.0f);
-    return CdrfVertex(clip, position, normal, curvature, around.zeroth, around.first, around.second, around.fourth, uv);
+    return CdrfVertex(
+        clip,
+        position,
+        normal,
+        curvature,
+        around.zeroth,  //+environment
+        around.first,  //+environment
+        around.second,  //+environment
+        around.fourth,  //+environment
+        uv,  //+texture_diffusion
+    );
 }
 
 // The derivatives of a pixel, and what curvature follows from them.
@@ -133,11 +149,14 @@ fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 }
 
+//+cdrf {
 // Width of the Gaussian for each channel: cdrf_sigma, of which sigma0's half is done.
 fn cdrf_sigmas(curvature: f32) -> vec3f {
     return material.sigma0 * abs(cdrf_finite(curvature));
 }
+//+cdrf }
 
+//+cdrf {
 // The table by hand, blended between four texels.
 fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
     let texels = cdrf_texels(cdrf_table_coordinates(cosine, sigma), textureDimensions(table_texels));
@@ -149,12 +168,14 @@ fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
         textureLoad(table_texels, texels.upper, 0).rgb,
     ).x;
 }
+//+cdrf }
 
 // The reflectance towards one light, for each channel.
 fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
-    if (!EFFECT_CDRF) {
+    if (!EFFECT_CDRF) {  //+cdrf
         return vec3f(cdrf_lambert(cosine));
-    }
+    }  //+cdrf
+    //+cdrf {
     if (CDRF_FORM == CDRF_FORM_TABLE) {
         let coordinates = cdrf_table_coordinates(cosine, material.table_sigma0 * abs(cdrf_finite(curvature)));
         return textureSampleLevel(table, table_sampler, cdrf_texture_coordinates(coordinates, textureDimensions(table)), 0.0f).rgb;
@@ -176,6 +197,7 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
         return vec3f(cdrf_spherical(cosine, sigma.x), cdrf_spherical(cosine, sigma.y), cdrf_spherical(cosine, sigma.z));
     }
     return vec3f(cdrf_accurate(cosine, sigma.x), cdrf_accurate(cosine, sigma.y), cdrf_accurate(cosine, sigma.z));
+    //+cdrf }
 }
 
 // Irradiance, each light's part spread by its reflectance.
@@ -189,23 +211,30 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
         }
         received += arrival.irradiance * cdrf_reflectance(dot(normal, arrival.direction), curvature);
     }
+    //+environment {
     if (EFFECT_ENVIRONMENT) {
-        var sigma = vec3f(0.0f);
-        if (EFFECT_CDRF) {
-            sigma = cdrf_sigmas(surface.curvature);
-        }
-        let red = cdrf_harmonic_weights(sigma.x);
-        let green = cdrf_harmonic_weights(sigma.y);
-        let blue = cdrf_harmonic_weights(sigma.z);
         var around = HarmonicsAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
         if (!ENVIRONMENT_AT_VERTICES) {
             around = harmonics_around(normal);
         }
-        received += harmonics_irradiance(around, red, green, blue);
+        if (EFFECT_CDRF) {  //+cdrf
+            //+cdrf {
+            let sigma = cdrf_sigmas(surface.curvature);
+            let red = cdrf_harmonic_weights(sigma.x);
+            let green = cdrf_harmonic_weights(sigma.y);
+            let blue = cdrf_harmonic_weights(sigma.z);
+            received += harmonics_irradiance(around, red, green, blue);
+            //+cdrf }
+        } else {  //+cdrf
+            let weights = cdrf_harmonic_weights(0.0f);
+            received += harmonics_irradiance(around, weights, weights, weights);
+        }  //+cdrf
     }
+    //+environment }
     return received;
 }
 
+//+microfacet {
 // What the surface sends of each light towards the eye, unspread.
 fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
@@ -215,6 +244,7 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     }
     return sum;
 }
+//+microfacet }
 
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
@@ -223,17 +253,22 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     let normal = cdrf_unit_normal(input.normal, toward_eye);
 
     var received = vec3f(0.0f);
-    if (EFFECT_TEXTURE_DIFFUSION) {
-        received = textureSampleLevel(diffused, diffused_sampler, input.uv, 0.0f).rgb;
-    } else {
+    if (EFFECT_TEXTURE_DIFFUSION) {  //+texture_diffusion
+        received = textureSampleLevel(diffused, diffused_sampler, input.uv, 0.0f).rgb;  //+texture_diffusion
+    } else {  //+texture_diffusion
         received = cdrf_received(input, surface, normal);
-    }
+    }  //+texture_diffusion
     let inside = 0.31830987f * material.base_color * received;
-    var radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);
+    var radiance = inside;
+    if (EFFECT_REFLECTION) {  //+reflection
+        radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);  //+reflection
+    }  //+reflection
+    //+microfacet {
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
             radiance += cdrf_highlights(input.position, normal, toward_eye);
         }
     }
+    //+microfacet }
     return vec4f(radiance, 1.0f);
 }

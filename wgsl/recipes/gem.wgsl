@@ -8,24 +8,25 @@
 // each vertex sees its whole triangle and the proxy needs no further data and no further pass.
 
 // Light through the stone; off, only its surface reflects (the paper's Fig. 2). Called for by KHR_materials_transmission.
-override EFFECT_PROXY_GEOMETRY: bool = true;
+override EFFECT_PROXY_GEOMETRY: bool = true;  //+proxy_geometry
 // The proxy's centre by the paper's eq. (4) instead of the stable form.
-override CENTRE_PAPER: bool = false;
+override CENTRE_PAPER: bool = false;  //+proxy_geometry
 
 // Three floats a vertex, shared by the facets that meet there, averaged by angle.
-@group(2) @binding(0) var<storage, read> normals: array<f32>;
+@group(2) @binding(0) var<storage, read> normals: array<f32>;  //+proxy_geometry
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     // The rest is one value a triangle.
     @location(1) @interpolate(flat, either) face_normal: vec3f,
-    @location(2) @interpolate(flat, either) centre: vec3f,
-    @location(3) @interpolate(flat, either) plane_origin: vec3f,
-    @location(4) @interpolate(flat, either) edge_first: vec3f,
-    @location(5) @interpolate(flat, either) edge_second: vec3f,
+    @location(2) @interpolate(flat, either) centre: vec3f,  //+proxy_geometry
+    @location(3) @interpolate(flat, either) plane_origin: vec3f,  //+proxy_geometry
+    @location(4) @interpolate(flat, either) edge_first: vec3f,  //+proxy_geometry
+    @location(5) @interpolate(flat, either) edge_second: vec3f,  //+proxy_geometry
 }
 
+//+proxy_geometry {
 // The proxy's centre, from the three vertex normals.
 fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     let position_a = mesh_position(a);
@@ -36,6 +37,7 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     }
     return closest_point_centre(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
 }
+//+proxy_geometry }
 
 @vertex
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
@@ -45,6 +47,7 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     let position_c = mesh_position(indices[first + 2u]);
     let position = mesh_position(indices[vertex]);
     let face_normal = proxy_geometry_face_normal(position_a, position_b, position_c);
+    //+proxy_geometry {
     var centre = position_a;
     if (EFFECT_PROXY_GEOMETRY) {
         centre = gem_centre(indices[first], indices[first + 1u], indices[first + 2u]);
@@ -54,9 +57,19 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
         }
     }
     let plane = proxy_geometry_plane(centre, position_a, position_b, position_c);
-    return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, face_normal, centre, plane.origin, plane.edge_first, plane.edge_second);
+    //+proxy_geometry }
+    return GemVertex(
+        view.clip_from_world * vec4f(position, 1.0f),
+        position,
+        face_normal,
+        centre,  //+proxy_geometry
+        plane.origin,  //+proxy_geometry
+        plane.edge_first,  //+proxy_geometry
+        plane.edge_second,  //+proxy_geometry
+    );
 }
 
+//+proxy_geometry {
 // A ray inside: the plane that it travels towards. All planes of a triangle's proxy are parallel to it.
 struct GemPlace {
     plane: ProxyGeometryPlane,
@@ -81,15 +94,21 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     (*place).plane = proxy_geometry_next_plane((*place).centre, facet);
     return GemHit(hit.point, normal, hit.distance, true);
 }
+//+proxy_geometry }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
-    let radiance = gem_radiance(input, EFFECT_PROXY_GEOMETRY);
-    return vec4f(radiance.surface + radiance.inside, 1.0f);
+    let radiance = gem_radiance(input, EFFECT_PROXY_GEOMETRY);  //+proxy_geometry
+    //-proxy_geometry let radiance = gem_radiance(input);
+    if (EFFECT_PROXY_GEOMETRY) {  //+proxy_geometry
+        return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry
+    }  //+proxy_geometry
+    return vec4f(radiance.surface, 1.0f);
 }
 
 // For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
-    return gem_geometry_buffer(input, EFFECT_PROXY_GEOMETRY);
+    return gem_geometry_buffer(input, EFFECT_PROXY_GEOMETRY);  //+proxy_geometry
+    //-proxy_geometry return gem_geometry_buffer(input);
 }

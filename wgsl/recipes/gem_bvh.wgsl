@@ -7,15 +7,15 @@
 // Draw as the recipe `gem`, with the index buffer in the order of the leaves, and bind the nodes besides.
 
 // Light through the stone; off, only its surface reflects. Called for by KHR_materials_transmission.
-override EFFECT_BVH_TRACE: bool = true;
+override EFFECT_BVH_TRACE: bool = true;  //+bvh_trace
 // The root first; the two children of a node side by side.
-@group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;
+@group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;  //+bvh_trace
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     @location(1) @interpolate(flat, either) face_normal: vec3f,
-    @location(2) @interpolate(flat, either) triangle: u32,
+    @location(2) @interpolate(flat, either) triangle: u32,  //+bvh_trace
 }
 
 fn gem_face_normal(triangle: u32) -> vec3f {
@@ -30,9 +30,15 @@ fn gem_face_normal(triangle: u32) -> vec3f {
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     let position = mesh_position(indices[vertex]);
     let triangle = vertex / 3u;
-    return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, gem_face_normal(triangle), triangle);
+    return GemVertex(
+        view.clip_from_world * vec4f(position, 1.0f),
+        position,
+        gem_face_normal(triangle),
+        triangle,  //+bvh_trace
+    );
 }
 
+//+bvh_trace {
 // A ray inside: the triangle that it left last, which it cannot meet again at once.
 struct GemPlace {
     triangle: u32,
@@ -51,15 +57,21 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     let normal = gem_face_normal(nearest.triangle);
     return GemHit(position + nearest.distance * direction, -normal, nearest.distance, true);
 }
+//+bvh_trace }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
-    let radiance = gem_radiance(input, EFFECT_BVH_TRACE);
-    return vec4f(radiance.surface + radiance.inside, 1.0f);
+    let radiance = gem_radiance(input, EFFECT_BVH_TRACE);  //+bvh_trace
+    //-bvh_trace let radiance = gem_radiance(input);
+    if (EFFECT_BVH_TRACE) {  //+bvh_trace
+        return vec4f(radiance.surface + radiance.inside, 1.0f);  //+bvh_trace
+    }  //+bvh_trace
+    return vec4f(radiance.surface, 1.0f);
 }
 
 // For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
-    return gem_geometry_buffer(input, EFFECT_BVH_TRACE);
+    return gem_geometry_buffer(input, EFFECT_BVH_TRACE);  //+bvh_trace
+    //-bvh_trace return gem_geometry_buffer(input);
 }

@@ -7,7 +7,7 @@
 // Draw as the recipe `gem`, and bind the stone's facet planes besides. One stone a draw, and a convex one.
 
 // Light through the stone; off, only its surface reflects. Called for by KHR_materials_transmission.
-override EFFECT_CONVEX_TRACE: bool = true;
+override EFFECT_CONVEX_TRACE: bool = true;  //+convex_trace
 
 // Outward unit normal and distance from the origin, in world space.
 @group(2) @binding(0) var<storage, read> planes: array<vec4f>;
@@ -18,16 +18,22 @@ struct GemVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
     @location(1) @interpolate(flat, either) face_normal: vec3f,
-    @location(2) @interpolate(flat, either) face: u32,
+    @location(2) @interpolate(flat, either) face: u32,  //+convex_trace
 }
 
 @vertex
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     let position = mesh_position(indices[vertex]);
     let face = face_of_triangle[vertex / 3u];
-    return GemVertex(view.clip_from_world * vec4f(position, 1.0f), position, planes[face].xyz, face);
+    return GemVertex(
+        view.clip_from_world * vec4f(position, 1.0f),
+        position,
+        planes[face].xyz,
+        face,  //+convex_trace
+    );
 }
 
+//+convex_trace {
 // A ray inside: the facet that it left last, which it cannot meet again at once.
 struct GemPlace {
     face: u32,
@@ -50,15 +56,21 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     let plane = planes[nearest.face];
     return GemHit(convex_trace_point(position, direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
+//+convex_trace }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
-    let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);
-    return vec4f(radiance.surface + radiance.inside, 1.0f);
+    let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);  //+convex_trace
+    //-convex_trace let radiance = gem_radiance(input);
+    if (EFFECT_CONVEX_TRACE) {  //+convex_trace
+        return vec4f(radiance.surface + radiance.inside, 1.0f);  //+convex_trace
+    }  //+convex_trace
+    return vec4f(radiance.surface, 1.0f);
 }
 
 // For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
-    return gem_geometry_buffer(input, EFFECT_CONVEX_TRACE);
+    return gem_geometry_buffer(input, EFFECT_CONVEX_TRACE);  //+convex_trace
+    //-convex_trace return gem_geometry_buffer(input);
 }

@@ -8,7 +8,7 @@
 // time: costs are those of red, green or blue.
 
 // Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
 
 struct OpticalPathSeeding {
     grid: VoxelizationGrid,
@@ -24,7 +24,7 @@ struct OpticalPathSeeding {
 // Bindings 2, 4 and 5 are the parts'.
 @group(1) @binding(0) var<storage, read_write> costs: array<atomic<u32>>;
 @group(1) @binding(1) var<storage, read> matter: array<u32>;
-@group(1) @binding(2) var<storage, read> density: array<f32>;
+@group(1) @binding(2) var<storage, read> density: array<f32>;  //+extinction_per_voxel
 
 // Nothing is reached as yet.
 @compute @workgroup_size(64)
@@ -55,7 +55,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
     let arrival = light_arrival(lights[views[texel.z].light], seen.xyz);
     let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
-    let own = optical_path_extinction_at(voxel);
+    let own = optical_path_extinction_at(voxel);  //+extinction_per_voxel
     let last = vec3i(i32(seeding.grid.cells) - 1i);
     // Where a front begins, solvers err most. So all voxels about the texel begin with their true distances from it.
     for (var index = 0i; index < 27i; index++) {
@@ -68,7 +68,10 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
         if (!matter_is_at(seeding.grid.cells, near)) {
             continue;
         }
-        let extinction = 0.5f * (own + optical_path_extinction_at(near));
+        var extinction = seeding.extinction;
+        if (EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
+            extinction = 0.5f * (own + optical_path_extinction_at(near));  //+extinction_per_voxel
+        }  //+extinction_per_voxel
         let offset = distance(seen.xyz, voxelization_centre(seeding.grid, near));
         let cost = optical_path_encode(optical_path_seed(share, extinction, offset));
         let node = voxelization_index(seeding.grid, near);
@@ -79,9 +82,8 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
 }
 
+//+extinction_per_voxel {
 fn optical_path_extinction_at(voxel: vec3u) -> f32 {
-    if (EFFECT_EXTINCTION_PER_VOXEL) {
-        return seeding.extinction * density[voxelization_index(seeding.grid, voxel)];
-    }
-    return seeding.extinction;
+    return seeding.extinction * density[voxelization_index(seeding.grid, voxel)];
 }
+//+extinction_per_voxel }

@@ -8,13 +8,13 @@
 // optical_path_seed and a solver have filled the costs.
 
 // Light through the body; off, only what falls on the surface itself is sent back. Called for by extras.lapidary.scattering and absorption.
-override EFFECT_OPTICAL_PATH: bool = true;
+override EFFECT_OPTICAL_PATH: bool = true;  //+optical_path
 // Red, green and blue each have costs of their own; off, the first serves all three. Called for by an extinction or a light that is not grey.
-override EFFECT_COLOR: bool = true;
+override EFFECT_COLOR: bool = true;  //+color
 // Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
 // Diffuse light from all around, beside the lights. It goes no way through the body. Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;
+override EFFECT_ENVIRONMENT: bool = true;  //+environment
 
 struct OpticalPathView {
     clip_from_world: mat4x4f,
@@ -42,10 +42,10 @@ struct OpticalPathBody {
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
-@group(1) @binding(4) var<storage, read> costs_red: array<u32>;
-@group(1) @binding(5) var<storage, read> costs_green: array<u32>;
-@group(1) @binding(6) var<storage, read> costs_blue: array<u32>;
-@group(1) @binding(7) var<storage, read> density: array<f32>;
+@group(1) @binding(4) var<storage, read> costs_red: array<u32>;  //+optical_path
+@group(1) @binding(5) var<storage, read> costs_green: array<u32>;  //+optical_path,color
+@group(1) @binding(6) var<storage, read> costs_blue: array<u32>;  //+optical_path,color
+@group(1) @binding(7) var<storage, read> density: array<f32>;  //+optical_path,extinction_per_voxel
 
 struct OpticalPathVertex {
     @builtin(position) clip: vec4f,
@@ -88,6 +88,8 @@ fn optical_path_texel_lit(texel: vec2i, layer: u32, position: vec3f, normal: vec
     return select(0.0f, 1.0f, seen.w < 0.0f || height <= bias);
 }
 
+//+optical_path {
+//+extinction_per_voxel {
 // Density at a point, between the middles of voxels linearly.
 fn optical_path_density(position: vec3f) -> f32 {
     let place = (position - body.grid.origin) / body.grid.spacing - 0.5f;
@@ -112,15 +114,18 @@ fn optical_path_density(position: vec3f) -> f32 {
     }
     return mix(near.x, near.y, weight.z);
 }
+//+extinction_per_voxel }
 
 // What is left of the largest irradiance along the cheapest way from the 27 voxels about a point.
 fn optical_path_along(position: vec3f) -> vec3f {
     let around = vec3i(voxelization_voxel(body.grid, position));
     let last = i32(body.grid.cells) - 1i;
+    //+extinction_per_voxel {
     var own = 1.0f;
     if (EFFECT_EXTINCTION_PER_VOXEL) {
         own = optical_path_density(position);
     }
+    //+extinction_per_voxel }
     var least = vec3f(OPTICAL_PATH_UNREACHED);
     for (var neighbour = 0i; neighbour < 27i; neighbour++) {
         let step = vec3i(neighbour % 3i, (neighbour / 3i) % 3i, neighbour / 9i) - 1i;
@@ -128,21 +133,24 @@ fn optical_path_along(position: vec3f) -> vec3f {
         let index = voxelization_index(body.grid, voxel);
         let offset = distance(position, voxelization_centre(body.grid, voxel));
         var extinction = body.extinction;
-        if (EFFECT_EXTINCTION_PER_VOXEL) {
-            extinction *= 0.5f * (own + density[index]);
-        }
+        if (EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
+            extinction *= 0.5f * (own + density[index]);  //+extinction_per_voxel
+        }  //+extinction_per_voxel
         least.x = min(least.x, optical_path_through(optical_path_decode(costs_red[index]), extinction.x, offset));
+        //+color {
         if (EFFECT_COLOR) {
             least.y = min(least.y, optical_path_through(optical_path_decode(costs_green[index]), extinction.y, offset));
             least.z = min(least.z, optical_path_through(optical_path_decode(costs_blue[index]), extinction.z, offset));
         }
+        //+color }
     }
     let red = optical_path_luminance(least.x);
-    if (!EFFECT_COLOR) {
+    if (!EFFECT_COLOR) {  //+color
         return vec3f(red);
-    }
-    return vec3f(red, optical_path_luminance(least.y), optical_path_luminance(least.z));
+    }  //+color
+    return vec3f(red, optical_path_luminance(least.y), optical_path_luminance(least.z));  //+color
 }
+//+optical_path }
 
 @fragment
 fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
@@ -151,7 +159,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
     let normal = select(toward_eye, input.normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 
     var received = vec3f(0.0f);
-    var highlights = vec3f(0.0f);
+    var highlights = vec3f(0.0f);  //+microfacet
     // A light's views lie one after another. On the seam of two both see the point, and it counts once.
     var counted = arrayLength(&lights);
     for (var layer = 0u; layer < arrayLength(&views); layer++) {
@@ -165,25 +173,34 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
             }
             counted = light;
             received += lit * cosine * arrival.irradiance;
-            if (EFFECT_MICROFACET) {
-                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
-            }
+            if (EFFECT_MICROFACET) {  //+microfacet
+                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);  //+microfacet
+            }  //+microfacet
         }
     }
+    //+optical_path {
     if (EFFECT_OPTICAL_PATH) {
         // What falls on the point itself is one of the ways, of no length.
         received = max(received, body.largest * optical_path_along(input.position));
     }
+    //+optical_path }
+    //+environment {
     if (EFFECT_ENVIRONMENT) {
         let weights = cdrf_harmonic_weights(0.0f);
         received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
     }
+    //+environment }
     let inside = 0.31830987f * body.base_color * received;
-    var radiance = reflection_over(inside, normal, toward_eye, body.index, body.alpha);
+    var radiance = inside;
+    if (EFFECT_REFLECTION) {  //+reflection
+        radiance = reflection_over(inside, normal, toward_eye, body.index, body.alpha);  //+reflection
+    }  //+reflection
+    //+microfacet {
     if (EFFECT_MICROFACET) {
         if (body.alpha > 0.0f) {
             radiance += highlights;
         }
     }
+    //+microfacet }
     return vec4f(radiance, 1.0f);
 }

@@ -231,6 +231,7 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
             optical_path_godunov(vec3f(x.z, y.z, z.z), slowness.z),
             optical_path_godunov(vec3f(x.w, y.w, z.w), slowness.w),
         ));
+    //+extinction_per_voxel {
     } else if EFFECT_EXTINCTION_PER_VOXEL {
         let own = extinctions[4].inner;
         cost = optical_path_offered(cost, own, optical_path_before(row), optical_path_before(extinctions[4]), grid.spacing);
@@ -245,6 +246,7 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
             cost = optical_path_from_across(cost, own, rows[6], extinctions[6]);
             cost = optical_path_from_across(cost, own, rows[8], extinctions[8]);
         }
+    //+extinction_per_voxel }
     } else {
         // Edges of one length cost the same: the least neighbour along them offers most.
         let sigma = grid.extinction;

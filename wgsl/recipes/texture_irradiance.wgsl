@@ -8,7 +8,7 @@
 // Draw 3 vertices per triangle, without culling or depth test, into two targets that were cleared to 0: rgba16float and rg32float.
 
 // Light from all around, beside the lights. Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;
+override EFFECT_ENVIRONMENT: bool = true;  //+environment
 
 // Three floats a vertex, in world space; two of texture coordinates.
 @group(1) @binding(0) var<storage, read> positions: array<f32>;
@@ -48,9 +48,11 @@ fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradia
         let arrival = light_arrival(lights[index], input.position);
         received += arrival.irradiance * cdrf_lambert(dot(normal, arrival.direction));
     }
+    //+environment {
     if (EFFECT_ENVIRONMENT) {
         let weights = cdrf_harmonic_weights(0.0f);
         received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
     }
+    //+environment }
     return TextureIrradianceTexel(vec4f(texture_diffusion_half(received), 1.0f), stretch);
 }

@@ -17,7 +17,7 @@
 
 // The surface is set too: parts thinner than a voxel, and bodies that are one's size, hold on to their voxels. Without it there is what has its
 // centre inside, whose number goes with the volume.
-override EFFECT_SURFACE: bool = true;
+override EFFECT_SURFACE: bool = true;  //+surface
 
 // A triangle over more columns than this is shared among threads.
 override VOXELIZATION_LARGE: u32 = 64u;
@@ -42,7 +42,7 @@ struct VoxelizationStatus {
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 // Voxels along x, 32 a word, the least bit first. A row begins at a word.
 @group(0) @binding(3) var<storage, read_write> matter: array<atomic<u32>>;
-@group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;
+@group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;  //+surface
 // A bit for each column: whether it is crossed an odd number of times behind its last centre.
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
@@ -91,6 +91,7 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
                 atomicXor(&beyond[row / 32u], 1u << (row % 32u));
             }
         }
+        //+surface {
         if EFFECT_SURFACE {
             let span = voxelization_span(a, b, c, vec2f(place));
             let range = voxelization_range(span.x, span.y, grid.cells);
@@ -105,6 +106,7 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
                 }
             }
         }
+        //+surface }
     }
 }
 
@@ -151,26 +153,31 @@ fn voxelization_finish(@builtin(global_invocation_id) invocation: vec3u) {
     let odd = crossings % 2u == 1u;
     var inside = 0u;
     var solid = 0u;
-    var touched = 0u;
+    var touched = 0u;  //+surface
     for (var word = 0u; word < words; word++) {
         let within = select(0xffffffffu, (1u << (grid.cells % 32u)) - 1u, word + 1u == words && grid.cells % 32u != 0u);
         let all = voxelization_prefix(atomicLoad(&matter[row * words + word])) ^ inside;
         inside = select(0u, 0xffffffffu, all >> 31u == 1u);
         let filled = select(all & within, 0u, odd);
-        var skin = 0u;
+        var found = filled;
+        //+surface {
         if EFFECT_SURFACE {
-            skin = atomicLoad(&surface[row * words + word]);
+            let skin = atomicLoad(&surface[row * words + word]);
+            found |= skin;
+            touched += countOneBits(skin);
         }
-        atomicStore(&matter[row * words + word], filled | skin);
+        //+surface }
+        atomicStore(&matter[row * words + word], found);
         solid += countOneBits(filled);
-        touched += countOneBits(skin);
     }
     if solid > 0u {
         atomicAdd(&status.solid, solid);
     }
-    if touched > 0u {
+    //+surface {
+    if EFFECT_SURFACE && touched > 0u {
         atomicAdd(&status.surface, touched);
     }
+    //+surface }
     if odd {
         atomicAdd(&status.odd_columns, 1u);
     }

@@ -1,6 +1,7 @@
 //! `cook copy`.
 
 use super::{Failure, Outcome, output};
+use lapidary_harness::cookbook::marks::{effect_of, effects, override_of};
 use lapidary_harness::cookbook::translate::{Target, translate};
 use lapidary_harness::cookbook::{self, Module, Recipe};
 use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
@@ -154,13 +155,13 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
 }
 
 /// The recipe with its effects switched, in the text itself, so that every language follows.
-fn with_effects(recipe: &Recipe, effects: Option<&[String]>) -> Result<String, Failure> {
+fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Failure> {
     let source = recipe.compose();
-    let Some(effects) = effects else { return Ok(source) };
+    let Some(wanted) = wanted else { return Ok(source) };
     // `--effects ""` switches all of them off.
-    let effects: Vec<&String> = effects.iter().filter(|effect| !effect.is_empty()).collect();
-    let known: Vec<String> = source.lines().filter_map(effect_of).collect();
-    if let Some(unknown) = effects.iter().find(|effect| !known.contains(effect)) {
+    let wanted: Vec<&String> = wanted.iter().filter(|effect| !effect.is_empty()).collect();
+    let known = effects(&source);
+    if let Some(unknown) = wanted.iter().find(|effect| !known.contains(effect)) {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         return Err(Failure(format!(
             "recipe `{}` has no effect `{unknown}`{}",
@@ -173,15 +174,10 @@ fn with_effects(recipe: &Recipe, effects: Option<&[String]>) -> Result<String, F
         .map(|line| match effect_of(line) {
             None => line.to_owned(),
             Some(effect) => {
-                format!("override EFFECT_{}: bool = {};", effect.to_uppercase(), effects.contains(&&effect))
+                let mark = line.split_once(';').map_or("", |(_, mark)| mark);
+                format!("override {}: bool = {};{mark}", override_of(&effect), wanted.contains(&&effect))
             }
         })
         .collect();
     Ok(lines.join("\n") + "\n")
-}
-
-/// The effect that a line declares, by its module's name.
-fn effect_of(line: &str) -> Option<String> {
-    let name = line.strip_prefix("override EFFECT_")?.split(':').next()?;
-    Some(name.trim().to_lowercase())
 }

@@ -1,6 +1,7 @@
 //! The module contract as checks over the text and over naga's IR. A finding fails the tests.
 
 use super::header::{self, Header};
+use super::marks;
 use super::precedence::mixed_operators;
 use crate::dispatch::{self, shape::Shape};
 use naga::{Expression, Function, Handle};
@@ -27,6 +28,8 @@ pub enum Rule {
     SelfComparison,
     /// Parentheses where the grammar wants them between operators.
     Precedence,
+    /// The lines that are there for an effect alone are marked.
+    Mark,
     /// No two modules define the same name; all of them compile as one.
     Composition,
 }
@@ -71,12 +74,17 @@ pub fn lint(name: &str, source: &str) -> Vec<Finding> {
     findings
 }
 
-/// Checks what no module is: the text of a recipe with its parts, each by itself.
-pub fn lint_recipe(name: &str, source: &str) -> Vec<Finding> {
+/// Checks what no module is: the text of a recipe with its parts, each by itself. `effects` are those that its marks may
+/// name.
+pub fn lint_recipe(name: &str, source: &str, effects: &[String]) -> Vec<Finding> {
     let mut findings = Vec::new();
-    findings_of_operators(source, &mut |rule, line, message| {
+    let mut report = |rule, line, message| {
         findings.push(Finding { rule, module: format!("recipes/{name}"), line, message });
-    });
+    };
+    findings_of_operators(source, &mut report);
+    for fault in marks::faults(source, effects) {
+        report(Rule::Mark, fault.line, fault.message);
+    }
     findings
 }
 

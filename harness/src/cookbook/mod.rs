@@ -4,6 +4,7 @@
 pub mod accuracy_line;
 pub mod header;
 pub mod lint;
+pub mod marks;
 mod precedence;
 pub mod translate;
 

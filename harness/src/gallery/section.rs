@@ -167,6 +167,10 @@ fn overrides(source: &str) -> Vec<(&str, String)> {
     let mut comment = Vec::new();
     let mut found = Vec::new();
     for line in source.lines() {
+        // A mark, of the lines that are there for an effect, explains nothing.
+        if line.starts_with("//+") {
+            continue;
+        }
         if let Some(text) = line.strip_prefix("//") {
             comment.push(text.trim());
             continue;
@@ -186,8 +190,7 @@ mod tests {
 
     #[test]
     fn an_override_has_the_comment_above_it() {
-        let source =
-            "// demo: x\n\n// Light through\n// the stone.\noverride EFFECT_A: bool = true;\noverride B = 1u;\n";
+        let source = "// demo: x\n\n//+a {\n// Light through\n// the stone.\noverride EFFECT_A: bool = true;\n//+a }\noverride B = 1u;\n";
         assert_eq!(overrides(source), [("EFFECT_A", "Light through the stone.".to_owned()), ("B", String::new())]);
     }
 

@@ -9,7 +9,9 @@ mod control;
 
 use super::operands;
 use super::value::{Globals, Value, evaluate, same_bits};
-use naga::{Arena, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Range, Span, Statement};
+use naga::{
+    Arena, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Range, Span, Statement, TypeInner,
+};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What a local variable holds.
@@ -19,13 +21,17 @@ enum Held {
     Literal(Literal),
     /// The value of an expression that is in scope.
     Expression(Handle<Expression>),
+    /// A vector, as the variable's own initial value writes it. No statement evaluates that, so a load is replaced by a copy.
+    Initial(Handle<Expression>),
 }
 
 impl Held {
     fn is(self, other: Held) -> bool {
         match (self, other) {
             (Held::Literal(left), Held::Literal(right)) => same_bits(left, right),
-            (Held::Expression(left), Held::Expression(right)) => left == right,
+            (Held::Expression(left), Held::Expression(right)) | (Held::Initial(left), Held::Initial(right)) => {
+                left == right
+            }
             _ => false,
         }
     }
@@ -60,14 +66,26 @@ pub(super) fn fold_function(module: &mut Module, function: &mut Function) {
     }
 }
 
-/// What each scalar variable holds on entry: its initial value, or the zero that WGSL gives one without.
+/// What each scalar variable holds on entry: its initial value, or the zero that WGSL gives one without. Of vectors those
+/// that are written out.
 fn initial_values(module: &Module, function: &Function) -> Known {
     let globals = Globals::of(module);
     let value = |local: &LocalVariable| match local.init {
         Some(init) => Value::scalar(globals, &function.expressions, init),
         None => globals.zero(local.ty),
     };
-    let held = |(handle, local)| Some((handle, Held::Literal(value(local)?)));
+    let vector = |local: &LocalVariable| {
+        let init = local.init?;
+        let is_plain = |part: &Handle<Expression>| function.expressions[*part].needs_pre_emit();
+        let is_plain = match &function.expressions[init] {
+            Expression::Compose { components, .. } => components.iter().all(is_plain),
+            Expression::Splat { value, .. } => is_plain(value),
+            _ => false,
+        };
+        let is_vector = matches!(module.types[local.ty].inner, TypeInner::Vector { .. });
+        (is_plain && is_vector).then_some(Held::Initial(init))
+    };
+    let held = |(handle, local)| Some((handle, value(local).map(Held::Literal).or_else(|| vector(local))?));
     function.local_variables.iter().filter_map(held).collect()
 }
 
@@ -161,6 +179,10 @@ impl Folder<'_> {
                     Some(Held::Literal(literal)) => Some(*literal),
                     Some(Held::Expression(value)) => {
                         self.stands_for.insert(handle, *value);
+                        None
+                    }
+                    Some(Held::Initial(value)) => {
+                        expression = self.expressions[*value].clone();
                         None
                     }
                     None => None,

@@ -11,7 +11,8 @@
 //!    - `dead`: stores that nobody reads, calls without effect whose result nobody reads;
 //!    - naga's own compaction: functions, globals, types and expressions that nothing reaches;
 //!    - `arguments`: those that are the same constant in every call, those that nobody reads.
-//! 4. `finish`: constants that nothing uses, and naga's validation.
+//! 4. `stages`: what a vertex stage hands on and no fragment stage reads; if there was any, 3. again.
+//! 5. `finish`: constants that nothing uses, and naga's validation.
 //!
 //! What is left does what the whole shader does with these values, to the bit: a sum of floats is never computed here,
 //! and calls and stores keep their order. A function whose result is used stays a function, and a function's result is
@@ -25,6 +26,7 @@ mod arguments;
 mod dead;
 mod fold;
 pub(crate) mod operands;
+mod stages;
 mod value;
 
 #[cfg(test)]
@@ -77,18 +79,29 @@ pub fn specialise(
     let ir = keep_entry_points(ir, entry_points)?;
     let mut module = apply_overrides(&ir, &info, constants)?;
     loop {
-        let before = size(&module);
-        fold_functions(&mut module);
-        dead::drop_dead_statements(&mut module);
-        compact(&mut module, KeepUnused::No);
-        dead::drop_unused_locals(&mut module);
-        let dropped = arguments::drop_unread_arguments(&mut module);
-        let propagated = arguments::propagate_constant_arguments(&mut module);
-        if !dropped && !propagated && size(&module) == before {
+        fold_in_rounds(&mut module);
+        let dropped = stages::drop_unread_members(&mut module);
+        if !dropped.map_err(|error| SpecialiseError::Invalid { when: "after", error })? {
             break;
         }
     }
     finish(module)
+}
+
+/// Folds and drops until nothing changes.
+fn fold_in_rounds(module: &mut Module) {
+    loop {
+        let before = size(module);
+        fold_functions(module);
+        dead::drop_dead_statements(module);
+        compact(module, KeepUnused::No);
+        dead::drop_unused_locals(module);
+        let dropped = arguments::drop_unread_arguments(module);
+        let propagated = arguments::propagate_constant_arguments(module);
+        if !dropped && !propagated && size(module) == before {
+            break;
+        }
+    }
 }
 
 /// The module with the named entry points alone. First of all, so that an override of another needs no value.

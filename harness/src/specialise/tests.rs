@@ -3,7 +3,7 @@
 use super::{SpecialiseError, specialise};
 use crate::cookbook;
 use crate::dispatch;
-use naga::{Module, back};
+use naga::{Module, TypeInner, back};
 
 /// What each small shader has: a texture and a buffer that only some branches read, and somewhere to write to.
 const COMMON: &str = "
@@ -399,4 +399,69 @@ fn the_gem_without_its_inside_is_a_mirror() {
     assert!(!globals(&module).contains(&"environment_map") && !globals(&module).contains(&"normals"), "{text}");
     assert!(module.overrides.is_empty());
     assert!(!text.contains("EFFECT_"), "{text}");
+}
+
+const STAGES: &str = "
+override A: bool = true;
+@group(0) @binding(0) var<storage, read> table: array<vec3f>;
+struct Between {
+    @builtin(position) clip: vec4f,
+    @location(0) first: f32,
+    @location(1) second: vec3f,
+    @location(2) third: f32,
+}
+fn third_of(between: Between) -> f32 { return between.third; }
+@vertex fn vertex(@builtin(vertex_index) i: u32) -> Between {
+    return Between(vec4f(0.0), f32(i), table[i], 2.0 * f32(i));
+}
+@fragment fn fragment(between: Between) -> @location(0) vec4f {
+    var sum = third_of(between);
+    if (A) { sum += between.second.x; }
+    return vec4f(sum);
+}
+@fragment fn other(@location(0) first: f32) -> @location(0) vec4f { return vec4f(first); }
+";
+
+#[test]
+fn what_no_fragment_stage_reads_is_not_handed_on() {
+    let of = |constants: &[(&str, f64)], entries: &[&str]| special_module(STAGES, constants, entries);
+    let (module, text) = of(&[("A", 0.0)], &["vertex", "fragment"]);
+    assert!(globals(&module).is_empty(), "{text}");
+    assert!(!text.contains("first") && !text.contains("second") && text.contains("@location(2) third"), "{text}");
+    let (module, text) = of(&[], &["vertex", "fragment"]);
+    assert!(globals(&module) == ["table"] && !text.contains("first") && text.contains("second"), "{text}");
+    // Members move together: behind the position stands the one that is left.
+    let TypeInner::Struct { members, span } =
+        &module.types.iter().find(|(_, ty)| ty.name.is_some()).expect("a struct").1.inner
+    else {
+        panic!("{text}")
+    };
+    let offsets: Vec<u32> = members.iter().map(|member| member.offset).collect();
+    assert_eq!((offsets, *span), (vec![0, 16, 28], 32));
+}
+
+/// A stage by itself does not know what the other reads; nor does one beside a fragment stage that takes its inputs singly.
+#[test]
+fn what_another_stage_may_read_is_handed_on() {
+    for entries in [&["vertex"][..], &["fragment"], &["vertex", "fragment", "other"]] {
+        let (_, text) = special_module(STAGES, &[("A", 0.0)], entries);
+        assert!(text.contains("first: f32,") && text.contains("second: vec3"), "{entries:?}: {text}");
+    }
+}
+
+/// A vector that nothing has been stored in yet is what it was declared with.
+#[test]
+fn a_vector_that_was_not_written_is_its_initial_value() {
+    let body = |condition: &str| {
+        format!(
+            "var v = vec3f(0.0, 1.0, 2.0); if ({condition}) {{ v = vec3f(table[0]); }} result[0] = dot(v, v * v.yzx);"
+        )
+    };
+    let (module, text) = special("", &body("A"), &[("A", 0.0)]);
+    assert!(globals(&module) == ["result"] && !text.contains("var v"), "{text}");
+    let (_, text) = special("", &body("table[1] > 0.0"), &[]);
+    assert!(text.contains("var v"), "{text}");
+    let looped = "var v = vec2f(1.0); for (var i = 0u; i < 3u; i++) { result[i] = v.x; v = v * 2.0; }";
+    let (_, text) = special("", looped, &[]);
+    assert!(text.contains("var v"), "{text}");
 }

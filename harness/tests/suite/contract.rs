@@ -3,6 +3,7 @@
 use lapidary_harness::check;
 use lapidary_harness::cookbook::accuracy_line::Accuracy;
 use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
+use lapidary_harness::cookbook::marks;
 use lapidary_harness::cookbook::translate::{Target, translate};
 use lapidary_harness::cookbook::{modules, recipes};
 use lapidary_harness::dispatch::shape::Signature;
@@ -328,15 +329,31 @@ fn a_comparison_with_itself_is_found() {
 #[test]
 fn operators_that_need_parentheses_are_found() {
     statement_breaks(Rule::Precedence, "let bits = 1u | 2u << 3u;");
-    assert_eq!(lint_recipe("sample", "let bits = 1u & 2u + 3u;").len(), 1);
+    assert_eq!(lint_recipe("sample", "let bits = 1u & 2u + 3u;", &[]).len(), 1);
 }
 
 #[test]
-fn recipes_have_their_parentheses() {
+fn recipes_keep_the_contract() {
+    let parts = lapidary_wgsl::PARTS.iter().map(|part| part.source);
+    let effects: Vec<String> =
+        parts.chain(recipes().iter().map(|recipe| recipe.source)).flat_map(marks::effects).collect();
     for recipe in recipes() {
-        let findings: Vec<Finding> = recipe.own_text().flat_map(|text| lint_recipe(recipe.name, text)).collect();
+        let lint = |text| lint_recipe(recipe.name, text, &effects);
+        let findings: Vec<Finding> = recipe.own_text().flat_map(lint).collect();
         assert!(findings.is_empty(), "{}", spell(&findings));
+        assert_eq!(marks::idle_effects(&recipe.compose()), Ok(Vec::new()), "{}", recipe.name);
     }
+}
+
+#[test]
+fn wrong_marks_are_found() {
+    let known = ["fog".to_owned()];
+    assert_eq!(lint_recipe("sample", "a;  //+fog", &known), []);
+    let findings = lint_recipe("sample", "a;  //+frog\nif (EFFECT_FOG) {", &known);
+    assert_eq!(
+        findings.iter().map(|finding| (finding.rule, finding.line)).collect::<Vec<_>>(),
+        [(Rule::Mark, 1), (Rule::Mark, 2)]
+    );
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod cost;
 mod curvature;
 mod deferred;
 mod dispatch;
+mod effects_off;
 mod formulas;
 mod furnace;
 mod gem;

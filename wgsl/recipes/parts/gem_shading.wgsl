@@ -5,14 +5,20 @@
 // A geometry recipe adds: the parts mesh and surroundings, struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
 // struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).
 
+// A wall without an inside: what is behind it is seen as it is, below the reflection. Called for by KHR_materials_transmission without a
+// thickness of KHR_materials_volume.
+override EFFECT_THIN_WALL: bool = false;  //+thin_wall
 // Light inside is absorbed on its way. Called for by KHR_materials_volume: an attenuation colour below white.
-override EFFECT_ABSORPTION: bool = false;
+override EFFECT_ABSORPTION: bool = false;  //+absorption
+//+dispersion {
 // The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
 override EFFECT_DISPERSION: bool = false;
 // How dispersion is followed: 0 the paper's tracker, 1 the exact first-order tracker, 2 each wavelength by a ray of its own.
 override DISPERSION_FORM: u32 = 1u;
 // Entries of `wavelengths` that form 2 follows.
 override WAVELENGTHS: u32 = 3u;
+//+dispersion }
+//+bvh_trace,convex_trace,proxy_geometry {
 // Internal hits that are followed.
 override BOUNCES: u32 = 1u;
 // What a ray still carries when its following ends (at the last bounce, at the distance limit, or where it met no facet): taken
@@ -22,9 +28,12 @@ override REST_FROM_ENVIRONMENT: bool = true;
 override LIMIT_DISTANCE: bool = false;
 // A ray also ends when what it carries can no longer be seen: when no channel's throughput reaches material.throughput_limit.
 override LIMIT_THROUGHPUT: bool = false;
+//+bvh_trace,convex_trace,proxy_geometry }
 
+//+dispersion {
 const GEM_DISPERSION_PAPER: u32 = 0u;
 const GEM_DISPERSION_SEPARATE: u32 = 2u;
+//+dispersion }
 
 struct GemView {
     clip_from_world: mat4x4f,
@@ -49,6 +58,7 @@ struct GemMaterial {
     throughput_limit: f32,
 }
 
+//+dispersion {
 // One wavelength of form 2.
 struct GemWavelength {
     // What its radiance, linear RGB, adds to the pixel's; all matrices together add up to the identity.
@@ -56,14 +66,16 @@ struct GemWavelength {
     // Index of refraction.
     index: f32,
 }
+//+dispersion }
 
 @group(0) @binding(0) var<uniform> view: GemView;
 @group(1) @binding(0) var<uniform> material: GemMaterial;
 // Three floats a vertex, in world space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
-@group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
+@group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;  //+dispersion
 
+//+bvh_trace,convex_trace,proxy_geometry {
 // The next facet that a ray meets inside the stone.
 struct GemHit {
     point: vec3f,
@@ -75,12 +87,9 @@ struct GemHit {
 }
 
 // What absorption leaves of light over a distance inside.
-fn gem_transmittance(distance: f32) -> vec3f {
-    if (EFFECT_ABSORPTION) {
-        return absorption_transmittance(material.absorption, distance);
-    }
-    return vec3f(1.0f);
-}
+fn gem_transmittance(distance: f32) -> vec3f {  //+absorption
+    return absorption_transmittance(material.absorption, distance);  //+absorption
+}  //+absorption
 
 // Where a ray goes that leaves through a facet, and what share of it does.
 struct GemExit {
@@ -129,9 +138,9 @@ fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHi
         (*ray).travelled += hit.distance;
         (*ray).followed = hit.hit && !gem_ends((*ray).travelled);
     }
-    if ((*ray).followed) {
-        (*ray).throughput *= gem_transmittance(hit.distance);
-    }
+    if (EFFECT_ABSORPTION && (*ray).followed) {  //+absorption
+        (*ray).throughput *= gem_transmittance(hit.distance);  //+absorption
+    }  //+absorption
     return hit;
 }
 
@@ -180,6 +189,7 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     return ray.radiance;
 }
 
+//+dispersion {
 // Radiance from three directions, one a channel.
 fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
     return vec3f(surroundings_radiance(red).r, surroundings_radiance(green).g, surroundings_radiance(blue).b);
@@ -255,6 +265,8 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     }
     return ray.radiance;
 }
+//+dispersion }
+//+bvh_trace,convex_trace,proxy_geometry }
 
 // What a stone sends to the eye.
 struct GemRadiance {
@@ -266,6 +278,7 @@ struct GemRadiance {
     reflectance: vec3f,
 }
 
+//+dispersion {
 // The surface's reflectance for each channel's own index.
 fn gem_reflectance_channels(cosine: f32) -> vec3f {
     return vec3f(
@@ -274,12 +287,24 @@ fn gem_reflectance_channels(cosine: f32) -> vec3f {
         fresnel_dielectric(cosine, material.channel_indices.b),
     );
 }
+//+dispersion }
 
 // With `transmits` false the surface alone.
-fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
+fn gem_radiance(
+    input: GemVertex,
+    transmits: bool,  //+bvh_trace,convex_trace,proxy_geometry
+) -> GemRadiance {
     let direction = normalize(input.position - view.eye);
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
     let reflected = surroundings_radiance(refraction_reflect(direction, input.face_normal));
+    //+thin_wall {
+    if (EFFECT_THIN_WALL) {
+        let reflectance = vec3f(fresnel_dielectric(cosine, material.index));
+        let behind = surroundings_radiance(direction);
+        return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * behind, reflectance);
+    }
+    //+thin_wall }
+    //+dispersion {
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
         var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
         for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
@@ -289,30 +314,39 @@ fn gem_radiance(input: GemVertex, transmits: bool) -> GemRadiance {
             separate.surface += weights * (reflectance * reflected);
             // To white light.
             separate.reflectance += weights * vec3f(reflectance);
-            if (transmits) {
-                separate.inside += weights * ((1.0f - reflectance) * gem_trace(input, direction, index));
-            }
+            if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+                separate.inside += weights * ((1.0f - reflectance) * gem_trace(input, direction, index));  //+bvh_trace,convex_trace,proxy_geometry
+            }  //+bvh_trace,convex_trace,proxy_geometry
         }
-        separate.inside *= material.base_color;
+        if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+            separate.inside *= material.base_color;  //+bvh_trace,convex_trace,proxy_geometry
+        }  //+bvh_trace,convex_trace,proxy_geometry
         return separate;
     }
+    //+dispersion }
     var reflectance = vec3f(fresnel_dielectric(cosine, material.index));
-    var inside = vec3f(0.0f);
-    if (!EFFECT_DISPERSION) {
-        if (transmits) {
-            inside = gem_trace(input, direction, material.index);
-        }
+    var inside = vec3f(0.0f);  //+bvh_trace,convex_trace,proxy_geometry
+    if (!EFFECT_DISPERSION) {  //+dispersion
+        if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+            inside = gem_trace(input, direction, material.index);  //+bvh_trace,convex_trace,proxy_geometry
+        }  //+bvh_trace,convex_trace,proxy_geometry
+    //+dispersion {
     } else if (DISPERSION_FORM == GEM_DISPERSION_PAPER) {
-        if (transmits) {
-            inside = gem_trace_paper(input, direction);
-        }
+        if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+            inside = gem_trace_paper(input, direction);  //+bvh_trace,convex_trace,proxy_geometry
+        }  //+bvh_trace,convex_trace,proxy_geometry
     } else {
         reflectance = gem_reflectance_channels(cosine);
-        if (transmits) {
-            inside = gem_trace_tracked(input, direction);
-        }
+        if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+            inside = gem_trace_tracked(input, direction);  //+bvh_trace,convex_trace,proxy_geometry
+        }  //+bvh_trace,convex_trace,proxy_geometry
     }
-    return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * inside, reflectance);
+    //+dispersion }
+    if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
+        inside *= (1.0f - reflectance) * material.base_color;  //+bvh_trace,convex_trace,proxy_geometry
+    }  //+bvh_trace,convex_trace,proxy_geometry
+    return GemRadiance(reflectance * reflected, inside, reflectance);  //+bvh_trace,convex_trace,proxy_geometry
+    //-bvh_trace,convex_trace,proxy_geometry return GemRadiance(reflectance * reflected, vec3f(0.0f), reflectance);
 }
 
 // What a deferred renderer keeps of the stone (the paper's section 4.3.4); depth is the depth buffer's.
@@ -325,7 +359,11 @@ struct GemGeometryBuffer {
     @location(2) reflectance: vec4f,
 }
 
-fn gem_geometry_buffer(input: GemVertex, transmits: bool) -> GemGeometryBuffer {
-    let radiance = gem_radiance(input, transmits);
+fn gem_geometry_buffer(
+    input: GemVertex,
+    transmits: bool,  //+bvh_trace,convex_trace,proxy_geometry
+) -> GemGeometryBuffer {
+    let radiance = gem_radiance(input, transmits);  //+bvh_trace,convex_trace,proxy_geometry
+    //-bvh_trace,convex_trace,proxy_geometry let radiance = gem_radiance(input);
     return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(input.face_normal, 0.0f), vec4f(radiance.reflectance, 1.0f));
 }

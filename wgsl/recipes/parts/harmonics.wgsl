@@ -4,6 +4,7 @@
 //
 // A recipe adds: the modules cdrf and environment. The coefficients are bound here.
 
+//+environment {
 // The environment's spherical harmonics, linear RGB: one of degree 0, three of 1, five of 2, nine of 4. Degree 3 has no part in a clamped cosine.
 struct Harmonics {
     coefficients: array<vec4f, 18>,
@@ -50,3 +51,4 @@ fn harmonics_irradiance(around: HarmonicsAround, red: vec4f, green: vec4f, blue:
         + around.fourth * vec3f(red.w, green.w, blue.w);
     return max(sum, vec3f(0.0f));
 }
+//+environment }

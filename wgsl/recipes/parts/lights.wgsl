@@ -5,7 +5,7 @@
 // A recipe adds: its own way to shade. Nothing here casts a shadow. The list is bound here; it has one black light where there is none.
 
 // Lights that shine into a cone. Called for by a spot of KHR_lights_punctual.
-override EFFECT_SPOT: bool = false;
+override EFFECT_SPOT: bool = false;  //+spot
 
 struct Light {
     // Towards a sun, unit; or where a point or spot is.
@@ -40,9 +40,9 @@ fn light_arrival(light: Light, position: vec3f) -> LightArrival {
     }
     let direction = way * inverseSqrt(squared);
     var power = light.power;
-    if (EFFECT_SPOT) {
-        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);
-        power *= share * share;
-    }
+    if (EFFECT_SPOT) {  //+spot
+        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);  //+spot
+        power *= share * share;  //+spot
+    }  //+spot
     return LightArrival(direction, power / mix(1.0f, squared, light.point));
 }

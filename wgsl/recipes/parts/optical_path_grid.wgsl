@@ -7,7 +7,7 @@
 // Neighbours of a voxel that edges lead to: 6, 18 or 26.
 override OPTICAL_PATH_STENCIL: u32 = 26u;
 // A material whose extinction varies within it: then each voxel has a density, by which the extinction is multiplied.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
 
 struct OpticalPathGrid {
     // Voxels along an edge of the cube: a multiple of 8, at most 256. Voxel (x, y, z) has the number x + cells (y + cells z).
@@ -40,16 +40,16 @@ struct OpticalPathProgress {
 // Of the next indirect dispatch.
 @group(0) @binding(4) var<storage, read_write> workgroups: array<u32, 3>;
 // At least 0, by voxel.
-@group(0) @binding(5) var<storage, read> density: array<f32>;
+@group(0) @binding(5) var<storage, read> density: array<f32>;  //+extinction_per_voxel
 
 fn optical_path_voxel(voxel: vec3u) -> u32 {
     return voxel.x + grid.cells * (voxel.y + grid.cells * voxel.z);
 }
 
 fn optical_path_extinction(index: u32) -> f32 {
-    if EFFECT_EXTINCTION_PER_VOXEL {
-        return grid.extinction * density[index];
-    }
+    if EFFECT_EXTINCTION_PER_VOXEL {  //+extinction_per_voxel
+        return grid.extinction * density[index];  //+extinction_per_voxel
+    }  //+extinction_per_voxel
     return grid.extinction;
 }
 

@@ -6,24 +6,26 @@
 // the width of the microfacets' slopes, the square of the roughness, and 0 for a polished surface.
 
 // The lights' highlights on a rough surface. Called for by KHR_materials_ior above 1 and a roughness above 0.
-override EFFECT_MICROFACET: bool = false;
+override EFFECT_MICROFACET: bool = false;  //+microfacet
 // The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
-override EFFECT_REFLECTION: bool = false;
+override EFFECT_REFLECTION: bool = false;  //+reflection
 
+//+microfacet {
 // What a rough surface sends of one light towards the eye.
 fn reflection_highlight(arrival: LightArrival, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
     let half = microfacet_half(arrival.direction, toward_eye);
     let fresnel = fresnel_dielectric(dot(half, arrival.direction), index);
     return arrival.irradiance * microfacet_reflectance(normal, arrival.direction, toward_eye, alpha, fresnel);
 }
+//+microfacet }
 
+//+reflection {
 // Radiance from inside, with the environment over it where the surface is polished: what it reflects does not come from inside.
 fn reflection_over(radiance: vec3f, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
-    if (EFFECT_REFLECTION) {
-        if (alpha == 0.0f) {
-            let reflectance = fresnel_dielectric(dot(normal, toward_eye), index);
-            return mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
-        }
+    if (alpha == 0.0f) {
+        let reflectance = fresnel_dielectric(dot(normal, toward_eye), index);
+        return mix(radiance, surroundings_radiance(reflect(-toward_eye, normal)), reflectance);
     }
     return radiance;
 }
+//+reflection }

@@ -5,12 +5,13 @@
 // A recipe adds: the module environment. The image is bound here.
 
 // An image as the environment instead of the procedural studio. Called for by the user, who has one.
-override EFFECT_ENVIRONMENT_MAP: bool = false;
+override EFFECT_ENVIRONMENT_MAP: bool = false;  //+environment_map
 
-@group(0) @binding(1) var environment_map: texture_2d<f32>;
+@group(0) @binding(1) var environment_map: texture_2d<f32>;  //+environment_map
 
 // Radiance that arrives from a direction.
 fn surroundings_radiance(direction: vec3f) -> vec3f {
+    //+environment_map {
     if (EFFECT_ENVIRONMENT_MAP) {
         // Filtered by hand: 32-bit float textures need not be filterable.
         let texels = environment_texels(environment_uv_from_direction(direction), textureDimensions(environment_map));
@@ -22,5 +23,6 @@ fn surroundings_radiance(direction: vec3f) -> vec3f {
         let upper = mix(upper_left, upper_right, texels.weight.x);
         return mix(lower, upper, texels.weight.y);
     }
+    //+environment_map }
     return environment_studio(direction);
 }

@@ -7,6 +7,7 @@
 // children of a node side by side; and `indices`, array<u32>, three a triangle, counter-clockwise from outside, in the order of
 // the leaves. A triangle's number is its place there.
 
+//+bvh_trace {
 // A loop over all triangles instead of the hierarchy: the paper's comparator.
 override TRAVERSAL_LOOP: bool = false;
 // Möller and Trumbore's test with an epsilon instead of the watertight one.
@@ -78,3 +79,4 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     }
     return hit;
 }
+//+bvh_trace }

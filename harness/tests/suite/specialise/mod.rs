@@ -1,6 +1,7 @@
 //! A specialised shader does what the whole one does: to the bit, on the device, whatever it is made of.
 
 mod program;
+mod recipes;
 
 use crate::gpu;
 use lapidary_harness::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
