@@ -5,6 +5,7 @@ use super::device::{Pipeline, buffer, uniform};
 use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
 use crate::gpu::Gpu;
+use crate::gpu::capture::OfObject;
 use crate::scene::light::Falloff;
 use crate::scene::{Light, Scene};
 use glam::Vec3;
@@ -73,6 +74,8 @@ fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, RenderError>) ->
     if let Some(known) = cell.get() {
         return Ok(known);
     }
+    // Whoever asks first, it is all objects'.
+    let _of = OfObject::named("");
     let made = make()?;
     Ok(cell.get_or_init(|| made))
 }
