@@ -103,6 +103,11 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     if (EFFECT_PROXY_GEOMETRY) {  //+proxy_geometry
         return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry
     }  //+proxy_geometry
+    //+thin_wall {
+    if (EFFECT_THIN_WALL) {
+        return vec4f(radiance.surface + radiance.inside, 1.0f);
+    }
+    //+thin_wall }
     return vec4f(radiance.surface, 1.0f);
 }
 

@@ -66,6 +66,11 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     if (EFFECT_BVH_TRACE) {  //+bvh_trace
         return vec4f(radiance.surface + radiance.inside, 1.0f);  //+bvh_trace
     }  //+bvh_trace
+    //+thin_wall {
+    if (EFFECT_THIN_WALL) {
+        return vec4f(radiance.surface + radiance.inside, 1.0f);
+    }
+    //+thin_wall }
     return vec4f(radiance.surface, 1.0f);
 }
 

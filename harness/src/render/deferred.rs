@@ -47,7 +47,7 @@ impl<'gpu> DeferredPass<'gpu> {
                 depth: None,
             },
         )?;
-        let size = [TILE * settings.samples; 2];
+        let size = [settings.width, settings.height].map(|side| settings.samples * side.min(TILE));
         let [emission, normal, reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING;
             [

@@ -20,8 +20,8 @@ pub(super) struct DisplayPass<'gpu> {
 }
 
 impl<'gpu> DisplayPass<'gpu> {
-    /// With `samples` samples along each side of a pixel.
-    pub(super) fn new(gpu: &'gpu Gpu, samples: u32) -> Result<Self, RenderError> {
+    /// With `samples` samples along each side of a pixel, for tiles of a picture of this size.
+    pub(super) fn new(gpu: &'gpu Gpu, samples: u32, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
         let pipeline = device::pipeline(
             gpu,
             &PipelineSource {
@@ -36,11 +36,13 @@ impl<'gpu> DisplayPass<'gpu> {
         use wgpu::TextureUsages as Usage;
         let [samples, linear, encoded] = gpu.guarded("allocating a tile", |device| {
             [
-                ("samples", TILE * samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
-                ("linear picture", TILE, SAMPLE_FORMAT, Usage::COPY_SRC),
-                ("encoded picture", TILE, ENCODED_FORMAT, Usage::COPY_SRC),
+                ("samples", samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
+                ("linear picture", 1, SAMPLE_FORMAT, Usage::COPY_SRC),
+                ("encoded picture", 1, ENCODED_FORMAT, Usage::COPY_SRC),
             ]
-            .map(|(what, side, format, usage)| device::target(device, what, [side; 2], format, usage))
+            .map(|(what, times, format, usage)| {
+                device::target(device, what, [width, height].map(|side| times * side.min(TILE)), format, usage)
+            })
         })?;
         let samples_view = device::view(&samples);
         Ok(Self { gpu, pipeline, samples, samples_view, linear, encoded })

@@ -348,12 +348,12 @@ fn render_from(
         encode(gpu, settings, &mut picture)?;
         return Ok(picture);
     }
-    let display = DisplayPass::new(gpu, settings.samples)?;
+    let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
     let lighting = Lighting::new(gpu, scene, settings);
     let deferred = settings.deferred.then(|| DeferredPass::new(gpu, &lighting, settings, composite)).transpose()?;
     let pass = scene_pass(gpu, &lighting, scene, settings, source)?;
     let depth = gpu.guarded("allocating a tile", |device| {
-        let size = [TILE * settings.samples; 2];
+        let size = [width, height].map(|side| settings.samples * side.min(TILE));
         device::view(&device::target(device, "depth", size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
     })?;
     let tiles: Vec<Tile> = Tile::all(width, height).collect();
@@ -484,7 +484,7 @@ fn follow(
 
 /// Fills in `encoded` from `linear`, as the display recipe shows it.
 pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
-    let display = DisplayPass::new(gpu, 1)?;
+    let display = DisplayPass::new(gpu, 1, [picture.width, picture.height])?;
     for tile in Tile::all(picture.width, picture.height) {
         display.write(tile, picture);
         let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
