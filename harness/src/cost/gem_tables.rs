@@ -136,7 +136,7 @@ fn paper(report: &Report) -> String {
         [
             "constants",
             "2304 bytes; exact 15056 bytes",
-            &format!("128 bytes of uniforms; exact {exact_bytes} bytes more in storage"),
+            &format!("144 bytes of uniforms; exact {exact_bytes} bytes more in storage"),
         ],
     ];
     for cells in rows {

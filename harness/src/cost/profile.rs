@@ -8,7 +8,7 @@ use crate::render::{Rung, Settings};
 use crate::scene::Scene;
 use std::fmt::Write as _;
 
-/// What is taken away: the text that goes, and what stands in its place. Every binding stays in use.
+/// What is taken away: the text that goes, and what stands in its place.
 const CUTS: [(&str, &str, &str); 3] = [
     ("all of it", "", ""),
     (
@@ -19,12 +19,10 @@ const CUTS: [(&str, &str, &str); 3] = [
     (
         "rasterising alone",
         "    if (EFFECT_PROXY_GEOMETRY) {  //+proxy_geometry\n        \
-         return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry\n    }  //+proxy_geometry\n    \
-         return vec4f(radiance.surface, 1.0f);\n}\n\n// For a deferred",
-        "    var used = vec3f(0.0f);\n    if (input.position.x > 1e30f) {\n        \
-         used = material.base_color + wavelengths[0].index + textureLoad(environment_map, vec2u(0u), 0).rgb;\n    }\n    \
-         return vec4f(used + input.face_normal + input.position + input.plane_origin + input.edge_first + input.edge_second, \
-         1.0f);\n}\n\n// For a deferred",
+         return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry\n    }  //+proxy_geometry\n",
+        "    if (EFFECT_PROXY_GEOMETRY) {\n        \
+         return vec4f(input.face_normal + input.position + input.plane_origin + input.edge_first + input.edge_second, \
+         1.0f);\n    }\n",
     ),
 ];
 

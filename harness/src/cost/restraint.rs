@@ -3,9 +3,11 @@
 mod limit;
 mod tables;
 mod tiles;
+mod variants;
 
 pub use limit::{Limited, facets};
 pub use tiles::{TileWay, Tiles};
+pub use variants::{VariantWay, Variants};
 
 use super::{CostError, Row};
 use crate::gpu::Gpu;
@@ -50,6 +52,8 @@ pub struct RestraintReport {
     pub limited: Vec<Limited>,
     /// Ways through a body by tiles, by grid.
     pub tiles: Vec<Tiles>,
+    /// Stones of several materials, each by its own variant of the recipe.
+    pub variants: Variants,
 }
 
 /// Measures all of them. `progress` is told what is done, and how much of it.
@@ -64,8 +68,11 @@ pub fn run(
 ) -> Result<RestraintReport, CostError> {
     let limited = limit::measure(gpu, options, progress)?;
     let tiles = tiles::measure(gpu, options.rounds, &mut |done, total| progress("solving by tiles", done, total))?;
+    let variants = variants::measure(gpu, options.frame, options.rounds, &mut |done, total| {
+        progress("drawing stones", done, total);
+    })?;
     let (adapter, frame, rounds) = (gpu.describe(), options.frame, options.rounds);
-    Ok(RestraintReport { adapter, frame, rounds, limited, tiles })
+    Ok(RestraintReport { adapter, frame, rounds, limited, tiles, variants })
 }
 
 impl RestraintReport {
@@ -92,7 +99,11 @@ impl RestraintReport {
                 row(rung, &tiles.scene, f64::from(way.differing), "voxels", way.ms)
             })
         });
-        rays.chain(tiles).collect()
+        let variants = self.variants.ways.iter().map(|way| {
+            let rung = format!("{}, {}", self.variants.rung, way.way);
+            row(rung, &self.variants.scene, way.largest, "radiance", way.timing.ms)
+        });
+        rays.chain(tiles).chain(variants).collect()
     }
 
     /// For people.

@@ -42,6 +42,7 @@ pub const SHOTS: [Shot; 40] = [
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
             `./cook plan vitrine` says why, and what follows: nothing is compiled, bound or run that no body calls for.",
+        exposure: 0.5,
         ..shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", "by-material")
     },
     Shot {

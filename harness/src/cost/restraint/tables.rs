@@ -6,7 +6,8 @@ use crate::cost::page::{Table, Tables, header, row};
 use std::fmt::Write as _;
 
 impl Tables for RestraintReport {
-    const TABLES: &'static [Table<Self>] = &[("restraint_throughput", throughput), ("restraint_tiles", tiles)];
+    const TABLES: &'static [Table<Self>] =
+        &[("restraint_throughput", throughput), ("restraint_tiles", tiles), ("restraint_variants", variants)];
 
     fn whole(&self) -> Result<(), String> {
         for (scene, rung) in SCENES.iter().flat_map(|scene| RUNGS.iter().map(move |rung| (scene, rung))) {
@@ -97,6 +98,33 @@ fn tiles(report: &RestraintReport) -> String {
     table
 }
 
+fn variant_lines(report: &RestraintReport) -> impl Iterator<Item = Vec<String>> {
+    let shared = report.variants.ways.last().map_or(f64::NAN, |way| way.timing.ms);
+    report.variants.ways.iter().map(move |way| {
+        vec![
+            way.way.clone(),
+            way.instructions.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
+            milliseconds(way.timing),
+            format!("{:.2}", way.timing.ms / shared),
+            format!("{:.1e}", way.largest),
+        ]
+    })
+}
+
+const VARIANTS: [&str; 5] = ["variant", "instructions", "ms", "of one for all", "largest difference"];
+
+fn variants(report: &RestraintReport) -> String {
+    let mut table = header(&VARIANTS);
+    variant_lines(report).for_each(|cells| row(&mut table, &cells));
+    let [width, height] = report.frame;
+    let _ = writeln!(
+        table,
+        "\nMilliseconds for the clear bodies of `{}`, {width} × {height} pixels, the least of {} interleaved rounds, on {}.",
+        report.variants.scene, report.rounds, report.adapter
+    );
+    table
+}
+
 /// Columns as wide as their widest cell.
 fn aligned(text: &mut String, columns: &[&str], lines: &[Vec<String>]) {
     let heads: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
@@ -120,5 +148,7 @@ pub(super) fn text(report: &RestraintReport) -> String {
     );
     text.push_str("\nWays through stone, sought in fewer tiles\n");
     aligned(&mut text, &TILES, &tile_lines(report).collect::<Vec<_>>());
+    text.push_str("\nStones of several materials\n");
+    aligned(&mut text, &VARIANTS, &variant_lines(report).collect::<Vec<_>>());
     text
 }

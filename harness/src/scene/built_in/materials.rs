@@ -64,8 +64,8 @@ pub(super) fn clear_glass() -> Material {
 
 /// Slate with an even, honed surface.
 pub(super) fn slate() -> Material {
-    let base_color = Vec3::new(0.085, 0.095, 0.11);
-    Material { name: "slate".to_owned(), base_color, roughness: 0.5, ..Material::standard() }
+    let base_color = Vec3::new(0.03, 0.033, 0.04);
+    Material { name: "slate".to_owned(), base_color, roughness: 0.35, ..Material::standard() }
 }
 
 /// The same material in a stone whose girdle has this radius.

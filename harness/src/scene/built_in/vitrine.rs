@@ -86,8 +86,8 @@ fn standing(mesh: &Mesh, rotation: DQuat, [x, z]: [f64; 2]) -> Mesh {
 }
 
 fn lights() -> Vec<Light> {
-    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 3_500.0 * Vec3::new(1.0, 0.8, 0.6) };
-    vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 1.5), lamp]
+    let lamp = Light::Point { position: Vec3::new(60.0, 170.0, 150.0), intensity: 1_000.0 * Vec3::new(1.0, 0.8, 0.6) };
+    vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 3.0), lamp]
 }
 
 /// For pictures of 4:3.
