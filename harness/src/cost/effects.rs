@@ -5,7 +5,7 @@ mod tables;
 use super::timing::{self, Timed, Timing};
 use super::{CostError, Row};
 use crate::gpu::Gpu;
-use crate::plan::{Effect, Effects, Plan};
+use crate::plan::{Decisions, Effect, Effects, Plan};
 use crate::render::{Curvature, Environment, Rung, Settings};
 use crate::scene::environment_map::EnvironmentMap;
 use crate::scene::{Light, Scene};
@@ -247,7 +247,9 @@ pub fn run(
             });
             timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
         }
-        studies.push(Study { scene: case.name.to_owned(), rung: case.settings.rung.to_string(), frames });
+        let drawn = case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings));
+        let rung = drawn.map(|decisions| decisions.rung).next().unwrap_or(case.settings.rung).to_string();
+        studies.push(Study { scene: case.name.to_owned(), rung, frames });
     }
     if options.rounds > 0 {
         let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
@@ -319,7 +321,6 @@ pub struct EffectRow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Decisions;
 
     #[test]
     fn every_effect_is_studied_where_it_is_on() {

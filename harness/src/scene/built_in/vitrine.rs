@@ -60,10 +60,10 @@ fn meshes() -> Result<[Mesh; 6], CutError> {
         table,
         standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
         standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
-        standing(&candle::mesh(), turned(0.0), [-62.0, 2.0]),
+        standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
         standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
         // Its uppermost link passes the picture's edge.
-        chain.placed(DQuat::IDENTITY, DVec3::new(71.0, 131.0, 0.0)),
+        chain.placed(DQuat::IDENTITY, DVec3::new(62.0, 131.0, 6.0)),
     ])
 }
 
@@ -90,9 +90,9 @@ fn lights() -> Vec<Light> {
     vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 3.0), lamp]
 }
 
-/// For pictures of 4:3.
+/// For pictures of 4:3, and square ones.
 fn camera() -> Camera {
-    Camera::upright(Vec3::new(14.0, 118.0, 312.0), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
+    Camera::upright(Vec3::new(15.3, 126.2, 349.5), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
 }
 
 #[cfg(test)]
