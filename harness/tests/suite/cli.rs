@@ -20,7 +20,7 @@ fn without_arguments_it_prints_help() {
     let answer = cook(folder().path(), &[] as &[&str]);
     assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
     let help = answer.stdout + &answer.stderr;
-    for command in ["gallery", "test", "check", "list", "copy", "render", "scene", "snapshots", "--adapter"] {
+    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "--adapter"] {
         assert!(help.contains(command), "{command}: {help}");
     }
     let asked = succeeds(folder().path(), &["--help"]);
@@ -29,10 +29,45 @@ fn without_arguments_it_prints_help() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in ["gallery", "test", "check", "list", "copy", "render", "scene", "snapshots"] {
+    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots"] {
         let help = succeeds(folder().path(), &[command, "--help"]).stdout;
         assert!(help.contains("Example") && help.contains(&format!("./cook {command}")), "{help}");
     }
+}
+
+/// The keys that others read, and that they agree with one another.
+#[test]
+fn plan_prints_one_json_document() {
+    let answer = succeeds(folder().path(), &["plan", "vitrine", "--json"]);
+    let plan: Value = serde_json::from_str(&answer.stdout).expect("one JSON document");
+    let rows = |key: &str| plan[key].as_array().unwrap_or_else(|| panic!("no list {key}: {plan}")).clone();
+    let text = |row: &Value, key: &str| row[key].as_str().unwrap_or_else(|| panic!("no {key}: {row}")).to_owned();
+    let effects = rows("effects");
+    assert!(effects.iter().all(|row| row["on"].is_boolean() && !text(row, "reason").is_empty()));
+    let on = |material: &str| {
+        let of = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
+        of.map(|row| text(row, "effect")).collect::<Vec<_>>()
+    };
+    assert_eq!(on("diamond"), ["proxy_geometry", "dispersion"]);
+    assert_eq!(on("ruby"), ["proxy_geometry", "absorption"]);
+    assert_eq!(on("clear glass"), ["proxy_geometry"]);
+    assert_eq!(on("slate"), ["environment", "microfacet"]);
+    assert_eq!(on("wax"), ["cdrf", "environment", "microfacet"]);
+    assert_eq!(on("marble"), ["optical_path", "surface", "color", "environment", "microfacet"]);
+    let pipelines: BTreeSet<String> = rows("pipelines").iter().map(|row| text(row, "name")).collect();
+    assert!(rows("pipelines").iter().all(|row| row["overrides"].is_object() && !text(row, "recipe").is_empty()));
+    let resources: BTreeSet<String> = rows("resources").iter().map(|row| text(row, "name")).collect();
+    assert!(rows("resources").iter().all(|row| row["bytes"].is_u64()));
+    for pass in rows("passes") {
+        assert!(pipelines.contains(&text(&pass, "pipeline")) && !text(&pass, "name").is_empty(), "{pass}");
+        let bound = pass["resources"].as_array().expect("a list").clone();
+        assert!(bound.iter().all(|name| name.as_str().is_some_and(|name| resources.contains(name))), "{pass}");
+    }
+    // The same without effects that are left out, and with a technique that is asked for.
+    let plan = |arguments: &[&str]| succeeds(folder().path(), &[&["plan"], arguments].concat()).stdout;
+    assert!(plan(&["brilliant", "--without", "dispersion"]).contains("left out on request"));
+    assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung accurate of recipe cdrf_shading"));
+    assert!(plan(&["wax", "--with", "optical_path"]).contains("asked for, whatever its thickness"));
 }
 
 #[test]

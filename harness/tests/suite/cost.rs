@@ -2,6 +2,7 @@
 
 use crate::program::{folder, succeeds};
 use lapidary_harness::cost::cdrf::{self, CdrfReport};
+use lapidary_harness::cost::effects::EffectsReport;
 use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::restraint::RestraintReport;
@@ -112,6 +113,24 @@ fn restraint_changes_nothing() {
     }
 }
 
+/// Without times, what is exact: the record holds the same instructions and bytes as a new run.
+#[test]
+fn what_effects_take_is_as_recorded() {
+    let folder = folder();
+    succeeds(folder.path(), &["cost", "effects", "--rounds", "0", "--out", "."]);
+    let text = std::fs::read_to_string(folder.path().join("effects.json")).expect("a report");
+    let found: EffectsReport = serde_json::from_str(&text).expect("a report");
+    let recorded: EffectsReport = record("measurements/lavapipe/effects.json");
+    assert_eq!(found.studies.len(), recorded.studies.len());
+    for (found, recorded) in found.studies.iter().zip(&recorded.studies) {
+        for (found_frame, recorded_frame) in found.frames.iter().zip(&recorded.frames) {
+            let untimed = lapidary_harness::cost::effects::Frame { timing: None, ..recorded_frame.clone() };
+            assert_eq!(*found_frame, untimed, "{} by {}", recorded.scene, recorded.rung);
+        }
+        assert_eq!(found.frames.len(), recorded.frames.len());
+    }
+}
+
 /// The records of the repository, and the pages that show them.
 #[test]
 fn the_pages_show_the_record() {
@@ -124,8 +143,11 @@ fn the_pages_show_the_record() {
     holds(&paths, "optical_path", "lavapipe", &["optical_path_ladder.md"]);
     assert_eq!(docs("measurements/lavapipe/optical_path.txt"), paths.text());
     let restraint: RestraintReport = record("measurements/lavapipe/restraint.json");
-    holds(&restraint, "restraint", "lavapipe", &["gem.md", "optical_path.md"]);
+    holds(&restraint, "restraint", "lavapipe", &["gem.md", "optical_path.md", "plan.md"]);
     assert_eq!(docs("measurements/lavapipe/restraint.txt"), restraint.text());
+    let effects: EffectsReport = record("measurements/lavapipe/effects.json");
+    holds(&effects, "effects", "lavapipe", &["plan.md"]);
+    assert_eq!(docs("measurements/lavapipe/effects.txt"), effects.text());
     let sphere: SphereReport = record("measurements/random_walk/sphere.json");
     holds(&sphere, "sphere", "random_walk", &["cdrf.md"]);
 }
