@@ -71,7 +71,7 @@ impl Asked {
         }
         let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
         let is_called = |effect: &Effect| all.iter().any(|decisions| decisions.has(*effect));
-        if let (Some(effect), false) = (self.without.first(), self.without.iter().any(is_called)) {
+        if let Some(effect) = self.without.iter().find(|effect| !is_called(effect)) {
             return Err(Failure(format!(
                 "nothing in scene `{}` calls for {effect} by rung `{}`, so --without {effect} has no meaning; leave it out",
                 scene.name, settings.rung

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 /// `effects`: each effect alone, none, and all: time, instructions and bytes.
 ///
 /// `restraint`: what is saved by work that a pixel or a tile has no use for: rays that end when what they carry can no longer be seen, and ways
-/// through stone sought in tiles with matter alone. Takes minutes.
+/// through stone sought in tiles with matter alone; and a variant of the recipe for each material beside one for all. Takes minutes.
 ///
 /// `sphere`: the curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
 #[derive(clap::Args)]
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     /// gem: views to compare in, comma-separated; all where left out.
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
-    /// gem, cdrf, optical_path, effects, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out.
+    /// gem, cdrf, optical_path, effects, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out, but of restraint.
     #[arg(long)]
     rounds: Option<u32>,
     /// sphere: random walks through each sphere, 1000000 where left out.
@@ -53,7 +53,7 @@ pub(super) struct Arguments {
     /// sphere: the same seed gives the same walks; 1 where left out.
     #[arg(long)]
     seed: Option<u64>,
-    /// Show an earlier run's gem.json, cdrf.json, optical_path.json, restraint.json or sphere.json again instead of measuring.
+    /// Show an earlier run's NAME.json, such as gem.json, again instead of measuring.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds", "walks", "seed"])]
     from: Option<PathBuf>,
     /// One JSON document on stdout, a row for each thing measured, and nothing else.

@@ -71,6 +71,7 @@ struct PipelineRow<'a> {
 #[derive(Serialize)]
 struct ResourceRow<'a> {
     name: &'a str,
+    object: Option<&'a str>,
     kind: &'static str,
     bytes: u64,
 }
@@ -107,8 +108,9 @@ impl<'a> Document<'a> {
             overrides: pipeline.overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect(),
             instructions: pipeline.instructions,
         };
-        let resource = |Resource { name, kind, bytes }: &'a Resource| ResourceRow {
+        let resource = |Resource { name, object, kind, bytes }: &'a Resource| ResourceRow {
             name,
+            object: Some(object.as_str()).filter(|object| !object.is_empty()),
             kind: match kind {
                 Kind::Buffer => "buffer",
                 Kind::Texture => "texture",

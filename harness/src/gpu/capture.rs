@@ -23,6 +23,8 @@ pub enum Kind {
 pub struct Resource {
     /// Of an object `object/what`; what all share has no object before it.
     pub name: String,
+    /// The object that it was made for; nothing for what all share.
+    pub object: String,
     /// What it is.
     pub kind: Kind,
     /// Its contents' bytes, without what the driver adds.
@@ -46,8 +48,9 @@ pub struct Pipeline {
     pub instructions: usize,
 }
 
-/// Draws or dispatches of one pipeline with the same resources, one after another in one pass.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Draws or dispatches of one pipeline with the same resources in one pass. What comes again later, as in a solver's turns or in another tile, is
+/// counted where it came first.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
     /// The pass.
     pub pass: String,
@@ -90,6 +93,10 @@ impl Capture {
 #[derive(Default)]
 struct Recorder {
     capture: Capture,
+    /// The places of names among the capture's resources.
+    places: HashMap<String, usize>,
+    /// The places of steps among the capture's.
+    steps: HashMap<Step, usize>,
     buffers: HashMap<Buffer, String>,
     textures: HashMap<Texture, String>,
     samplers: HashMap<Sampler, String>,
@@ -148,9 +155,11 @@ impl Recorder {
         let what = label.unwrap_or("unnamed");
         let object = object();
         let name = if object.is_empty() { what.to_owned() } else { format!("{object}/{what}") };
-        match self.capture.resources.iter_mut().find(|resource| resource.name == name) {
+        let resources = &mut self.capture.resources;
+        let place = *self.places.entry(name.clone()).or_insert(resources.len());
+        match resources.get_mut(place) {
             Some(known) => known.bytes = known.bytes.max(bytes),
-            None => self.capture.resources.push(Resource { name: name.clone(), kind, bytes }),
+            None => resources.push(Resource { name: name.clone(), object, kind, bytes }),
         }
         name
     }
@@ -188,12 +197,11 @@ impl Recorder {
         }
         let pipeline = pipeline.unwrap_or_default();
         let step = Step { pass: pass.to_owned(), object: object(), pipeline, resources, times: 1 };
-        let same = |known: &&mut Step| Step { times: 1, ..(*known).clone() } == step;
-        // A solver's passes go in turns.
-        let recent = self.capture.steps.len().saturating_sub(2);
-        match self.capture.steps[recent..].iter_mut().find(same) {
+        let steps = &mut self.capture.steps;
+        let place = *self.steps.entry(step.clone()).or_insert(steps.len());
+        match steps.get_mut(place) {
             Some(known) => known.times += 1,
-            None => self.capture.steps.push(step),
+            None => steps.push(step),
         }
     }
 }

@@ -116,7 +116,14 @@ fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Str
         return (CURVED, "no light but the environment, which goes no way through bodies".to_owned());
     }
     let thickness = Thickness::of(object, medium);
+    if thickness.thickness == 0.0 {
+        return (CURVED, "its mesh has no inside whose thickness could be measured".to_owned());
+    }
     let free = thickness.mean_free_path;
+    if free.is_infinite() {
+        let reason = "somewhere a colour is neither scattered nor absorbed: light comes through the body";
+        return (THROUGH, reason.to_owned());
+    }
     let paths = thickness.mean_free_paths();
     let most = super::thickness::MOST_MEAN_FREE_PATHS;
     let source = if thickness.is_given { "given" } else { "measured" };
@@ -130,6 +137,16 @@ fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Str
         return (THROUGH, format!("{compared}, at most {most}: light comes through the body"));
     }
     (CURVED, format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads"))
+}
+
+/// How a rung finds the facets that rays inside meet.
+fn way_of(geometry: Geometry) -> &'static str {
+    match geometry {
+        Geometry::Proxy => "the proxy, the cheapest way, of which no body's form is asked",
+        Geometry::Convex => "a convex stone's planes",
+        Geometry::Bvh => "a hierarchy of all triangles",
+        Geometry::Triangles => "a loop over all triangles",
+    }
 }
 
 /// Three digits.
@@ -172,6 +189,9 @@ impl Case<'_> {
     }
 
     fn decide(&self, effect: Effect) -> Answer {
+        if self.rung == Rung::Reference {
+            return off("the reference is computed on the CPU, by no recipe");
+        }
         match effect {
             Effect::ProxyGeometry => self.inside(effect, Geometry::Proxy),
             Effect::ConvexTrace => self.inside(effect, Geometry::Convex),
@@ -182,7 +202,9 @@ impl Case<'_> {
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::OpticalPath => self.optical_path(),
-            Effect::Surface => self.through("keeps parts that are thinner than a voxel"),
+            Effect::Surface => {
+                self.along_a_way().map_or_else(off, |()| on("light also goes through what is thinner than a voxel"))
+            }
             Effect::Color => self.color(),
             Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
             Effect::Environment => self.environment(),
@@ -195,12 +217,17 @@ impl Case<'_> {
 
     /// Why nothing of what is for clear bodies is on.
     fn not_clear(&self) -> String {
-        match self.rung {
-            Rung::Diffuse(_) | Rung::OpticalPath(_) if self.material.medium.is_some() => "light scatters inside",
-            Rung::Diffuse(_) | Rung::OpticalPath(_) if self.material.sigma0.is_some() => "light scatters inside",
-            _ => "transmission 0: opaque",
+        if self.scatters() {
+            "light scatters inside".to_owned()
+        } else if self.material.transmission == 0.0 {
+            "transmission 0: opaque".to_owned()
+        } else {
+            format!("the rung {} draws the surface alone", self.rung)
         }
-        .to_owned()
+    }
+
+    fn scatters(&self) -> bool {
+        self.material.medium.is_some() || self.material.sigma0.is_some()
     }
 
     fn inside(&self, effect: Effect, geometry: Geometry) -> Answer {
@@ -209,7 +236,7 @@ impl Case<'_> {
         };
         let serves = used == geometry || used == Geometry::Triangles && effect == Effect::BvhTrace;
         if !serves {
-            return off(format!("the rung {} finds facets another way", self.rung));
+            return off(format!("the rung {} finds facets by {}", self.rung, way_of(used)));
         }
         on(format!("transmission {}, thickness {}", self.material.transmission, self.material.thickness))
     }
@@ -304,9 +331,8 @@ impl Case<'_> {
     fn texture_diffusion(&self) -> Answer {
         match self.rung {
             Rung::Diffuse(Reflectance::Blur) => on("the rung is blur"),
-            Rung::Diffuse(_) if self.material.sigma0.is_some() || self.material.medium.is_some() => {
-                off(format!("the rung {} spreads light by curvature", self.rung))
-            }
+            Rung::Diffuse(Reflectance::Lambert) if self.scatters() => off("the rung is Lambert's law"),
+            Rung::Diffuse(_) if self.scatters() => off(format!("the rung {} spreads light by curvature", self.rung)),
             Rung::OpticalPath(_) => off("light is followed through the body instead"),
             _ => off("nothing inside scatters"),
         }
@@ -315,9 +341,7 @@ impl Case<'_> {
     fn through(&self, called: &str) -> Answer {
         match self.rung {
             Rung::OpticalPath(_) => on(called),
-            Rung::Diffuse(_) if self.material.medium.is_some() || self.material.sigma0.is_some() => {
-                off("no light is followed through the body")
-            }
+            Rung::Diffuse(_) if self.scatters() => off("no light is followed through the body"),
             _ => off("nothing inside scatters"),
         }
     }
@@ -333,10 +357,21 @@ impl Case<'_> {
         (through, reason)
     }
 
+    /// Whether ways through the body are sought; else why not.
+    fn along_a_way(&self) -> Result<(), String> {
+        match self.optical_path() {
+            (true, _) if self.settings.without.has(Effect::OpticalPath) => Err("optical_path is left out".to_owned()),
+            (true, _) => Ok(()),
+            (false, reason) => Err(reason),
+        }
+    }
+
     fn color(&self) -> Answer {
-        let (through, reason) = self.optical_path();
-        let Some(medium) = self.material.medium.as_ref().filter(|_| through) else {
+        if let Err(reason) = self.along_a_way() {
             return off(reason);
+        }
+        let Some(medium) = &self.material.medium else {
+            return off("nothing inside scatters");
         };
         let grey = |color: Vec3| color.x == color.y && color.y == color.z;
         if !grey(medium.scattering) || !grey(medium.absorption) {
@@ -349,9 +384,11 @@ impl Case<'_> {
     }
 
     fn extinction_per_voxel(&self) -> Answer {
-        let (through, reason) = self.optical_path();
-        match self.material.medium.as_ref().filter(|_| through).map(|medium| &medium.density) {
-            None => off(reason),
+        if let Err(reason) = self.along_a_way() {
+            return off(reason);
+        }
+        match self.material.medium.as_ref().map(|medium| &medium.density) {
+            None => off("nothing inside scatters"),
             Some(Density::Uniform) => off("density the same everywhere"),
             Some(Density::Veins(_)) => on("veins"),
             Some(Density::Grid(_)) => on("a grid of densities"),
@@ -359,7 +396,11 @@ impl Case<'_> {
     }
 
     fn environment(&self) -> Answer {
-        if self.is_gem() { off("a clear surface sends nothing back diffusely") } else { on("an environment") }
+        if self.is_gem() {
+            off("a clear surface sends nothing back diffusely")
+        } else {
+            on("the surface sends light from all around back")
+        }
     }
 
     fn environment_map(&self) -> Answer {

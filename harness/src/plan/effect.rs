@@ -13,7 +13,7 @@ pub enum Effect {
     ConvexTrace,
     /// Light through any clear stone, by its triangles.
     BvhTrace,
-    /// What is behind a clear wall without an inside.
+    /// The environment behind a clear wall without an inside.
     ThinWall,
     /// Light is absorbed inside a clear stone.
     Absorption,

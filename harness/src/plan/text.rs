@@ -2,6 +2,8 @@
 
 use super::{Decision, Decisions, Plan, PlannedObject};
 use crate::gpu::capture::{Kind, Pipeline, Resource, Step};
+use crate::render::Rung;
+use std::collections::HashMap;
 use std::fmt;
 
 /// Columns of a line that lists names.
@@ -36,6 +38,7 @@ fn count(number: usize, what: &str) -> String {
 /// Objects of one material that are drawn alike, together.
 fn alike(objects: &[PlannedObject]) -> Vec<Vec<&PlannedObject>> {
     let mut groups: Vec<Vec<&PlannedObject>> = Vec::new();
+    // Few are drawn otherwise than another, however many there are.
     for object in objects {
         let same = |group: &&mut Vec<&PlannedObject>| {
             let Decisions { rung, effects, .. } = &group[0].decisions;
@@ -62,6 +65,9 @@ impl Plan {
             for object in group {
                 writeln!(f, "  {}: {}", object.object, object.decisions.reason)?;
             }
+        }
+        if *rung == Rung::Reference {
+            return writeln!(f, "  by the reference, on the CPU: no recipe, pass or resource");
         }
         writeln!(f, "  so drawn by rung {rung} of recipe {}", rung.recipe())?;
         let (on, off): (Vec<&Decision>, Vec<&Decision>) = effects.iter().partition(|decision| decision.on);
@@ -130,24 +136,28 @@ impl Plan {
             return Ok(());
         }
         writeln!(f, "\nresources: {}", bytes(self.capture.bytes()))?;
-        let owner = |resource: &Resource| {
-            let names = self.objects.iter().map(|planned| planned.object.as_str());
-            let own = |name: &&str| resource.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('/'));
-            // Of `a` and `a/b` the longer.
-            names.filter(own).max_by_key(|name| name.len()).unwrap_or_default().to_owned()
-        };
-        let mut owners: Vec<String> = Vec::new();
-        for resource in resources {
-            let owner = owner(resource);
-            if !owners.contains(&owner) {
-                owners.push(owner);
+        // What one object alone reads is its own, though it was made for all that might.
+        let mut users: HashMap<&str, Option<&str>> = HashMap::new();
+        for step in &self.capture.steps {
+            for name in &step.resources {
+                let user = users.entry(name).or_insert(Some(&step.object));
+                *user = user.filter(|user| *user == step.object);
             }
         }
-        owners.sort_by_key(|owner| self.objects.iter().position(|planned| planned.object == *owner));
+        let owner = |resource: &'_ Resource| {
+            let user = users.get(&*resource.name).copied().flatten().unwrap_or_default();
+            if resource.object.is_empty() { user.to_owned() } else { resource.object.clone() }
+        };
+        let mut by_owner: HashMap<String, Vec<&Resource>> = HashMap::new();
+        for resource in resources {
+            by_owner.entry(owner(resource)).or_default().push(resource);
+        }
+        let objects = self.objects.iter().map(|planned| planned.object.clone());
+        let owners = std::iter::once(String::new()).chain(objects);
         for name in owners {
-            let own: Vec<&Resource> = resources.iter().filter(|resource| owner(resource) == name).collect();
+            let Some(own) = by_owner.get(&name) else { continue };
             let sum = own.iter().map(|resource| resource.bytes).sum();
-            writeln!(f, "  {}: {}", if name.is_empty() { "shared" } else { &name }, bytes(sum))?;
+            writeln!(f, "  {}: {}", if name.is_empty() { "of all" } else { &name }, bytes(sum))?;
             let prefix = format!("{name}/");
             let shown = own.iter().map(|resource| {
                 let short = resource.name.strip_prefix(&prefix).unwrap_or(&resource.name);

@@ -91,8 +91,10 @@ pub(super) fn pass<'gpu>(
     let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
     let views = light_views::views(lights, bounds);
     let largest = light_views::largest_irradiance(lights, bounds);
-    let side = map_side(part, paths.cells).min(gpu.device.limits().max_texture_dimension_2d);
-    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side)?;
+    // Where there is no light, a texel is enough to say so.
+    let side = if part.lights.is_empty() { 1 } else { map_side(part, paths.cells) };
+    let side = side.min(gpu.device.limits().max_texture_dimension_2d);
+    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side, part.rung)?;
     let views = gpu.guarded("uploading views", |device| {
         buffer(device, "views of lights", &view_bytes(&views), wgpu::BufferUsages::STORAGE)
     })?;

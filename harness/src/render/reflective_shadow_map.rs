@@ -1,9 +1,9 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
-use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
+use super::{RenderError, Rung};
 use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
@@ -26,8 +26,8 @@ pub(super) struct ReflectiveShadowMaps<'gpu> {
 }
 
 impl<'gpu> ReflectiveShadowMaps<'gpu> {
-    /// Maps of `side` texels a side for `views`, of which there is at least one.
-    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32) -> Result<Self, RenderError> {
+    /// Maps of `side` texels a side for `views`, of which there is at least one, for the bodies of a rung.
+    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32, rung: Rung) -> Result<Self, RenderError> {
         let limit = gpu.device.limits().max_texture_array_layers;
         if views.len() > limit as usize {
             return Err(RenderError::TooManyViews { views: views.len(), limit });
@@ -46,7 +46,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
         )?;
         let (texture, depth, views) = gpu.guarded("allocating reflective shadow maps", |device| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("reflective shadow maps"),
+                label: Some(&format!("reflective shadow maps of {rung}")),
                 size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: views.len() as u32 },
                 mip_level_count: 1,
                 sample_count: 1,
@@ -55,7 +55,13 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             });
-            let depth = device::target(device, "depth of maps", [side; 2], DEPTH_FORMAT, wgpu::TextureUsages::empty());
+            let depth = device::target(
+                device,
+                &format!("depth of maps of {rung}"),
+                [side; 2],
+                DEPTH_FORMAT,
+                wgpu::TextureUsages::empty(),
+            );
             let depth = device::view(&depth);
             let group = |view: &LightView| {
                 let uniform = buffer(device, "view of a light", &bytes(view.view), wgpu::BufferUsages::UNIFORM);

@@ -16,8 +16,8 @@ pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
 /// 0.26 there.
 pub const STUDIO_LARGEST: f32 = 20.4;
 
-/// From so many hits on rays end by their throughput, where nothing else is said: the fewest at which that saved time in every scene and by
-/// every geometry that was measured (docs/gem.md). With fewer, a diamond's rays keep what they carry, and nothing is gained.
+/// From so many hits on rays end by their throughput, where nothing else is said: the fewest at which that cost no scene and
+/// no geometry time beyond the noise of the measurement (docs/gem.md). With fewer, a diamond's rays keep what they carry, and nothing is gained.
 pub const LEAST_HITS: u32 = 16;
 
 /// Whether rays end by their throughput.

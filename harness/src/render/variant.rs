@@ -3,6 +3,7 @@
 use super::{Rung, Settings};
 use crate::plan::Decisions;
 use crate::scene::{Bounds, Light, Object, Scene};
+use std::collections::{HashMap, HashSet};
 
 /// An object and what it calls for.
 pub(super) struct Drawn<'a> {
@@ -44,11 +45,22 @@ impl<'a> Part<'a> {
 
 /// A name for each object that no other has.
 pub(crate) fn names(scene: &Scene) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
+    let mut taken: HashSet<String> = scene.objects.iter().map(|object| object.name.clone()).collect();
+    // Of each name that was met, the last number that was given.
+    let mut given: HashMap<&str, u32> = HashMap::new();
+    let mut names = Vec::with_capacity(scene.objects.len());
     for object in &scene.objects {
-        let numbered = (2..).map(|number| format!("{}#{number}", object.name));
-        let mut candidates = std::iter::once(object.name.clone()).chain(numbered);
-        names.extend(candidates.find(|name| !names.contains(name)));
+        let number = given.entry(&object.name).or_default();
+        *number += 1;
+        let mut name = object.name.clone();
+        while *number > 1 {
+            name = format!("{}#{number}", object.name);
+            if taken.insert(name.clone()) {
+                break;
+            }
+            *number += 1;
+        }
+        names.push(name);
     }
     names
 }

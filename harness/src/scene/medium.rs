@@ -142,6 +142,9 @@ impl Medium {
     /// The most that light may be scattered forwards or back.
     pub const MOST_ANISOTROPY: f32 = 0.99;
 
+    /// The most that is taken from light, per unit of length: three times its square is finite in single precision.
+    pub const MOST_EXTINCTION: f32 = 1e18;
+
     /// Matter of one density that scatters light to all sides alike.
     #[must_use]
     pub const fn isotropic(scattering: Vec3, absorption: Vec3) -> Self {
@@ -153,6 +156,8 @@ impl Medium {
         let is_length = |length: Vec3| length.is_finite() && length.cmpge(Vec3::ZERO).all();
         if !is_length(self.scattering) || !is_length(self.absorption) {
             Some("its material's scattering or absorption is not finite and at least 0; mend it")
+        } else if (self.scattering + self.absorption).max_element() > Self::MOST_EXTINCTION {
+            Some("its material's scattering and absorption together are above 1e18; mend them")
         } else if !(-Self::MOST_ANISOTROPY..=Self::MOST_ANISOTROPY).contains(&self.anisotropy) {
             Some("its material's anisotropy is not between -0.99 and 0.99; mend it")
         } else if !self.density.is_sound() {

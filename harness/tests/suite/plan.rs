@@ -385,3 +385,40 @@ fn the_vitrine_is_drawn_as_planned_and_explained() {
     let usual = Settings { rung: render::Rung::ByMaterial, ..Settings::of_size(512, 512) };
     insta::assert_snapshot!("vitrine_plan", Plan::of(&vitrine, &usual).expect("a plan").to_string());
 }
+
+/// As many objects as a large file has, all of one name: each is planned under a name of its own, and none takes the longer the more there are.
+#[test]
+fn thousands_of_objects_are_planned() {
+    const COUNT: usize = 4_000;
+    let scene = named("octahedron");
+    let objects = vec![scene.objects[0].clone(); COUNT];
+    let plan = Plan::of(&Scene { objects, ..scene }, &settings()).expect("a plan");
+    let names: BTreeSet<&str> = plan.objects.iter().map(|planned| planned.object.as_str()).collect();
+    assert_eq!(names.len(), COUNT);
+    assert!(names.contains("octahedron") && names.contains(format!("octahedron#{COUNT}").as_str()));
+    let text = plan.to_string();
+    assert!(text.lines().count() > COUNT, "{}", text.lines().count());
+}
+
+#[test]
+fn the_reference_takes_nothing_of_a_device() {
+    let plan = Plan::of(&named("wax"), &of_rung("reference")).expect("a plan");
+    assert_eq!(plan.capture, Capture::default());
+    assert!(plan.objects.iter().all(|planned| planned.decisions.on() == Effects::NONE));
+    assert!(plan.to_string().contains("on the CPU"), "{plan}");
+}
+
+/// Where no light is followed through a body, nothing stands by for it; and without any light the maps are a texel.
+#[test]
+fn ways_that_are_left_out_take_nothing_along() {
+    let left_out = Settings { without: Effects::of(&[Effect::OpticalPath]), ..settings() };
+    let bunny = one("bunny");
+    for effect in [Effect::Surface, Effect::Color, Effect::ExtinctionPerVoxel] {
+        assert_eq!(off(&bunny, &left_out, effect), "optical_path is left out", "{effect}");
+    }
+    let dark = Scene { lights: Vec::new(), ..bunny };
+    let capture = planned(&dark, &of_rung("godunov-64"));
+    let maps: Vec<&Resource> = capture.resources.iter().filter(|of| of.name.contains("maps")).collect();
+    assert!(!maps.is_empty() && maps.iter().all(|map| map.bytes <= 16), "{maps:?}");
+    assert!(passes(&capture).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
+}

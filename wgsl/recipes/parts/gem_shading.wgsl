@@ -5,7 +5,7 @@
 // A geometry recipe adds: the parts mesh and surroundings, struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
 // struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).
 
-// A wall without an inside: what is behind it is seen as it is, below the reflection. Called for by KHR_materials_transmission without a
+// A wall without an inside: the environment behind it is seen as it is, below the reflection. Called for by KHR_materials_transmission without a
 // thickness of KHR_materials_volume.
 override EFFECT_THIN_WALL: bool = false;  //+thin_wall
 // Light inside is absorbed on its way. Called for by KHR_materials_volume: an attenuation colour below white.

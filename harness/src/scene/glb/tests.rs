@@ -65,7 +65,7 @@ fn medium() -> Medium {
             octaves: 3,
             seed: u32::MAX,
         }),
-        ..Medium::isotropic(Vec3::new(0.0, f32::MIN_POSITIVE, 0.1), Vec3::new(1.0 / 7.0, f32::MAX, 0.0))
+        ..Medium::isotropic(Vec3::new(0.0, f32::MIN_POSITIVE, 0.1), Vec3::new(1.0 / 7.0, 1e18, 0.0))
     }
 }
 

@@ -31,6 +31,11 @@ pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
         if let Some(json) = extras.veins {
             medium.density = Density::Veins(veins(json)?);
         }
+        if (scattering + absorption).max_element() > Medium::MOST_EXTINCTION {
+            return Err(
+                "its extras.lapidary.scattering and .absorption together are above 1e18; give smaller ones".to_owned()
+            );
+        }
         // What the parts above let pass, the whole has to answer for.
         medium.problem().map_or(Ok(medium), |_| Err(unfit("veins", extras.veins)))
     };

@@ -30,8 +30,9 @@ pub(super) fn add_objects(
         return Ok(());
     };
     let mesh = item(&root.meshes, "mesh", mesh_index, || node.designation())?;
-    let name = node.node.name.as_deref().or(mesh.name.as_deref());
-    let name = name.map_or_else(|| format!("mesh {mesh_index}"), excerpt);
+    let given = |name: &'_ Option<String>| name.clone().filter(|name| !name.is_empty());
+    let name = given(&node.node.name).or_else(|| given(&mesh.name));
+    let name = name.map_or_else(|| format!("mesh {mesh_index}"), |name| excerpt(&name));
     let instances = Instances::of(root, buffers, node)?;
     let enlargement = instances.enlargement();
     for (index, primitive) in mesh.primitives.iter().enumerate() {

@@ -158,6 +158,13 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
     let is_share = |factor: f32| factor > 0.0 && factor < 1.0;
     let &Material { transmission, diffuse_transmission, .. } = material;
     let mut note = |kind, what: &str, instead| lacking.note(kind, what.to_owned(), instead, user);
+    if transmission > 0.0 && scatters(material) {
+        return note(
+            "transmission",
+            "`transmissionFactor` beside scattering",
+            "light that goes straight through is not drawn",
+        );
+    }
     if is_share(transmission) {
         note("transmission", "`transmissionFactor` between 0 and 1", "drawn wholly clear");
     }
