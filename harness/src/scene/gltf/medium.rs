@@ -63,7 +63,7 @@ pub(super) fn derived(material: &Material) -> Result<Option<Medium>, String> {
     // The darkest colour with a finite logarithm, as in the module `absorption`.
     let darkest = f64::from(f32::MIN_POSITIVE);
     let distance = f64::from(material.attenuation_distance);
-    let extinction = material.attenuation_color.as_dvec3().map(|color| -color.max(darkest).ln() / distance);
+    let extinction = material.attenuation_color.as_dvec3().map(|color| 0.0 - color.max(darkest).ln() / distance);
     let shown = (material.base_color * material.diffuse_transmission_color).as_dvec3();
     let albedo = shown.map(single_scattering_albedo);
     let scattering = extinction * albedo;
