@@ -3,6 +3,8 @@
 mod program;
 mod recipes;
 
+pub(crate) use recipes::specialised_texts;
+
 use crate::gpu;
 use lapidary_harness::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
 use lapidary_harness::property::draws::Draws;
