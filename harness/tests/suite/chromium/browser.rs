@@ -59,11 +59,11 @@ pub(super) fn ask(program: &Path, texts: &[&str]) -> Result<(String, Vec<Vec<Mes
     let folder = tempfile::tempdir().map_err(fault)?;
     let log = folder.path().join("stderr");
     let mut child = start(program, &format!("http://{address}/"), folder.path(), &log).map_err(fault)?;
-    let answer = serve(&listener, &mut child, &texts);
+    let answer = serve(listener, &mut child, &texts);
     end(&mut child);
     match serde_json::from_str(&answer.map_err(|error| format!("{error}\n{}", last_lines(&log)))?) {
         Ok(Answer::Judged { adapter, messages }) => Ok((adapter, messages)),
-        Ok(Answer::Fault { fault }) => Err(format!("{fault}\n{}", last_lines(&log))),
+        Ok(Answer::Fault { fault }) => Err(fault),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -83,12 +83,12 @@ fn start(program: &Path, address: &str, profile: &Path, log: &Path) -> io::Resul
         .spawn()
 }
 
-/// Answers the page's requests until Chromium has nothing more to ask; returns what the page has sent.
-fn serve(listener: &TcpListener, child: &mut Child, texts: &str) -> Result<String, String> {
+/// Answers the page's requests until the page has sent its answer, which is returned.
+/// Takes the listener, so that whatever comes later is refused and keeps Chromium from nothing.
+fn serve(listener: TcpListener, child: &mut Child, texts: &str) -> Result<String, String> {
     let started = Instant::now();
     let (sender, requests): (Sender<Request>, Receiver<Request>) = channel();
-    // Closed as this returns, which is the answer to `/end`.
-    let mut held = Vec::new();
+    let mut ends = Vec::new();
     loop {
         while let Ok((stream, _)) = listener.accept() {
             let sender = sender.clone();
@@ -100,10 +100,11 @@ fn serve(listener: &TcpListener, child: &mut Child, texts: &str) -> Result<Strin
                 "/" => respond(request.stream, "text/html", PAGE),
                 "/texts" => respond(request.stream, "application/json", texts),
                 "/answer" => {
-                    respond(request.stream, "text/plain", "");
+                    ends.push(request.stream);
+                    ends.into_iter().for_each(|stream| respond(stream, "text/plain", ""));
                     return Ok(request.body);
                 }
-                "/end" => held.push(request.stream),
+                "/end" => ends.push(request.stream),
                 _ => respond(request.stream, "text/plain", ""),
             }
         }

@@ -1,30 +1,56 @@
-//! Chromium's WGSL compiler, Tint, takes what the cookbook hands out: modules, recipes, and specialised recipes. naga,
-//! which everything else here goes through, lets some of what the language forbids pass.
+//! Chromium's WGSL compiler, Tint, takes what the cookbook hands out, modules and recipes, and what specialising makes of
+//! recipes and of random programs. naga, which everything else here goes through, lets some of what the language forbids pass.
 //!
 //! Where there is no Chromium with WebGPU these tests say so and pass; with `LAPIDARY_CHROMIUM=required`, as in
 //! `.ci/run`, they fail.
 
 mod browser;
 
-use crate::specialise::specialised_texts;
+use crate::specialise::{specialised_program, specialised_texts};
 use browser::Message;
 use lapidary_harness::cookbook::{compose, modules, recipes};
 use lapidary_harness::dispatch;
 use std::io::Write as _;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 /// `required`: a missing Chromium is a failure.
 const VARIABLE: &str = "LAPIDARY_CHROMIUM";
 
-/// Texts that WGSL forbids, each with a word of what Chromium says of it. Only the last is what naga refuses too.
-const PLANTED: [(&str, &str); 4] = [
-    ("fn mixed(a: u32, b: u32, c: u32) -> u32 {\n    return a | b << c;\n}\n", "parenthesis"),
-    (
-        "@fragment\nfn ragged(@location(0) x: f32) -> @location(0) vec4f {\n    var slope = 0.0f;\n    if x > 0.0f {\n        slope = dpdx(x);\n    }\n    return vec4f(slope);\n}\n",
-        "uniform",
-    ),
-    ("fn split(n: u32) -> u32 {\n    return n / 0u;\n}\n", "zero"),
-    ("fn lost() -> u32 {\n    return nowhere;\n}\n", "unresolved"),
+/// Random programs that are specialised.
+const PROGRAMS: u64 = 300;
+
+/// A text that WGSL forbids.
+struct Planted {
+    text: &'static str,
+    /// A word of what Chromium says of it.
+    word: &'static str,
+    /// Whether naga lets it pass.
+    passes_naga: bool,
+}
+
+const PLANTED: [Planted; 4] = [
+    Planted {
+        text: "fn mixed(a: u32, b: u32, c: u32) -> u32 {\n    return a | b << c;\n}\n",
+        word: "parenthesis",
+        passes_naga: true,
+    },
+    Planted {
+        text: "\
+@fragment
+fn ragged(@location(0) x: f32) -> @location(0) vec4f {
+    var slope = 0.0f;
+    if x > 0.0f {
+        slope = dpdx(x);
+    }
+    return vec4f(slope);
+}
+",
+        word: "uniform",
+        passes_naga: true,
+    },
+    Planted { text: "fn split(n: u32) -> u32 {\n    return n / 0u;\n}\n", word: "zero", passes_naga: false },
+    Planted { text: "fn lost() -> u32 {\n    return nowhere;\n}\n", word: "unresolved", passes_naga: false },
 ];
 
 /// A text and what Chromium says of it.
@@ -46,25 +72,27 @@ impl Judged {
 
 /// All that is asked, in one start of Chromium: the planted texts first.
 fn texts() -> Vec<(String, String)> {
-    let planted = PLANTED.iter().map(|(text, word)| (format!("planted: {word}"), (*text).to_owned()));
+    let planted = PLANTED.iter().map(|planted| (format!("planted: {}", planted.word), planted.text.to_owned()));
     let each = modules().iter().map(|module| (module.name.to_owned(), module.source.to_owned()));
     let names: Vec<&str> = modules().iter().map(|module| module.name).collect();
     let together = ("all modules".to_owned(), compose(&names, ""));
     let whole = recipes().iter().map(|recipe| (recipe.name.to_owned(), recipe.compose()));
     let special = specialised_texts().iter().map(|special| (special.name.clone(), special.text.clone()));
-    planted.chain(each).chain([together]).chain(whole).chain(special).collect()
+    let programs = (0..PROGRAMS).map(|row| (format!("program {row}"), specialised_program(row)));
+    planted.chain(each).chain([together]).chain(whole).chain(special).chain(programs).collect()
 }
 
 fn judge() -> Result<Vec<Judged>, String> {
     let program = browser::find().ok_or("no Chromium on the PATH")?;
     let texts = texts();
+    let started = Instant::now();
     let codes: Vec<&str> = texts.iter().map(|(_, text)| text.as_str()).collect();
     let (adapter, messages) =
         browser::ask(&program, &codes).map_err(|error| format!("{} cannot be asked: {error}", program.display()))?;
     if messages.len() != texts.len() {
         return Err(format!("{} texts were asked about, {} answered", texts.len(), messages.len()));
     }
-    println!("{} texts, {} on {adapter}", texts.len(), program.display());
+    println!("{} texts, {} on {adapter}: {:.1?}", texts.len(), program.display(), started.elapsed());
     let judged = texts.into_iter().zip(messages);
     Ok(judged.map(|((name, text), messages)| Judged { name, text, messages }).collect())
 }
@@ -96,10 +124,9 @@ fn chromium_takes_every_text() {
 #[test]
 fn chromium_refuses_what_wgsl_forbids() {
     let Some((planted, _)) = judged() else { return };
-    for (judged, (text, word)) in planted.iter().zip(PLANTED) {
+    for (judged, Planted { text, word, passes_naga }) in planted.iter().zip(&PLANTED) {
         let errors: String = judged.of_kind("error").collect();
         assert!(errors.contains(word), "{text}{errors}");
+        assert_eq!(dispatch::parse(text, "planted").is_ok(), *passes_naga, "{text}");
     }
-    let passes = |text: &str| dispatch::parse(text, "planted").is_ok();
-    assert!(passes(PLANTED[0].0), "naga refuses it too by now: the rule in `cookbook::precedence` can go");
 }

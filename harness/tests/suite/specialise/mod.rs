@@ -36,6 +36,19 @@ fn specialised(kernel: &KernelModule, constants: &[(&str, f64)]) -> KernelModule
     special
 }
 
+/// A random program, specialised, as WGSL.
+pub(crate) fn specialised_program(row: u64) -> String {
+    let (_, kernel, constants) = kernel(row);
+    written(&specialised(&kernel, &constants).module, row)
+}
+
+/// A valid module as WGSL.
+fn written(module: &naga::Module, row: u64) -> String {
+    let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
+    back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
+        .unwrap_or_else(|error| panic!("program {row}: {error}"))
+}
+
 /// `x`, `n` of each call.
 fn arguments(draws: &mut Draws<'_>) -> Vec<u32> {
     (0..ROWS).flat_map(|_| [draws.between(-2.0, 2.0).to_bits(), draws.bits()]).collect()
@@ -94,8 +107,7 @@ fn a_specialised_program_can_be_written_and_is_final() {
             let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
             back::spv::write_vec(module, &info, &back::spv::Options::default(), None)
                 .unwrap_or_else(|error| panic!("program {row}: {error}"));
-            back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
-                .unwrap_or_else(|error| panic!("program {row}: {error}"))
+            written(module, row)
         };
         let special = specialised(&kernel, &constants);
         let text = write(&special.module);

@@ -123,7 +123,8 @@ pub(crate) struct SpecialisedText {
     entry_points: usize,
 }
 
-/// Each recipe with its effects as they are, all off and all on; its entry points all together, and each by itself.
+/// Each recipe with its effects as they are, all off and all on, its entry points all together, and each by itself; and
+/// with each effect alone.
 pub(crate) fn specialised_texts() -> &'static [SpecialisedText] {
     static TEXTS: OnceLock<Vec<SpecialisedText>> = OnceLock::new();
     TEXTS.get_or_init(|| recipes().iter().flat_map(texts_of).collect())
@@ -137,18 +138,17 @@ fn texts_of(recipe: &Recipe) -> Vec<SpecialisedText> {
     let choices =
         [Vec::new(), effects().map(|name| (name, 0.0)).collect(), effects().map(|name| (name, 1.0)).collect()];
     let passes = std::iter::once(entries.clone()).chain(entries.iter().map(|entry| vec![*entry]));
-    let mut texts = Vec::new();
-    for pass in passes {
-        for constants in &choices {
-            let name = format!("{} {pass:?} with {constants:?}", recipe.name);
-            let (special, info) =
-                specialise(module.clone(), constants, &pass).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let text = back::wgsl::write_string(&special, &info, back::wgsl::WriterFlags::empty())
-                .unwrap_or_else(|error| panic!("{name}: {error}"));
-            texts.push(SpecialisedText { name, text, entry_points: pass.len() });
-        }
-    }
-    texts
+    let text = |pass: &[&str], constants: &[(&str, f64)]| {
+        let name = format!("{} {pass:?} with {constants:?}", recipe.name);
+        let (special, info) =
+            specialise(module.clone(), constants, pass).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let text = back::wgsl::write_string(&special, &info, back::wgsl::WriterFlags::empty())
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        SpecialisedText { name, text, entry_points: pass.len() }
+    };
+    let alone = |effect: &str| effects().map(|name| (name, f64::from(u8::from(name == effect)))).collect::<Vec<_>>();
+    let passes = passes.flat_map(|pass| choices.iter().map(|choice| text(&pass, choice)).collect::<Vec<_>>());
+    passes.chain(effects().map(|effect| text(&entries, &alone(effect)))).collect()
 }
 
 /// Chromium's word on the same texts: `chromium`.
