@@ -5,6 +5,7 @@ mod bad_input;
 mod bvh;
 mod cdrf;
 mod cdrf_shading;
+mod chromium;
 mod cli;
 mod comparator;
 mod contract;

@@ -257,7 +257,7 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
 
 #[test]
 fn a_materials_variant_runs_on_its_own_draw_alone() {
-    let [mut diamond, ruby] = ["brilliant", "ruby"].map(|name| named(name));
+    let [mut diamond, ruby] = ["brilliant", "ruby"].map(named);
     diamond.objects.extend(ruby.objects);
     let capture = drawn(&diamond, &settings());
     let effects = |object: &str| {

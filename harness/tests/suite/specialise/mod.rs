@@ -3,6 +3,8 @@
 mod program;
 mod recipes;
 
+pub(crate) use recipes::specialised_texts;
+
 use crate::gpu;
 use lapidary_harness::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
 use lapidary_harness::property::draws::Draws;
@@ -32,6 +34,19 @@ fn specialised(kernel: &KernelModule, constants: &[(&str, f64)]) -> KernelModule
     let mut special = kernel.clone();
     special.module = module;
     special
+}
+
+/// A random program, specialised, as WGSL.
+pub(crate) fn specialised_program(row: u64) -> String {
+    let (_, kernel, constants) = kernel(row);
+    written(&specialised(&kernel, &constants).module, row)
+}
+
+/// A valid module as WGSL.
+fn written(module: &naga::Module, row: u64) -> String {
+    let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
+    back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
+        .unwrap_or_else(|error| panic!("program {row}: {error}"))
 }
 
 /// `x`, `n` of each call.
@@ -92,8 +107,7 @@ fn a_specialised_program_can_be_written_and_is_final() {
             let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
             back::spv::write_vec(module, &info, &back::spv::Options::default(), None)
                 .unwrap_or_else(|error| panic!("program {row}: {error}"));
-            back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
-                .unwrap_or_else(|error| panic!("program {row}: {error}"))
+            written(module, row)
         };
         let special = specialised(&kernel, &constants);
         let text = write(&special.module);

@@ -3,13 +3,14 @@
 //! (`effects_off`).
 
 use super::{ROWS, SEED, outcomes, specialised};
-use lapidary_harness::cookbook::recipes;
+use lapidary_harness::cookbook::{Recipe, recipes};
 use lapidary_harness::dispatch::shape::Signature;
 use lapidary_harness::dispatch::{self, KernelModule};
 use lapidary_harness::property::draws::Draws;
 use lapidary_harness::specialise::specialise;
 use naga::{Expression, Function, Handle, Literal, Module, Statement, back};
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 /// What a function and those that it calls refer to.
 #[derive(Default)]
@@ -114,29 +115,48 @@ fn a_recipes_function_gives_the_same_bits_specialised() {
     assert!(run.contains("light_arrival") && run.contains("optical_path_affected"), "{run:?}");
 }
 
-/// With its effects as they are, all off and all on, each recipe can be written as WGSL and read back.
+/// A recipe that was specialised, as WGSL.
+pub(crate) struct SpecialisedText {
+    /// The recipe, its entry points and its override values.
+    pub(crate) name: String,
+    pub(crate) text: String,
+    entry_points: usize,
+}
+
+/// Each recipe with its effects as they are, all off and all on, its entry points all together, and each by itself; and
+/// with each effect alone.
+pub(crate) fn specialised_texts() -> &'static [SpecialisedText] {
+    static TEXTS: OnceLock<Vec<SpecialisedText>> = OnceLock::new();
+    TEXTS.get_or_init(|| recipes().iter().flat_map(texts_of).collect())
+}
+
+fn texts_of(recipe: &Recipe) -> Vec<SpecialisedText> {
+    let (module, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
+    let effects: Vec<String> = module.overrides.iter().filter_map(|(_, over)| over.name.clone()).collect();
+    let effects = || effects.iter().map(String::as_str).filter(|name| name.starts_with("EFFECT_"));
+    let entries: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+    let choices =
+        [Vec::new(), effects().map(|name| (name, 0.0)).collect(), effects().map(|name| (name, 1.0)).collect()];
+    let passes = std::iter::once(entries.clone()).chain(entries.iter().map(|entry| vec![*entry]));
+    let text = |pass: &[&str], constants: &[(&str, f64)]| {
+        let name = format!("{} {pass:?} with {constants:?}", recipe.name);
+        let (special, info) =
+            specialise(module.clone(), constants, pass).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let text = back::wgsl::write_string(&special, &info, back::wgsl::WriterFlags::empty())
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        SpecialisedText { name, text, entry_points: pass.len() }
+    };
+    let alone = |effect: &str| effects().map(|name| (name, f64::from(u8::from(name == effect)))).collect::<Vec<_>>();
+    let passes = passes.flat_map(|pass| choices.iter().map(|choice| text(&pass, choice)).collect::<Vec<_>>());
+    passes.chain(effects().map(|effect| text(&entries, &alone(effect)))).collect()
+}
+
+/// Chromium's word on the same texts: `chromium`.
 #[test]
 fn specialised_recipes_are_valid_text() {
-    for recipe in recipes() {
-        let (module, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
-        let effects: Vec<String> = module.overrides.iter().filter_map(|(_, over)| over.name.clone()).collect();
-        let effects = || effects.iter().map(String::as_str).filter(|name| name.starts_with("EFFECT_"));
-        let entries: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-        let choices =
-            [Vec::new(), effects().map(|name| (name, 0.0)).collect(), effects().map(|name| (name, 1.0)).collect()];
-        // All together, and each by itself.
-        let passes = std::iter::once(entries.clone()).chain(entries.iter().map(|entry| vec![*entry]));
-        for pass in passes {
-            for constants in &choices {
-                let name = format!("{} {pass:?} with {constants:?}", recipe.name);
-                let special = specialise(module.clone(), constants, &pass);
-                let (special, info) = special.unwrap_or_else(|error| panic!("{name}: {error}"));
-                let text = back::wgsl::write_string(&special, &info, back::wgsl::WriterFlags::empty())
-                    .unwrap_or_else(|error| panic!("{name}: {error}"));
-                let (again, _) = dispatch::parse(&text, &name).unwrap_or_else(|error| panic!("{error}\n{text}"));
-                assert_eq!(again.entry_points.len(), pass.len(), "{name}");
-                assert!(again.overrides.is_empty(), "{name}");
-            }
-        }
+    for SpecialisedText { name, text, entry_points } in specialised_texts() {
+        let (again, _) = dispatch::parse(text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!(again.entry_points.len(), *entry_points, "{name}");
+        assert!(again.overrides.is_empty(), "{name}");
     }
 }

@@ -1,0 +1,132 @@
+//! Chromium's WGSL compiler, Tint, takes what the cookbook hands out, modules and recipes, and what specialising makes of
+//! recipes and of random programs. naga, which everything else here goes through, lets some of what the language forbids pass.
+//!
+//! Where there is no Chromium with WebGPU these tests say so and pass; with `LAPIDARY_CHROMIUM=required`, as in
+//! `.ci/run`, they fail.
+
+mod browser;
+
+use crate::specialise::{specialised_program, specialised_texts};
+use browser::Message;
+use lapidary_harness::cookbook::{compose, modules, recipes};
+use lapidary_harness::dispatch;
+use std::io::Write as _;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// `required`: a missing Chromium is a failure.
+const VARIABLE: &str = "LAPIDARY_CHROMIUM";
+
+/// Random programs that are specialised.
+const PROGRAMS: u64 = 300;
+
+/// A text that WGSL forbids.
+struct Planted {
+    text: &'static str,
+    /// A word of what Chromium says of it.
+    word: &'static str,
+    /// Whether naga lets it pass.
+    passes_naga: bool,
+}
+
+const PLANTED: [Planted; 4] = [
+    Planted {
+        text: "fn mixed(a: u32, b: u32, c: u32) -> u32 {\n    return a | b << c;\n}\n",
+        word: "parenthesis",
+        passes_naga: true,
+    },
+    Planted {
+        text: "\
+@fragment
+fn ragged(@location(0) x: f32) -> @location(0) vec4f {
+    var slope = 0.0f;
+    if x > 0.0f {
+        slope = dpdx(x);
+    }
+    return vec4f(slope);
+}
+",
+        word: "uniform",
+        passes_naga: true,
+    },
+    Planted { text: "fn split(n: u32) -> u32 {\n    return n / 0u;\n}\n", word: "zero", passes_naga: false },
+    Planted { text: "fn lost() -> u32 {\n    return nowhere;\n}\n", word: "unresolved", passes_naga: false },
+];
+
+/// A text and what Chromium says of it.
+struct Judged {
+    name: String,
+    text: String,
+    messages: Vec<Message>,
+}
+
+impl Judged {
+    /// The messages of a kind, each with the text's name and the line that it points at.
+    fn of_kind(&self, kind: &str) -> impl Iterator<Item = String> {
+        self.messages.iter().filter(move |message| message.kind == kind).map(|message| {
+            let line = message.line.checked_sub(1).and_then(|line| self.text.lines().nth(line)).unwrap_or_default();
+            format!("{}:{}: {}\n    {}\n", self.name, message.line, message.text, line.trim())
+        })
+    }
+}
+
+/// All that is asked, in one start of Chromium: the planted texts first.
+fn texts() -> Vec<(String, String)> {
+    let planted = PLANTED.iter().map(|planted| (format!("planted: {}", planted.word), planted.text.to_owned()));
+    let each = modules().iter().map(|module| (module.name.to_owned(), module.source.to_owned()));
+    let names: Vec<&str> = modules().iter().map(|module| module.name).collect();
+    let together = ("all modules".to_owned(), compose(&names, ""));
+    let whole = recipes().iter().map(|recipe| (recipe.name.to_owned(), recipe.compose()));
+    let special = specialised_texts().iter().map(|special| (special.name.clone(), special.text.clone()));
+    let programs = (0..PROGRAMS).map(|row| (format!("program {row}"), specialised_program(row)));
+    planted.chain(each).chain([together]).chain(whole).chain(special).chain(programs).collect()
+}
+
+fn judge() -> Result<Vec<Judged>, String> {
+    let program = browser::find().ok_or("no Chromium on the PATH")?;
+    let texts = texts();
+    let started = Instant::now();
+    let codes: Vec<&str> = texts.iter().map(|(_, text)| text.as_str()).collect();
+    let (adapter, messages) =
+        browser::ask(&program, &codes).map_err(|error| format!("{} cannot be asked: {error}", program.display()))?;
+    if messages.len() != texts.len() {
+        return Err(format!("{} texts were asked about, {} answered", texts.len(), messages.len()));
+    }
+    println!("{} texts, {} on {adapter}: {:.1?}", texts.len(), program.display(), started.elapsed());
+    let judged = texts.into_iter().zip(messages);
+    Ok(judged.map(|((name, text), messages)| Judged { name, text, messages }).collect())
+}
+
+/// The planted texts and the others, judged; none where there is no Chromium and none is required.
+fn judged() -> Option<(&'static [Judged], &'static [Judged])> {
+    static JUDGED: OnceLock<Result<Vec<Judged>, String>> = OnceLock::new();
+    match JUDGED.get_or_init(judge) {
+        Ok(judged) => Some(judged.split_at(PLANTED.len())),
+        Err(error) => {
+            let required = std::env::var_os(VARIABLE).is_some_and(|value| value == "required");
+            assert!(!required, "{VARIABLE}=required: {error}");
+            // Past the test's own capture, which shows nothing of a test that passes.
+            let _ = writeln!(std::io::stderr(), "not checked with Chromium's WGSL compiler: {error}");
+            None
+        }
+    }
+}
+
+#[test]
+fn chromium_takes_every_text() {
+    let Some((_, texts)) = judged() else { return };
+    let warnings: Vec<String> = texts.iter().flat_map(|judged| judged.of_kind("warning")).collect();
+    println!("{} warnings\n{}", warnings.len(), warnings.concat());
+    let errors: Vec<String> = texts.iter().flat_map(|judged| judged.of_kind("error")).collect();
+    assert!(errors.is_empty(), "{} errors\n{}", errors.len(), errors.concat());
+}
+
+#[test]
+fn chromium_refuses_what_wgsl_forbids() {
+    let Some((planted, _)) = judged() else { return };
+    for (judged, Planted { text, word, passes_naga }) in planted.iter().zip(&PLANTED) {
+        let errors: String = judged.of_kind("error").collect();
+        assert!(errors.contains(word), "{text}{errors}");
+        assert_eq!(dispatch::parse(text, "planted").is_ok(), *passes_naga, "{text}");
+    }
+}
