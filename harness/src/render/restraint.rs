@@ -4,7 +4,7 @@
 //! environment: shares and what is left after them add up to 1 at most, and so it is with the rest taken from the environment, or dropped.
 //! The same holds for what replaces it where the ray ends. So the two differ by no more than throughput × largest radiance. A pixel
 //! weighs a ray by the share that its surface lets through, at most 1, by the base colour, and by the exposure; of separate wavelengths also by their
-//! matrices, whose entries may be negative, so that magnitudes add up. [`throughput_limit`] divides by all of these.
+//! matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit` divides by all of these.
 
 use super::{Environment, Rung, Settings, Spectrum, stone};
 use crate::scene::Material;
