@@ -48,8 +48,8 @@ pub struct Pipeline {
     pub instructions: usize,
 }
 
-/// Draws or dispatches of one pipeline with the same resources in one pass. What comes again later, as in a solver's turns or in another tile, is
-/// counted where it came first.
+/// Draws or dispatches of one pipeline with the same resources in one pass. What comes again, in a solver's turns or drawn in
+/// another tile, is counted where it came first.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
     /// The pass.
@@ -183,7 +183,14 @@ impl Recorder {
         name
     }
 
-    fn step(&mut self, pass: &str, pipeline: Option<String>, groups: &[Option<BindGroup>], targets: &[String]) {
+    fn step(
+        &mut self,
+        pass: &str,
+        pipeline: Option<String>,
+        groups: &[Option<BindGroup>],
+        targets: &[String],
+        is_drawn: bool,
+    ) {
         let mut resources: Vec<String> = Vec::new();
         let of = self.capture.pipelines.iter().find(|known| Some(&known.name) == pipeline.as_ref());
         // What an earlier pipeline bound stays where this one has no such group.
@@ -198,7 +205,11 @@ impl Recorder {
         let pipeline = pipeline.unwrap_or_default();
         let step = Step { pass: pass.to_owned(), object: object(), pipeline, resources, times: 1 };
         let steps = &mut self.capture.steps;
-        let place = *self.steps.entry(step.clone()).or_insert(steps.len());
+        let last = *self.steps.entry(step.clone()).or_insert(steps.len());
+        // A solver takes turns between two; what is drawn is drawn again in another tile.
+        let is_again = is_drawn || last + 2 >= steps.len();
+        let place = if is_again { last } else { steps.len() };
+        self.steps.insert(step.clone(), place);
         match steps.get_mut(place) {
             Some(known) => known.times += 1,
             None => steps.push(step),
@@ -270,13 +281,13 @@ pub(super) fn targets<'a>(views: impl Iterator<Item = &'a wgpu::TextureView>) ->
 pub(super) fn draw(pass: &str, pipeline: Option<&RenderPipeline>, groups: &[Option<BindGroup>], targets: &[String]) {
     record(|recorder| {
         let name = pipeline.and_then(|pipeline| recorder.render_pipelines.get(pipeline).cloned());
-        recorder.step(pass, name, groups, targets);
+        recorder.step(pass, name, groups, targets, true);
     });
 }
 
 pub(super) fn dispatch(pass: &str, pipeline: Option<&ComputePipeline>, groups: &[Option<BindGroup>]) {
     record(|recorder| {
         let name = pipeline.and_then(|pipeline| recorder.compute_pipelines.get(pipeline).cloned());
-        recorder.step(pass, name, groups, &[]);
+        recorder.step(pass, name, groups, &[], false);
     });
 }

@@ -142,7 +142,7 @@ fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Str
 /// How a rung finds the facets that rays inside meet.
 fn way_of(geometry: Geometry) -> &'static str {
     match geometry {
-        Geometry::Proxy => "the proxy, the cheapest way, of which no body's form is asked",
+        Geometry::Proxy => "the proxy; exact are rungs such as convex-8, for convex stones, and bvh-8",
         Geometry::Convex => "a convex stone's planes",
         Geometry::Bvh => "a hierarchy of all triangles",
         Geometry::Triangles => "a loop over all triangles",
