@@ -69,6 +69,10 @@ impl Asked {
                 Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
             });
         }
+        // Deciding measures bodies.
+        if self.without.is_empty() && self.scattering.is_none() {
+            return Ok(());
+        }
         let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
         let is_called = |effect: &Effect| all.iter().any(|decisions| decisions.has(*effect));
         if let Some(effect) = self.without.iter().find(|effect| !is_called(effect)) {

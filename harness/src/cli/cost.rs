@@ -96,11 +96,21 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
 }
 
-/// Refuses the flags that the technique would ignore.
-fn refuse(technique: &str, flags: &[(&str, bool)]) -> Result<(), Failure> {
-    match flags.iter().find(|(_, given)| *given) {
-        Some((flag, _)) => Err(Failure(format!("`{technique}` knows no {flag}; leave it out"))),
-        None => Ok(()),
+impl Arguments {
+    /// Refuses the flags that the technique would ignore: all that are some technique's but those that it obeys.
+    fn refuse_but(&self, technique: &str, obeyed: &[&str]) -> Result<(), Failure> {
+        let flags = [
+            ("--rungs", !self.rungs.is_empty()),
+            ("--views", !self.views.is_empty()),
+            ("--rounds", self.rounds.is_some()),
+            ("--walks", self.walks.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--profile", self.profile),
+        ];
+        match flags.iter().find(|(flag, given)| *given && !obeyed.contains(flag)) {
+            Some((flag, _)) => Err(Failure(format!("`{technique}` knows no {flag}; leave it out"))),
+            None => Ok(()),
+        }
     }
 }
 

@@ -104,35 +104,42 @@ fn parse_positive(text: &str) -> Result<f32, String> {
 
 /// A flag that no object's rung obeys would be believed to have been obeyed.
 fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
-    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings).rung).collect();
-    let any = |is: fn(&Rung) -> bool| rungs.iter().any(is);
-    let reference = any(|rung| *rung == Rung::Reference);
-    let walks = reference && render::scatters(scene);
-    let follows = reference && !walks;
-    let inside = any(|rung| matches!(rung, Rung::Inside { .. }));
-    let proxy = any(|rung| matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. }));
-    let gem = any(|rung| matches!(rung, Rung::Inside { .. } | Rung::Surface));
-    let blurs = any(|rung| matches!(rung, Rung::Diffuse(of) if *of != Reflectance::Lambert));
-    let paths = any(|rung| matches!(rung, Rung::OpticalPath(_)));
-    let paper = any(|rung| rung.spectrum() == Spectrum::Paper);
-    let flags = [
-        ("--wavelengths", follows, arguments.wavelengths.is_some()),
-        ("--energy-bound", follows, arguments.energy_bound.is_some()),
-        ("--walks", walks, arguments.walks.is_some()),
-        ("--walks-from", walks, arguments.walks_from.is_some()),
-        ("--seed", walks, arguments.seed.is_some()),
-        ("--boundary", walks, arguments.boundary.is_some()),
-        ("--curvature", blurs, arguments.curvature != Curvature::Mean),
-        ("--rest dropped", inside, arguments.rest == "dropped"),
-        ("--distance-limit", inside, arguments.distance_limit.is_some()),
-        ("--throughput-limit", inside, arguments.throughput_limit.is_some()),
-        ("--deferred", gem, arguments.deferred),
-        ("--centre paper", proxy, arguments.centre == "paper"),
-        ("--extinction-scale", paths, arguments.extinction_scale.is_some()),
-        ("--strength", paper, arguments.strength != 1.0),
+    // Of each flag: whether it is given, and whether a rung obeys it, in a scene that scatters light or not.
+    type Obeys = fn(Rung, bool) -> bool;
+    let follows: Obeys = |rung, scatters| rung == Rung::Reference && !scatters;
+    let walks: Obeys = |rung, scatters| rung == Rung::Reference && scatters;
+    let inside: Obeys = |rung, _| matches!(rung, Rung::Inside { .. });
+    let flags: [(&str, bool, Obeys); 14] = [
+        ("--wavelengths", arguments.wavelengths.is_some(), follows),
+        ("--energy-bound", arguments.energy_bound.is_some(), follows),
+        ("--walks", arguments.walks.is_some(), walks),
+        ("--walks-from", arguments.walks_from.is_some(), walks),
+        ("--seed", arguments.seed.is_some(), walks),
+        ("--boundary", arguments.boundary.is_some(), walks),
+        (
+            "--curvature",
+            arguments.curvature != Curvature::Mean,
+            |rung, _| matches!(rung, Rung::Diffuse(of) if of != Reflectance::Lambert),
+        ),
+        ("--rest dropped", arguments.rest == "dropped", inside),
+        ("--distance-limit", arguments.distance_limit.is_some(), inside),
+        ("--throughput-limit", arguments.throughput_limit.is_some(), inside),
+        ("--deferred", arguments.deferred, |rung, _| matches!(rung, Rung::Inside { .. } | Rung::Surface)),
+        ("--centre paper", arguments.centre == "paper", |rung, _| {
+            matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. })
+        }),
+        ("--extinction-scale", arguments.extinction_scale.is_some(), |rung, _| matches!(rung, Rung::OpticalPath(_))),
+        ("--strength", arguments.strength != 1.0, |rung, _| rung.spectrum() == Spectrum::Paper),
     ];
-    match flags.iter().find(|(_, obeyed, given)| *given && !obeyed) {
-        Some((flag, _, _)) => {
+    let given: Vec<_> = flags.into_iter().filter(|(_, given, _)| *given).collect();
+    // Deciding measures bodies.
+    if given.is_empty() {
+        return Ok(());
+    }
+    let scatters = render::scatters(scene);
+    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings).rung).collect();
+    match given.iter().find(|(_, _, obeys)| !rungs.iter().any(|rung| obeys(*rung, scatters))) {
+        Some((flag, ..)) => {
             let rung = settings.rung;
             Err(Failure(format!("rung `{rung}` knows no {flag} here; leave it out or take another rung")))
         }

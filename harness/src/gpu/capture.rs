@@ -205,14 +205,13 @@ impl Recorder {
         let pipeline = pipeline.unwrap_or_default();
         let step = Step { pass: pass.to_owned(), object: object(), pipeline, resources, times: 1 };
         let steps = &mut self.capture.steps;
-        let last = *self.steps.entry(step.clone()).or_insert(steps.len());
         // A solver takes turns between two; what is drawn is drawn again in another tile.
-        let is_again = is_drawn || last + 2 >= steps.len();
-        let place = if is_again { last } else { steps.len() };
-        self.steps.insert(step.clone(), place);
-        match steps.get_mut(place) {
-            Some(known) => known.times += 1,
-            None => steps.push(step),
+        let last = self.steps.get(&step).copied().filter(|last| is_drawn || last + 2 >= steps.len());
+        if let Some(last) = last {
+            steps[last].times += 1;
+        } else {
+            self.steps.insert(step.clone(), steps.len());
+            steps.push(step);
         }
     }
 }

@@ -58,16 +58,6 @@ impl Device {
         group
     }
 
-    /// A bind group's layout.
-    pub fn create_bind_group_layout(&self, descriptor: &wgpu::BindGroupLayoutDescriptor<'_>) -> wgpu::BindGroupLayout {
-        self.0.create_bind_group_layout(descriptor)
-    }
-
-    /// A pipeline's layout.
-    pub fn create_pipeline_layout(&self, descriptor: &wgpu::PipelineLayoutDescriptor<'_>) -> wgpu::PipelineLayout {
-        self.0.create_pipeline_layout(descriptor)
-    }
-
     /// A shader module.
     pub fn create_shader_module(&self, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
         self.0.create_shader_module(descriptor)

@@ -87,7 +87,7 @@ fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Stri
     if settings.rung != Rung::ByMaterial {
         return (settings.rung, "asked for".to_owned());
     }
-    if material.sigma0.is_some() || material.medium.is_some() {
+    if material.scatters() {
         return scattering(object, scene, settings);
     }
     if material.transmission == 0.0 {
@@ -217,17 +217,13 @@ impl Case<'_> {
 
     /// Why nothing of what is for clear bodies is on.
     fn not_clear(&self) -> String {
-        if self.scatters() {
+        if self.material.scatters() {
             "light scatters inside".to_owned()
         } else if self.material.transmission == 0.0 {
             "transmission 0: opaque".to_owned()
         } else {
             format!("the rung {} draws the surface alone", self.rung)
         }
-    }
-
-    fn scatters(&self) -> bool {
-        self.material.medium.is_some() || self.material.sigma0.is_some()
     }
 
     fn inside(&self, effect: Effect, geometry: Geometry) -> Answer {
@@ -331,8 +327,10 @@ impl Case<'_> {
     fn texture_diffusion(&self) -> Answer {
         match self.rung {
             Rung::Diffuse(Reflectance::Blur) => on("the rung is blur"),
-            Rung::Diffuse(Reflectance::Lambert) if self.scatters() => off("the rung is Lambert's law"),
-            Rung::Diffuse(_) if self.scatters() => off(format!("the rung {} spreads light by curvature", self.rung)),
+            Rung::Diffuse(Reflectance::Lambert) if self.material.scatters() => off("the rung is Lambert's law"),
+            Rung::Diffuse(_) if self.material.scatters() => {
+                off(format!("the rung {} spreads light by curvature", self.rung))
+            }
             Rung::OpticalPath(_) => off("light is followed through the body instead"),
             _ => off("nothing inside scatters"),
         }
@@ -341,7 +339,7 @@ impl Case<'_> {
     fn through(&self, called: &str) -> Answer {
         match self.rung {
             Rung::OpticalPath(_) => on(called),
-            Rung::Diffuse(_) if self.scatters() => off("no light is followed through the body"),
+            Rung::Diffuse(_) if self.material.scatters() => off("no light is followed through the body"),
             _ => off("nothing inside scatters"),
         }
     }

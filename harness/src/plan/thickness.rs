@@ -48,8 +48,7 @@ impl Thickness {
 }
 
 fn mean_free_path(medium: &Medium) -> f32 {
-    let extinction = medium.scattering * (1.0 - medium.anisotropy) + medium.absorption;
-    1.0 / (extinction.min_element() * medium.density.least())
+    1.0 / (medium.transport_extinction().min_element() * medium.density.least())
 }
 
 /// The thickness that all but a tenth of the surface has at least: the way straight inwards from it to the next surface. A body's thin parts are
@@ -96,8 +95,7 @@ fn inwards(mesh: &Mesh, bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option
 /// and jade: docs/cdrf.md.
 #[must_use]
 pub fn sigma0_of(medium: &Medium) -> Vec3 {
-    let scattering = medium.scattering * (1.0 - medium.anisotropy);
-    let extinction = scattering + medium.absorption;
+    let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());
     let of = |channel: usize| {
         let free = 1.0 / extinction[channel];
         if free.is_finite() { (0.5 + 4.3 * scattering[channel] * free) * free } else { 0.0 }

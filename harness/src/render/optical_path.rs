@@ -16,7 +16,7 @@ use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
 use crate::optical_path::{Method, Solver, Status};
 use crate::plan::Effect;
-use crate::scene::{Bounds, Density, Light, Material, Medium, Object};
+use crate::scene::{Bounds, Density, Light, Material, Object};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
 use density::Densities;
@@ -278,12 +278,11 @@ const EFFECTIVE_WEIGHT: f32 = 2.0;
 /// What a body takes from light on its way, per unit of length: the settings' scale times what scattering and absorption take, and absorption
 /// once more as it acts on light that is scattered all along.
 fn extinction(material: &Material, settings: &Settings) -> Vec3 {
-    let Some(Medium { scattering, absorption, anisotropy, .. }) = &material.medium else {
+    let Some(medium) = &material.medium else {
         return Vec3::ZERO;
     };
-    // Light that is scattered forwards goes on: similarity theory.
-    let extinction = *scattering * (1.0 - anisotropy) + *absorption;
-    let effective = (3.0 * *absorption * extinction).map(f32::sqrt);
+    let extinction = medium.transport_extinction();
+    let effective = (3.0 * medium.absorption * extinction).map(f32::sqrt);
     settings.extinction_scale * (extinction + EFFECTIVE_WEIGHT * effective)
 }
 

@@ -195,7 +195,7 @@ impl Material {
             Some("its material's sigma0 is not finite and at least 0; mend it")
         } else if self.solver.is_some_and(|rung| !draws_scattering(rung)) {
             Some("its material's solver is no rung for what scatters light; take another")
-        } else if self.solver.is_some() && self.medium.is_none() && self.sigma0.is_none() {
+        } else if self.solver.is_some() && !self.scatters() {
             Some("its material has a solver, but does not scatter light; remove the solver")
         } else {
             self.medium.as_ref().and_then(Medium::problem)
@@ -204,6 +204,12 @@ impl Material {
 }
 
 impl Material {
+    /// Whether the inside scatters light, by a width or by a medium.
+    #[must_use]
+    pub fn scatters(&self) -> bool {
+        self.sigma0.is_some() || self.medium.is_some()
+    }
+
     /// Whether light is absorbed on its way through the body.
     #[must_use]
     pub fn absorbs(&self) -> bool {

@@ -151,6 +151,18 @@ impl Medium {
         Self { scattering, absorption, anisotropy: 0.0, density: Density::Uniform }
     }
 
+    /// What is left of the scattering coefficient where light that is scattered forwards goes on: similarity theory.
+    #[must_use]
+    pub fn reduced_scattering(&self) -> Vec3 {
+        self.scattering * (1.0 - self.anisotropy)
+    }
+
+    /// What scattering, so reduced, and absorption take together: one over the transport mean free path.
+    #[must_use]
+    pub fn transport_extinction(&self) -> Vec3 {
+        self.reduced_scattering() + self.absorption
+    }
+
     /// Which of its fields' promises is broken, and what to do; nothing for a sound medium.
     pub(super) fn problem(&self) -> Option<&'static str> {
         let is_length = |length: Vec3| length.is_finite() && length.cmpge(Vec3::ZERO).all();

@@ -1,7 +1,7 @@
 //! Pictures of one scene each, and the commands that render them.
 
 use super::folder;
-use crate::plan::{Effect, Effects};
+use crate::plan::{Decisions, Effect, Effects};
 use crate::render::{Curvature, Rung, Settings};
 use crate::scene::{Scene, SceneError};
 use std::path::PathBuf;
@@ -189,13 +189,26 @@ impl Shot {
         Settings {
             rung,
             paper_centre: self.paper_centre,
-            without: [(self.lights_alone, Effects::of(&[Effect::Environment])), (self.matte, Effects::SHEEN)]
-                .into_iter()
-                .fold(Effects::NONE, |all, (left_out, effects)| if left_out { all.and(effects) } else { all }),
+            without: self.without(),
             exposure: self.exposure,
             curvature: self.curvature,
             ..Settings::of_size(side, side)
         }
+    }
+
+    /// What is left out where the scene calls for it.
+    fn without(&self) -> Effects {
+        let environment = if self.lights_alone { Effects::of(&[Effect::Environment]) } else { Effects::NONE };
+        environment.and(if self.matte { Effects::SHEEN } else { Effects::NONE })
+    }
+
+    /// The names of the effects that are left out, each of which the scene calls for.
+    fn left_out(&self) -> Vec<&'static str> {
+        let Ok(scene) = self.open() else { return Vec::new() };
+        let settings = Settings { without: Effects::NONE, ..self.settings(1) };
+        let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings)).collect();
+        let is_called = |effect: &Effect| self.without().has(*effect) && all.iter().any(|of| of.has(*effect));
+        Effect::ALL.into_iter().filter(is_called).map(Effect::name).collect()
     }
 
     /// Where its pictures are.
@@ -216,12 +229,8 @@ impl Shot {
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
-        let light = match (self.lights_alone, self.matte) {
-            (false, false) => "",
-            (true, false) => " --without environment",
-            (false, true) => " --without microfacet,reflection",
-            (true, true) => " --without environment,microfacet,reflection",
-        };
+        let left_out = self.left_out();
+        let light = if left_out.is_empty() { String::new() } else { format!(" --without {}", left_out.join(",")) };
         let curvature = match self.curvature {
             Curvature::Mean => String::new(),
             other => format!(" --curvature {}", other.name()),

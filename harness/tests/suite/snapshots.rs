@@ -105,3 +105,19 @@ fn the_committed_pictures_are_small() {
     assert!(sizes.iter().all(|size| *size <= snapshot::LARGEST_FILE));
     assert!(sizes.iter().sum::<u64>() <= 24 << 20);
 }
+
+/// What the gallery shows as a picture's command leaves out nothing that nothing calls for, which `cook` refuses.
+#[test]
+fn the_pictures_commands_are_taken() {
+    let mut left_out = 0;
+    for shot in &snapshot::SHOTS {
+        let command = shot.command();
+        let words: Vec<&str> = command.split(' ').collect();
+        let value = |flag: &str| words.iter().position(|word| *word == flag).map(|place| words[place + 1]);
+        let (Some(rung), Some(without)) = (value("--rung"), value("--without")) else { continue };
+        let arguments = ["plan", shot.scene, "--size", "8x8", "--rung", rung, "--without", without, "--json"];
+        crate::program::succeeds(crate::program::folder().path(), &arguments);
+        left_out += 1;
+    }
+    assert!(left_out > 5, "{left_out} commands leave anything out");
+}

@@ -1,17 +1,11 @@
 //! The curvature-dependent reflectance's ladder.
 
-use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
 use lapidary_harness::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
 use lapidary_harness::render::{Reflectance, Rung};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let ignored = [
-        ("--views", !arguments.views.is_empty()),
-        ("--walks", arguments.walks.is_some()),
-        ("--seed", arguments.seed.is_some()),
-        ("--profile", arguments.profile),
-    ];
-    refuse(cdrf::TECHNIQUE, &ignored)?;
+    arguments.refuse_but(cdrf::TECHNIQUE, &["--rungs", "--rounds"])?;
     let mut options = Options::default();
     if let Some(rounds) = arguments.rounds {
         options.rounds = rounds;

@@ -1,10 +1,10 @@
 //! The gem ladder.
 
-use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output, refuse};
+use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output};
 use lapidary_harness::cost::{self, CostError, plot};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    refuse("gem", &[("--walks", arguments.walks.is_some()), ("--seed", arguments.seed.is_some())])?;
+    arguments.refuse_but("gem", &["--rungs", "--views", "--rounds", "--profile"])?;
     if let Some(rung) = arguments.rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))) {
         let ladder = if matches!(rung, Rung::Diffuse(_)) { "cdrf" } else { "optical_path" };
         return Err(Failure(format!(

@@ -1,17 +1,11 @@
 //! The ladder of light's ways through stone.
 
-use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
 use lapidary_harness::cost::optical_path::{self, Options, RungReport, plot};
 use lapidary_harness::render::{Reflectance, Rung};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let ignored = [
-        ("--views", !arguments.views.is_empty()),
-        ("--walks", arguments.walks.is_some()),
-        ("--seed", arguments.seed.is_some()),
-        ("--profile", arguments.profile),
-    ];
-    refuse(optical_path::TECHNIQUE, &ignored)?;
+    arguments.refuse_but(optical_path::TECHNIQUE, &["--rungs", "--rounds"])?;
     let mut options = Options::default();
     if let Some(rounds) = arguments.rounds {
         options.rounds = rounds;

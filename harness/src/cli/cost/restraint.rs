@@ -1,17 +1,11 @@
 //! What restraint saves.
 
-use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
 use lapidary_harness::cost::restraint::{self, Options};
 use lapidary_harness::render::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let ignored = [
-        ("--views", !arguments.views.is_empty()),
-        ("--walks", arguments.walks.is_some()),
-        ("--seed", arguments.seed.is_some()),
-        ("--profile", arguments.profile),
-    ];
-    refuse(restraint::TECHNIQUE, &ignored)?;
+    arguments.refuse_but(restraint::TECHNIQUE, &["--rungs", "--rounds"])?;
     if let Some(rung) = arguments.rungs.iter().find(|rung| !matches!(rung, Rung::Inside { .. })) {
         return Err(Failure(format!(
             "`restraint` has no rung {rung}, whose rays end at once; take one such as convex-8"

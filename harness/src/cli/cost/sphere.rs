@@ -1,19 +1,13 @@
 //! The translucent sphere.
 
-use super::{Arguments, Failure, Outcome, Places, Shown, behind_a_bar, refuse};
+use super::{Arguments, Failure, Outcome, Places, Shown, behind_a_bar};
 use lapidary_harness::cost::sphere::{self, plot};
 
 /// Walks through each sphere: half a minute on two cores.
 const WALKS: u64 = 1_000_000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let ignored = [
-        ("--rungs", !arguments.rungs.is_empty()),
-        ("--views", !arguments.views.is_empty()),
-        ("--rounds", arguments.rounds.is_some()),
-        ("--profile", arguments.profile),
-    ];
-    refuse("sphere", &ignored)?;
+    arguments.refuse_but("sphere", &["--walks", "--seed"])?;
     let places = Places::new("sphere", arguments)?;
     let report = places.report(|| {
         let walks = arguments.walks.map_or(WALKS, u64::from);

@@ -75,7 +75,7 @@ impl Lapidary<'_> {
         material.sigma0 = self.sigma0.map(|json| lengths("sigma0", json)).transpose()?;
         material.medium = medium(self)?;
         material.solver = self.solver.map(solver).transpose()?;
-        if material.solver.is_some() && material.medium.is_none() && material.sigma0.is_none() {
+        if material.solver.is_some() && !material.scatters() {
             return Err("its extras.lapidary has a solver, but nothing there scatters light; give scattering and absorption, or \
                         sigma0, or remove the solver"
                 .to_owned());

@@ -133,7 +133,7 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
 
     // 1 is also what a file says that leaves the member out, as those of clear bodies do.
     let metallic = factors.metallic_factor.0;
-    let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !scatters(material);
+    let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
         lacking.note("metal", "`metallicFactor` above 0".to_owned(), DIELECTRIC, user);
     }
@@ -158,7 +158,7 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
     let is_share = |factor: f32| factor > 0.0 && factor < 1.0;
     let &Material { transmission, diffuse_transmission, .. } = material;
     let mut note = |kind, what: &str, instead| lacking.note(kind, what.to_owned(), instead, user);
-    if transmission > 0.0 && scatters(material) {
+    if transmission > 0.0 && material.scatters() {
         return note(
             "transmission",
             "`transmissionFactor` beside scattering",
@@ -199,10 +199,6 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
     {
         note("dispersion", "`KHR_materials_dispersion` without a volume", "a thin wall disperses nothing");
     }
-}
-
-fn scatters(material: &Material) -> bool {
-    material.medium.is_some() || material.sigma0.is_some()
 }
 
 fn cameras(root: &Root, nodes: &[ShownNode<'_>], lacking: &mut Lacking) {
