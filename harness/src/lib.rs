@@ -7,6 +7,7 @@ pub mod compute;
 pub mod cookbook;
 pub mod cost;
 pub mod dispatch;
+pub mod extremum;
 pub mod formula;
 pub mod formulas;
 pub mod gallery;

@@ -3,6 +3,11 @@
 use super::*;
 use std::f64::consts::{FRAC_1_PI, PI};
 
+/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
+fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
+    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
+}
+
 /// Cosines of `count` + 1 angles from 0 to 180°.
 fn cosines(count: u32) -> impl Iterator<Item = f64> {
     (0..=count).map(move |index| (PI * f64::from(index) / f64::from(count)).cos())
@@ -10,7 +15,7 @@ fn cosines(count: u32) -> impl Iterator<Item = f64> {
 
 /// Largest of `f` over angles.
 fn most(f: impl Fn(f64) -> f64) -> f64 {
-    cosines(500).map(f).fold(0.0, f64::max)
+    cosines(500).map(f).fold(0.0, larger)
 }
 
 const SIGMAS: [f64; 12] = [0.03, 0.1, 0.2, 0.25, 0.3, 0.35, 0.5, 0.999, 1.0, 1.5, 2.0, 3.0];

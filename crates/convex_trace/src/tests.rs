@@ -5,6 +5,11 @@ use super::*;
 use glam::{DVec3, DVec4};
 use std::f64::consts::{PI, TAU};
 
+/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
+fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
+    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
+}
+
 const BOUNCES: usize = 64;
 /// How far a path must stay inside of all planes but the one that it meets, in units of the girdle's radius, for its
 /// facets to be told alike in f32 and in f64. A direction is off by up to 1e-6 after 64 reflections, and the ways add up.
@@ -194,7 +199,7 @@ fn paths(stone: &Stone, rays: usize, point: fn(Vec3, Vec3, f32, Vec4) -> Vec3) -
             }
             let plane = stone.exact[ray.left as usize];
             let residual = (plane.xyz().dot(ray.position.as_dvec3()) - plane.w).abs() / stone.size;
-            paths.residual = paths.residual.max(residual);
+            paths.residual = larger(paths.residual, residual);
             paths.early_and_late[0] += if bounce < 8 { residual } else { 0.0 };
             paths.early_and_late[1] += if bounce >= BOUNCES - 8 { residual } else { 0.0 };
             if same {
@@ -206,7 +211,7 @@ fn paths(stone: &Stone, rays: usize, point: fn(Vec3, Vec3, f32, Vec4) -> Vec3) -
         if same {
             paths.same += 1;
             let off = ray.direction.as_dvec3().normalize().distance(truth.direction.normalize());
-            paths.direction = paths.direction.max(off);
+            paths.direction = larger(paths.direction, off);
         } else {
             paths.clearance = paths.clearance.max(clearance);
         }

@@ -4,6 +4,11 @@
 use super::*;
 use glam::{DMat3, DVec3, Vec3};
 
+/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
+fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
+    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
+}
+
 /// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
 struct Random(u64);
 
@@ -230,16 +235,16 @@ fn known_curvatures_come_out_at_every_view() {
                 let [p_x, p_y, n_x, n_y] = inputs.map(|v| v.as_vec3());
                 let condition = condition(inputs);
                 let found = f64::from(super::mean(p_x, p_y, n_x, n_y));
-                worst[0] = worst[0].max((found - mean / scale).abs() / condition);
+                worst[0] = larger(worst[0], (found - mean / scale).abs() / condition);
                 let found = f64::from(super::gaussian(p_x, p_y, n_x, n_y));
-                worst[1] = worst[1].max((found - gaussian / (scale * scale)).abs() / (condition * condition));
+                worst[1] = larger(worst[1], (found - gaussian / (scale * scale)).abs() / (condition * condition));
                 let tangent = light.reject_from(surface.normal(point)).length();
                 if tangent > 0.2 {
                     let found = f64::from(towards(p_x, p_y, n_x, n_y, light.as_vec3()));
                     let exact = surface.towards(point, light) / scale;
                     // The mean's share near the zenith, then rounding; the light's own is magnified near the zenith.
                     let mixed = f64::from(CURVATURE_ZENITH) / (tangent * tangent) * (exact - mean / scale).abs();
-                    worst[2] = worst[2].max(((found - exact).abs() - mixed) * tangent / condition);
+                    worst[2] = larger(worst[2], ((found - exact).abs() - mixed) * tangent / condition);
                 }
             }
         }
@@ -268,8 +273,8 @@ fn row(surface: Surface, point: DVec3, seed: u64) -> Row {
         let [p_x, p_y, n_x, n_y] = view.differentials(surface, point).map(|v| (1e-3 * v).as_vec3());
         let usual = f64::from(naive(p_x, p_y, n_x, n_y)) / largest;
         row.low = row.low.min(usual);
-        row.high = row.high.max(usual);
-        row.error = row.error.max((f64::from(super::mean(p_x, p_y, n_x, n_y)) - mean).abs() / largest);
+        row.high = larger(row.high, usual);
+        row.error = larger(row.error, (f64::from(super::mean(p_x, p_y, n_x, n_y)) - mean).abs() / largest);
     }
     row
 }
@@ -404,9 +409,9 @@ fn non_uniform_scale_is_right_with_renormalised_normals() {
             let found = f64::from(super::gaussian(p, q, n_x, n_y));
             assert!((found - gaussian).abs() <= 32.0 * UNIT * condition * condition, "{found} {gaussian}");
             let wrong = super::mean(p, q, (s_x / axes).as_vec3(), (s_y / axes).as_vec3());
-            raw = raw.max((f64::from(wrong) / mean - 1.0).abs());
+            raw = larger(raw, (f64::from(wrong) / mean - 1.0).abs());
             let wrong = super::mean(p, q, s_x.as_vec3(), s_y.as_vec3());
-            old = old.max((f64::from(wrong) / mean - 1.0).abs());
+            old = larger(old, (f64::from(wrong) / mean - 1.0).abs());
         }
         println!("{axes}: not renormalised off by {raw:.2}, untransformed by {old:.2} of the mean curvature");
         assert!(raw > 0.4 && old > 0.4, "{raw} {old}");
@@ -469,8 +474,8 @@ fn the_textbook_fails_edge_on() {
         let first = random.direction();
         let second = (first + 2e-3 * random.direction().reject_from(first).normalize()).as_vec3();
         let first = first.as_vec3();
-        textbook = textbook.max((mean_textbook(first, second, 0.3 * first, 0.3 * second) - 0.3).abs());
-        stable = stable.max((mean(first, second, 0.3 * first, 0.3 * second) - 0.3).abs());
+        textbook = larger(textbook, (mean_textbook(first, second, 0.3 * first, 0.3 * second) - 0.3).abs());
+        stable = larger(stable, (mean(first, second, 0.3 * first, 0.3 * second) - 0.3).abs());
     }
     println!("off by {textbook} (textbook), {stable} (stable) of 0.3");
     assert!(textbook > 0.01 && stable < 1e-4, "{textbook} {stable}");

@@ -1,3 +1,4 @@
+use crate::extremum::larger;
 use std::collections::{HashMap, HashSet};
 
 use glam::{DQuat, DVec3, Quat};
@@ -247,7 +248,7 @@ fn the_stored_figure_is_what_is_made() {
     let [stored, made] =
         [Scene::named("figure"), Scene::made("figure")].map(|scene| scene.unwrap().objects.remove(0).mesh);
     assert_eq!(stored.indices, made.indices);
-    let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
     // Sines differ in their last digit from one system to another.
     assert!(furthest(&stored.positions, &made.positions) < 1e-3 && furthest(&stored.normals, &made.normals) < 1e-2);
 }

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
 use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
 use lapidary_harness::compute::{self, Binding, RecipeRun};
+use lapidary_harness::extremum::larger;
 use lapidary_harness::gpu::Gpu;
 use lapidary_harness::property::draws::{Domain, Draws};
 use lapidary_harness::scene::{Bvh, Mesh, Scene};
@@ -183,7 +184,7 @@ fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
         for ((query, found), mirrored) in queries.iter().zip(&found).zip(&mirrored) {
             assert!(met(found), "{}: a leak from {} to {}", body.name, query.origin, query.direction);
             if found.triangle == mirrored.triangle {
-                largest = largest.max((found.distance - mirrored.distance).abs());
+                largest = larger(largest, (found.distance - mirrored.distance).abs());
             } else {
                 others += 1;
             }

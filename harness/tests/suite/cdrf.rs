@@ -6,6 +6,7 @@ use lapidary_cdrf as mirror;
 use lapidary_harness::cdrf::table::{self, Format, Table};
 use lapidary_harness::cost::cdrf::error::{self, Samples};
 use lapidary_harness::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
+use lapidary_harness::extremum::largest;
 use std::sync::OnceLock;
 
 fn convolution() -> &'static Samples {
@@ -31,7 +32,7 @@ fn shader_and_mirror_bake_the_same_table() {
             assert_eq!(shader.len(), wanted.len());
             let mut moved = 0;
             for (index, (shader, mirror)) in shader.iter().zip(&wanted).enumerate() {
-                let apart = (*shader - *mirror).abs().max_element();
+                let apart = largest((*shader - *mirror).abs().to_array());
                 // Twice what the accuracy line allows either on lavapipe; a NaN fails.
                 assert!(apart <= 1.6e-6, "texel {index} of {size}: {shader} and {mirror}");
                 for channel in 0..3 {
@@ -66,7 +67,7 @@ fn lookup_by_hand_is_the_samplers() {
     for half_degree in 0..=360u16 {
         let cosine = (0.5 * f32::from(half_degree)).to_radians().cos();
         for sigma in (0..=300u16).map(|index| 0.01 * f32::from(index)) {
-            let apart = (table.lookup(cosine, sigma) - table.sampled(cosine, sigma)).abs().max_element();
+            let apart = largest((table.lookup(cosine, sigma) - table.sampled(cosine, sigma)).abs().to_array());
             // Coordinates that are rounded at 65 texels.
             assert!(apart < 2e-5, "{cosine} {sigma}: {apart:e}");
         }

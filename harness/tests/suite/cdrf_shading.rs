@@ -5,6 +5,7 @@ use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
 use lapidary_harness::cost::exposed_distance;
+use lapidary_harness::extremum::{larger, largest};
 use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -87,7 +88,7 @@ fn every_rung_shows_the_convolution_on_a_sphere() {
                         "spherical" => oracle::spherical(cosine, sigma),
                         _ => oracle::accurate(cosine, sigma),
                     });
-                    worst = worst.max((found - truth).abs().max_element());
+                    worst = larger(worst, largest((found - truth).abs().to_array()));
                 }
                 // Both lights together, times the albedo over pi.
                 let scale = 1.2;
@@ -121,8 +122,8 @@ fn a_spot_shows_its_cone() {
                 * position.distance_squared(DVec3::new(5.0, 20.0, 25.0))
                 / 900.0;
             soft += u32::from((0.05..0.95).contains(&share));
-            worst = worst.max((found - truth).abs().max_element());
-            brightest = brightest.max(truth.max_element());
+            worst = larger(worst, largest((found - truth).abs().to_array()));
+            brightest = larger(brightest, truth.max_element());
         }
         println!("{rung}: off by {worst:.1e} where the brightest is {brightest:.2}, {soft} pixels of the soft edge");
         // The position of a pixel of a flat triangle is off by (2 pi / 256)^2 / 8 of the radius, 7.5e-4, over 30 of distance; the steepest slope of the
@@ -170,7 +171,7 @@ fn the_environment_is_the_integral_of_the_spherical_form() {
         };
         // All around alike: what the surface sends back is its albedo, at any width.
         for (_, found) in on_the_ball(&scene, &draw(&scene, &lit(&ones))) {
-            assert!((found - albedo).abs().max_element() < 1e-5, "{found} {albedo}");
+            assert!(largest((found - albedo).abs().to_array()) < 1e-5, "{found} {albedo}");
         }
         let picture = draw(&scene, &lit(&Environment::Studio));
         let pixels = on_the_ball(&scene, &picture);
@@ -339,7 +340,7 @@ fn near_forms_are_as_near_as_their_errors() {
         ["cheap", "accurate", "quadrature"].map(|rung| draw(&scene, &settings(rung)).linear);
     let apart = |other: &[[f32; 4]]| {
         let pairs = other.iter().flatten().zip(accurate.iter().flatten());
-        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, larger)
     };
     let (cheap, quadrature) = (apart(&cheap), apart(&quadrature));
     println!("from the accurate form: cheap {cheap:.1e}, quadrature {quadrature:.1e}");

@@ -2,6 +2,7 @@
 
 use glam::{Vec3, Vec4};
 use lapidary_harness::cost::Errors;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::render::{self, Environment, Settings};
 use lapidary_harness::scene::Scene;
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -64,7 +65,7 @@ fn a_position_comes_back_from_depth() {
             let (x, y, depth) = (clip.x / clip.w, clip.y / clip.w, clip.z / clip.w);
             let world = back * Vec4::new(x, y, depth, 1.0);
             let rebuilt: Vec3 = world.truncate() / world.w;
-            worst = worst.max(rebuilt.distance(*position) / scene.camera.eye.distance(*position));
+            worst = larger(worst, rebuilt.distance(*position) / scene.camera.eye.distance(*position));
         }
         println!("{name}: off by {worst:e} of the distance at most");
         assert!(worst <= 16.0 * f32::EPSILON, "{name}: {worst:e}");

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use lapidary_harness::cost::Errors;
+use lapidary_harness::extremum::{larger, largest};
 use lapidary_harness::pixel::Viewer;
 use lapidary_harness::render::{self, Picture, Rung, Settings};
 use lapidary_harness::scene::Scene;
@@ -162,7 +163,7 @@ fn a_thin_wall_shows_what_is_behind_it() {
         let reflected = lapidary_environment::studio(lapidary_refraction::reflect(direction, normal));
         let wanted = reflectance * reflected + (1.0 - reflectance) * behind;
         let [red, green, blue, _] = found[(row * SIDE + column) as usize];
-        worst = worst.max((Vec3::new(red, green, blue) - wanted).abs().max_element());
+        worst = larger(worst, largest((Vec3::new(red, green, blue) - wanted).abs().to_array()));
         seen += 1;
     }
     println!("{seen} pixels, off by {worst:.1e}");

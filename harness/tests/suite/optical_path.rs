@@ -6,6 +6,7 @@ mod hard;
 mod properties;
 
 use bodies::Case;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::optical_path::{Method, Solver, Status, Stencil};
 use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle::{Number, dijkstra};
@@ -96,7 +97,7 @@ fn rounding_grows_with_the_steps_of_a_path_at_most() {
         let mut worst: f64 = 0.0;
         for (cost, exact) in costs.iter().zip(&exact).filter(|(_, exact)| **exact < 1e29) {
             let error = (f64::from(*cost) - exact).abs();
-            worst = worst.max(error / exact.max(1e-30));
+            worst = larger(worst, error / exact.max(1e-30));
             assert!(error <= share * exact, "{cost} for {exact}");
         }
         assert!(worst > 0.0 && costs.iter().zip(&exact).all(|(cost, exact)| (*cost < 1e29) == (*exact < 1e29)));

@@ -7,6 +7,7 @@ mod notes;
 mod shadows;
 
 use glam::Vec3;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Picture, Settings};
 use lapidary_harness::scene::surfaces::sphere;
@@ -89,7 +90,7 @@ fn apart(one: &Picture, other: &Picture) -> f32 {
     let (one, other) = (channels(one), channels(other));
     assert!(one.iter().chain(&other).all(|value| value.is_finite()), "not finite");
     assert_eq!(one.len(), other.len());
-    let brightest = other.iter().copied().fold(0.0, f32::max);
+    let brightest = other.iter().copied().fold(0.0, larger);
     assert!(brightest > 0.0, "nothing to compare");
-    one.iter().zip(&other).map(|(one, other)| (one - other).abs() / other.max(1e-3 * brightest)).fold(0.0, f32::max)
+    one.iter().zip(&other).map(|(one, other)| (one - other).abs() / other.max(1e-3 * brightest)).fold(0.0, larger)
 }

@@ -2,6 +2,7 @@
 //! sample places, environment and reflectance of one to those of the other.
 
 use lapidary_harness::cost::views::{SHOWN, VIEWS};
+use lapidary_harness::extremum::larger;
 use lapidary_harness::reference;
 use lapidary_harness::render::{self, Environment, Picture, Rung, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -14,6 +15,28 @@ fn map() -> Environment {
     let texel = |k: u32| [0, 7, 13].map(|shift| ((k * 37 + shift * 11) % 64) as f32 / 64.0);
     let pixels = (0..128).map(texel).map(|[red, green, blue]| [red, green, blue, 1.0]);
     Environment::Map(EnvironmentMap { width: 16, height: 8, pixels: pixels.collect() })
+}
+
+/// What is no number differs from nothing by more than a bound, and counts as light or as no light by chance.
+fn require_finite(drawn: &[[f32; 4]], followed: &[[f32; 4]]) {
+    for (which, pixels) in [("the GPU's", drawn), ("the reference's", followed)] {
+        let broken = pixels.iter().position(|pixel| !pixel.iter().all(|value| value.is_finite()));
+        assert!(broken.is_none(), "{which} pixel {} is {:?}", broken.unwrap_or(0), broken.map(|index| pixels[index]));
+    }
+}
+
+/// One pixel that is no number, in either picture and any channel.
+#[test]
+fn what_is_no_number_is_seen() {
+    let sound = [[0.5; 4]; 9];
+    require_finite(&sound, &sound);
+    for (value, channel) in [(f32::NAN, 0), (f32::NAN, 3), (f32::INFINITY, 1)] {
+        let mut planted = sound;
+        planted[7][channel] = value;
+        for pair in [[&planted, &sound], [&sound, &planted]] {
+            std::panic::catch_unwind(|| require_finite(pair[0], pair[1])).expect_err("seen");
+        }
+    }
 }
 
 #[test]
@@ -42,8 +65,9 @@ fn surfaces_reflect_alike() {
             let covered = pairs().filter(|(drawn, _)| drawn[3] > 0.0).count();
             // A sample on an edge may fall to either side; the rasteriser rounds corners to 1/256 of its pixels.
             let apart = |&(drawn, followed): &(&[f32; 4], &[f32; 4])| {
-                (0..4).any(|k| (drawn[k] - followed[k]).abs() > 1e-4 * followed[k].abs().max(1.0))
+                !(0..4).all(|k| (drawn[k] - followed[k]).abs() <= 1e-4 * followed[k].abs().max(1.0))
             };
+            require_finite(&drawn.linear, &followed.linear);
             let edges = pairs().filter(apart).count();
             println!("{name}: {edges} of {covered} pixels differ");
             assert!(covered > 1000 && edges * 200 < covered, "{name}: {edges} of {covered} pixels differ");
@@ -76,10 +100,12 @@ fn the_committed_references_are_remade() {
         let crop = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
         for (row, line) in (window.top..).zip(crop.linear.chunks_exact(window.width as usize)) {
             let start = (row * picture.width + window.left) as usize;
-            for (found, expected) in line.iter().zip(&picture.linear[start..]) {
+            let expected_line = &picture.linear[start..][..line.len()];
+            require_finite(line, expected_line);
+            for (found, expected) in line.iter().zip(expected_line) {
                 // Half floats keep 11 bits; another processor's f64 functions may send a ray to the other side of an edge.
                 let apart =
-                    (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, f32::max);
+                    (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, larger);
                 assert!(apart <= 0.002, "{} row {row}: {found:?}, committed {expected:?}", view.name);
             }
         }
@@ -98,8 +124,9 @@ fn stones_transmit_alike() {
         let settings = reference::Settings { samples: 1, wavelengths: 7, ..reference::Settings::of_size(48, 48) };
         let followed = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
         let apart = |(drawn, followed): (&[f32; 4], &[f32; 4])| {
-            (0..3).map(|k| (drawn[k] - followed[k]).abs() / followed[k].abs().max(0.1)).fold(0.0, f32::max)
+            (0..3).map(|k| (drawn[k] - followed[k]).abs() / followed[k].abs().max(0.1)).fold(0.0, larger)
         };
+        require_finite(&drawn.linear, &followed.linear);
         let pairs = drawn.linear.iter().zip(&followed.linear).filter(|(drawn, _)| drawn[3] > 0.0);
         let mut errors: Vec<f32> = pairs.map(apart).collect();
         errors.sort_by(f32::total_cmp);

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use lapidary_environment as environment;
 use lapidary_harness::cookbook;
 use lapidary_harness::cost::restraint::facets;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::pixel::Shading;
 use lapidary_harness::property::draws::Draws;
 use lapidary_harness::reference::spectrum;
@@ -47,7 +48,7 @@ fn difference(one: &Picture, other: &Picture, exposure: f32) -> (f64, f64, f64) 
     for (a, b) in one.linear.iter().zip(&other.linear).filter(|(a, _)| a[3] > 0.0) {
         let differences: Vec<f64> = (0..3).map(|k| f64::from(exposure) * (f64::from(b[k]) - f64::from(a[k]))).collect();
         assert!(differences.iter().all(|difference| difference.is_finite()));
-        largest = differences.iter().copied().fold(largest, f64::max);
+        largest = differences.iter().copied().fold(largest, larger);
         least = differences.iter().copied().fold(least, f64::min);
         covered += 1;
         changed += usize::from(a != b);
@@ -133,7 +134,7 @@ fn directions(count: u32) -> impl Iterator<Item = Vec3> {
 #[test]
 fn the_studio_is_nowhere_brighter_than_stated() {
     // The smallest light is 0.18 wide, with its soft edges; two directions are 0.006 apart.
-    let largest = directions(400_000).map(|direction| environment::studio(direction).max_element()).fold(0.0, f32::max);
+    let largest = directions(400_000).map(|direction| environment::studio(direction).max_element()).fold(0.0, larger);
     println!("{largest}");
     assert!(largest <= STUDIO_LARGEST && largest > 0.98 * STUDIO_LARGEST, "{largest}");
 }
@@ -144,13 +145,13 @@ fn a_map_is_nowhere_brighter_than_its_largest_texel() {
     let pixels: Vec<[f32; 4]> = (0..16 * 8)
         .map(|_| [draws.between(0.0, 3.0), draws.between(0.0, 3.0), draws.between(0.0, 3.0), 100.0])
         .collect();
-    let texels = pixels.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, f32::max);
+    let texels = pixels.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, larger);
     let map = Environment::Map(EnvironmentMap { width: 16, height: 8, pixels });
     assert_eq!(largest_radiance(&map), texels);
     let scene = Scene::named("brilliant").expect("built in");
     let settings = Settings { environment: map, ..Settings::of_size(8, 8) };
     let shading = Shading::new(&scene.objects[0].material, &settings);
-    let found = directions(100_000).map(|direction| shading.environment(direction).max_element()).fold(0.0, f32::max);
+    let found = directions(100_000).map(|direction| shading.environment(direction).max_element()).fold(0.0, larger);
     println!("{found} of {texels}");
     // A mixture rounds three times, twice over.
     assert!(found <= texels * (1.0 + 6.0 * f32::EPSILON) && found > 0.98 * texels, "{found} {texels}");
@@ -198,7 +199,7 @@ fn the_white_furnace_stays_white() {
         let rung: Rung = settings.rung;
         let bound = (16 + 8 * rung.hits()) as f32 * f32::EPSILON;
         let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0);
-        let worst = covered.flat_map(|pixel| &pixel[..3]).map(|value| (value - 1.0).abs()).fold(0.0, f32::max);
+        let worst = covered.flat_map(|pixel| &pixel[..3]).map(|value| (value - 1.0).abs()).fold(0.0, larger);
         assert!(worst <= bound, "{rung}: {worst:e}");
     }
 }

@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 use lapidary_cdrf::oracle as exact;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::gpu::Gpu;
 use lapidary_harness::render::texture_diffusion::{Chart, Taps, TextureDiffusion};
 use lapidary_texture_diffusion as mirror;
@@ -109,10 +110,10 @@ fn errors(texels: &[f64], sigma: f64) -> [f64; 2] {
     for (half, wanted) in wanted.iter().enumerate() {
         let texel = half / 2;
         if half % 2 == 1 {
-            most[0] = most[0].max((texels[texel] - wanted).abs());
+            most[0] = larger(most[0], (texels[texel] - wanted).abs());
         } else {
             let before = (texel + AROUND as usize - 1) % AROUND as usize;
-            most[1] = most[1].max((0.5 * (texels[before] + texels[texel]) - wanted).abs());
+            most[1] = larger(most[1], (0.5 * (texels[before] + texels[texel]) - wanted).abs());
         }
     }
     [most[0], most[0].max(most[1])]
@@ -173,7 +174,7 @@ fn worst(placement: Placement, pairs: u32, ratio: f32, sigmas: &[f64]) -> f64 {
             };
             of(0).max(of(1)).max(of(2))
         })
-        .reduce(|| 0.0, f64::max)
+        .reduce(|| 0.0, larger)
 }
 
 /// The same beside the edge of a shadow: light that is 1 on one half of the circle and 0 on the other, blurred over 0.5 radians.
@@ -188,7 +189,8 @@ fn worst_at_an_edge(pairs: u32, ratio: f32) -> f64 {
             for channel in 0..3 {
                 let sigma = sigma * f64::from(channels[channel]);
                 let share = |edge: f64| lapidary_cdrf::oracle::normal_share(((x - edge) / sigma).clamp(-12.0, 12.0));
-                most = most.max((share(0.0) - share(PI) + share(-TAU) - share(-PI) - f64::from(texel[channel])).abs());
+                most =
+                    larger(most, (share(0.0) - share(PI) + share(-TAU) - share(-PI) - f64::from(texel[channel])).abs());
             }
         }
     }
@@ -270,10 +272,10 @@ fn a_cylinder_gets_the_exact_convolution() {
                 let width = sigma * f64::from(channels[channel]);
                 let [at_middles, anywhere] = errors(&of(&line), width);
                 println!("sigma {width:.5} along {axis}: {at_middles:.2e} at texels, {anywhere:.2e} between them");
-                own = own.max(at_middles);
+                own = larger(own, at_middles);
                 if width >= RESOLVED {
-                    shown = shown.max(anywhere);
-                    fewer = fewer.max(errors(&of(&short), width)[1]);
+                    shown = larger(shown, anywhere);
+                    fewer = larger(fewer, errors(&of(&short), width)[1]);
                 }
             }
         }
@@ -320,7 +322,7 @@ fn stretch_makes_the_width_right_on_every_circle() {
             for (channel, sigma0) in [0.2, 0.1, 0.05].into_iter().enumerate() {
                 let circle = &texels[(row * AROUND) as usize..][..AROUND as usize];
                 let circle: Vec<f64> = circle.iter().map(|texel| f64::from(texel[channel])).collect();
-                *most = most.max(errors(&circle, sigma0 / radius(row))[1]);
+                *most = larger(*most, errors(&circle, sigma0 / radius(row))[1]);
             }
         }
     }
@@ -400,7 +402,7 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
             // One rectangle round all charts: the wide Gaussian reaches over the gap.
             let whole = Chart { low: [0, 0], high: size };
             let leaking = diffuse(super::gpu(), size, [false; 2], (&irradiance, &stretch), &taps, &[whole]);
-            let most = leaking.iter().zip(&texels).map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, f32::max);
+            let most = leaking.iter().zip(&texels).map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, larger);
             println!("without rectangles light leaks by {most}");
             assert!(most > 0.5, "{most}");
         }
@@ -434,7 +436,7 @@ fn a_texture_that_repeats_has_no_seam() {
     let apart = |repeats| {
         let [one, other] = [turned(0, repeats), turned(turn, repeats)];
         let pairs = (0..AROUND).map(|column| (one[((column + turn) % AROUND) as usize], other[column as usize]));
-        pairs.map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, f32::max)
+        pairs.map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, larger)
     };
     let [repeated, bounded] = [true, false].map(apart);
     println!("a seam of {repeated:.1e} where it repeats, of {bounded:.3} where it does not");

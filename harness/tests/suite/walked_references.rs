@@ -1,6 +1,7 @@
 //! The committed pictures by random walks.
 
 use lapidary_harness::cost::exposed_distance;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::random_walk::mesh;
 use lapidary_harness::render;
 use lapidary_harness::scene::Scene;
@@ -47,7 +48,7 @@ fn the_committed_references_are_walked_again() {
                 // The committed picture's own error is small beside it: it has a hundred times the walks or more.
                 assert!(sum.is_finite() && variance.is_finite(), "{}", reference.scene);
                 let off = (sum - expected).abs() / (variance.sqrt() + 2e-3 * expected).max(f64::MIN_POSITIVE);
-                worst = worst.max(off);
+                worst = larger(worst, off);
                 bright += i32::from(expected > 1.0);
             }
         }

@@ -225,6 +225,7 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
 mod tests {
     use super::*;
     use crate::cdrf::table::Format;
+    use crate::extremum::larger;
     use crate::gpu::AdapterChoice;
     use crate::render;
 
@@ -239,7 +240,7 @@ mod tests {
             assert_eq!(covered == 320 * 180, part == Part::Lit, "{covered}");
             // The light and its shadow side are both in sight.
             let red: Vec<f32> = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| pixel[0]).collect();
-            let (least, most) = (red.iter().copied().fold(f32::MAX, f32::min), red.iter().copied().fold(0.0, f32::max));
+            let (least, most) = (red.iter().copied().fold(f32::MAX, f32::min), red.iter().copied().fold(0.0, larger));
             assert!(most > 4.0 * least, "{part:?}: {least} {most}");
         }
     }

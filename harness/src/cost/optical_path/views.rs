@@ -180,6 +180,7 @@ fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::extremum::larger;
     use crate::gpu::AdapterChoice;
 
     #[test]
@@ -203,7 +204,7 @@ mod tests {
             let Some((found, truth)) = (*found).zip(*truth) else { continue };
             if truth < 0.7 {
                 bright += 1;
-                worst = worst.max((found - truth).abs());
+                worst = larger(worst, (found - truth).abs());
             }
             dark += usize::from(found == BLACK && truth > 3.0);
         }

@@ -4,6 +4,7 @@ use super::{Options, SCENES};
 use crate::cookbook;
 use crate::cost::timing::{self, Timed, Timing};
 use crate::cost::{CostError, views};
+use crate::extremum::larger;
 use crate::gpu::Gpu;
 use crate::pixel::{Shading, Stone, Viewer};
 use crate::render::restraint::LEAST_DIFFERENCE;
@@ -95,7 +96,7 @@ fn differences(gpu: &Gpu, scene: &Scene, rung: Rung) -> Result<(f64, u8, f64), C
     let (mut largest, mut largest_encoded, mut changed, mut covered) = (0.0, 0, 0, 0);
     let encoded = one.encoded.iter().zip(&other.encoded);
     for ((a, b), (seen_a, seen_b)) in one.linear.iter().zip(&other.linear).zip(encoded) {
-        largest = (0..3).map(|k| f64::from((a[k] - b[k]).abs())).fold(largest, f64::max);
+        largest = (0..3).map(|k| f64::from((a[k] - b[k]).abs())).fold(largest, larger);
         let steps = (0..3).map(|k| seen_a[k].abs_diff(seen_b[k])).fold(0, u8::max);
         largest_encoded = largest_encoded.max(steps);
         covered += usize::from(a[3] > 0.0);

@@ -2,6 +2,7 @@
 
 use crate::cost::CostError;
 use crate::cost::timing::{self, Timed, Timing};
+use crate::extremum::larger;
 use crate::gpu::Gpu;
 use crate::plan::Plan;
 use crate::render::{self, Rung, Settings};
@@ -82,7 +83,7 @@ pub(super) fn measure(
         ways.push(VariantWay {
             way: way.to_owned(),
             instructions: of_stones.map(|pipeline| pipeline.instructions).collect(),
-            largest: differences.fold(0.0, f64::max),
+            largest: differences.fold(0.0, larger),
             timing,
         });
     }

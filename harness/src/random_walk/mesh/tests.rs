@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::scene::environment_map::EnvironmentMap;
 use crate::scene::surfaces::sphere;
 use crate::scene::{Light, Material, Medium, Mesh, Object};
@@ -50,7 +51,7 @@ fn a_far_point_light_is_a_directional_one() {
     let lamplit = rendered(&scene, &settings(24, 6));
     let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
     // The same walks: what differs is the light's direction, by 1e-6, and f32's digits.
-    let apart = |(a, b): &(&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-4 * a[k] + 1e-6);
+    let apart = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..4).all(|k| (a[k] - b[k]).abs() <= 1e-4 * a[k] + 1e-6);
     // But a light that just grazes an edge may fall to either side.
     let (compared, different) = (pairs().count(), pairs().filter(apart).count());
     let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
@@ -118,7 +119,7 @@ fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
                 assert!([a, b, error_a, error_b].into_iter().all(f64::is_finite));
                 // Of a part next to black, too few walks tell the spread.
                 if a.max(b) > 0.05 {
-                    worst = worst.max((a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
+                    worst = larger(worst, (a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
                 }
             }
         }

@@ -1,5 +1,6 @@
 use super::super::pass::Before;
 use super::*;
+use crate::extremum::larger;
 use crate::gpu::AdapterChoice;
 use crate::plan::{Effect, Effects};
 use crate::render::{Reflectance, Rung, Settings, scene_pass};
@@ -93,9 +94,9 @@ fn differences(mesh: &Mesh, unrolled: &[(Vec3, ByPosition)]) -> [f32; 2] {
     for (toward, wanted) in unrolled {
         for (position, values) in by_position(mesh, &looked_up(mesh, *toward)) {
             for value in &values {
-                most[0] = values.iter().map(|other| value - other).fold(most[0], f32::max);
+                most[0] = values.iter().map(|other| value - other).fold(most[0], larger);
                 if f32::from_bits(position[1]).abs() < 0.5 {
-                    most[1] = most[1].max((value - wanted[&position][0]).abs());
+                    most[1] = larger(most[1], (value - wanted[&position][0]).abs());
                 }
             }
         }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::scene::Bounds;
 use crate::scene::convex::is_closed;
 use glam::{Vec2, Vec3};
@@ -14,7 +15,7 @@ fn the_candle_is_closed_smooth_and_right_side_out() {
         let [a, b, c]: [Vec3; 3] = [0, 1, 2].map(|k| mesh.positions[triangle[k] as usize]);
         let across = (b - a).cross(c - a).normalize();
         for vertex in triangle {
-            widest = widest.max(across.angle_between(mesh.normals[*vertex as usize]));
+            widest = larger(widest, across.angle_between(mesh.normals[*vertex as usize]));
         }
         let [a, b, c]: [Vec2; 3] = [0, 1, 2].map(|k| mesh.uvs[triangle[k] as usize]);
         assert!((b - a).perp_dot(c - a) < 0.0);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::largest;
 use crate::scene::cuts::{
     BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
 };
@@ -23,7 +24,8 @@ fn every_cut_gives_its_own_planes_back() {
         assert_eq!((convex.planes.len(), expected.len()), (count, count), "{name}");
         assert_eq!(convex.face_of_triangle.len(), mesh.triangle_count());
         for plane in &convex.planes {
-            let nearest = expected.iter().map(|other| (*other - *plane).abs().max_element()).fold(f32::MAX, f32::min);
+            let nearest =
+                expected.iter().map(|other| largest((*other - *plane).abs().to_array())).fold(f32::MAX, f32::min);
             // Vertices are rounded by 6e-8, and the smallest facets, the girdle's, are .04 high.
             assert!(nearest < 3e-6, "{name}: {plane} is {nearest} from any facet");
             assert!((plane.truncate().length() - 1.0).abs() < 1e-6);

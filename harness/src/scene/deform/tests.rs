@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::scene::implicit::tests::survey;
 use crate::scene::normals::{Averaging, shared_normals};
 use crate::scene::surfaces::torus;
@@ -31,7 +32,7 @@ fn normals_of_a_twisted_body_are_its_own() {
     let (ring, axis) = (ring(), dvec2(2.0, -1.0));
     let twisted = twisted(&ring, axis, 0.0, 0.05);
     let own = shared_normals(&twisted.positions, &twisted.indices, Averaging::Angle);
-    let off = |normals: &[glam::Vec3]| normals.iter().zip(&own).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    let off = |normals: &[glam::Vec3]| normals.iter().zip(&own).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
     let turned: Vec<_> = ring
         .normals
         .iter()
@@ -49,7 +50,7 @@ fn a_twist_comes_and_goes() {
     let ring = ring();
     let at = |time: f64| twisting(&ring, dvec2(0.0, 0.0), [-20.0, 20.0], time);
     let apart =
-        |a: &Mesh, b: &Mesh| a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        |a: &Mesh, b: &Mesh| a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
     assert!(apart(&at(0.0), &ring) < 1e-5 && apart(&at(0.5), &ring) < 1e-4 && apart(&at(1.0), &ring) < 1e-4);
     assert!(apart(&at(0.25), &ring) > 10.0 && apart(&at(0.25), &at(0.75)) > 10.0);
     // A quarter at the top.

@@ -3,6 +3,7 @@
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve, solve_within, truth};
 use glam::UVec3;
+use lapidary_harness::extremum::larger;
 use lapidary_harness::optical_path::Method;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, luminance};
 
@@ -132,7 +133,7 @@ fn a_labyrinth_ends_at_the_fixpoint_or_says_how_far_off_it_is() {
                 if *cost < status.least - share * status.least.max(1.0) {
                     assert!(early - cost <= share * cost.max(1.0), "{method}: {early} was not final at {cost}");
                 }
-                worst = worst.max((luminance(*early) - luminance(*cost)).abs());
+                worst = larger(worst, (luminance(*early) - luminance(*cost)).abs());
             }
             assert!(worst <= bound * (1.0 + 2.0 * share) && worst > 0.0, "{method}: {worst} beyond {bound}");
         }

@@ -3,6 +3,7 @@
 use super::{RADIUS, ball, draw, lamp, settings, spot, sun};
 use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
+use lapidary_harness::extremum::larger;
 use lapidary_harness::scene::{Light, Scene};
 use lapidary_harness::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle;
@@ -126,7 +127,7 @@ impl Errors {
             theory += if own_is_cheapest { 0.0 } else { of_grid(point, grid, cost).powi(2) };
             count += 1;
             if own_is_cheapest && own >= 0.1 * brightest {
-                worst_lit = worst_lit.max(((wanted - found).exp() - 1.0).abs());
+                worst_lit = larger(worst_lit, ((wanted - found).exp() - 1.0).abs());
                 lit += 1;
             }
             dark += usize::from(own == 0.0);

@@ -3,6 +3,7 @@
 use super::{RADIUS, apart, ball, coarse, covered, draw, lamp, scene, settings, spot, stone, sun};
 use crate::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
+use lapidary_harness::extremum::larger;
 use lapidary_harness::render::{Note, Picture, Settings};
 use lapidary_harness::scene::surfaces::sphere;
 use lapidary_harness::scene::{Averaging, Bounds, Light, Mesh, Scene};
@@ -81,7 +82,7 @@ fn a_hollow_ball_glows_from_inside() {
     for (_, found) in &pixels {
         let off = (PI * found.x / wanted).ln();
         squares += off * off;
-        worst = worst.max(off.abs());
+        worst = larger(worst, off.abs());
     }
     let rms = (squares / pixels.len() as f64).sqrt();
     println!("rms {rms:.3} nats, {worst:.3} at most");
@@ -270,7 +271,7 @@ fn a_body_in_anothers_shadow_stays_black() {
             let column = *place as u32 % picture.width;
             pixel[3] == 1.0 && (column >= picture.width * 7 / 10) == right
         });
-        halves.map(|(_, pixel)| pixel[0]).fold(0.0, f32::max)
+        halves.map(|(_, pixel)| pixel[0]).fold(0.0, larger)
     };
     for light in [light(-1.0), lamp] {
         let scene = scene(vec![before.clone(), behind.clone()], vec![light]).seen_from(90.0, 0.0);
@@ -336,7 +337,7 @@ fn a_hole_in_the_bunny_leaves_no_streaks() {
             if place.distance(hole) > reach && whole[3] == 1.0 && holed[3] == 1.0 {
                 seen += 1;
                 changed += i32::from((holed[1] - whole[1]).abs() > 0.1 * whole[1]);
-                brightest = brightest.max(holed[1] - whole[1]);
+                brightest = larger(brightest, holed[1] - whole[1]);
             }
         }
         println!(

@@ -2,6 +2,7 @@
 
 use super::{apart, ball, coarse, covered, draw, lamp, settings, spot, sun};
 use glam::{UVec3, Vec3};
+use lapidary_harness::extremum::larger;
 use lapidary_harness::scene::{Density, DensityGrid, Light, Medium, Scene};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
@@ -52,7 +53,7 @@ fn another_light_darkens_no_pixel() {
     for pair in pictures.windows(2) {
         let (mut brighter, mut lost) = (0, 0.0f32);
         for (before, after) in pair[0].linear.iter().zip(&pair[1].linear).filter(|(before, _)| before[3] == 1.0) {
-            lost = lost.max(1.0 - after[0] / before[0]);
+            lost = larger(lost, 1.0 - after[0] / before[0]);
             brighter += i32::from(after[0] > 1.01 * before[0]);
         }
         println!("darker by {lost:.1e} at most, {brighter} pixels brighter");

@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::gpu::AdapterChoice;
 use crate::scene::Bounds;
 use glam::{UVec3, Vec3};
@@ -44,7 +45,7 @@ fn every_voxel_has_the_density_of_its_middle() {
             let grid = grid(cells);
             let (mut worst, mut least, mut most) = (0.0f32, f32::INFINITY, 0.0f32);
             for (index, found) in found(grid, &density, |_| true).into_iter().enumerate() {
-                worst = worst.max((found - density.at(grid.centre(grid.voxel(index)))).abs());
+                worst = larger(worst, (found - density.at(grid.centre(grid.voxel(index)))).abs());
                 (least, most) = (least.min(found), most.max(found));
             }
             println!("{least} to {most}, off by {worst:.1e}");

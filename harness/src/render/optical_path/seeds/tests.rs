@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::gpu::AdapterChoice;
 use crate::render::Settings;
 use crate::render::device::texture;
@@ -133,7 +134,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
             let found = decode(bits);
             assert_eq!(found == OPTICAL_PATH_UNREACHED, wanted == OPTICAL_PATH_UNREACHED, "{index}: {found} {wanted}");
             if wanted < OPTICAL_PATH_UNREACHED {
-                worst = worst.max((found - wanted).abs() / wanted.max(1.0));
+                worst = larger(worst, (found - wanted).abs() / wanted.max(1.0));
                 reached += 1;
             }
         }

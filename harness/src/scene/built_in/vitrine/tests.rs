@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremum::larger;
 use crate::pixel::Viewer;
 use crate::plan::Decisions;
 use crate::render::{Rung, Settings};
@@ -22,7 +23,7 @@ fn the_stored_vitrine_is_what_is_made() {
         assert_eq!(stored.name, made.name);
         let (stored, made) = (&stored.mesh, &made.mesh);
         assert_eq!((&stored.indices, stored.uvs.len()), (&made.indices, made.uvs.len()));
-        let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
         // Sines differ in their last digit from one system to another.
         assert!(furthest(&stored.positions, &made.positions) < 1e-3);
         assert!(furthest(&stored.normals, &made.normals) < 1e-2);
