@@ -86,8 +86,8 @@ fn a_profile_cuts_every_frame() {
     let folder = folder();
     let text = succeeds(folder.path(), &["cost", "gem", "--profile", "--rounds", "1", "--out", "."]).stdout;
     assert!(folder.path().join("gem_profile.txt").exists());
-    let times =
-        text.split_whitespace().filter(|word| word.parse::<f64>().is_ok_and(|ms| ms > 0.0) && word.contains('.'));
+    let is_time = |word: &&str| word.contains('.') && word.parse::<f64>().is_ok_and(|ms| ms.is_finite() && ms >= 0.0);
+    let times = text.split_whitespace().filter(is_time);
     assert_eq!(times.count(), 7, "{text}");
 }
 
@@ -232,7 +232,8 @@ fn the_reflectance_is_timed_written_and_shown_again() {
     for row in rows {
         assert!(row["technique"] == "cdrf" && row["adapter"].is_string(), "{row}");
         let number = |row: &Value, of: &str| row[of].as_f64().expect("a number");
-        assert!(number(row, "ms") > 0.0, "{row}");
+        // A clock may be too coarse to see a frame.
+        assert!(number(row, "ms") >= 0.0 && number(row, "ms").is_finite(), "{row}");
         // Which of the two is faster in one frame on a busy machine is chance; what the row makes of its time is not.
         let beats = |other: &Value| {
             other["view"] == row["view"]
