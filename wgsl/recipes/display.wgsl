@@ -1,9 +1,13 @@
-// display: supersamples averaged in linear light, put before a backdrop, exposed, tone-mapped and encoded.
+// display: supersamples exposed, put before a backdrop and tone-mapped one by one, then averaged and encoded.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: IEC 61966-2-1:1999 (encoding); Khronos PBR Neutral tone mapper.
 // requires: srgb
 //
 // sRGB is encoded here rather than by an `*-srgb` target, so that every driver rounds alike.
+//
+// The tone curve comes before the average: a pixel of the display emits the mean of the light that its samples would emit. After the average it
+// would come too late: one sample of radiance 20 among fifteen dark ones is 1.25 in the mean and almost white, and a bright edge a staircase.
+// The same as a mean of radiance with each sample weighted by the ratio of its curve's value to its radiance.
 
 // Samples along each side of a pixel.
 override SAMPLES: u32 = 4u;
@@ -20,9 +24,9 @@ struct DisplayFrame {
 @group(0) @binding(1) var samples: texture_2d<f32>;
 
 struct DisplayOutput {
-    // Linear radiance before the exposure, without the backdrop; alpha is the share of samples that are covered.
+    // The plain mean of linear radiance before the exposure, without the backdrop; alpha is the share of samples that are covered.
     @location(0) linear: vec4f,
-    // Tone-mapped and encoded, opaque.
+    // The mean of the tone-mapped samples, encoded, opaque.
     @location(1) encoded: vec4f,
 }
 
@@ -44,14 +48,16 @@ fn display_backdrop(pixel: vec2f) -> vec3f {
 @fragment
 fn display_fragment(@builtin(position) position: vec4f) -> DisplayOutput {
     let pixel = vec2u(position.xy);
-    var sum = vec4f(0.0f);
+    let behind = display_backdrop(frame.tile + position.xy);
+    var radiance = vec4f(0.0f);
+    var light = vec3f(0.0f);
     for (var row = 0u; row < SAMPLES; row++) {
         for (var column = 0u; column < SAMPLES; column++) {
-            sum += textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
+            let found = textureLoad(samples, pixel * SAMPLES + vec2u(column, row), 0);
+            radiance += found;
+            light += srgb_tone_curve(frame.exposure * found.rgb + (1.0f - found.a) * behind);
         }
     }
-    let average = sum / f32(SAMPLES * SAMPLES);
-    let behind = display_backdrop(frame.tile + position.xy);
-    let exposed = frame.exposure * average.rgb + (1.0f - average.a) * behind;
-    return DisplayOutput(average, vec4f(srgb_encode_color(srgb_tone_curve(exposed)), 1.0f));
+    let count = f32(SAMPLES * SAMPLES);
+    return DisplayOutput(radiance / count, vec4f(srgb_encode_color(light / count), 1.0f));
 }

@@ -55,7 +55,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
     /// Samples along each side of a pixel.
-    #[arg(long, default_value_t = render::SAMPLES, value_parser = clap::value_parser!(u32).range(1..=4))]
+    #[arg(long, default_value_t = render::SAMPLES, value_parser = clap::value_parser!(u32).range(1..=i64::from(render::MOST_SAMPLES)))]
     samples: u32,
     /// Wavelengths of the reference; 31 where left out.
     #[arg(long)]

@@ -67,7 +67,7 @@ pub(super) fn measure(
                 }));
             }
             for (choice, settings) in ways {
-                let errors = Errors::between(&render::render(gpu, scene, &settings)?, reference);
+                let errors = Errors::between(&render::render_means(gpu, scene, &settings)?, reference);
                 found.push(Choice { rung: name.to_owned(), choice, view: view.name.to_owned(), errors });
             }
         }

@@ -129,7 +129,7 @@ pub fn run(
         let mut errors = Vec::new();
         for ((scene, reference), &dispersion_strength) in scenes.iter().zip(&references).zip(&entry.strengths) {
             let settings = Settings { dispersion_strength, ..entry.settings.clone() };
-            errors.push(Some(Errors::between(&render::render(gpu, scene, &settings)?, reference)));
+            errors.push(Some(Errors::between(&render::render_means(gpu, scene, &settings)?, reference)));
             progress("comparing", (rungs.len() * scenes.len() + errors.len()) as u64, total);
         }
         rungs.push(count(&brilliant, entry, errors)?);

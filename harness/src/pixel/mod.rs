@@ -3,6 +3,7 @@
 //! A picture of the GPU is compared with it pixel by pixel ([`parity`]); which facets a ray met is returned besides, for a
 //! difference is allowed only where rays part at a facet's edge.
 
+pub mod display;
 mod geometry;
 pub mod parity;
 mod surface;

@@ -182,29 +182,72 @@ pub fn render(
     settings: &Settings<'_>,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Result<Rendering, ReferenceError> {
+    let (window, rows) = rows(scene, settings, progress, |job, pixel| {
+        let mut sum = Pixel::default();
+        job.samples(pixel).for_each(|sample| sum.add(&sample));
+        sum
+    })?;
+    let pixels: Vec<Pixel> = rows.into_iter().flatten().collect();
+    Ok(Rendering::of(window, settings, &pixels))
+}
+
+/// The same, and the samples themselves, row by row: linear radiance and coverage.
+///
+/// # Errors
+/// [`ReferenceError`], where a setting is out of range.
+pub fn render_samples(
+    scene: &Scene,
+    settings: &Settings<'_>,
+    progress: &(dyn Fn(u64, u64) + Sync),
+) -> Result<(Rendering, Vec<[f32; 4]>), ReferenceError> {
+    let (window, rows) = rows(scene, settings, progress, |job, pixel| {
+        let samples: Vec<Pixel> = job.samples(pixel).collect();
+        let mut sum = Pixel::default();
+        samples.iter().for_each(|sample| sum.add(sample));
+        (sum, samples.iter().map(|sample| sample.mean(1.0)).collect::<Vec<_>>())
+    })?;
+    let side = settings.samples as usize;
+    let mut samples = Vec::with_capacity(window.width as usize * window.height as usize * side * side);
+    for row in &rows {
+        for line in 0..side {
+            samples.extend(row.iter().flat_map(|(_, own)| &own[line * side..][..side]));
+        }
+    }
+    let pixels: Vec<Pixel> = rows.into_iter().flatten().map(|(pixel, _)| pixel).collect();
+    Ok((Rendering::of(window, settings, &pixels), samples))
+}
+
+/// What `of_pixel` makes of each column and row of the window, row by row.
+fn rows<'scene, Found: Send>(
+    scene: &'scene Scene,
+    settings: &Settings<'scene>,
+    progress: &(dyn Fn(u64, u64) + Sync),
+    of_pixel: impl Fn(&Job<'scene>, (u32, u32)) -> Found + Sync,
+) -> Result<(Window, Vec<Vec<Found>>), ReferenceError> {
     let window = settings.checked()?;
     let job = Job::new(scene, settings);
     let done = AtomicU64::new(0);
     let row = |y: u32| {
-        let pixels = (window.left..window.left + window.width).map(|x| job.pixel(x, y));
-        let row: Vec<Pixel> = pixels.collect();
+        let row: Vec<Found> = (window.left..window.left + window.width).map(|x| of_pixel(&job, (x, y))).collect();
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, window.height.into());
         row
     };
-    let rows: Vec<Vec<Pixel>> = (window.top..window.top + window.height).into_par_iter().map(row).collect();
-    let pixels = || rows.iter().flatten();
-    let covered: u64 = pixels().map(|pixel| u64::from(pixel.covered)).sum();
-    let lost_sum: f64 = pixels().map(|pixel| pixel.lost_sum).sum();
-    let lost = Lost {
-        max: pixels().map(|pixel| pixel.lost_max).fold(0.0, f64::max),
-        mean: lost_sum / (covered.max(1) as f64 * settings.wavelengths as f64),
-    };
-    let share = 1.0 / f64::from(settings.samples * settings.samples);
-    let linear = pixels().map(|pixel| {
-        let [red, green, blue] = (pixel.radiance * share).as_vec3().to_array();
-        [red, green, blue, (f64::from(pixel.covered) * share) as f32]
-    });
-    Ok(Rendering { width: window.width, height: window.height, linear: linear.collect(), lost })
+    Ok((window, (window.top..window.top + window.height).into_par_iter().map(row).collect()))
+}
+
+impl Rendering {
+    /// The means of sums over the pixels' samples.
+    fn of(window: Window, settings: &Settings<'_>, pixels: &[Pixel]) -> Self {
+        let covered: u64 = pixels.iter().map(|pixel| u64::from(pixel.covered)).sum();
+        let lost_sum: f64 = pixels.iter().map(|pixel| pixel.lost_sum).sum();
+        let lost = Lost {
+            max: pixels.iter().map(|pixel| pixel.lost_max).fold(0.0, f64::max),
+            mean: lost_sum / (covered.max(1) as f64 * settings.wavelengths as f64),
+        };
+        let share = 1.0 / f64::from(settings.samples * settings.samples);
+        let linear = pixels.iter().map(|pixel| pixel.mean(share)).collect();
+        Self { width: window.width, height: window.height, linear, lost }
+    }
 }
 
 /// Sums over the samples of a pixel.
@@ -244,27 +287,42 @@ impl<'scene> Job<'scene> {
         }
     }
 
-    fn pixel(&self, x: u32, y: u32) -> Pixel {
-        let mut pixel = Pixel::default();
-        let place = |index: u32, sample: u32| f64::from(index) + (f64::from(sample) + 0.5) / f64::from(self.samples);
-        for row in 0..self.samples {
-            for column in 0..self.samples {
-                let direction = self.view.direction(place(x, column), place(y, row));
-                self.add_sample(direction, &mut pixel);
-            }
-        }
-        pixel
+    /// Each sample of a pixel, row by row.
+    fn samples(&self, (x, y): (u32, u32)) -> impl Iterator<Item = Pixel> {
+        let place =
+            move |index: u32, sample: u32| f64::from(index) + (f64::from(sample) + 0.5) / f64::from(self.samples);
+        (0..self.samples * self.samples).map(move |sample| {
+            let (row, column) = (sample / self.samples, sample % self.samples);
+            self.sample(self.view.direction(place(x, column), place(y, row)))
+        })
     }
 
-    fn add_sample(&self, direction: DVec3, pixel: &mut Pixel) {
-        let Some(primary) = self.surroundings.primary(self.view.eye, direction) else { return };
-        pixel.covered += 1;
+    fn sample(&self, direction: DVec3) -> Pixel {
+        let mut sample = Pixel::default();
+        let Some(primary) = self.surroundings.primary(self.view.eye, direction) else { return sample };
+        sample.covered = 1;
         for (wavelength, optics) in &self.spectrum {
             let outcome = self.surroundings.follow(&primary, optics);
-            pixel.radiance += wavelength.weights * outcome.radiance;
-            pixel.lost_sum += outcome.lost;
-            pixel.lost_max = pixel.lost_max.max(outcome.lost);
+            sample.radiance += wavelength.weights * outcome.radiance;
+            sample.lost_sum += outcome.lost;
+            sample.lost_max = sample.lost_max.max(outcome.lost);
         }
+        sample
+    }
+}
+
+impl Pixel {
+    fn add(&mut self, sample: &Self) {
+        self.radiance += sample.radiance;
+        self.covered += sample.covered;
+        self.lost_sum += sample.lost_sum;
+        self.lost_max = self.lost_max.max(sample.lost_max);
+    }
+
+    /// Linear radiance and coverage times `share`, one over the number of samples.
+    fn mean(&self, share: f64) -> [f32; 4] {
+        let [red, green, blue] = (self.radiance * share).as_vec3().to_array();
+        [red, green, blue, (f64::from(self.covered) * share) as f32]
     }
 }
 

@@ -3,7 +3,7 @@
 use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
-use super::{Environment, RenderError, Settings, TILE};
+use super::{Environment, RenderError, Settings, Tile};
 use crate::gpu::{Encoder, Gpu};
 use glam::{Mat4, Vec3};
 
@@ -47,7 +47,8 @@ impl<'gpu> DeferredPass<'gpu> {
                 depth: None,
             },
         )?;
-        let size = [settings.width, settings.height].map(|side| settings.samples * side.min(TILE));
+        let size =
+            [settings.width, settings.height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
         let [emission, normal, reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING;
             [
@@ -106,6 +107,7 @@ impl<'gpu> DeferredPass<'gpu> {
 mod tests {
     use super::COMPOSITE;
     use crate::cookbook;
+    use crate::extremum::larger;
     use crate::gpu::{AdapterChoice, Gpu};
     use crate::pixel::Viewer;
     use crate::render::{Settings, render_from};
@@ -140,9 +142,9 @@ mod tests {
                 // Across the ray nothing is lost; along it the depth decides, the more the more the facet slants: where it is seen edge-on the
                 // two differ by which point of the pixel is meant.
                 let (direction, from_eye) = ((point.position - eye).normalize(), Vec3::new(x, y, z) - eye);
-                worst = worst.max(from_eye.cross(direction).length() / point.position.distance(eye));
+                worst = larger(worst, from_eye.cross(direction).length() / point.position.distance(eye));
                 let along = (from_eye.dot(direction) - point.position.distance(eye)).abs();
-                worst = worst.max(along / point.position.distance(eye));
+                worst = larger(worst, along / point.position.distance(eye));
                 seen += 1;
             }
             println!("{name}: {seen} pixels, off by {worst:e} of the distance at most");

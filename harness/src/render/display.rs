@@ -2,16 +2,18 @@
 
 use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
-use super::{Picture, RenderError, Settings, TILE, Tile};
+use super::{Picture, RenderError, Settings, Tile};
 use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Averages samples, encodes them, and brings both pictures back.
+/// Averages samples, and what the tone curve makes of them, and brings both pictures back.
 pub(super) struct DisplayPass<'gpu> {
     gpu: &'gpu Gpu,
     pipeline: Pipeline,
+    /// Along each side of a pixel.
+    count: u32,
     /// Samples of one tile.
     samples: wgpu::Texture,
     samples_view: wgpu::TextureView,
@@ -20,15 +22,15 @@ pub(super) struct DisplayPass<'gpu> {
 }
 
 impl<'gpu> DisplayPass<'gpu> {
-    /// With `samples` samples along each side of a pixel, for tiles of a picture of this size.
-    pub(super) fn new(gpu: &'gpu Gpu, samples: u32, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
+    /// With `count` samples along each side of a pixel, for tiles of a picture of this size.
+    pub(super) fn new(gpu: &'gpu Gpu, count: u32, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
         let pipeline = device::pipeline(
             gpu,
             &PipelineSource {
                 recipe: "display",
                 source: &cookbook::recipe_source("display"),
                 entries: ["display_vertex", "display_fragment"],
-                constants: &[("SAMPLES", f64::from(samples))],
+                constants: &[("SAMPLES", f64::from(count))],
                 formats: &[SAMPLE_FORMAT, ENCODED_FORMAT],
                 depth: None,
             },
@@ -36,16 +38,22 @@ impl<'gpu> DisplayPass<'gpu> {
         use wgpu::TextureUsages as Usage;
         let [samples, linear, encoded] = gpu.guarded("allocating a tile", |device| {
             [
-                ("samples", samples, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
+                ("samples", count, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
                 ("linear picture", 1, SAMPLE_FORMAT, Usage::COPY_SRC),
                 ("encoded picture", 1, ENCODED_FORMAT, Usage::COPY_SRC),
             ]
             .map(|(what, times, format, usage)| {
-                device::target(device, what, [width, height].map(|side| times * side.min(TILE)), format, usage)
+                device::target(
+                    device,
+                    what,
+                    [width, height].map(|side| times * side.min(Tile::side(count))),
+                    format,
+                    usage,
+                )
             })
         })?;
         let samples_view = device::view(&samples);
-        Ok(Self { gpu, pipeline, samples, samples_view, linear, encoded })
+        Ok(Self { gpu, pipeline, count, samples, samples_view, linear, encoded })
     }
 
     /// What the scene's pass draws to.
@@ -53,22 +61,15 @@ impl<'gpu> DisplayPass<'gpu> {
         &self.samples_view
     }
 
-    /// Fills the samples with a tile of a picture that was made elsewhere, one sample a pixel.
-    pub(super) fn write(&self, tile: Tile, picture: &Picture) {
-        for row in 0..tile.height {
-            let start = ((tile.top + row) * picture.width + tile.left) as usize;
-            self.gpu.queue.write_texture(
-                wgpu::TexelCopyTextureInfo {
-                    texture: &self.samples,
-                    mip_level: 0,
-                    origin: wgpu::Origin3d { x: 0, y: row, z: 0 },
-                    aspect: wgpu::TextureAspect::All,
-                },
-                bytemuck::cast_slice(&picture.linear[start..start + tile.width as usize]),
-                wgpu::TexelCopyBufferLayout::default(),
-                wgpu::Extent3d { width: tile.width, height: 1, depth_or_array_layers: 1 },
-            );
-        }
+    /// Fills a tile with samples that were made elsewhere, row by row.
+    pub(super) fn write(&self, tile: Tile, samples: &[[f32; 4]]) {
+        let [width, height] = [tile.width, tile.height].map(|side| side * self.count);
+        self.gpu.queue.write_texture(
+            self.samples.as_image_copy(),
+            bytemuck::cast_slice(samples),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: Some(height) },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
     }
 
     /// Ends a tile: from the samples to the picture.
@@ -169,3 +170,6 @@ impl Readback {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

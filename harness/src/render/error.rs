@@ -1,6 +1,6 @@
 //! Why there is no picture.
 
-use super::Rung;
+use super::{MOST_SAMPLES, Rung};
 use crate::gpu::GpuError;
 use crate::random_walk::mesh;
 use crate::reference;
@@ -18,6 +18,9 @@ pub enum RenderError {
         /// What is possible.
         largest: u32,
     },
+    /// Too few or too many samples.
+    #[error("{0} samples a side are out of range; take 1 to {MOST_SAMPLES}")]
+    Samples(u32),
     /// A mesh or an environment map that this device cannot hold.
     #[error("{what} needs {bytes} bytes in one buffer, and this device offers {limit}; use a smaller one")]
     TooLarge {

@@ -29,7 +29,7 @@ use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::plan::{Decisions, Effect, Effects, Scattering};
 use crate::random_walk::mesh::{self, Rendering as Walked};
-use crate::reference::{self, Lost, Rendering};
+use crate::reference::{self, Lost, Rendering, Window};
 use crate::scene::Scene;
 use crate::scene::environment_map::EnvironmentMap;
 use deferred::DeferredPass;
@@ -50,10 +50,14 @@ pub(crate) use variant::names as object_names;
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
-/// Side of a tile in pixels; with its samples it stays within every device's texture limit.
+/// Largest side of a tile in pixels.
 const TILE: u32 = 512;
+/// Largest side of a tile in samples: far within every device's texture limit, and 80 MiB of colour and depth.
+const TILE_SAMPLES: u32 = 2048;
 /// Samples along each side of a pixel, where nothing else is asked for.
 pub const SAMPLES: u32 = 4;
+/// The most samples along each side of a pixel.
+pub const MOST_SAMPLES: u32 = 8;
 
 /// Walks from each pixel, where nothing else is asked for.
 pub const WALKS: u32 = 256;
@@ -78,7 +82,7 @@ pub struct Settings {
     pub width: u32,
     /// In pixels, 1 to [`LARGEST_SIDE`].
     pub height: u32,
-    /// Samples along each side of a pixel, 1 to 4.
+    /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`].
     pub samples: u32,
     /// How much of the light's way is followed.
     pub rung: Rung,
@@ -162,7 +166,7 @@ pub struct Picture {
     pub height: u32,
     /// Linear radiance and coverage.
     pub linear: Vec<[f32; 4]>,
-    /// sRGB, opaque.
+    /// sRGB, opaque: the mean of the tone-mapped samples, where there are samples.
     pub encoded: Vec<[u8; 4]>,
     /// What the reference of clear stones did not follow; none of another rung.
     pub lost: Option<Lost>,
@@ -198,6 +202,14 @@ pub fn render_reporting(
     render_from(gpu, scene, settings, (None, &cookbook::recipe_source(deferred::COMPOSITE)), progress)
 }
 
+/// Renders `scene`, and shows its mean radiance in place of its samples': as a committed reference is shown, of which only means are kept. Pictures that
+/// are compared as they are seen are both shown alike.
+pub fn render_means(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, RenderError> {
+    let mut picture = render(gpu, scene, settings)?;
+    encode(gpu, settings, &mut picture)?;
+    Ok(picture)
+}
+
 /// Renders `scene` with another text of the rung's recipe.
 pub fn render_with(gpu: &Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Picture, RenderError> {
     let composite = cookbook::recipe_source(deferred::COMPOSITE);
@@ -217,6 +229,9 @@ fn render_from(
     if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
         return Err(RenderError::Size { width, height, largest });
     }
+    if !(1..=MOST_SAMPLES).contains(&settings.samples) {
+        return Err(RenderError::Samples(settings.samples));
+    }
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
@@ -225,11 +240,11 @@ fn render_from(
             let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
             picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });
             picture.linear = linear;
+            // A walk's radiance is a guess that is right in the mean alone; a tone curve of guesses would be too dark.
+            encode(gpu, settings, &mut picture)?;
         } else {
-            let Rendering { linear, lost, .. } = follow(scene, settings, progress)?;
-            (picture.linear, picture.lost) = (linear, Some(lost));
+            follow(gpu, scene, settings, &mut picture, progress)?;
         }
-        encode(gpu, settings, &mut picture)?;
         return Ok(picture);
     }
     let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
@@ -237,10 +252,10 @@ fn render_from(
     let deferred = settings.deferred.then(|| DeferredPass::new(gpu, &lighting, settings, composite)).transpose()?;
     let pass = scene_pass(gpu, &lighting, scene, settings, source)?;
     let depth = gpu.guarded("allocating a tile", |device| {
-        let size = [width, height].map(|side| settings.samples * side.min(TILE));
+        let size = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
         device::view(&device::target(device, "depth", size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
     })?;
-    let tiles: Vec<Tile> = Tile::all(width, height).collect();
+    let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();
     for (done, tile) in (1..).zip(&tiles) {
         let clip_from_world = camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, *tile);
         let eye = scene.camera.eye;
@@ -350,27 +365,57 @@ fn mean_error(linear: &[[f32; 4]], standard_error: &[[f32; 3]]) -> f64 {
     if sum > 0.0 { (squares / count).sqrt() / (sum / count) } else { 0.0 }
 }
 
-/// What the reference sees of `scene`, by the settings' size, samples and environment.
+/// Fills `picture` with what the reference sees of `scene`, by the settings' size, samples and environment. Its samples are shown as a rung's are.
 fn follow(
+    gpu: &Gpu,
     scene: &Scene,
     settings: &Settings,
+    picture: &mut Picture,
     progress: &mut (dyn FnMut(u64, u64) + Send),
-) -> Result<Rendering, RenderError> {
-    let of_reference = reference::Settings {
-        samples: settings.samples,
-        wavelengths: settings.wavelengths,
-        energy_bound: settings.energy_bound,
-        environment: &settings.environment,
-        ..reference::Settings::of_size(settings.width, settings.height)
-    };
-    Ok(reference::render(scene, &of_reference, &from_any_thread(progress))?)
+) -> Result<(), RenderError> {
+    let (width, height) = (settings.width, settings.height);
+    let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
+    let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();
+    let rows: u64 = tiles.iter().map(|tile| u64::from(tile.height)).sum();
+    let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
+    for tile in tiles {
+        let Tile { left, top, width, height } = tile;
+        let of_reference = reference::Settings {
+            window: Some(Window { left, top, width, height }),
+            samples: settings.samples,
+            wavelengths: settings.wavelengths,
+            energy_bound: settings.energy_bound,
+            environment: &settings.environment,
+            ..reference::Settings::of_size(settings.width, settings.height)
+        };
+        let mut of_all = |of_tile: u64, _: u64| progress(done + of_tile, rows);
+        let (Rendering { linear, lost: of_tile, .. }, samples) =
+            reference::render_samples(scene, &of_reference, &from_any_thread(&mut of_all))?;
+        done += u64::from(height);
+        display.write(tile, &samples);
+        let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        display.finish(encoder, tile, settings, picture)?;
+        // In place of the device's means, which are of f32.
+        for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
+            let start = (row * picture.width + left) as usize;
+            picture.linear[start..start + means.len()].copy_from_slice(means);
+        }
+        let share: f64 = linear.iter().map(|pixel| f64::from(pixel[3])).sum();
+        covered += share;
+        lost = Lost { max: lost.max.max(of_tile.max), mean: lost.mean + share * of_tile.mean };
+    }
+    picture.lost = Some(Lost { mean: if covered > 0.0 { lost.mean / covered } else { 0.0 }, ..lost });
+    Ok(())
 }
 
-/// Fills in `encoded` from `linear`, as the display recipe shows it.
+/// Fills in `encoded` from `linear`, as the display recipe shows means: of one sample a pixel.
 pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
     let display = DisplayPass::new(gpu, 1, [picture.width, picture.height])?;
-    for tile in Tile::all(picture.width, picture.height) {
-        display.write(tile, picture);
+    for tile in Tile::all(picture.width, picture.height, 1) {
+        let rows = (tile.top..tile.top + tile.height).map(|row| (row * picture.width + tile.left) as usize);
+        let means: Vec<[f32; 4]> =
+            rows.flat_map(|start| &picture.linear[start..start + tile.width as usize]).copied().collect();
+        display.write(tile, &means);
         let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         display.finish(encoder, tile, settings, picture)?;
     }
@@ -397,11 +442,17 @@ impl Tile {
         Self { left: 0, top: 0, width, height }
     }
 
+    /// The largest side in pixels of a tile with so many samples along each side of a pixel.
+    fn side(samples: u32) -> u32 {
+        TILE.min(TILE_SAMPLES / samples)
+    }
+
     /// The tiles of a picture, row by row.
-    fn all(width: u32, height: u32) -> impl Iterator<Item = Self> {
-        let lefts = move || (0..width).step_by(TILE as usize);
-        (0..height).step_by(TILE as usize).flat_map(move |top| {
-            lefts().map(move |left| Self { left, top, width: TILE.min(width - left), height: TILE.min(height - top) })
+    fn all(width: u32, height: u32, samples: u32) -> impl Iterator<Item = Self> {
+        let side = Self::side(samples);
+        let lefts = move || (0..width).step_by(side as usize);
+        (0..height).step_by(side as usize).flat_map(move |top| {
+            lefts().map(move |left| Self { left, top, width: side.min(width - left), height: side.min(height - top) })
         })
     }
 }

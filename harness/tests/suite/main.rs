@@ -1,6 +1,7 @@
 //! The tests that need the whole harness: a GPU, the compiled-in cookbook, or the real `cook` binary.
 
 mod adapter;
+mod antialiasing;
 mod bad_input;
 mod bvh;
 mod cdrf;

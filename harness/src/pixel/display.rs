@@ -1,0 +1,18 @@
+//! The recipe `display` in Rust: from a pixel's samples to code values.
+
+use glam::{Vec2, Vec3, Vec4};
+use lapidary_srgb as srgb;
+
+/// A dark seamless paper behind the scene, at a place of a picture of that size in pixels. Linear RGB.
+pub fn backdrop(pixel: Vec2, size: Vec2) -> Vec3 {
+    let from_light = (pixel - Vec2::new(0.5, 0.55) * size) / size.min_element();
+    let falloff = (-3.0 * from_light.dot(from_light)).exp();
+    let (edge, middle) = (Vec3::new(0.006, 0.007, 0.010), Vec3::new(0.055, 0.062, 0.078));
+    edge * (1.0 - falloff) + middle * falloff
+}
+
+/// What a pixel shows of its samples, linear radiance and coverage each, before `behind`: code values from 0 to 1.
+pub fn shown(samples: &[Vec4], exposure: f32, behind: Vec3) -> Vec3 {
+    let light = |sample: &Vec4| srgb::tone_curve(exposure * sample.truncate() + (1.0 - sample.w) * behind);
+    srgb::encode_color(samples.iter().map(light).sum::<Vec3>() / samples.len() as f32)
+}

@@ -1,0 +1,94 @@
+//! Edges of bright facets as they are seen: what lies between the two sides of one is between them in brightness too.
+
+use lapidary_harness::render::{self, Picture, Settings};
+use lapidary_harness::scene::Scene;
+
+/// A strong edge: display light changes by so much of white within three pixels, in one direction.
+const STRONG: f32 = 0.5;
+/// A step: so much of the change lies between two pixels.
+const STEP: f32 = 0.9;
+
+/// How many strong edges are met along rows and columns, and how many of them are steps.
+fn edges(picture: &Picture) -> (usize, usize) {
+    let light = |pixel: &[u8; 4]| {
+        let color = glam::Vec3::from_array([0, 1, 2].map(|k| f32::from(pixel[k]) / 255.0));
+        lapidary_srgb::luminance(lapidary_srgb::decode_color(color))
+    };
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let light: Vec<f32> = picture.encoded.iter().map(light).collect();
+    let (mut strong, mut steps) = (0, 0);
+    let mut look = |line: &[f32]| {
+        for four in line.windows(4) {
+            let whole = four[3] - four[0];
+            let [before, step, after] = [0, 1, 2].map(|k| whole.signum() * (four[k + 1] - four[k]));
+            // The largest of the three is in the middle, so that each edge counts once.
+            if whole.abs() >= STRONG && before >= 0.0 && after >= 0.0 && step >= before && step > after {
+                strong += 1;
+                steps += usize::from(step >= STEP * whole.abs());
+            }
+        }
+    };
+    (0..height).for_each(|row| look(&light[row * width..][..width]));
+    for column in 0..width {
+        look(&light.iter().skip(column).step_by(width).copied().collect::<Vec<f32>>());
+    }
+    (strong, steps)
+}
+
+fn share(name: &str, picture: &Picture) -> f64 {
+    let (strong, steps) = edges(picture);
+    let share = steps as f64 / strong as f64;
+    println!("{name}: {steps} of {strong} strong edges are steps, {share:.3}");
+    assert!(strong > 1000, "{name}: {strong}");
+    share
+}
+
+/// A pixel on a straight edge shows the two sides by their shares of it. Where the edge runs along the pixels' rows the share is anything from 0 to 1 alike, so
+/// that of two changes, to the pixel and from it, one is 0.9 of the whole for a fifth of all edges; a slanting one crosses more pixels and has fewer.
+/// Sixteen samples know the share to a quarter at worst: then 0 is all that is left of the fifth, for a quarter.
+const MOST_STEPS: f64 = 0.25;
+
+#[test]
+fn bright_edges_are_no_staircases() {
+    for (name, rung, exposure) in [
+        ("brilliant", "convex-8+tracker", 1.0),
+        ("chandelier", "proxy-2+tracker", 1.0),
+        ("vitrine", "by-material", 0.5),
+    ] {
+        let scene = Scene::named(name).expect("built in");
+        let rung = rung.parse().expect("a rung");
+        let settings = |samples| Settings { rung, exposure, samples, ..Settings::of_size(384, 384) };
+        let picture = render::render(super::gpu(), &scene, &settings(4)).expect("rendered");
+        assert!(share(name, &picture) <= MOST_STEPS, "{name}");
+        // One sample a pixel is a staircase, and the means of sixteen, tone-mapped afterwards, nearly one: the measure sees both.
+        let one = render::render(super::gpu(), &scene, &settings(1)).expect("rendered");
+        assert!(share(&format!("{name}, one sample"), &one) > 0.5, "{name}");
+        if name != "vitrine" {
+            let late = render::render_means(super::gpu(), &scene, &settings(4)).expect("rendered");
+            assert!(share(&format!("{name}, averaged before the curve"), &late) > 0.35, "{name}");
+        }
+    }
+}
+
+/// With eight samples a side, and of the reference.
+#[test]
+fn so_it_is_with_more_samples_and_with_the_reference() {
+    let scene = Scene::named("brilliant").expect("built in");
+    let rung = "convex-8+tracker".parse().expect("a rung");
+    let settings = Settings { rung, samples: 8, ..Settings::of_size(192, 192) };
+    let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
+    assert!(share("eight samples", &picture) <= MOST_STEPS);
+    let rung = "reference".parse().expect("a rung");
+    let settings = Settings { rung, wavelengths: 3, energy_bound: 0.02, ..Settings::of_size(128, 128) };
+    let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
+    assert!(share("reference", &picture) <= MOST_STEPS);
+}
+
+#[test]
+fn samples_have_a_range() {
+    let scene = Scene::named("octahedron").expect("built in");
+    for samples in [0, 9, u32::MAX] {
+        let error = render::render(super::gpu(), &scene, &Settings { samples, ..Settings::of_size(8, 8) });
+        assert!(error.expect_err("no picture").to_string().contains("1 to 8"));
+    }
+}
