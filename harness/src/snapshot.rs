@@ -1,6 +1,7 @@
 //! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
 
 pub mod beside_walks;
+mod comparison;
 mod frames;
 mod shots;
 pub mod strip;
@@ -9,6 +10,8 @@ mod walked;
 use crate::gpu::Gpu;
 use crate::render::{self, Picture, RenderError, Settings, file};
 use crate::scene::{Scene, SceneError};
+pub(crate) use comparison::flip;
+pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare};
 pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
@@ -19,11 +22,6 @@ pub const PNG_SIDE: u32 = 512;
 pub const EXR_SIDE: u32 = 256;
 /// Largest committed file in bytes.
 pub const LARGEST_FILE: u64 = 512 * 1024;
-/// Largest mean FLIP. Another driver moves single facet edges by a sample (below 0.001); a turn of 1° gives above 0.02.
-pub const MOST_FLIP: f32 = 0.005;
-/// Largest RMSE in linear radiance, relative to the reference's root mean square.
-pub const MOST_RMSE: f32 = 0.05;
-
 /// A committed picture: a file to look at and one of linear radiance.
 #[derive(Clone, Copy, Debug)]
 pub enum Committed {
@@ -115,6 +113,20 @@ pub enum SnapshotError {
         /// The size rendered.
         expected: (u32, u32),
     },
+    /// A pixel that is no number, or infinite.
+    #[error(
+        "{what}: pixel ({column}, {row}) is {value:?}; find out why, such a picture is never a reference nor like one"
+    )]
+    NotFinite {
+        /// Which picture.
+        what: String,
+        /// Of the pixel, from the left.
+        column: u32,
+        /// Of the pixel, from the top.
+        row: u32,
+        /// What it holds.
+        value: [f32; 4],
+    },
     /// A file too large to commit.
     #[error("{path}: {bytes} bytes, at most {LARGEST_FILE} are committed")]
     TooLarge {
@@ -134,23 +146,6 @@ pub enum SnapshotError {
     File(#[from] file::FileError),
 }
 
-/// How far a picture is from its reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
-    /// Mean FLIP of the PNGs, 0 to 1.
-    pub flip: f32,
-    /// RMSE of linear radiance over the reference's root mean square.
-    pub rmse: f32,
-}
-
-impl Comparison {
-    /// Whether the pictures count as the same.
-    pub fn holds(&self) -> bool {
-        // A NaN does not hold.
-        self.flip <= MOST_FLIP && self.rmse <= MOST_RMSE
-    }
-}
-
 /// Renders `shot` as PNG and as EXR would hold it.
 pub fn render_shot(gpu: &Gpu, shot: &Shot) -> Result<[Picture; 2], SnapshotError> {
     let scene = shot.open()?;
@@ -164,52 +159,11 @@ pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Resu
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
 }
 
-/// Compares new pictures with the references called `name` in `folder`. Where they differ too much, the new PNG and a picture of the
-/// difference are left beside the reference, as `<name>.new.png` and `<name>.difference.png`.
-pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
-    let png = folder.join(format!("{name}.png"));
-    let exr = folder.join(format!("{name}.exr"));
-    let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
-    let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
-    let map = flip_map(seen, reference.as_raw());
-    let comparison = Comparison {
-        flip: nv_flip::FlipPool::from_image(&map).mean(),
-        rmse: relative_rmse(&linear.linear, reference_linear.as_raw()),
-    };
-    let beside = ["new", "difference"].map(|kind| folder.join(format!("{name}.{kind}.png")));
-    if comparison.holds() {
-        // What an earlier failure left is out of date.
-        for path in beside {
-            let _ = std::fs::remove_file(path);
-        }
-    } else {
-        file::write(seen, &beside[0])?;
-        let colored = map.apply_color_lut(&nv_flip::magma_lut()).to_vec();
-        let pixels: Vec<[u8; 4]> = colored.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
-        let encode = |reason| file::FileError::Encode { path: beside[1].clone(), reason };
-        let bytes = file::png(seen.width, seen.height, &pixels).map_err(encode)?;
-        file::replace(&beside[1], &bytes)?;
-    }
-    Ok(comparison)
-}
-
-/// FLIP of what is seen, against `reference`, RGB of the same size.
-fn flip_map(seen: &Picture, reference: &[u8]) -> nv_flip::FlipImageFloat {
-    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
-    nv_flip::flip(image(reference), image(&rgb(seen)), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
-}
-
-fn rgb(picture: &Picture) -> Vec<u8> {
-    picture.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
-}
-
-/// FLIP of each pixel of two pictures of one size, row by row.
-pub(crate) fn flip(picture: &Picture, reference: &Picture) -> Vec<f32> {
-    flip_map(picture, &rgb(reference)).to_vec()
-}
-
 /// Makes new pictures the references called `name`.
 pub fn accept(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<(), SnapshotError> {
+    for picture in [seen, linear] {
+        comparison::require_finite(&format!("the new picture {name}"), picture.width, &picture.linear)?;
+    }
     std::fs::create_dir_all(folder).map_err(|error| file::FileError::Write { path: folder.to_owned(), error })?;
     for (picture, extension) in [(seen, "png"), (linear, "exr")] {
         let path = folder.join(format!("{name}.{extension}"));
@@ -233,13 +187,4 @@ pub(crate) fn read(path: &Path, expected: (u32, u32)) -> Result<image::DynamicIm
         return Err(SnapshotError::Size { path: path.to_owned(), found, expected });
     }
     Ok(image)
-}
-
-fn relative_rmse(new: &[[f32; 4]], reference: &[f32]) -> f32 {
-    let (mut error, mut power) = (0.0, 0.0);
-    for (new, reference) in new.iter().flatten().zip(reference) {
-        error += f64::from(new - reference).powi(2);
-        power += f64::from(*reference).powi(2);
-    }
-    (error / power).sqrt() as f32
 }

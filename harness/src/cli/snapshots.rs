@@ -42,9 +42,12 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                 Ok(comparison) => {
                     let verdict = if comparison.holds() { "same" } else { "DIFFERENT" };
                     lines.push(format!(
-                        "{name:<24} {verdict}: FLIP {:.4} (at most {}), relative RMSE {:.4} (at most {})",
+                        "{name:<24} {verdict}: FLIP {:.4} (at most {}), of a thousandth above {:.4} (at most {}), \
+                         relative RMSE {:.4} (at most {})",
                         comparison.flip,
                         snapshot::MOST_FLIP,
+                        comparison.high_flip,
+                        snapshot::MOST_HIGH_FLIP,
                         comparison.rmse,
                         snapshot::MOST_RMSE
                     ));

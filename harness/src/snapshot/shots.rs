@@ -2,7 +2,7 @@
 
 use super::folder;
 use crate::plan::{Decisions, Effect, Effects};
-use crate::render::{Curvature, Rung, Settings};
+use crate::render::{Curvature, MOST_SAMPLES, Rung, SAMPLES, Settings};
 use crate::scene::{Scene, SceneError};
 use std::path::PathBuf;
 
@@ -29,6 +29,8 @@ pub struct Shot {
     pub exposure: f32,
     /// Which curvature spreads its light.
     pub curvature: Curvature,
+    /// Along each side of a pixel.
+    pub samples: u32,
     /// What it shows; where empty, the scene's own description.
     pub paragraph: &'static str,
 }
@@ -43,12 +45,12 @@ pub const SHOTS: [Shot; 40] = [
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
             `./cook plan vitrine` says why, and what follows: nothing is compiled, bound or run that no body calls for.",
         exposure: 0.5,
-        ..shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", "by-material")
+        ..fine(shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", "by-material"))
     },
     Shot {
         paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
             picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
-        ..shot("brilliant_exact", "Round brilliant, diamond", "brilliant", "convex-8+tracker")
+        ..fine(shot("brilliant_exact", "Round brilliant, diamond", "brilliant", "convex-8+tracker"))
     },
     shot("brilliant", "Round brilliant by proxy, diamond", "brilliant", "proxy-4+tracker"),
     shot("sapphire", "Round brilliant, sapphire", "sapphire", "convex-8+tracker"),
@@ -57,8 +59,8 @@ pub const SHOTS: [Shot; 40] = [
     shot("step_cut", "Step cut, emerald", "step_cut", "convex-8+tracker"),
     shot("octahedron", "Octahedron, diamond", "octahedron", "proxy-4+tracker"),
     shot("prism", "Pentagonal prism, quartz", "prism", "proxy-2+tracker"),
-    shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker"),
-    shot("chandelier", "A chandelier, one draw call", "chandelier", "proxy-2+tracker"),
+    fine(shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker")),
+    fine(shot("chandelier", "A chandelier, one draw call", "chandelier", "proxy-2+tracker")),
     shot("bunny_stone", "Bunny, glass", "bunny_stone", "bvh-8+tracker"),
     Shot {
         paragraph: "As the paper has it: one internal hit, no dispersion. What is reflected inside comes from the environment along \
@@ -150,8 +152,14 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
         matte: false,
         exposure: 1.0,
         curvature: Curvature::Mean,
+        samples: SAMPLES,
         paragraph: "",
     }
+}
+
+/// With the most samples: what is looked at first, or is all edges.
+const fn fine(shot: Shot) -> Shot {
+    Shot { samples: MOST_SAMPLES, ..shot }
 }
 
 /// Under the scene's lights and the studio's, which is made for stones: half of that is enough.
@@ -192,6 +200,7 @@ impl Shot {
             without: self.without(),
             exposure: self.exposure,
             curvature: self.curvature,
+            samples: self.samples,
             ..Settings::of_size(side, side)
         }
     }
@@ -236,7 +245,8 @@ impl Shot {
             other => format!(" --curvature {}", other.name()),
         };
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
-        let choices = format!("{from} --rung {}{centre}{light}{curvature}{exposure}", self.rung);
+        let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
+        let choices = format!("{from} --rung {}{centre}{light}{curvature}{exposure}{samples}", self.rung);
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

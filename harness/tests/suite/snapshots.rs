@@ -1,5 +1,6 @@
 //! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
 
+use lapidary_harness::render::{self, Picture};
 use lapidary_harness::scene::Scene;
 use lapidary_harness::snapshot::{self, Committed, Comparison, SHOTS, Shot, SnapshotError};
 use std::path::Path;
@@ -31,6 +32,7 @@ fn every_picture_is_as_it_was() {
         let name = committed.name();
         let pictures = committed.render(super::gpu()).expect("rendered");
         let comparison = snapshot::compare(name, &pictures, &committed.folder()).expect(name);
+        println!("{name:28} {comparison:?}");
         assert!(comparison.holds(), "{name}: {comparison:?}; see the new picture and the difference beside it");
     }
 }
@@ -74,6 +76,135 @@ fn swapped_channels_are_seen() {
     assert_ne!(swapped, source());
     let comparison = planted(&Scene::named("brilliant").expect("built in"), &swapped);
     assert!(!comparison.holds(), "{comparison:?}");
+}
+
+/// A committed picture as it was rendered, from its files.
+fn committed(name: &str, folder: &Path) -> [Picture; 2] {
+    let open = |extension: &str| image::open(folder.join(format!("{name}.{extension}"))).expect(name);
+    let [seen, linear] = [open("png"), open("exr")];
+    [seen.clone(), linear].map(|image| Picture {
+        width: image.width(),
+        height: image.height(),
+        linear: image.to_rgba32f().pixels().map(|pixel| pixel.0).collect(),
+        encoded: seen.to_rgba8().pixels().map(|pixel| pixel.0).collect(),
+        lost: None,
+        walked: None,
+        notes: Vec::new(),
+    })
+}
+
+/// The committed pictures with something wrong in them, put beside the untouched.
+fn spoilt(name: &str, folder: &Path, spoil: impl Fn(&mut [Picture; 2])) -> Result<Comparison, SnapshotError> {
+    let copy = tempfile::tempdir().expect("a folder");
+    for extension in ["png", "exr"] {
+        let file = format!("{name}.{extension}");
+        std::fs::copy(folder.join(&file), copy.path().join(&file)).expect("copied");
+    }
+    let mut pictures = committed(name, folder);
+    spoil(&mut pictures);
+    snapshot::compare(name, &pictures, copy.path())
+}
+
+/// The upper left corner of the brightest square of that side.
+fn brightest(picture: &Picture, side: usize) -> (usize, usize) {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let places =
+        (0..height - side).step_by(8).flat_map(|top| (0..width - side).step_by(8).map(move |left| (left, top)));
+    let light = |&(left, top): &(usize, usize)| -> u64 {
+        let rows = (top..top + side).flat_map(|row| &picture.encoded[row * width + left..][..side]);
+        rows.flat_map(|pixel| &pixel[..3]).map(|code| u64::from(*code)).sum()
+    };
+    places.max_by_key(light).expect("a square")
+}
+
+/// What the eye cannot miss: a hole in what is seen, though it is a 256th of the picture and its linear radiance has none.
+#[test]
+fn a_black_square_is_seen() {
+    for picture in Committed::all() {
+        let (name, folder) = (picture.name(), picture.folder());
+        let comparison = spoilt(name, &folder, |[seen, _]| {
+            let ((left, top), width) = (brightest(seen, 32), seen.width as usize);
+            for row in top..top + 32 {
+                seen.encoded[row * width + left..][..32].fill([0, 0, 0, 255]);
+            }
+        });
+        let comparison = comparison.expect(name);
+        println!("{name:28} {comparison:?}");
+        assert!(!comparison.holds(), "{name}: {comparison:?}");
+    }
+}
+
+#[test]
+fn what_is_no_number_is_refused() {
+    let (brilliant, folder) = (brilliant().name, brilliant().folder());
+    for which in [0, 1] {
+        for (value, channel) in [(f32::NAN, 0), (f32::INFINITY, 2), (f32::NAN, 3)] {
+            let planted = spoilt(brilliant, &folder, |pictures| pictures[which].linear[1234][channel] = value);
+            let error = planted.expect_err("not finite");
+            assert!(matches!(error, SnapshotError::NotFinite { .. }), "{error}");
+        }
+    }
+    // Such a picture is no reference either, and is not made one.
+    let copy = copy_of(&folder);
+    let before = std::fs::read(copy.path().join("brilliant.exr")).expect("a reference");
+    let mut pictures = committed(brilliant, &folder);
+    pictures[1].linear[1234][1] = f32::NAN;
+    let error = snapshot::accept(brilliant, &pictures, copy.path()).expect_err("not finite");
+    assert!(matches!(error, SnapshotError::NotFinite { .. }), "{error}");
+    assert!(std::fs::read(copy.path().join("brilliant.exr")).expect("a reference") == before);
+    lapidary_harness::render::file::write(&pictures[1], &copy.path().join("brilliant.exr")).expect("written");
+    let sound = committed(brilliant, &folder);
+    let error = snapshot::compare(brilliant, &sound, copy.path()).expect_err("not finite");
+    assert!(error.to_string().contains("brilliant.exr: pixel (210, 4)"), "{error}");
+}
+
+/// Coverage is 1 where the body is dark: with it in the reference's power, light of half the strength was a few percent wrong.
+#[test]
+fn dim_light_is_compared_by_itself() {
+    for picture in Committed::all() {
+        let (name, folder) = (picture.name(), picture.folder());
+        let comparison = spoilt(name, &folder, |[_, linear]| {
+            linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.94);
+        });
+        let comparison = comparison.expect(name);
+        assert!(!comparison.holds() && (comparison.rmse - 0.06).abs() < 1e-3, "{name}: {comparison:?}");
+    }
+}
+
+/// In every picture, of what is seen and of linear radiance alone. A picture without colour has none to swap.
+#[test]
+fn channels_are_told_apart() {
+    for picture in Committed::all() {
+        let (name, folder) = (picture.name(), picture.folder());
+        let seen = spoilt(name, &folder, |[seen, _]| seen.encoded.iter_mut().for_each(|pixel| pixel.swap(0, 2)));
+        let linear = spoilt(name, &folder, |[_, linear]| linear.linear.iter_mut().for_each(|pixel| pixel.swap(0, 2)));
+        let [seen, linear] = [seen, linear].map(|comparison| comparison.expect(name));
+        println!("{name:28} {seen:?} {linear:?}");
+        assert!(!seen.holds() && !linear.holds(), "{name}: {seen:?} {linear:?}");
+    }
+}
+
+/// A driver's vertices may lie on another grid, and its samples a 256th of their distance beside ours.
+#[test]
+fn another_drivers_samples_pass() {
+    let mut failed = Vec::new();
+    for shot in &SHOTS {
+        let mut scene = shot.open().expect("built in");
+        let per_sample = scene.camera.vertical_fov / (snapshot::EXR_SIDE * shot.samples) as f32;
+        let turn = glam::Quat::from_axis_angle(glam::Vec3::new(0.6, 0.64, 0.48).normalize(), per_sample / 256.0);
+        let camera = &mut scene.camera;
+        camera.target = camera.eye + turn * (camera.target - camera.eye);
+        camera.up = turn * camera.up;
+        let copy = copy_of(&shot.folder());
+        let pictures = [snapshot::PNG_SIDE, snapshot::EXR_SIDE]
+            .map(|side| render::render(super::gpu(), &scene, &shot.settings(side)).expect("rendered"));
+        let comparison = snapshot::compare(shot.name, &pictures, copy.path()).expect("compared");
+        println!("{:28} {comparison:?}", shot.name);
+        if !comparison.holds() {
+            failed.push((shot.name, comparison));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
 }
 
 #[test]

@@ -1,0 +1,159 @@
+//! How near a new picture is to its reference.
+
+use super::{SnapshotError, read};
+use crate::render::{Picture, file};
+use std::path::Path;
+
+/// Largest mean FLIP of all pixels.
+pub const MOST_FLIP: f32 = 0.005;
+/// Largest FLIP of all but a thousandth of the pixels.
+pub const MOST_HIGH_FLIP: f32 = 0.25;
+/// Largest RMSE in linear radiance, relative to the reference's root mean square.
+pub const MOST_RMSE: f32 = 0.05;
+
+/// Of every thousand pixels this many may differ by more than [`MOST_HIGH_FLIP`].
+const PER_MILLE: usize = 1;
+/// The largest half float: what an EXR can hold.
+const LARGEST_HALF: f32 = 65504.0;
+
+/// How far a picture is from its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Mean FLIP of the PNGs, 0 to 1.
+    pub flip: f32,
+    /// The FLIP that a thousandth of the pixels exceed: the mean forgets a part of the picture that is wholly wrong, and the largest is that of one
+    /// sample on an edge, which another driver puts on the other side.
+    pub high_flip: f32,
+    /// RMSE of linear RGB over the reference's root mean square. Coverage is no light and does not count.
+    pub rmse: f32,
+}
+
+impl Comparison {
+    /// Whether the pictures count as the same.
+    pub fn holds(&self) -> bool {
+        // A NaN does not hold.
+        self.flip <= MOST_FLIP && self.high_flip <= MOST_HIGH_FLIP && self.rmse <= MOST_RMSE
+    }
+}
+
+/// Compares new pictures with the references called `name` in `folder`. Where they differ too much, the new PNG and a picture of the
+/// difference are left beside the reference, as `<name>.new.png` and `<name>.difference.png`.
+///
+/// # Errors
+/// Where a reference is missing, unreadable or of another size, or a pixel of either is not finite.
+pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
+    let png = folder.join(format!("{name}.png"));
+    let exr = folder.join(format!("{name}.exr"));
+    let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
+    let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
+    let reference_linear: Vec<[f32; 4]> = reference_linear.pixels().map(|pixel| pixel.0).collect();
+    require_finite(&exr.display().to_string(), linear.width, &reference_linear)?;
+    for picture in [seen, linear] {
+        require_finite(&format!("the new picture {name}"), picture.width, &picture.linear)?;
+    }
+    let map = flip_map(seen, reference.as_raw());
+    let mut each = map.to_vec();
+    let comparison = Comparison {
+        flip: nv_flip::FlipPool::from_image(&map).mean(),
+        high_flip: high(&mut each),
+        rmse: relative_rmse(&linear.linear, &reference_linear),
+    };
+    let beside = ["new", "difference"].map(|kind| folder.join(format!("{name}.{kind}.png")));
+    if comparison.holds() {
+        // What an earlier failure left is out of date.
+        for path in beside {
+            let _ = std::fs::remove_file(path);
+        }
+    } else {
+        file::write(seen, &beside[0])?;
+        let colored = map.apply_color_lut(&nv_flip::magma_lut()).to_vec();
+        let pixels: Vec<[u8; 4]> = colored.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
+        let encode = |reason| file::FileError::Encode { path: beside[1].clone(), reason };
+        let bytes = file::png(seen.width, seen.height, &pixels).map_err(encode)?;
+        file::replace(&beside[1], &bytes)?;
+    }
+    Ok(comparison)
+}
+
+/// Refuses a picture with a pixel that is no number, or that an EXR cannot hold.
+pub(super) fn require_finite(what: &str, width: u32, pixels: &[[f32; 4]]) -> Result<(), SnapshotError> {
+    let is_finite = |pixel: &[f32; 4]| pixel.iter().all(|value| value.abs() <= LARGEST_HALF);
+    match (0..).zip(pixels).find(|(_, pixel)| !is_finite(pixel)) {
+        None => Ok(()),
+        Some((index, value)) => Err(SnapshotError::NotFinite {
+            what: what.to_owned(),
+            column: index % width,
+            row: index / width,
+            value: *value,
+        }),
+    }
+}
+
+/// FLIP of what is seen, against `reference`, RGB of the same size.
+fn flip_map(seen: &Picture, reference: &[u8]) -> nv_flip::FlipImageFloat {
+    let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
+    nv_flip::flip(image(reference), image(&rgb(seen)), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
+}
+
+fn rgb(picture: &Picture) -> Vec<u8> {
+    picture.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+}
+
+/// FLIP of each pixel of two pictures of one size, row by row.
+pub(crate) fn flip(picture: &Picture, reference: &Picture) -> Vec<f32> {
+    flip_map(picture, &rgb(reference)).to_vec()
+}
+
+/// What a thousandth of the values exceed.
+fn high(values: &mut [f32]) -> f32 {
+    let place = (values.len() - 1).saturating_sub(values.len() * PER_MILLE / 1000);
+    *values.select_nth_unstable_by(place, f32::total_cmp).1
+}
+
+fn relative_rmse(new: &[[f32; 4]], reference: &[[f32; 4]]) -> f32 {
+    let (mut error, mut power) = (0.0, 0.0);
+    for (new, reference) in new.iter().zip(reference) {
+        for (new, reference) in new[..3].iter().zip(&reference[..3]) {
+            error += f64::from(new - reference).powi(2);
+            power += f64::from(*reference).powi(2);
+        }
+    }
+    (error / power).sqrt() as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A body of radiance 0.1 that is a half too bright is 50 % wrong, whatever it covers.
+    #[test]
+    fn coverage_is_no_light() {
+        let reference = [[0.1, 0.1, 0.1, 1.0]; 16];
+        let found = [[0.15, 0.15, 0.15, 1.0]; 16];
+        assert!((relative_rmse(&found, &reference) - 0.5).abs() < 1e-6);
+        // And so is a channel in another's place.
+        let red = [[0.1, 0.0, 0.0, 1.0]; 16];
+        let blue = [[0.0, 0.0, 0.1, 1.0]; 16];
+        assert!(relative_rmse(&blue, &red) > 1.4);
+    }
+
+    #[test]
+    fn a_thousandth_may_be_higher() {
+        let values = |count: usize| (0..5000).map(|k| f32::from(u8::from(k < count))).collect::<Vec<_>>();
+        assert_eq!([0, 5, 6].map(|count| high(&mut values(count))), [0.0, 0.0, 1.0]);
+        assert_eq!(high(&mut [0.5]), 0.5);
+    }
+
+    #[test]
+    fn what_is_no_number_is_named() {
+        for value in [f32::NAN, f32::INFINITY, -f32::INFINITY, 65536.0] {
+            for channel in 0..4 {
+                let mut pixels = [[0.5; 4]; 12];
+                assert!(require_finite("x", 4, &pixels).is_ok());
+                pixels[6][channel] = value;
+                let error = require_finite("x", 4, &pixels).expect_err("not finite");
+                assert!(matches!(error, SnapshotError::NotFinite { column: 2, row: 1, .. }), "{error}");
+            }
+        }
+    }
+}
