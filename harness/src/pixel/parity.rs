@@ -1,6 +1,7 @@
 //! A picture of the GPU against the mirrors, pixel by pixel.
 
-use super::{Pixel, Shading, Stone, Viewer};
+use super::{Pixel, Shading, Stone, SurfacePoint, Viewer};
+use crate::extremum::larger;
 use crate::property::draws::Draws;
 use crate::render::{Picture, RenderError, Settings, Spectrum};
 use crate::scene::Scene;
@@ -8,7 +9,10 @@ use glam::Vec3;
 
 /// How far, in pixels, a rasteriser may have put a pixel's middle beside where it is: Vulkan devices snap vertices to a grid, of
 /// 1/256 pixel on lavapipe and every desktop GPU (at least 1/16 is guaranteed).
-const SNAP: f64 = 1.0 / 256.0;
+pub const SNAP: f64 = 1.0 / 256.0;
+/// Rounding moves a ray that starts where the GPU's does by so much of the stone's size at each hit: a plane's two products, the distance's quotient and the
+/// point's product and sum are five roundings of 2^-24, which add up as a root does, as those of one hit and the next.
+const DRIFT: f32 = 2.5 / 16_777_216.0;
 /// Rounding of the shading itself: the environment's sharpest light changes by 20 over an angle of 0.06, so that a direction's
 /// error of 2^-20 after some bounces weighs 3e-4.
 const ABSOLUTE: f32 = 3e-4;
@@ -23,16 +27,22 @@ const PAPER: f32 = 0.04;
 pub struct Parity {
     /// Pixels that show the stone in the picture and to the mirror.
     pub compared: usize,
-    /// Of them, those whose rays meet other facets when the pixel is moved by 1/256.
+    /// Of them, those with an edge of the mesh within [`SNAP`] of their middle: the GPU may show either side.
     pub at_an_edge: usize,
-    /// Of those, the ones whose value lies outside of the span of the values around.
+    /// The share of such pixels that the mesh's edges can touch: their length in the picture times the widest band about them, over what is covered.
+    pub edge_share: f64,
+    /// Away from the mesh's edges, those whose rays meet other facets inside when rounding moves them, and show something else there.
+    pub parting: usize,
+    /// Of both, the ones whose value lies outside of the span of the values around.
     pub differing_at_an_edge: usize,
-    /// Away from edges, and beyond the tolerance.
+    /// Of the others, those beyond the tolerance.
     pub failed: Vec<Failure>,
-    /// The largest difference away from edges, in tolerances.
+    /// The largest difference of these others, in tolerances.
     pub worst: f32,
     /// Pixels of the silhouette: covered for one and not for the other.
     pub silhouette: usize,
+    /// Farthest in pixels that the GPU's point of the surface shows from the middle of its pixel, away from the mesh's edges.
+    pub misplaced: f64,
 }
 
 /// A pixel that differs.
@@ -46,11 +56,15 @@ pub struct Failure {
     pub expected: Vec3,
 }
 
-/// Compares `count` random pixels of a picture that was rendered with one sample a pixel.
+/// Compares `count` random pixels of a picture that was rendered with one sample a pixel. The mirror starts where the GPU does, at the `positions` of the
+/// surface that the same pixels of another picture hold in place of radiance: then only rounding parts a ray from its mirror.
+///
+/// # Errors
+/// Where the rung is none for the scene's stone.
 pub fn compare(
     scene: &Scene,
     settings: &Settings,
-    picture: &Picture,
+    [picture, positions]: [&Picture; 2],
     count: usize,
     seed: u64,
 ) -> Result<Parity, RenderError> {
@@ -58,11 +72,20 @@ pub fn compare(
     let [object] = &scene.objects[..] else { return Ok(Parity::default()) };
     let shading = Shading::new(&object.material, settings);
     let stone = Stone::new(object, settings)?;
-    let mut parity = Parity::default();
+    let eye = scene.camera.eye;
+    let bounds = scene.bounds();
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let drift = DRIFT * size * ((1 + settings.rung.hits()) as f32).sqrt();
+    let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).count();
+    // A square of side 2 SNAP meets a line in a band about it that is widest, by a root of 2, where the line runs along its diagonal.
+    let band = 2.0 * SNAP * 2f64.sqrt();
+    let edge_share = band * viewer.edge_length(&object.mesh) / covered as f64;
+    let mut parity = Parity { edge_share, ..Parity::default() };
     for row in 0..count as u64 {
         let mut draws = Draws::of_row(seed, row);
         let (column, line) = (draws.below(settings.width), draws.below(settings.height));
-        let [r, g, b, alpha] = picture.linear[(line * settings.width + column) as usize];
+        let index = (line * settings.width + column) as usize;
+        let [r, g, b, alpha] = picture.linear[index];
         let found = Vec3::new(r, g, b);
         let (x, y) = (f64::from(column) + 0.5, f64::from(line) + 0.5);
         let seen = viewer.see(&object.mesh, x, y);
@@ -71,37 +94,42 @@ pub fn compare(
         }
         let (Some(seen), true) = (seen, alpha == 1.0) else { continue };
         parity.compared += 1;
-        let middle = shading.pixel(&stone, seen, scene.camera.eye);
-        let mut around = vec![middle.clone()];
-        let mut edge = false;
-        for (dx, dy) in [(-SNAP, -SNAP), (SNAP, -SNAP), (-SNAP, SNAP), (SNAP, SNAP)] {
-            // Another triangle beside it may be what the GPU shows.
-            match viewer.see(&object.mesh, x + dx, y + dy) {
-                Some(other) if other.triangle == seen.triangle => {
-                    around.push(shading.pixel(&stone, other, scene.camera.eye));
-                }
-                Some(other) => {
-                    edge = true;
-                    around.push(shading.pixel(&stone, other, scene.camera.eye));
-                }
-                None => edge = true,
-            }
-        }
-        edge |= around.iter().any(|pixel| pixel.rays != middle.rays);
-        let low = around.iter().map(|pixel: &Pixel| pixel.radiance).fold(middle.radiance, Vec3::min);
-        let high = around.iter().map(|pixel: &Pixel| pixel.radiance).fold(middle.radiance, Vec3::max);
+        let corners = [(-SNAP, -SNAP), (SNAP, -SNAP), (-SNAP, SNAP), (SNAP, SNAP)];
+        let beside = corners.map(|(dx, dy)| viewer.see(&object.mesh, x + dx, y + dy));
+        // Another triangle beside it may be what the GPU shows.
+        let at_an_edge = beside.iter().any(|other| other.is_none_or(|other| other.triangle != seen.triangle));
+        let [x_world, y_world, z_world, _] = positions.linear[index];
+        let own = SurfacePoint { position: Vec3::new(x_world, y_world, z_world), ..seen };
+        let points = if at_an_edge {
+            [Some(seen)].into_iter().chain(beside).flatten().collect::<Vec<_>>()
+        } else {
+            let place = viewer.place(own.position);
+            // A NaN is far away.
+            parity.misplaced = larger(parity.misplaced, (place.x - x).abs());
+            parity.misplaced = larger(parity.misplaced, (place.y - y).abs());
+            let (right, up) = (own.position - eye).normalize().any_orthonormal_pair();
+            let moved = [right + up, right - up, up - right, -right - up];
+            let points = moved.map(|by| SurfacePoint { position: own.position + drift * by, ..own });
+            [own].into_iter().chain(points).collect()
+        };
+        let around: Vec<Pixel> = points.into_iter().map(|point| shading.pixel(&stone, point, eye)).collect();
+        let low = around.iter().map(|pixel| pixel.radiance).fold(Vec3::INFINITY, Vec3::min);
+        let high = around.iter().map(|pixel| pixel.radiance).fold(Vec3::NEG_INFINITY, Vec3::max);
         let relative = if settings.rung.spectrum() == Spectrum::Paper { PAPER } else { RELATIVE };
         let tolerance = Vec3::splat(ABSOLUTE) + relative * high;
-        let beyond = ((low - found).max(found - high) / tolerance).max_element();
+        // Rays that part where nothing of it can be seen are compared as if they had not.
+        let parts = around.iter().any(|pixel| pixel.rays != around[0].rays) && (high - low).cmpgt(tolerance).any();
+        let beyond = ((low - found).max(found - high) / tolerance).to_array().into_iter().fold(f32::MIN, larger);
         // A NaN does not hold.
         let holds = beyond <= 1.0;
-        if edge {
-            parity.at_an_edge += 1;
+        if at_an_edge || parts {
+            parity.at_an_edge += usize::from(at_an_edge);
+            parity.parting += usize::from(!at_an_edge);
             parity.differing_at_an_edge += usize::from(!holds);
         } else if holds {
-            parity.worst = parity.worst.max(beyond);
+            parity.worst = larger(parity.worst, beyond);
         } else {
-            parity.failed.push(Failure { pixel: (column, line), found, expected: middle.radiance });
+            parity.failed.push(Failure { pixel: (column, line), found, expected: around[0].radiance });
         }
     }
     Ok(parity)

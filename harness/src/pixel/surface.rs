@@ -2,7 +2,7 @@
 
 use crate::render::clip_from_world;
 use crate::scene::{Mesh, Scene};
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 
 /// A point of a mesh's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,7 @@ pub struct SurfacePoint {
 
 /// The eye of a picture: from its coordinates in pixels to rays.
 pub struct Viewer {
+    clip_from_world: DMat4,
     world_from_clip: DMat4,
     eye: DVec3,
     width: f64,
@@ -26,6 +27,7 @@ impl Viewer {
     pub fn new(scene: &Scene, width: u32, height: u32) -> Self {
         let matrix = clip_from_world(scene, width, height).as_dmat4();
         Self {
+            clip_from_world: matrix,
             world_from_clip: matrix.inverse(),
             eye: scene.camera.eye.as_dvec3(),
             width: f64::from(width),
@@ -38,6 +40,24 @@ impl Viewer {
         let clip = DVec4::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 0.5, 1.0);
         let world = self.world_from_clip * clip;
         (world.truncate() / world.w - self.eye).normalize()
+    }
+
+    /// Where a point of the world before the eye shows, in pixels from the picture's upper left corner.
+    pub fn place(&self, position: Vec3) -> DVec2 {
+        let clip = self.clip_from_world.project_point3(position.as_dvec3());
+        0.5 * DVec2::new((clip.x + 1.0) * self.width, (1.0 - clip.y) * self.height)
+    }
+
+    /// The length in pixels of all edges of the fronts of `mesh`, those that another front hides included. A shared edge counts twice.
+    pub fn edge_length(&self, mesh: &Mesh) -> f64 {
+        let of_front = |corners: [Vec3; 3]| {
+            let [a, b, c] = corners.map(|corner| corner.as_dvec3() - self.eye);
+            let places = corners.map(|corner| self.place(corner));
+            let length: f64 = (0..3).map(|k| places[k].distance(places[(k + 1) % 3])).sum();
+            // The eye is on the side that the normal points to.
+            if a.dot(b.cross(c)) < 0.0 { length } else { 0.0 }
+        };
+        mesh.triangles().map(of_front).sum()
     }
 
     /// The front of `mesh` that is seen at a point of the picture, if any.
