@@ -158,16 +158,16 @@ fn what_is_no_number_is_refused() {
     assert!(error.to_string().contains("brilliant.exr: pixel (210, 4)"), "{error}");
 }
 
-/// Coverage is 1 where the body is dark: with it in the reference's power, light of half the strength was a few percent wrong.
+/// Coverage is 1 where the body is dark: with it in the reference's power, light of the wrong strength hardly counted.
 #[test]
 fn dim_light_is_compared_by_itself() {
     for picture in Committed::all() {
         let (name, folder) = (picture.name(), picture.folder());
         let comparison = spoilt(name, &folder, |[_, linear]| {
-            linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.94);
+            linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.97);
         });
         let comparison = comparison.expect(name);
-        assert!(!comparison.holds() && (comparison.rmse - 0.06).abs() < 1e-3, "{name}: {comparison:?}");
+        assert!(!comparison.holds() && (comparison.rmse - 0.03).abs() < 1e-3, "{name}: {comparison:?}");
     }
 }
 
@@ -188,7 +188,10 @@ fn channels_are_told_apart() {
 #[test]
 fn another_drivers_samples_pass() {
     let mut failed = Vec::new();
-    for shot in &SHOTS {
+    // The rungs with the most edges for a pixel, and one of each other recipe.
+    let chosen =
+        ["brilliant", "brilliant_separate", "exact_separate", "bunny_stone", "prism", "skin_bunny", "jade", "bunny"];
+    for shot in SHOTS.iter().filter(|shot| chosen.contains(&shot.name)) {
         let mut scene = shot.open().expect("built in");
         let per_sample = scene.camera.vertical_fov / (snapshot::EXR_SIDE * shot.samples) as f32;
         let turn = glam::Quat::from_axis_angle(glam::Vec3::new(0.6, 0.64, 0.48).normalize(), per_sample / 256.0);
