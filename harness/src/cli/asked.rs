@@ -2,8 +2,8 @@
 
 use super::Failure;
 use lapidary_harness::plan::{Decisions, Effect, Effects, Scattering};
-use lapidary_harness::render::{Environment, GRAMMAR, Rung, Settings};
-use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_harness::render::{Environment, GRAMMAR, Note, Rung, Settings};
+use lapidary_harness::scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_harness::scene::{self, Scene};
 use std::path::PathBuf;
 
@@ -43,11 +43,18 @@ impl Asked {
         self.rung.unwrap_or(Rung::ByMaterial)
     }
 
-    /// The settings of what is asked, the rest as usual.
-    pub(super) fn settings(&self, scene: &Scene) -> Result<Settings, Failure> {
+    /// The settings of what is asked, the rest as usual, and what should be known of the environment.
+    pub(super) fn settings(&self, scene: &Scene) -> Result<(Settings, Vec<Note>), Failure> {
+        let mut notes = Vec::new();
         let environment = match &self.environment {
             None => Environment::Studio,
-            Some(path) => Environment::Map(EnvironmentMap::load(path)?),
+            Some(path) => {
+                let (map, Clamped { pixels, least }) = EnvironmentMap::load_counting(path)?;
+                if pixels > 0 {
+                    notes.push(Note::NegativeRadiance { file: path.display().to_string(), pixels, least });
+                }
+                Environment::Map(map)
+            }
         };
         let scattering = match self.scattering.as_deref() {
             Some("cdrf") => Some(Scattering::Cdrf),
@@ -57,29 +64,29 @@ impl Asked {
         let (width, height) = self.size;
         let settings = Settings { rung: self.rung(), scattering, environment, ..Settings::of_size(width, height) };
         self.refuse_what_is_ignored(scene, &settings)?;
-        Ok(Settings { without: Effects::of(&self.without), ..settings })
+        Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
     }
 
-    /// An effect that is left out where nothing has it, and a technique for what scatters light where nothing does, would be believed to matter.
+    /// A rung or technique that no body can be drawn by would be believed to matter. To leave out an effect that nothing calls for is to have what was
+    /// wanted.
     fn refuse_what_is_ignored(&self, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
-        // The reference has no recipes, but can do without the environment's diffuse light.
-        if settings.rung == Rung::Reference {
-            let other = self.without.iter().find(|effect| **effect != Effect::Environment);
-            return other.map_or(Ok(()), |effect| {
-                Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
-            });
-        }
-        // Deciding measures bodies.
-        if self.without.is_empty() && self.scattering.is_none() {
-            return Ok(());
-        }
-        let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
-        let is_called = |effect: &Effect| all.iter().any(|decisions| decisions.has(*effect));
-        if let Some(effect) = self.without.iter().find(|effect| !is_called(effect)) {
+        if settings.rung.is_for_clear_stones() && !scene.objects.iter().any(|object| object.material.is_clear()) {
             return Err(Failure(format!(
-                "nothing in scene `{}` calls for {effect} by rung `{}`, so --without {effect} has no meaning; leave it out",
+                "scene `{}`: rung `{}` is for clear stones, and nothing there is one: no material has a transmission; leave --rung out, or take \
+                 another",
                 scene.name, settings.rung
             )));
+        }
+        // The reference has no recipes, but can do without the environment's diffuse light.
+        if settings.rung == Rung::Reference {
+            let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
+            // What a scene calls for is what its materials do; and deciding measures bodies.
+            let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };
+            let calls_for =
+                |effect: &Effect| scene.objects.iter().any(|object| Decisions::of(object, scene, &usual).has(*effect));
+            return others.into_iter().find(|effect| calls_for(effect)).map_or(Ok(()), |effect| {
+                Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
+            });
         }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
         if let Some(name) = self.scattering.as_ref().filter(|_| !scatters || settings.rung != Rung::ByMaterial) {

@@ -1,6 +1,6 @@
 //! `cook check`.
 
-use super::{Context, Failure, Outcome, output};
+use super::{Context, Failure, Outcome, number, output};
 use lapidary_harness::check::{self, Row, Source};
 use lapidary_harness::formula::Formula;
 use lapidary_harness::property::{DEFAULT_CASES, Settings};
@@ -19,10 +19,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     wgsl: Option<PathBuf>,
     /// Random inputs a function.
-    #[arg(long, default_value_t = DEFAULT_CASES, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=u64::MAX))]
     cases: u64,
     /// Where the random inputs start; the same seed gives the same inputs.
-    #[arg(long, default_value_t = Settings::default().seed)]
+    #[arg(long, default_value_t = Settings::default().seed, value_parser = number::whole(0..=u64::MAX))]
     seed: u64,
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]

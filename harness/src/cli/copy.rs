@@ -84,7 +84,7 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
                 let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
                 return Err(Failure(format!(
                     "module `{name}` has no function `{function}`{}",
-                    nearest::suggest(function, &known)
+                    nearest::suggest_function(name, function, &known)
                 )));
             };
             if !alone {

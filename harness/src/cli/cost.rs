@@ -7,7 +7,7 @@ mod optical_path;
 mod restraint;
 mod sphere;
 
-use super::{Context, Failure, Outcome, output, progress};
+use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::{CostError, Options, views};
 use lapidary_harness::render::Rung;
@@ -45,13 +45,13 @@ pub(super) struct Arguments {
     #[arg(long, value_delimiter = ',', value_parser = parse_view)]
     views: Vec<views::View>,
     /// gem, cdrf, optical_path, effects, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out, but of restraint.
-    #[arg(long)]
+    #[arg(long, value_parser = number::whole(0..=u32::MAX))]
     rounds: Option<u32>,
     /// sphere: random walks through each sphere, 1000000 where left out.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = number::whole(NonZeroU64::MIN..=NonZeroU64::MAX))]
     walks: Option<NonZeroU64>,
     /// sphere: the same seed gives the same walks; 1 where left out.
-    #[arg(long)]
+    #[arg(long, value_parser = number::whole(0..=u64::MAX))]
     seed: Option<u64>,
     /// Show an earlier run's NAME.json, such as gem.json, again instead of measuring.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds", "walks", "seed"])]

@@ -7,6 +7,7 @@ mod copy;
 mod cost;
 mod gallery;
 mod list;
+mod number;
 mod output;
 mod plan;
 mod progress;
@@ -77,7 +78,7 @@ impl Context {
 
 /// Parses the command line, runs the command, reports.
 pub(crate) fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse_from(number::joined(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are no errors; clap knows which stream and which code.

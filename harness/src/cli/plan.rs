@@ -29,6 +29,7 @@ struct Document<'a> {
     passes: Vec<PassRow<'a>>,
     pipelines: Vec<PipelineRow<'a>>,
     resources: Vec<ResourceRow<'a>>,
+    notes: Vec<String>,
     lacking: &'a [String],
 }
 
@@ -125,6 +126,7 @@ impl<'a> Document<'a> {
             passes: plan.capture.steps.iter().map(pass).collect(),
             pipelines: plan.capture.pipelines.iter().map(pipeline).collect(),
             resources: plan.capture.resources.iter().map(resource).collect(),
+            notes: plan.notes.iter().map(ToString::to_string).collect(),
             lacking: &plan.lacking,
         }
     }
@@ -132,7 +134,9 @@ impl<'a> Document<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let scene = Scene::open(&arguments.asked.scene)?;
-    let plan = Plan::of(&scene, &arguments.asked.settings(&scene)?)?;
+    let (settings, notes) = arguments.asked.settings(&scene)?;
+    let mut plan = Plan::of(&scene, &settings)?;
+    plan.notes.splice(..0, notes);
     if arguments.json {
         output::line(&serde_json::to_string_pretty(&Document::of(&plan))?)?;
     } else {

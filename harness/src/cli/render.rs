@@ -1,13 +1,13 @@
 //! `cook render`.
 
 use super::asked::Asked;
-use super::{Context, Failure, Outcome, output, progress};
+use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_harness::nearest::suggest;
-use lapidary_harness::plan::Decisions;
+use lapidary_harness::plan::{self, Decisions};
 use lapidary_harness::random_walk::mesh::{Boundary, Origin};
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Curvature, Geometry, Reflectance, Rung, Settings, Spectrum, WalkedPicture};
+use lapidary_harness::render::{self, Curvature, Geometry, Note, Reflectance, Rung, Settings, Spectrum, WalkedPicture};
 use lapidary_harness::scene::Scene;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(flatten)]
     asked: Asked,
-    /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png where left out.
+    /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in this folder where left out.
     #[arg(long, value_name = "F.png|F.exr")]
     out: Option<PathBuf>,
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
@@ -55,19 +55,19 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
     /// Samples along each side of a pixel.
-    #[arg(long, default_value_t = render::SAMPLES, value_parser = clap::value_parser!(u32).range(1..=i64::from(render::MOST_SAMPLES)))]
+    #[arg(long, default_value_t = render::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
     samples: u32,
     /// Wavelengths of the reference; 31 where left out.
-    #[arg(long)]
+    #[arg(long, value_parser = number::whole(0..=usize::MAX))]
     wavelengths: Option<usize>,
     /// Walks for each pixel that the reference of what scatters light follows; 256 where left out.
-    #[arg(long)]
+    #[arg(long, value_parser = number::whole(0..=u32::MAX))]
     walks: Option<u32>,
     /// Where those walks set out: from the lights there is less noise, but no environment.
     #[arg(long, value_name = "END", value_parser = parse_origin)]
     walks_from: Option<Origin>,
     /// Another seed gives other walks; 1 where left out.
-    #[arg(long)]
+    #[arg(long, value_parser = number::whole(0..=u64::MAX))]
     seed: Option<u64>,
     /// What surfaces do to those walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
     #[arg(long, value_parser = ["matched", "dielectric"])]
@@ -147,14 +147,26 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
     }
 }
 
+/// Whether what was found before drawing is said more closely by what was found in it.
+fn is_told_again(note: &Note, found: &[Note]) -> bool {
+    let Note::NotSolid { objects, rung: Rung::OpticalPath(_), .. } = note else { return false };
+    objects.count == 1
+        && found.iter().any(|found| matches!(found, Note::Open { object, .. } if *object == objects.first))
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut scene = Scene::open(&arguments.asked.scene)?;
     if let Some((polar, azimuth)) = arguments.from {
         scene = scene.seen_from(polar, azimuth);
     }
-    let asked = arguments.asked.settings(&scene)?;
+    let (asked, mut notes) = arguments.asked.settings(&scene)?;
     refuse_what_is_ignored(arguments, &scene, &asked)?;
-    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        // Not the scene's name, which a file may give itself: it would choose where the picture goes.
+        let mut name = Scene::stem(&arguments.asked.scene);
+        name.push(".png");
+        PathBuf::from(name)
+    });
     Format::of_path(&out)?;
     file::check_writable(&out)?;
     let settings = Settings {
@@ -186,7 +198,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     bar.finish_and_clear();
     file::write(&picture, &out)?;
-    for note in &picture.notes {
+    notes.extend(plan::notes(&scene, &settings));
+    notes.retain(|note| !is_told_again(note, &picture.notes));
+    notes.extend(picture.notes);
+    for note in &notes {
         eprintln!("cook: {note}");
     }
     for lacking in &scene.lacking {

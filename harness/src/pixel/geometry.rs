@@ -2,16 +2,20 @@
 
 use super::SurfacePoint;
 use crate::render::{Geometry, RenderError, Settings};
-use crate::scene::{Bvh, Convex, Mesh, Object};
+use crate::scene::normals::soft_normals;
+use crate::scene::{Bvh, Convex, Mesh, Object, convex};
 use glam::Vec3;
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
 use lapidary_convex_trace as convex_trace;
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
+use std::borrow::Cow;
 
 /// An object with what its rung's geometry needs.
 pub struct Stone<'a> {
     mesh: &'a Mesh,
+    /// For the proxy, one for each position.
+    normals: Cow<'a, [Vec3]>,
     paper_centre: bool,
     data: Data,
 }
@@ -75,14 +79,19 @@ impl<'a> Stone<'a> {
     /// `object` for the geometry of the settings' rung.
     pub fn new(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
         let mesh = &object.mesh;
-        let not_convex = || RenderError::NotConvex { object: object.name.clone() };
+        let not_convex =
+            || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(&object.mesh) };
+        let normals = match settings.rung.geometry() {
+            Geometry::Proxy => soft_normals(mesh),
+            _ => Cow::Borrowed(&mesh.normals[..]),
+        };
         let data = match settings.rung.geometry() {
             Geometry::Proxy => Data::Proxy,
             Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(not_convex)?),
             Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
             Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
         };
-        Ok(Self { mesh, paper_centre: settings.paper_centre, data })
+        Ok(Self { mesh, normals, paper_centre: settings.paper_centre, data })
     }
 
     pub(super) fn entry(&self, point: SurfacePoint) -> Entry<'_> {
@@ -93,7 +102,7 @@ impl<'a> Stone<'a> {
         let face_normal = proxy_geometry::face_normal(a, b, c);
         match &self.data {
             Data::Proxy => {
-                let [na, nb, nc] = [0, 1, 2].map(|k| mesh.normals[corners[k] as usize]);
+                let [na, nb, nc] = [0, 1, 2].map(|k| self.normals[corners[k] as usize]);
                 let mut centre = if self.paper_centre {
                     closest_point::centre_paper(a, na, b, nb, c, nc)
                 } else {

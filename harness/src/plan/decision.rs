@@ -84,9 +84,19 @@ const THROUGH: Rung = Rung::OpticalPath(Paths { cells: 64, method: Method::Godun
 /// The rung for an object, and why.
 fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
     let material = &object.material;
+    if settings.rung.is_for_clear_stones() && !material.is_clear() {
+        let (rung, reason) = by_material(object, scene, settings);
+        return (rung, format!("{} was asked for, which is for clear stones, but {reason}", settings.rung));
+    }
     if settings.rung != Rung::ByMaterial {
         return (settings.rung, "asked for".to_owned());
     }
+    by_material(object, scene, settings)
+}
+
+/// The rung that an object's material calls for, and why.
+fn by_material(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+    let material = &object.material;
     if material.scatters() {
         return scattering(object, scene, settings);
     }

@@ -6,6 +6,7 @@
 
 mod decision;
 mod effect;
+mod notes;
 mod text;
 pub mod thickness;
 
@@ -14,7 +15,7 @@ pub use effect::{Effect, Effects, UnknownEffect};
 
 use crate::gpu::Gpu;
 use crate::gpu::capture::{Capture, capture};
-use crate::render::{self, RenderError, Rung, Settings};
+use crate::render::{self, Note, RenderError, Rung, Settings};
 use crate::scene::Scene;
 
 /// What one object is drawn with.
@@ -39,8 +40,18 @@ pub struct Plan {
     pub objects: Vec<PlannedObject>,
     /// Passes, pipelines and resources.
     pub capture: Capture,
+    /// What should be known before the scene is drawn.
+    pub notes: Vec<Note>,
     /// What the scene's file asks for and nothing here draws.
     pub lacking: Vec<String>,
+}
+
+/// What should be known of a scene before it is drawn with these settings: meshes, materials, lights and a camera that no technique can do justice
+/// to, each thing once.
+#[must_use]
+pub fn notes(scene: &Scene, settings: &Settings) -> Vec<Note> {
+    let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
+    notes::of(scene, settings, &all.iter().collect::<Vec<_>>())
 }
 
 impl Plan {
@@ -62,10 +73,13 @@ impl Plan {
             picture?;
             captured
         };
+        let objects: Vec<PlannedObject> = scene.objects.iter().zip(render::object_names(scene)).map(planned).collect();
+        let decisions: Vec<&Decisions> = objects.iter().map(|planned| &planned.decisions).collect();
         Ok(Self {
             scene: scene.name.clone(),
             size: [settings.width, settings.height],
-            objects: scene.objects.iter().zip(render::object_names(scene)).map(planned).collect(),
+            notes: notes::of(scene, settings, &decisions),
+            objects,
             capture,
             lacking: scene.lacking.clone(),
         })

@@ -20,6 +20,12 @@ impl fmt::Display for Plan {
         self.passes(f)?;
         self.pipelines(f)?;
         self.resources(f)?;
+        if !self.notes.is_empty() {
+            writeln!(f, "\nnotes")?;
+            for note in &self.notes {
+                writeln!(f, "  {note}")?;
+            }
+        }
         if !self.lacking.is_empty() {
             writeln!(f, "\nasked for by the file, and not drawn")?;
             for lacking in &self.lacking {

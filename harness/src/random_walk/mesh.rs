@@ -9,15 +9,14 @@
 //!
 //! The eye and the lights stand outside of the bodies; a point light inside gives the right mean with an error that has no bound.
 
-mod closed;
 mod from_lights;
 mod walk;
 
 use super::generator;
 use crate::reference::view::View;
 use crate::render::{Environment, LARGEST_SIDE};
+use crate::scene::mesh_diagnosis::open_edges;
 use crate::scene::{Light, Scene};
-use closed::open_edges;
 use glam::{DVec2, DVec3};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;

@@ -142,9 +142,18 @@ pub(super) fn mesh_vertices<'a>(
 
 /// A uniform buffer; uniform structs are padded to 16 bytes.
 pub(super) fn uniform(device: &Device, what: &str, values: &[f32]) -> wgpu::Buffer {
+    structure(device, what, values, wgpu::BufferUsages::UNIFORM)
+}
+
+/// The same to be read as storage: a body's own, see the recipes' `material`.
+pub(super) fn record(device: &Device, what: &str, values: &[f32]) -> wgpu::Buffer {
+    structure(device, what, values, wgpu::BufferUsages::STORAGE)
+}
+
+fn structure(device: &Device, what: &str, values: &[f32], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let mut contents = values.to_vec();
     contents.resize(values.len().next_multiple_of(4), 0.0);
-    buffer(device, what, bytemuck::cast_slice(&contents), wgpu::BufferUsages::UNIFORM)
+    buffer(device, what, bytemuck::cast_slice(&contents), usage)
 }
 
 /// A texture that can be drawn to, `size` being width and height.

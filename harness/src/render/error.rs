@@ -32,8 +32,18 @@ pub enum RenderError {
         limit: u64,
     },
     /// An exact rung for convex stones, and a stone that is not.
-    #[error("object `{object}` is not convex, which the convex rungs need; use a bvh rung")]
+    #[error("object `{object}` {reason}, and the convex rungs need a closed convex stone; use a bvh rung")]
     NotConvex {
+        /// Its name.
+        object: String,
+        /// What is wrong with it, as `is not convex`.
+        reason: String,
+    },
+    /// A body that the reference of clear stones would turn to glass.
+    #[error(
+        "object `{object}` is opaque, and the reference draws clear stones, or scattering bodies, alone; take another rung, or leave the object out"
+    )]
+    OpaqueReference {
         /// Its name.
         object: String,
     },

@@ -65,29 +65,78 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), FileError> {
 /// Whether a file can be written at `path`: asked before hours of rendering, not after.
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
     let writable = || {
-        if path.is_dir() {
+        let target = followed(path)?;
+        if target.is_dir() {
             return Err(std::io::Error::from(std::io::ErrorKind::IsADirectory));
         }
-        tempfile::NamedTempFile::new_in(folder_of(path)).map(drop)
+        if is_stream(&target) {
+            std::fs::OpenOptions::new().write(true).open(&target).map(drop)
+        } else {
+            aside(&target).map(drop)
+        }
     };
-    writable().map_err(|error| FileError::Write { path: path.to_owned(), error })
+    writable().map_err(|error| FileError::Write { path: path.to_owned(), error: plain(&error) })
 }
 
-/// Writes bytes to a file beside `path`, then renames it, so that no reader ever meets half of them.
+/// Writes bytes to a file beside `path`, then renames it, so that no reader ever meets half of them. A link is followed; an older file's permissions
+/// are kept; a device or pipe is written to as it is.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let write = || {
-        let mut file = tempfile::NamedTempFile::new_in(folder_of(path))?;
-        file.write_all(bytes)?;
-        // Temporary files are private; a picture is not.
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt as _;
-            file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))?;
+        let target = followed(path)?;
+        if is_stream(&target) {
+            return std::fs::OpenOptions::new().write(true).open(&target)?.write_all(bytes);
         }
-        file.persist(path).map_err(|error| error.error)?;
+        let mut file = aside(&target)?;
+        file.write_all(bytes)?;
+        if let Ok(older) = std::fs::metadata(&target) {
+            file.as_file().set_permissions(older.permissions())?;
+        }
+        file.persist(&target).map_err(|error| error.error)?;
         Ok(())
     };
-    write().map_err(|error| FileError::Write { path: path.to_owned(), error })
+    write().map_err(|error| FileError::Write { path: path.to_owned(), error: plain(&error) })
+}
+
+/// A new file beside `path`, which goes when it is dropped. Others may read it as far as the process's umask lets them.
+fn aside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder_of(path))
+}
+
+/// As many links as Linux follows.
+const MOST_LINKS: usize = 40;
+
+/// Where `path` leads when links are followed; the last one may lead to what is not there yet.
+fn followed(path: &Path) -> std::io::Result<PathBuf> {
+    let mut place = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&place) {
+            Ok(target) => place = folder_of(&place).join(target),
+            Err(_) => return Ok(place),
+        }
+    }
+    Err(std::io::Error::other("it is a link that leads back to itself"))
+}
+
+/// Whether there is something that holds no contents: a device, a pipe, a socket.
+fn is_stream(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+}
+
+/// The system's own word, without the name of a temporary file.
+fn plain(error: &std::io::Error) -> std::io::Error {
+    let inner = error.get_ref().and_then(std::error::Error::source);
+    let code = inner.and_then(|inner| inner.downcast_ref::<std::io::Error>()).and_then(std::io::Error::raw_os_error);
+    match code.or_else(|| error.raw_os_error()) {
+        Some(code) => std::io::Error::from_raw_os_error(code),
+        None if error.kind() == std::io::ErrorKind::Other => std::io::Error::other(error.to_string()),
+        None => error.kind().into(),
+    }
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -119,4 +168,64 @@ fn exr(picture: &Picture) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     image.write().to_buffered(Cursor::new(&mut bytes)).map_err(|error| error.to_string())?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+
+    #[test]
+    fn links_are_followed_and_permissions_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("far")).expect("a folder");
+        std::fs::write(at("far/old.txt"), "old").expect("a file");
+        std::fs::set_permissions(at("far/old.txt"), std::fs::Permissions::from_mode(0o640)).expect("set");
+        // One after another, relative and absolute, and one to what is not there yet.
+        symlink("far/old.txt", at("near")).expect("a link");
+        symlink(at("near"), at("nearer")).expect("a link");
+        symlink("far/new.txt", at("dangling")).expect("a link");
+        replace(&at("nearer"), b"new").expect("written");
+        replace(&at("dangling"), b"first").expect("written");
+        for link in ["near", "nearer", "dangling"] {
+            assert!(at(link).is_symlink(), "{link}");
+        }
+        let read = |name: &str| std::fs::read_to_string(at(name)).expect("a file");
+        assert_eq!((read("far/old.txt").as_str(), read("far/new.txt").as_str()), ("new", "first"));
+        let mode = |name: &str| std::fs::metadata(at(name)).expect("a file").permissions().mode() & 0o777;
+        assert_eq!(mode("far/old.txt"), 0o640);
+        assert_eq!(std::fs::read_dir(at("far")).expect("a folder").count(), 2);
+        symlink("circle", at("circle")).expect("a link");
+        let message = replace(&at("circle"), b"").expect_err("nowhere").to_string();
+        assert!(message.contains("circle: cannot be written: it is a link that leads back to itself"), "{message}");
+    }
+
+    #[test]
+    fn devices_stay_devices() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let link = folder.path().join("null.png");
+        symlink("/dev/null", &link).expect("a link");
+        check_writable(&link).expect("writable");
+        replace(&link, b"nothing").expect("written");
+        let metadata = std::fs::metadata("/dev/null").expect("it is there");
+        assert!(!metadata.is_file() && link.is_symlink());
+    }
+
+    #[test]
+    fn no_message_names_a_temporary_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for path in ["none/out.png", "file/out.png"] {
+            std::fs::write(folder.path().join("file"), "").expect("a file");
+            let path = folder.path().join(path);
+            for message in
+                [check_writable(&path), replace(&path, b"")].map(|error| error.expect_err("nowhere").to_string())
+            {
+                let rest =
+                    message.strip_prefix(&format!("{}: cannot be written: ", path.display())).expect("the path first");
+                assert!(!rest.contains(".tmp") && !rest.contains(" at path"), "{message}");
+            }
+        }
+    }
 }

@@ -37,7 +37,7 @@ use display::DisplayPass;
 pub use error::RenderError;
 pub use frame::{Frame, FrameTime};
 use lighting::Lighting;
-pub use note::Note;
+pub use note::{Note, Objects};
 pub use optical_path::{Paths, Stage};
 use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
@@ -373,6 +373,9 @@ fn follow(
     picture: &mut Picture,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<(), RenderError> {
+    if let Some(opaque) = scene.objects.iter().find(|object| !object.material.is_clear()) {
+        return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
+    }
     let (width, height) = (settings.width, settings.height);
     let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
     let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();

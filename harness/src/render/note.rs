@@ -1,5 +1,6 @@
 //! What a user should know about a picture, beside what it shows.
 
+use super::Rung;
 use std::fmt;
 
 /// Something about a picture that is not as it should be, or may not be.
@@ -21,6 +22,93 @@ pub enum Note {
         /// No pixel's linear radiance is too low by more than this.
         bound: f32,
     },
+    /// Meshes that a rung takes for the surface of a solid, and that are none.
+    NotSolid {
+        /// Which.
+        objects: Objects,
+        /// The rung.
+        rung: Rung,
+        /// What is wrong with the first one's mesh.
+        faults: Vec<String>,
+    },
+    /// Opaque bodies whose triangles face inwards, so that their far side is drawn.
+    InsideOut {
+        /// Which.
+        objects: Objects,
+    },
+    /// Surfaces with a hole, of materials that ask for both sides to be drawn.
+    BackNotDrawn {
+        /// Which.
+        objects: Objects,
+    },
+    /// Clear bodies without a thickness.
+    ThinWall {
+        /// Which.
+        objects: Objects,
+        /// What is asked for and needs an inside.
+        unused: Vec<&'static str>,
+    },
+    /// Clear bodies through which no light comes that could be seen.
+    Black {
+        /// Which.
+        objects: Objects,
+        /// The share of light that is left behind the first one's thin parts, of the colour that is left most of.
+        share: f32,
+        /// How thick those are, in units of length.
+        thickness: f32,
+    },
+    /// Bodies so bright that every channel is shown at its largest.
+    ClipsToWhite {
+        /// Which.
+        objects: Objects,
+        /// Linear radiance of the first one, times the exposure, of the darkest channel.
+        radiance: f32,
+    },
+    /// Meshes with a normal for each face, where a technique needs one for each position.
+    HardEdges {
+        /// Which.
+        objects: Objects,
+        /// The rung.
+        rung: Rung,
+    },
+    /// Bodies that are not clear, under a rung for clear stones.
+    NotClear {
+        /// Which.
+        objects: Objects,
+        /// The rung that was asked for.
+        asked: Rung,
+        /// The rung that the first one is drawn by.
+        instead: Rung,
+    },
+    /// A camera that sees no body.
+    NothingInView,
+    /// An environment with negative radiance.
+    NegativeRadiance {
+        /// Its file.
+        file: String,
+        /// How many pixels have a negative part.
+        pixels: usize,
+        /// The least part.
+        least: f32,
+    },
+}
+
+/// Objects that one thing is said of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Objects {
+    /// The first one's name.
+    pub first: String,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl fmt::Display for Objects {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.count {
+            1 => write!(f, "object `{}`", self.first),
+            count => write!(f, "{count} objects, first `{}`", self.first),
+        }
+    }
 }
 
 impl fmt::Display for Note {
@@ -36,6 +124,55 @@ impl fmt::Display for Note {
                 "object `{object}`: its paths wind more than the solver follows, which stopped early; its radiance may be too low by at most \
                  {bound:.1e}"
             ),
+            Self::NotSolid { objects, rung, faults } => write!(
+                f,
+                "{objects}: rung `{rung}` takes a mesh for the surface of a solid, but {}; mend the mesh, or light inside goes astray",
+                faults.join(", ")
+            ),
+            Self::InsideOut { objects } => write!(
+                f,
+                "{objects}: the triangles run clockwise seen from outside, so that the far side is drawn; turn them over"
+            ),
+            Self::BackNotDrawn { objects } => write!(
+                f,
+                "{objects}: the material is doubleSided and the mesh is open, but the backs of its triangles are not drawn; give it a thickness of \
+                 its own"
+            ),
+            Self::ThinWall { objects, unused } => {
+                let lost = if unused.is_empty() { "refraction".to_owned() } else { format!("refraction, {}", unused.join(" and ")) };
+                write!(
+                    f,
+                    "{objects}: clear with thickness 0, so drawn as a thin wall, without {lost}; if it is solid, give KHR_materials_volume a \
+                     thicknessFactor"
+                )
+            }
+            Self::Black { objects, share, thickness } => write!(
+                f,
+                "{objects}: of light inside {share:.0e} is left after {thickness:.3}, the way through its thin parts, so that it is drawn black; \
+                 make its base colour and attenuation colour lighter, or the attenuation distance longer (a length of the scene)"
+            ),
+            Self::ClipsToWhite { objects, radiance } => write!(
+                f,
+                "{objects}: radiance {radiance:.0} in every channel is shown as plain white; make the lights weaker, or give an --exposure of \
+                 about {:.0e}",
+                0.5 / radiance
+            ),
+            Self::HardEdges { objects, rung } => write!(
+                f,
+                "{objects}: the mesh has a normal for each face, where rung `{rung}` needs one for each position; they were averaged by angle"
+            ),
+            Self::NotClear { objects, asked, instead } => write!(
+                f,
+                "{objects}: rung `{asked}` is for clear stones, and the material lets nothing through, so drawn by `{instead}`"
+            ),
+            Self::NothingInView => f.write_str(
+                "nothing is in view: the camera sees no body; give another direction with --from, such as --from 60,20, or mend the file's \
+                 camera",
+            ),
+            Self::NegativeRadiance { file, pixels, least } => write!(
+                f,
+                "{file}: {pixels} pixels have negative parts, down to {least:.1e}, which count as 0"
+            ),
         }
     }
 }
@@ -50,7 +187,34 @@ mod tests {
         assert!(open.starts_with("object `hare` is not closed: 7 of the 4096 columns"), "{open}");
         let stopped = Note::StoppedEarly { object: "spring".to_owned(), bound: 0.25 }.to_string();
         assert!(stopped.contains("`spring`") && stopped.contains("at most 2.5e-1"), "{stopped}");
-        for line in [open, stopped] {
+        let objects = |count| Objects { first: "hare".to_owned(), count };
+        let rung: Rung = "convex-8".parse().expect("a rung");
+        let faults = vec!["3 edges are open".to_owned(), "1 part is inside out".to_owned()];
+        let of = |note: Note, says: &str| {
+            let line = note.to_string();
+            assert!(line.contains(says), "{line}");
+            line
+        };
+        let mut lines = vec![open, stopped];
+        lines.extend([
+            of(Note::NotSolid { objects: objects(1), rung, faults }, "object `hare`: rung `convex-8` takes"),
+            of(Note::InsideOut { objects: objects(3) }, "3 objects, first `hare`: the triangles run clockwise"),
+            of(Note::BackNotDrawn { objects: objects(1) }, "doubleSided"),
+            of(
+                Note::ThinWall { objects: objects(1), unused: vec!["absorption", "dispersion"] },
+                "refraction, absorption and dispersion;",
+            ),
+            of(Note::Black { objects: objects(1), share: 3e-5, thickness: 0.25 }, "3e-5 is left after 0.250"),
+            of(Note::ClipsToWhite { objects: objects(1), radiance: 50.0 }, "about 1e-2"),
+            of(Note::HardEdges { objects: objects(1), rung }, "averaged by angle"),
+            of(Note::NotClear { objects: objects(1), asked: rung, instead: Rung::Surface }, "drawn by `surface`"),
+            of(Note::NothingInView, "--from"),
+            of(
+                Note::NegativeRadiance { file: "sky.exr".to_owned(), pixels: 5, least: -0.001 },
+                "5 pixels have negative parts, down to -1.0e-3",
+            ),
+        ]);
+        for line in lines {
             assert!(!line.contains('\n') && !line.contains("  "), "{line}");
         }
     }

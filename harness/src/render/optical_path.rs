@@ -200,9 +200,9 @@ impl<'gpu> Upload<'_, 'gpu> {
             None => None,
         };
         let group = gpu.guarded("uploading a material", |device| {
-            let uniform = body_bytes(grid, material, extinction, self.largest);
-            let uniform = buffer(device, "material", &uniform, wgpu::BufferUsages::UNIFORM);
-            let mut buffers = vec![(0, &uniform), (1, &positions), (2, &indices), (3, &normals)];
+            let record = body_bytes(grid, material, extinction, self.largest);
+            let record = buffer(device, "material", &record, wgpu::BufferUsages::STORAGE);
+            let mut buffers = vec![(0, &record), (1, &positions), (2, &indices), (3, &normals)];
             if let Some(of_body) = &of_body {
                 buffers.extend((4..).zip(of_body.channels.iter().map(|channel| &channel.costs)));
                 buffers.extend(of_body.densities.as_ref().map(|densities| (7, &densities.buffer)));

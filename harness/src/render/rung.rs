@@ -126,6 +126,16 @@ impl Rung {
         }
     }
 
+    /// Whether it draws clear stones alone, and whatever else it is given as if it were one.
+    pub fn is_for_clear_stones(self) -> bool {
+        matches!(self, Self::Inside { .. } | Self::Surface)
+    }
+
+    /// How rays inside find facets; none where no light is followed inside.
+    pub fn geometry_of_inside(self) -> Option<Geometry> {
+        if let Self::Inside { geometry, .. } = self { Some(geometry) } else { None }
+    }
+
     /// How rays find facets; the proxy where none is looked for.
     pub fn geometry(self) -> Geometry {
         if let Self::Inside { geometry, .. } = self { geometry } else { Geometry::Proxy }

@@ -1,13 +1,14 @@
 //! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{Pipeline, buffer, mesh_vertices, uniform};
+use super::device::{Pipeline, buffer, mesh_vertices, record};
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint};
 use crate::gpu::Gpu;
 use crate::gpu::capture::OfObject;
 use crate::reference::spectrum;
-use crate::scene::{Bvh, Convex, Material, Object};
+use crate::scene::normals::soft_normals;
+use crate::scene::{Bvh, Convex, Material, Object, convex};
 use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use std::borrow::Cow;
@@ -36,7 +37,7 @@ pub(super) fn upload(
     let parts: Vec<_> = parts.into_iter().filter(|(group, binding, _)| pipeline.binds(*group, *binding)).collect();
     let vertices = mesh_vertices(gpu, object, &indices, parts.iter().map(|(_, _, (_, contents))| *contents))?;
     let groups = gpu.guarded("uploading a mesh", |device| {
-        let material = uniform(device, "material", &material(&object.material, rung, settings));
+        let material = record(device, "material", &material(&object.material, rung, settings));
         let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
             (group, binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
@@ -81,10 +82,15 @@ impl<'a> Geometries<'a> {
         let indices = Cow::Borrowed(&mesh.indices[..]);
         Ok(match rung.geometry() {
             Geometry::Proxy => {
-                Self { indices, own: vec![("normals", bytemuck::cast_slice(&mesh.normals).into())], steps: 0 }
+                let normals = match soft_normals(mesh) {
+                    Cow::Borrowed(own) => Cow::Borrowed(bytemuck::cast_slice(own)),
+                    Cow::Owned(softened) => Cow::Owned(bytemuck::cast_slice(&softened).to_vec()),
+                };
+                Self { indices, own: vec![("normals", normals)], steps: 0 }
             }
             Geometry::Convex => {
-                let not_convex = || RenderError::NotConvex { object: object.name.clone() };
+                let not_convex =
+                    || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(mesh) };
                 let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
                 let faces: &[u8] = bytemuck::cast_slice(&convex.face_of_triangle);

@@ -1,6 +1,6 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, and what is opaque, under the scene's lights and the environment.
 
-use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, uniform};
+use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, record};
 use super::diffusion::{Diffusion, MeshBuffers};
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
@@ -105,7 +105,7 @@ fn upload<'gpu>(
         let storage = |(binding, what, contents): (u32, &str, &[u8])| {
             (binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
-        read().map(storage).chain([(0, uniform(device, "material", &uniform_of(material)))]).collect()
+        read().map(storage).chain([(0, record(device, "material", &record_of(material)))]).collect()
     })?;
     let mut textures = Vec::new();
     if let Reflectance::Table(side, format) = reflectance {
@@ -147,7 +147,7 @@ fn upload<'gpu>(
 }
 
 /// `CdrfMaterial` of the recipe.
-fn uniform_of(material: &Material) -> [f32; 12] {
+fn record_of(material: &Material) -> [f32; 12] {
     let [r, g, b] = material.base_color.to_array();
     let sigma0 = safe_sigma0(material);
     let alpha = material.roughness * material.roughness;

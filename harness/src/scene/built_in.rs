@@ -158,6 +158,15 @@ pub fn names() -> String {
     BUILT_IN.map(|scene| scene.name).join(", ")
 }
 
+/// Other words for built-ins: what a user may well call them.
+const ALIASES: [(&str, &str); 2] = [("diamond", "brilliant"), ("emerald", "step_cut")];
+
+/// The built-in scene called `name`, also by another word for it.
+pub(super) fn named(name: &str) -> Option<&'static BuiltIn> {
+    let meant = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, meant)| meant);
+    BUILT_IN.iter().find(|scene| scene.name == meant)
+}
+
 /// A short portrait lens: about 27° from edge to edge.
 const VERTICAL_FOV: f32 = 0.47;
 
@@ -169,6 +178,7 @@ const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 
 /// The scene called `name`, nothing of it from a file that it could be made without.
 pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
+    let name = named(name).map_or(name, |scene| scene.name);
     match name {
         "figure" => Ok(stone::made_figure(name)),
         "vitrine" => vitrine::made(name),
@@ -178,6 +188,7 @@ pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
 
 /// The scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
+    let name = named(name).map_or(name, |scene| scene.name);
     match name {
         "brilliant" => brilliant(name, materials::diamond()),
         "sapphire" => brilliant(name, materials::sapphire()),
@@ -252,7 +263,9 @@ pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {
     Vec3::new(across * x, along, across * z)
 }
 
-/// The built-in name most like `name`.
+/// The built-in whose name, or another word for it, is most like `name`.
 fn nearest(name: &str) -> &'static str {
-    crate::nearest::nearest(name, BUILT_IN.iter().map(|scene| scene.name)).map_or("", |(_, name)| name)
+    let known = BUILT_IN.iter().map(|scene| scene.name).chain(ALIASES.iter().map(|(alias, _)| *alias));
+    let (_, nearest) = crate::nearest::nearest(name, known).unwrap_or_default();
+    named(nearest).map_or("", |scene| scene.name)
 }

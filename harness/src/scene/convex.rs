@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3, Vec4};
 
-use super::Mesh;
 use super::polyhedron::{MAX_PLANES, Plane};
+use super::{Mesh, MeshDiagnosis};
 
 /// How far a vertex may lie from its facet's plane, relative to the mesh's largest coordinate: 32 times the 2^-24 by
 /// which storing it in f32 moves it. A plane through one triangle carries its corners' roundings on to the rest of the
@@ -41,6 +41,33 @@ impl Convex {
 pub fn planes_of_convex(mesh: &Mesh) -> Option<Vec<Plane>> {
     Facets::of(mesh).map(|facets| facets.planes)
 }
+
+/// Why there are no planes of a mesh, as the end of a sentence: ``is not convex``.
+#[must_use]
+pub fn obstacle(mesh: &Mesh) -> String {
+    let faults = MeshDiagnosis::of(mesh);
+    if !faults.is_solid() {
+        return format!("is no closed solid ({})", faults.clauses().join(", "));
+    }
+    // Facets are planes that neighbours differ by; of a smooth body each triangle is one.
+    let triangles: Vec<Triangle> = mesh.triangles().map(Triangle::new).collect();
+    let largest = mesh.positions.iter().fold(0.0, |most: f32, position| most.max(position.abs().max_element()));
+    let tolerance = TOLERANCE * f64::from(largest);
+    let dents = |triangle: &Triangle| {
+        let plane = Plane::through(triangle.corners[0], triangle.area);
+        !triangle.is_sliver(tolerance)
+            && mesh.positions.iter().any(|corner| plane.height(corner.as_dvec3()) > DENT * f64::from(largest))
+    };
+    if triangles.iter().take(MOST_PROBED).any(dents) {
+        return "is not convex".to_owned();
+    }
+    format!("has more than {MAX_PLANES} facets")
+}
+
+/// How far a vertex stands above the plane of a triangle, relative to the largest coordinate, that makes a dent and no rounding.
+const DENT: f64 = 1.0 / (1 << 12) as f64;
+/// Each triangle is compared with all vertices.
+const MOST_PROBED: usize = 4096;
 
 /// Triangles put together to facets.
 struct Facets {

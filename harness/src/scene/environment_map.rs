@@ -1,8 +1,9 @@
 //! Loads a latitude-longitude environment map from a .hdr or .exr file.
 
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use thiserror::Error;
 
@@ -77,7 +78,7 @@ pub enum EnvironmentMapError {
     /// A pixel that is not radiance.
     #[error(
         "{}: the pixel in column {column}, row {row} (from 0, top left) is {value:?}, but radiance must be \
-         finite and not negative; repair the pixel",
+         finite; repair the pixel",
         path.display()
     )]
     Pixel {
@@ -92,39 +93,56 @@ pub enum EnvironmentMapError {
     },
 }
 
+/// Pixels with a negative part, which lossy compression leaves beside bright ones. Each such part counts as 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Clamped {
+    /// How many pixels have one.
+    pub pixels: usize,
+    /// The least part of any; 0 where none is negative.
+    pub least: f32,
+}
+
 impl EnvironmentMap {
     /// Loads a .hdr or .exr file, told apart by its content, of any aspect ratio from 2 x 2 to
-    /// [`MAX_WIDTH`] x [`MAX_HEIGHT`] pixels. Colours count as linear, with Rec. 709 primaries.
+    /// [`MAX_WIDTH`] x [`MAX_HEIGHT`] pixels. Colours count as linear, with Rec. 709 primaries. A .hdr file's pixels are divided by its
+    /// exposures and colour corrections, as the format has it; negative parts count as 0.
     ///
     /// # Errors
     /// [`EnvironmentMapError`], where the file cannot be used.
     pub fn load(path: &Path) -> Result<Self, EnvironmentMapError> {
+        Self::load_counting(path).map(|(map, _)| map)
+    }
+
+    /// The same, and what of it was negative.
+    ///
+    /// # Errors
+    /// As [`EnvironmentMap::load`].
+    pub fn load_counting(path: &Path) -> Result<(Self, Clamped), EnvironmentMapError> {
         Self::decode(&read(path)?, path)
     }
 
-    fn decode(bytes: &[u8], path: &Path) -> Result<Self, EnvironmentMapError> {
+    fn decode(bytes: &[u8], path: &Path) -> Result<(Self, Clamped), EnvironmentMapError> {
         let undecodable = |error: image::ImageError| EnvironmentMapError::Decode {
             path: path.to_owned(),
             reason: error.to_string().replace(char::is_control, " "),
         };
-        let format = image::guess_format(bytes).ok();
-        let format = format.filter(|f| matches!(f, ImageFormat::Hdr | ImageFormat::OpenExr));
-        let format = format.ok_or_else(|| EnvironmentMapError::Format { path: path.to_owned() })?;
-        let reader = ImageReader::with_format(Cursor::new(bytes), format);
-        let mut decoder = reader.into_decoder().map_err(undecodable)?;
-        let (width, height) = decoder.dimensions();
-        check_size(width, height, bytes.len() as u64, path)?;
-        let mut limits = Limits::no_limits();
-        limits.max_image_width = Some(MAX_WIDTH);
-        limits.max_image_height = Some(MAX_HEIGHT);
-        decoder.set_limits(limits).map_err(undecodable)?;
-
-        let image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
-        let pixels: Vec<[f32; 4]> = image.into_rgba32f().pixels().map(|p| p.0).collect();
-        for (place, &[red, green, blue, _]) in pixels.iter().enumerate() {
+        let image = if bytes.starts_with(RADIANCE) {
+            radiance(bytes, path)?
+        } else {
+            let is_exr = image::guess_format(bytes).is_ok_and(|format| format == ImageFormat::OpenExr);
+            if !is_exr {
+                return Err(EnvironmentMapError::Format { path: path.to_owned() });
+            }
+            let reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::OpenExr);
+            decoded(reader.into_decoder().map_err(undecodable)?, bytes.len(), path)?
+        };
+        let (width, height) = (image.width(), image.height());
+        let mut pixels: Vec<[f32; 4]> = image.into_rgba32f().pixels().map(|p| p.0).collect();
+        let mut clamped = Clamped::default();
+        for (place, pixel) in pixels.iter_mut().enumerate() {
+            let [red, green, blue, _] = *pixel;
             let value = [red, green, blue];
-            // Written so that NaN fails it too.
-            if !value.iter().all(|part| (0.0..f32::INFINITY).contains(part)) {
+            if !value.iter().all(|part| part.is_finite()) {
                 let place = place as u32;
                 return Err(EnvironmentMapError::Pixel {
                     path: path.to_owned(),
@@ -133,9 +151,62 @@ impl EnvironmentMap {
                     value,
                 });
             }
+            let least = red.min(green).min(blue);
+            if least < 0.0 {
+                clamped = Clamped { pixels: clamped.pixels + 1, least: clamped.least.min(least) };
+                pixel[..3].iter_mut().for_each(|part| *part = part.max(0.0));
+            }
         }
-        Ok(Self { width, height, pixels })
+        Ok((Self { width, height, pixels }, clamped))
     }
+}
+
+/// What a Radiance picture starts with, before the name of the program that wrote it: `#?RADIANCE`, `#?RGBE` and others.
+const RADIANCE: &[u8] = b"#?";
+
+/// A Radiance picture as radiance.
+fn radiance(bytes: &[u8], path: &Path) -> Result<DynamicImage, EnvironmentMapError> {
+    let undecodable = |reason: String| EnvironmentMapError::Decode { path: path.to_owned(), reason };
+    let first = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len());
+    // The decoder knows one program's name alone.
+    let renamed = (&b"#?RADIANCE"[..]).chain(&bytes[first..]);
+    let decoder =
+        HdrDecoder::new(renamed).map_err(|error| undecodable(error.to_string().replace(char::is_control, " ")))?;
+    let header = decoder.metadata();
+    let (red, green, blue) = header.color_correction.unwrap_or((1.0, 1.0, 1.0));
+    let exposure = header.exposure.unwrap_or(1.0);
+    let divisors = [red, green, blue].map(|correction| exposure * correction);
+    if !divisors.iter().all(|divisor| divisor.is_normal() && *divisor > 0.0) {
+        return Err(undecodable(format!(
+            "its exposures and colour corrections multiply to {divisors:?}, but must be finite and above 0"
+        )));
+    }
+    let mut image = decoded(decoder, bytes.len(), path)?.into_rgb32f();
+    if divisors != [1.0; 3] {
+        for pixel in image.pixels_mut() {
+            pixel.0.iter_mut().zip(divisors).for_each(|(part, divisor)| *part /= divisor);
+        }
+    }
+    Ok(image.into())
+}
+
+/// The whole picture, within what is read of `file_bytes` bytes.
+fn decoded(
+    mut decoder: impl ImageDecoder,
+    file_bytes: usize,
+    path: &Path,
+) -> Result<DynamicImage, EnvironmentMapError> {
+    let undecodable = |error: image::ImageError| EnvironmentMapError::Decode {
+        path: path.to_owned(),
+        reason: error.to_string().replace(char::is_control, " "),
+    };
+    let (width, height) = decoder.dimensions();
+    check_size(width, height, file_bytes as u64, path)?;
+    let mut limits = Limits::no_limits();
+    limits.max_image_width = Some(MAX_WIDTH);
+    limits.max_image_height = Some(MAX_HEIGHT);
+    decoder.set_limits(limits).map_err(undecodable)?;
+    DynamicImage::from_decoder(decoder).map_err(undecodable)
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {

@@ -2,7 +2,7 @@
 //!
 //! The test suite runs [`SUITE_CASES`], a benchmark [`BENCHMARK_CASES`]; both call [`run`]. A case is a
 //! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
-//! more memory than [`gltf::MAX_EXPANSION`] allows or breaks what [`Mesh`], [`Material`](super::Material) or
+//! more memory than [`gltf::MAX_SCENE_BYTES`] allows or breaks what [`Mesh`], [`Material`](super::Material) or
 //! [`Light`](super::Light) promises.
 
 use proptest::collection::vec;
@@ -10,7 +10,7 @@ use proptest::prelude::{Strategy, any, prop_oneof};
 use proptest::sample::Index;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-use super::{Mesh, Scene, SceneError, glb, gltf};
+use super::{Mesh, MeshDiagnosis, Scene, SceneError, glb, gltf};
 
 /// Cases of the test suite: seconds.
 pub const SUITE_CASES: u32 = 5_000;
@@ -65,15 +65,16 @@ pub const HOSTILE_NUMBERS: [&str; 18] = [
 
 /// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
 /// indices, no normals, texture coordinates as floats and as bytes, a hierarchy with a matrix and with translation,
-/// rotation and scale, three lights, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
+/// rotation and scale, three lights, instances, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
 /// and one with a medium.
 const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior",
-"KHR_materials_volume","KHR_materials_dispersion","KHR_lights_punctual"],
+"KHR_texture_transform","EXT_mesh_gpu_instancing","KHR_materials_volume","KHR_materials_dispersion","KHR_lights_punctual"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":3},
 {"type":"point","intensity":40},{"type":"spot","intensity":40,"spot":{"innerConeAngle":0.25,"outerConeAngle":0.5}}]}},
 "scene":0,"scenes":[{"nodes":[0,3,4]}],
 "nodes":[{"children":[1,2],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
-{"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},{"mesh":0},
+{"mesh":0,"translation":[1,2,3],"rotation":[0,0,0.6,0.8],"scale":[1,2,3]},
+{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":0}}}},
 {"camera":0,"translation":[0,0,9]},
 {"rotation":[0.6,0,0,0.8],"extensions":{"KHR_lights_punctual":{"light":0}},"children":[5]},
 {"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":1}},"children":[6]},
@@ -85,7 +86,7 @@ const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_
 "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},
 "extensions":{"KHR_materials_ior":{"ior":1.75},"KHR_materials_dispersion":{"dispersion":0.35},
 "KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,1,0],"attenuationDistance":2.5}}},
-{"extensions":{"KHR_materials_ior":{"ior":1.768}},"extras":{"lapidary":{"sellmeier":"corundum"}}},
+{"doubleSided":true,"extensions":{"KHR_materials_ior":{"ior":1.768}},"extras":{"lapidary":{"sellmeier":"corundum"}}},
 {"extras":{"lapidary":{"sigma0":[4.5,3,2],"scattering":[0.75,1,1.25],"absorption":[0.5,0,0.125]}}}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
 {"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"},
@@ -231,8 +232,11 @@ pub fn check(bytes: &[u8]) -> Result<bool, String> {
 
 fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     let taken: u64 = scene.objects.iter().map(|o| o.mesh.byte_size()).sum();
-    if taken > file_bytes * gltf::MAX_EXPANSION {
-        return Err(format!("{file_bytes} bytes of file became {taken} bytes of mesh"));
+    if taken > gltf::MAX_SCENE_BYTES || scene.objects.len() as u64 > gltf::MAX_OBJECTS {
+        return Err(format!(
+            "{file_bytes} bytes of file became {} bodies and {taken} bytes of mesh",
+            scene.objects.len()
+        ));
     }
     let camera = &scene.camera;
     let sees = camera.eye.is_finite() && camera.up.is_normalized() && camera.eye != camera.target;
@@ -242,6 +246,11 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     let wrong = scene.objects.iter().find(|object| !is_sound(&object.mesh));
     if let Some(object) = wrong {
         return Err(format!("a broken mesh: {object:?}"));
+    }
+    // Whatever loads must be fit to be looked through.
+    let looked_through = scene.objects.iter().map(|object| MeshDiagnosis::of(&object.mesh));
+    if let Some(found) = looked_through.into_iter().find(|found| found.is_solid() && found.open_edges > 0) {
+        return Err(format!("a diagnosis that contradicts itself: {found:?}"));
     }
     if let Some(problem) = scene.objects.iter().find_map(|object| object.material.problem()) {
         return Err(format!("a broken material: {problem}"));

@@ -2,8 +2,8 @@
 //!
 //! The gltf crate only splits the JSON into its types here. Its validation refuses extensions that we
 //! know, and its readers trust what it validated, so every reference, range and number is checked here
-//! instead. What a file can make the loader allocate is bounded by [`MAX_TRIANGLES`],
-//! [`MAX_FILE_BYTES`] and [`MAX_EXPANSION`].
+//! instead. What a file can make the loader allocate is bounded by [`MAX_FILE_BYTES`], [`MAX_SCENE_BYTES`], [`MAX_TRIANGLES`] and
+//! [`MAX_OBJECTS`], however small the file is: a few instances of a large mesh are as good as a large file.
 //!
 //! Loaded are triangles (also strips and fans) with their first texture coordinates, node transforms and instances
 //! (`gltf/instances.rs`), the first perspective camera, directional, point and spot lights (`gltf/light_node.rs`), and materials
@@ -12,7 +12,6 @@
 
 use std::path::Path;
 
-use ::gltf::json::Root;
 use glam::Vec3;
 
 use super::camera::Camera;
@@ -26,13 +25,16 @@ mod container;
 mod error;
 mod extension;
 mod extras;
+mod head;
 mod instances;
+mod json;
 mod lacking;
 mod light_node;
 mod material;
 mod medium;
 mod nodes;
 mod primitive;
+mod requirement;
 mod survey;
 
 pub use error::GltfError;
@@ -44,15 +46,17 @@ pub const MAX_FILE_BYTES: u64 = 1 << 30;
 /// a scene takes 0.4 GB with shared vertices, 1.4 GB without, 1.8 GB if these have texture coordinates.
 pub const MAX_TRIANGLES: u64 = 1 << 24;
 
-/// The most bytes of mesh per byte of file (with its external buffers). Indexed data as it is stored
-/// expands at most fivefold; the rest is for nodes that show one mesh many times.
-pub const MAX_EXPANSION: u64 = 256;
+/// The most bytes that all bodies of a scene take in memory, counting each instance: 2 GiB. The file and its buffers come on top.
+pub const MAX_SCENE_BYTES: u64 = 1 << 31;
+
+/// The most bodies of one scene: 2¹⁶. The instances of one primitive by `EXT_mesh_gpu_instancing` are one body, or a few where they are large.
+pub const MAX_OBJECTS: u64 = 1 << 16;
 
 /// The largest world coordinate. Two edges within it are at most 2√3·10⁹ long, so the square of their
 /// cross product, the largest number that the shaders form of them, is below 1.5·10³⁸ and fits f32.
 pub const MAX_COORDINATE: f32 = 1e9;
 
-/// The extensions that a file may require: what they say is read.
+/// The extensions that are read.
 pub const KNOWN_EXTENSIONS: [&str; 7] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
@@ -98,13 +102,13 @@ pub fn parse(bytes: &[u8], base: Option<&Path>) -> Result<Scene, SceneError> {
 
 fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
     let container::Container { json, binary } = container::split(bytes)?;
-    let root: Root = ::gltf::json::deserialize::from_slice(json).map_err(GltfError::json)?;
-    check_asset(&root)?;
+    head::check(json)?;
+    let root = json::root(json)?;
+    requirement::check(&root)?;
     let buffers = buffers::Buffers::load(&root, binary, base)?;
-    let file_bytes = bytes.len() as u64 + buffers.external_bytes();
     let shown = nodes::Shown::of(&root)?;
 
-    let mut budget = budget::Budget::new(file_bytes);
+    let mut budget = budget::Budget::new();
     let mut materials = material::Materials::new(&root);
     let mut objects: Vec<Object> = Vec::new();
     for node in &shown.nodes {
@@ -122,24 +126,6 @@ fn parse_scene(bytes: &[u8], base: Option<&Path>) -> Result<Scene, GltfError> {
     };
     let lights = light_node::lights(&root, &shown.nodes)?;
     Ok(Scene { name: shown.name, objects, lights, camera, lacking: survey::lacking(&root, &shown.nodes, &materials) })
-}
-
-fn check_asset(root: &Root) -> Result<(), GltfError> {
-    let asked = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-    if !root.asset.version.starts_with("2.") || !asked.starts_with("2.") {
-        return Err(GltfError::Version { version: error::excerpt(asked) });
-    }
-    let unknown: Vec<String> = root
-        .extensions_required
-        .iter()
-        .filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str()))
-        .map(|name| error::excerpt(name))
-        .collect();
-    if unknown.is_empty() {
-        Ok(())
-    } else {
-        Err(GltfError::RequiredExtensions { extensions: error::shortened(unknown) })
-    }
 }
 
 #[cfg(test)]

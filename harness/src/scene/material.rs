@@ -32,6 +32,8 @@ pub struct Material {
     pub thickness: f32,
     /// Of the surface, 0 (a mirror) to 1, as glTF has it: its square is the width of the microfacets' slopes.
     pub roughness: f32,
+    /// Whether both sides of its surface are meant to be seen, as glTF's `doubleSided` has it. Of a solid only one can be.
+    pub double_sided: bool,
     /// Of the curvature-dependent reflectance function: the Gaussian's width in radians is this times the curvature. In world units,
     /// for red, green and blue, at least 0 and finite. `None` where the material does not say.
     pub sigma0: Option<Vec3>,
@@ -150,6 +152,7 @@ impl Material {
             diffuse_transmission_color: Vec3::ONE,
             thickness: 0.0,
             roughness: 1.0,
+            double_sided: false,
             sigma0: None,
             medium: None,
             solver: None,
@@ -208,6 +211,12 @@ impl Material {
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.sigma0.is_some() || self.medium.is_some()
+    }
+
+    /// Whether light goes straight through, unscattered.
+    #[must_use]
+    pub fn is_clear(&self) -> bool {
+        self.transmission > 0.0 && !self.scatters()
     }
 
     /// Whether light is absorbed on its way through the body.

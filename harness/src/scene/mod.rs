@@ -4,6 +4,7 @@
 //! user types: the name of a built-in scene or the path of a file. World space is glTF's: right-handed,
 //! y up.
 
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 use glam::Vec3;
@@ -29,6 +30,7 @@ pub mod light;
 pub mod material;
 pub mod medium;
 pub mod mesh;
+pub mod mesh_diagnosis;
 pub mod normals;
 pub mod polyhedron;
 pub mod surfaces;
@@ -42,6 +44,7 @@ pub use light::Light;
 pub use material::{Dispersion, Material, Mineral};
 pub use medium::{Density, DensityGrid, Medium};
 pub use mesh::Mesh;
+pub use mesh_diagnosis::MeshDiagnosis;
 pub use normals::Averaging;
 
 /// One body of a scene.
@@ -110,11 +113,17 @@ impl Scene {
     /// [`SceneError::UnknownName`] for a word that is neither a built-in nor looks like a file, and
     /// what [`gltf::load`] says of a file.
     pub fn open(argument: &str) -> Result<Self, SceneError> {
-        let path = Path::new(argument);
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        let looks_like_a_file = extension.is_some_and(|e| e == "glb" || e == "gltf") || argument.contains(['/', '\\']);
-        let is_built_in = BUILT_IN.iter().any(|scene| scene.name == argument);
-        if !is_built_in && (looks_like_a_file || path.is_file()) { gltf::load(path) } else { Self::named(argument) }
+        if names_a_file(argument) { gltf::load(Path::new(argument)) } else { Self::named(argument) }
+    }
+
+    /// What a picture of the scene that [`Scene::open`] takes is called, without an extension: a file's own stem, whatever the file says of
+    /// itself, or a built-in's name. No path leads out of the folder that it is put in.
+    #[must_use]
+    pub fn stem(argument: &str) -> OsString {
+        if names_a_file(argument) {
+            return Path::new(argument).file_stem().map_or_else(|| "scene".into(), OsStr::to_owned);
+        }
+        built_in::named(argument).map_or("scene", |scene| scene.name).into()
     }
 
     /// The built-in scene called `name`; see [`BUILT_IN`].
@@ -153,6 +162,14 @@ impl Scene {
         let counts = self.objects.iter().map(|o| o.mesh.triangle_count());
         counts.sum()
     }
+}
+
+/// Whether a user means a file: no built-in, and it looks like one or is there.
+fn names_a_file(argument: &str) -> bool {
+    let path = Path::new(argument);
+    let extension = path.extension().map(OsStr::to_ascii_lowercase);
+    let looks_like_a_file = extension.is_some_and(|e| e == "glb" || e == "gltf") || argument.contains(['/', '\\']);
+    built_in::named(argument).is_none() && (looks_like_a_file || path.is_file())
 }
 
 /// All vertex positions of `objects`.

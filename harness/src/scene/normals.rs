@@ -4,9 +4,12 @@
 //! result, not a matter of taste: the centre of curvature of a brilliant's table moves from -1.2 to
 //! -3.8 girdle radii with it.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
+
+use super::Mesh;
 
 /// How the normals of the faces about a vertex are weighted in its shared normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,6 +86,31 @@ pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging)
     welded.into_iter().map(|vertex| sums[vertex].normal()).collect()
 }
 
+/// The cosine of the largest angle between two normals of one position that are one: 1°. Exporters that split vertices along the seams of a texture
+/// write the same normal twice, but for rounding.
+const SAME_NORMAL: f32 = 0.999_848;
+
+/// Whether normals at one position differ, as where each face has normals of its own.
+#[must_use]
+pub fn has_hard_edges(mesh: &Mesh) -> bool {
+    let (welded, count) = weld(&mesh.positions);
+    let mut first: Vec<Option<Vec3>> = vec![None; count];
+    mesh.indices.iter().chain(&mesh.halo).any(|&vertex| {
+        let vertex = vertex as usize;
+        let (Some(&place), Some(&normal)) = (welded.get(vertex), mesh.normals.get(vertex)) else { return false };
+        first[place].get_or_insert(normal).dot(normal) < SAME_NORMAL
+    })
+}
+
+/// One normal for each position: the mesh's own, or where it has hard edges the mean of its triangles' by angle.
+#[must_use]
+pub fn soft_normals(mesh: &Mesh) -> Cow<'_, [Vec3]> {
+    if has_hard_edges(mesh) {
+        return shared_normals(&mesh.positions, &mesh.indices, Averaging::Angle).into();
+    }
+    Cow::Borrowed(&mesh.normals)
+}
+
 /// For each position the number of its first exact equal, and how many different ones there are.
 pub(super) fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
     let mut seen = HashMap::with_capacity(positions.len());
@@ -144,6 +172,25 @@ mod tests {
                 .any(|(position, normal)| normal.distance((position - centre).normalize()) > 0.1),
             "counting triangles plainly must show the diagonals, or this test proves nothing"
         );
+    }
+
+    #[test]
+    fn hard_edges_are_found_and_softened() {
+        let (positions, indices) = cube();
+        let soft = Mesh::with_shared_normals(positions, indices, Averaging::Angle);
+        let corners: Vec<Vec3> = soft.indices.iter().map(|&k| soft.positions[k as usize]).collect();
+        let normals = corners.chunks_exact(3).flat_map(|t| [(t[1] - t[0]).cross(t[2] - t[0]).normalize(); 3]).collect();
+        let order = (0..corners.len() as u32).collect();
+        let hard = Mesh { positions: corners, normals, indices: order, ..Mesh::default() };
+        assert!(has_hard_edges(&hard) && !has_hard_edges(&soft));
+        for (softened, &index) in soft_normals(&hard).iter().zip(&soft.indices) {
+            assert_eq!(*softened, soft.normals[index as usize]);
+        }
+        assert!(matches!(soft_normals(&soft), Cow::Borrowed(_)));
+        // The built-ins' own averages stay as they are, also those that are not by angle, and seams that differ by rounding.
+        for name in ["brilliant_plain", "brilliant_area", "prism_chain", "skin"] {
+            assert!(!has_hard_edges(&crate::scene::Scene::named(name).unwrap().objects[0].mesh), "{name}");
+        }
     }
 
     #[test]

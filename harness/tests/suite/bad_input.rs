@@ -27,32 +27,53 @@ const RENDER: &[Row] = &[
     ("octahedron --size 9000x512 --out {}/out.png", One, &["size 9000x512", "1 to 8192"]),
     ("octahedron --size 512 --out {}/out.png", Usage, &["--size", "512x512"]),
     ("octahedron --size axb --out {}/out.png", Usage, &["--size", "axb"]),
-    ("octahedron --size -1x5 --out {}/out.png", Usage, &["-1"]),
+    ("octahedron --size -1x5 --out {}/out.png", Usage, &["--size", "-1x5", "512x512"]),
     ("octahedron --size=-1x5 --out {}/out.png", Usage, &["--size", "-1x5"]),
     ("octahedron --size 99999999999x5 --out {}/out.png", Usage, &["--size", "99999999999x5"]),
     ("octahedron --exposure nan --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --exposure inf --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --exposure 0 --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --rung proxy1 --out {}/out.png", Usage, &["--rung", "did you mean `proxy-1`"]),
-    ("octahedron --samples 9 --out {}/out.png", Usage, &["--samples", "9"]),
+    ("octahedron --samples 9 --out {}/out.png", Usage, &["--samples", "9", "from 1 to"]),
+    ("octahedron --samples -1 --out {}/out.png", Usage, &["--samples", "-1", "from 1 to"]),
+    ("jade --rung reference --seed -1 --out {}/out.png", Usage, &["--seed", "-1", "from 0 to 18446744073709551615"]),
+    ("jade --rung reference --walks -1 --out {}/out.png", Usage, &["--walks", "-1", "from 0 to 4294967295"]),
+    ("octahedron --exposure -1 --out {}/out.png", Usage, &["--exposure", "-1", "above 0"]),
+    ("octahedron --exposure -inf --out {}/out.png", Usage, &["--exposure", "-inf", "above 0"]),
     ("octahedron --wavelengths 7 --out {}/out.png", One, &["knows no --wavelengths"]),
     ("octahedron --rung surface --distance-limit 1 --out {}/out.png", One, &["knows no --distance-limit"]),
     ("octahedron --rung reference --energy-bound -1 --out {}/out.png", One, &["energy"]),
     ("octahedron --rung reference --wavelengths 2 --out {}/out.png", One, &["2 wavelengths"]),
     ("octahedron --rung proxy-65 --out {}/out.png", Usage, &["--rung", "at most 64"]),
     ("octahedron --rung convex-1+2 --out {}/out.png", Usage, &["--rung", "3 to 61"]),
-    ("bunny_stone --rung convex-2 --out {}/out.png", One, &["not convex", "bvh"]),
+    ("bunny_stone --rung convex-2 --out {}/out.png", One, &["is not convex", "bvh"]),
+    (
+        "{}/open.gltf --rung convex-2 --out {}/out.png",
+        One,
+        &["is no closed solid (all corners lie in one plane)", "bvh"],
+    ),
+    ("skin --rung convex-2 --out {}/out.png", One, &["rung `convex-2` is for clear stones", "nothing there is one"]),
+    ("wax --rung surface --out {}/out.png", One, &["rung `surface` is for clear stones", "take another"]),
+    ("{}/metal.gltf --rung proxy-1 --out {}/out.png", One, &["rung `proxy-1` is for clear stones", "transmission"]),
+    (
+        "{}/metal.gltf --rung reference --size 8x8 --out {}/out.png",
+        One,
+        &["object `mesh 0`", "opaque", "the reference"],
+    ),
     ("octahedron --from 20 --out {}/out.png", Usage, &["--from", "20,11"]),
     ("octahedron --from nan,0 --out {}/out.png", Usage, &["--from", "degrees"]),
     ("octahedron --strength nan --out {}/out.png", Usage, &["--strength", "above 0"]),
     ("octahedron --distance-limit 0 --out {}/out.png", Usage, &["--distance-limit", "above 0"]),
     ("octahedron --without fire --out {}/out.png", Usage, &["--without", "absorption"]),
-    ("octahedron --without absorption --out {}/out.png", One, &["`octahedron` calls for absorption", "leave it out"]),
     ("octahedron --with cdrf --out {}/out.png", One, &["--with cdrf has no meaning", "scattering and absorption"]),
     ("bunny --with cdrf --rung lambert --out {}/out.png", One, &["a rung is asked for"]),
     ("bunny --deferred --out {}/out.png", One, &["knows no --deferred"]),
     ("vitrine --deferred --out {}/out.png", One, &["only clear stones", "leave --deferred out"]),
-    ("octahedron --rung reference --without absorption --out {}/out.png", One, &["`reference` knows no --without"]),
+    (
+        "ruby --rung reference --without absorption --out {}/out.png",
+        One,
+        &["`reference` knows no --without absorption"],
+    ),
     ("octahedron --rung reference --distance-limit 2 --out {}/out.png", One, &["knows no --distance-limit"]),
     ("jade --walks-from lights --out {}/out.png", One, &["knows no --walks-from"]),
     ("jade --rung reference --walks-from light --out {}/out.png", Usage, &["did you mean `lights`"]),
@@ -102,6 +123,12 @@ const SCENES: &[Row] = &[
     ("{}/json.gltf --out {}/out.png", One, &["json.gltf: ", "not valid glTF", "line 1"]),
     ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "not a regular file"]),
     ("briliant --out {}/out.png", One, &["\"briliant\"", "did you mean brilliant?"]),
+    ("dimond --out {}/out.png", One, &["\"dimond\"", "did you mean brilliant?"]),
+    ("emrald --out {}/out.png", One, &["\"emrald\"", "did you mean step_cut?"]),
+    ("{}/draco.gltf --out {}/out.png", One, &["compressed by KHR_draco_mesh_compression", "gltf-transform copy"]),
+    ("{}/quantised.gltf --out {}/out.png", One, &["accessor 0", "KHR_mesh_quantization", "gltf-transform dequantize"]),
+    ("{}/first.gltf --out {}/out.png", One, &["first.gltf: this is glTF version 1.0", "convert it"]),
+    ("{}/empty_scene.gltf --out {}/out.png", One, &["empty_scene.gltf: ", "no triangles"]),
 ];
 
 const OUTPUTS: &[Row] = &[
@@ -131,9 +158,11 @@ const ENVIRONMENTS: &[Row] = &[
 const CHECK: &[Row] = &[
     ("refracton", One, &["no module `refracton`", "did you mean `refraction`?"]),
     ("zzz", One, &["no module `zzz`", "refraction", "srgb"]),
-    ("refraction::refrct", One, &["no function `refrct`", "did you mean `refraction_refract"]),
+    ("refraction::refrct", One, &["no function `refrct`", "did you mean `refraction::refract`"]),
+    ("fresnel::dieletric", One, &["no function `dieletric`", "did you mean `fresnel::dielectric`"]),
     ("refraction --cases 0", Usage, &["--cases"]),
-    ("refraction --cases -5", Usage, &["-5"]),
+    ("refraction --cases -5", Usage, &["--cases", "-5", "from 1 to"]),
+    ("refraction --seed -1", Usage, &["--seed", "-1", "from 0 to 18446744073709551615"]),
     ("refraction --seed x", Usage, &["--seed"]),
     ("refraction --wgsl {}/none.wgsl", One, &["none.wgsl: ", "cannot be read"]),
     ("refraction --wgsl {}/text.hdr", Excerpt, &["text.hdr:1:1"]),
@@ -367,6 +396,29 @@ const BAD_MEMBERS: &[(&str, Change)] = &[
     ("escape.gltf", |d| d["buffers"][0]["uri"] = json!("%2e%2e/text.hdr")),
     ("absolute.gltf", |d| d["buffers"][0]["uri"] = json!("/dev/zero")),
     ("huge.gltf", |d| d["accessors"][0]["count"] = json!(178_956_970)),
+    ("open.gltf", |d| {
+        extend_wax(
+            d,
+            json!({"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 1}}),
+        )
+    }),
+    ("metal.gltf", |d| extend_wax(d, json!({}))),
+    ("draco.gltf", |d| {
+        d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+        d["meshes"][0]["primitives"][0]["extensions"] =
+            json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}});
+    }),
+    ("quantised.gltf", |d| {
+        d["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+        d["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        d["accessors"][0]["componentType"] = json!(5122);
+    }),
+    ("first.gltf", |d| {
+        d["asset"] = json!({"version": "1.0"});
+        d["meshes"] = json!({"mesh": {"primitives": []}});
+        d["nodes"] = json!({"node": {"meshes": ["mesh"]}});
+    }),
+    ("empty_scene.gltf", |d| d["scenes"] = json!([{"name": "nothing"}])),
     ("instances.gltf", |d| instance(d, json!({}))),
     ("counts.gltf", |d| {
         let mut one = d["accessors"][0].clone();

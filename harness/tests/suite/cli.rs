@@ -3,7 +3,7 @@
 use crate::program::{cook, folder, succeeds};
 use lapidary_harness::cookbook;
 use lapidary_harness::dispatch;
-use lapidary_harness::scene::{Scene, gltf};
+use lapidary_harness::scene::{Scene, glb, gltf};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -230,6 +230,142 @@ fn a_picture_goes_where_no_name_is_given_to_the_scenes_own() {
     assert_eq!(answer.stdout.trim_end(), "octahedron.png");
     assert!(folder.path().join("octahedron.png").is_file());
     assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 1);
+}
+
+/// A file says what its scene is called, and never where a picture of it goes.
+#[test]
+fn a_file_does_not_choose_where_its_picture_goes() {
+    let folder = folder();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("a folder");
+    let outside = folder.path().join("taken");
+    for name in ["../../x", "../taken", &outside.display().to_string(), "a/b", "..", "-"] {
+        let scene = Scene { name: name.to_owned(), ..Scene::named("octahedron").expect("built in") };
+        std::fs::write(folder.path().join("my stone.glb"), glb::write(&scene).expect("written")).expect("a file");
+        let answer = succeeds(&inner, &["render", "../my stone.glb", "--size", "8x8", "--samples", "1"]);
+        assert_eq!(answer.stdout, "my stone.png\n", "{name}");
+        assert!(inner.join("my stone.png").is_file(), "{name}");
+        assert_eq!(std::fs::read_dir(&inner).expect("a folder").count(), 1, "{name}");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 2, "{name}");
+    }
+    // Another word for a built-in is that built-in.
+    assert_eq!(succeeds(&inner, &["render", "diamond", "--size", "8x8", "--samples", "1"]).stdout, "brilliant.png\n");
+}
+
+#[test]
+#[cfg(unix)]
+fn links_and_the_umask_hold_for_what_is_written() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("far")).expect("a folder");
+    std::os::unix::fs::symlink("far/out.wgsl", folder.path().join("near.wgsl")).expect("a link");
+    succeeds(folder.path(), &["copy", "srgb", "--out", "near.wgsl"]);
+    assert!(folder.path().join("near.wgsl").is_symlink() && folder.path().join("far/out.wgsl").is_file());
+    for (mask, mode) in [("077", 0o600), ("022", 0o644), ("002", 0o664)] {
+        let line = format!("umask {mask}; exec \"$0\" copy srgb --out {mask}.wgsl");
+        let status = std::process::Command::new("sh")
+            .args(["-c", &line, env!("CARGO_BIN_EXE_cook")])
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::null())
+            .status();
+        assert!(status.expect("it starts").success());
+        let metadata = std::fs::metadata(folder.path().join(format!("{mask}.wgsl"))).expect("written");
+        assert_eq!(metadata.permissions().mode() & 0o777, mode, "umask {mask}");
+    }
+}
+
+/// To leave out what nothing calls for is to have what was wanted.
+#[test]
+fn what_nothing_calls_for_may_be_left_out() {
+    let folder = folder();
+    let picture = |extra: &[&str]| {
+        let arguments = ["render", "octahedron", "--size", "16x16", "--samples", "1", "--out", "out.png"];
+        succeeds(folder.path(), &[&arguments, extra].concat());
+        std::fs::read(folder.path().join("out.png")).expect("written")
+    };
+    assert!(picture(&[]) == picture(&["--without", "absorption,cdrf"]));
+    picture(&["--rung", "reference", "--without", "absorption"]);
+    succeeds(folder.path(), &["plan", "octahedron", "--without", "optical_path"]);
+}
+
+/// What should be known is said by both commands alike, in the plan's JSON too.
+#[test]
+fn render_and_plan_say_the_same_of_a_scene() {
+    let folder = folder();
+    let mut scene = Scene::named("octahedron").expect("built in");
+    scene.objects[0].mesh.indices.truncate(21);
+    std::fs::write(folder.path().join("open.glb"), glb::write(&scene).expect("written")).expect("a file");
+    let asked = ["open.glb", "--size", "8x8", "--rung", "bvh-2"];
+    let rendered = cook(folder.path(), &[&["render"], &asked[..]].concat());
+    assert_eq!(rendered.code, Some(0), "{rendered:?}");
+    let note = "object `octahedron`: rung `bvh-2` takes a mesh for the surface of a solid, but 3 edges are open; mend the mesh, or light inside \
+                goes astray";
+    assert_eq!(rendered.stderr, format!("cook: {note}\n"));
+    let plan = succeeds(folder.path(), &[&["plan"], &asked[..]].concat()).stdout;
+    assert!(
+        plan.contains(&format!("\nnotes\n  {note}\n")) || plan.ends_with(&format!("\nnotes\n  {note}\n")),
+        "{plan}"
+    );
+    let plan = succeeds(folder.path(), &[&["plan", "--json"], &asked[..]].concat()).stdout;
+    let plan: Value = serde_json::from_str(&plan).expect("one JSON document");
+    assert_eq!(plan["notes"], serde_json::json!([note]));
+}
+
+/// An environment with negative parts, as lossy compression leaves them, is used, and both commands say how many there are.
+#[test]
+fn negative_radiance_is_told_and_taken_as_none() {
+    let folder = folder();
+    let pixels = image::ImageBuffer::from_fn(8, 4, |x, _| image::Rgb([0.5f32, if x == 2 { -1e-4 } else { 0.5 }, 0.5]));
+    image::DynamicImage::ImageRgb32F(pixels).save(folder.path().join("sky.exr")).expect("written");
+    let asked = ["octahedron", "--size", "8x8", "--environment", "sky.exr"];
+    let answer = cook(folder.path(), &[&["render"], &asked[..]].concat());
+    let note = "sky.exr: 4 pixels have negative parts, down to -1.0e-4, which count as 0";
+    assert_eq!((answer.code, answer.stderr.as_str()), (Some(0), format!("cook: {note}\n").as_str()), "{answer:?}");
+    assert!(succeeds(folder.path(), &[&["plan"], &asked[..]].concat()).stdout.contains(note));
+}
+
+/// A thousand bodies share all that is the same: what is left for each is its own mesh and material.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_thousand_gems_take_little_memory() {
+    let folder = folder();
+    let scene = Scene::named("octahedron").expect("built in");
+    let placed = |number: u32| {
+        let place = glam::UVec3::new(number % 10, number / 10 % 10, number / 100).as_dvec3() * 3.0;
+        let object = scene.objects[0].clone();
+        lapidary_harness::scene::Object { mesh: object.mesh.placed(glam::DQuat::IDENTITY, place), ..object }
+    };
+    let many = Scene { objects: (0..1000).map(placed).collect(), ..scene.clone() }.seen_from(60.0, 20.0);
+    std::fs::write(folder.path().join("many.glb"), glb::write(&many).expect("written")).expect("a file");
+    for (rung, name) in [("convex-8", "many.glb"), ("proxy-1", "many.glb"), ("bvh-2", "many.glb")] {
+        let arguments = ["render", name, "--rung", rung, "--size", "64x64", "--samples", "1", "--out", "out.png"];
+        let peak = peak_kib(folder.path(), &arguments);
+        println!("{name} by {rung}: {} MiB at most", peak / 1024);
+        // One gem takes some 110 MiB, the driver's and its compiler's. Unshared, each body took 3 MiB of it more.
+        assert!(peak > 0 && peak <= 200 * 1024, "{name} by {rung}: {peak} KiB");
+    }
+}
+
+/// The most memory that a run took, as the kernel saw it.
+#[cfg(target_os = "linux")]
+fn peak_kib(folder: &Path, arguments: &[&str]) -> u64 {
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_cook"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("XDG_RUNTIME_DIR", folder)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("the binary starts");
+    let mut peak = 0;
+    while child.try_wait().expect("it runs").is_none() {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kib = line.and_then(|line| line.split_whitespace().next()).and_then(|word| word.parse().ok());
+        peak = peak.max(kib.unwrap_or(0));
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!(child.wait().expect("it ended").success(), "{arguments:?}");
+    peak
 }
 
 #[test]

@@ -19,6 +19,8 @@ mod formulas;
 mod furnace;
 mod gem;
 mod hard_cases;
+#[cfg(unix)]
+mod launcher;
 mod optical_path;
 mod optical_path_shading;
 mod parity;

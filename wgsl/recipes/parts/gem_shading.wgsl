@@ -69,7 +69,8 @@ struct GemWavelength {
 //+dispersion }
 
 @group(0) @binding(0) var<uniform> view: GemView;
-@group(1) @binding(0) var<uniform> material: GemMaterial;
+// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+@group(1) @binding(0) var<storage, read> material: GemMaterial;
 // Three floats a vertex, in world space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;

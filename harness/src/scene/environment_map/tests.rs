@@ -14,7 +14,7 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
 }
 
 fn decode(bytes: &[u8]) -> Result<EnvironmentMap, EnvironmentMapError> {
-    EnvironmentMap::decode(bytes, Path::new("sky.hdr"))
+    EnvironmentMap::decode(bytes, Path::new("sky.hdr")).map(|(map, _)| map)
 }
 
 #[test]
@@ -52,12 +52,54 @@ fn other_files_are_refused() {
 
 #[test]
 fn impossible_radiance_is_found_at_its_place() {
-    for bad in [f32::NAN, f32::INFINITY, -1.0] {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let image = DynamicImage::ImageRgba32F(ImageBuffer::from_fn(4, 3, |x, y| {
             Rgba([1.0, if (x, y) == (3, 1) { bad } else { 0.0 }, 1.0, f32::NAN])
         }));
         let error = decode(&encoded(&image, ImageFormat::OpenExr)).unwrap_err();
         assert!(error.to_string().contains("column 3, row 1"), "{error}");
+    }
+}
+
+#[test]
+fn negative_parts_count_as_nothing_and_are_counted() {
+    let image = DynamicImage::ImageRgb32F(ImageBuffer::from_fn(4, 3, |x, y| match (x, y) {
+        (0, 0) => Rgb([-0.25, 0.5, -0.0]),
+        (3, 2) => Rgb([1.0, -1e-6, 2.0]),
+        _ => Rgb([1.0, 2.0, 3.0]),
+    }));
+    let bytes = encoded(&image, ImageFormat::OpenExr);
+    let (map, clamped) = EnvironmentMap::decode(&bytes, Path::new("sky.exr")).unwrap();
+    assert_eq!(clamped, Clamped { pixels: 2, least: -0.25 });
+    assert_eq!([map.pixels[0], map.pixels[11]], [[0.0, 0.5, 0.0, 1.0], [1.0, 0.0, 2.0, 1.0]]);
+    let bytes = encoded(&coloured(4, 3), ImageFormat::OpenExr);
+    assert_eq!(EnvironmentMap::decode(&bytes, Path::new("sky.exr")).unwrap().1, Clamped::default());
+}
+
+/// A Radiance picture of 8 x 2 pixels of (1, .5, .25), under header lines of its own.
+fn radiance_picture(first: &str, lines: &str) -> Vec<u8> {
+    let mut bytes = format!("{first}\n{lines}FORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n").into_bytes();
+    // Without run lengths: mantissas over 256, times 2^(129 - 128).
+    bytes.extend([128u8, 64, 32, 129].repeat(16));
+    bytes
+}
+
+#[test]
+fn radiance_pictures_of_any_program_are_divided_by_their_exposures() {
+    let first = |name: &str, lines: &str| {
+        let [red, green, blue, _] = decode(&radiance_picture(name, lines)).unwrap().pixels[5];
+        [red, green, blue]
+    };
+    for name in ["#?RADIANCE", "#?RGBE", "#?AUTOPANO"] {
+        assert_eq!(first(name, ""), [1.0, 0.5, 0.25], "{name}");
+    }
+    // Ward: all exposures of a header multiply, and the pixels are to be divided by the product.
+    assert_eq!(first("#?RGBE", "EXPOSURE=4\n"), [0.25, 0.125, 0.0625]);
+    assert_eq!(first("#?RADIANCE", "EXPOSURE=0.5\n# a comment\nEXPOSURE= 4.0\n"), [0.5, 0.25, 0.125]);
+    assert_eq!(first("#?RADIANCE", "EXPOSURE=2\nCOLORCORR=1 0.5 0.25\n"), [0.5, 0.5, 0.5]);
+    for line in ["EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=nan\n", "EXPOSURE=x\n", "COLORCORR=1 0 1\n"] {
+        let message = decode(&radiance_picture("#?RADIANCE", line)).unwrap_err().to_string();
+        assert!(message.contains("cannot be decoded") && !message.contains('\n'), "{line}: {message}");
     }
 }
 

@@ -50,7 +50,8 @@ fn every_kind_of_edit_changes_the_file() {
 fn a_scene_that_breaks_a_promise_is_noticed() {
     let good = Scene::named("octahedron").unwrap();
     assert_eq!(check_scene(&good, 1_000), Ok(()));
-    assert!(check_scene(&good, 0).unwrap_err().contains("bytes of mesh"));
+    let crowd = vec![good.objects[0].clone(); gltf::MAX_OBJECTS as usize + 1];
+    assert!(check_scene(&Scene { objects: crowd, ..good.clone() }, 1_000).unwrap_err().contains("bytes of mesh"));
     let broken = |change: fn(&mut Scene)| {
         let mut scene = good.clone();
         change(&mut scene);

@@ -80,6 +80,9 @@ pub(super) fn material(material: &Material) -> Value {
         },
         "extensions": extensions,
     });
+    if material.double_sided {
+        written["doubleSided"] = json!(true);
+    }
     if !extras.is_empty() {
         written["extras"] = json!({"lapidary": extras});
     }

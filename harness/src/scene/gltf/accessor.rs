@@ -6,6 +6,7 @@ use ::gltf::json::validation::Checked;
 
 use super::buffers::Buffers;
 use super::error::{GltfError, item};
+use super::requirement::{DRACO, MESHOPT, QUANTIZATION};
 
 /// The elements of an accessor, known to lie within their buffer.
 #[derive(Debug, Clone, Copy)]
@@ -74,16 +75,33 @@ impl<'a> Elements<'a> {
         let stands_for_fraction = kind.type_ != Type::Scalar && component != ComponentType::F32;
         let is_kind = accessor.type_ == Checked::Valid(kind.type_) && kind.components.contains(&component);
         if !is_kind || (stands_for_fraction && !accessor.normalized) {
-            return Err(wrong(format!(
-                "{user} needs {} there; export without quantisation or compression",
-                kind.description
-            )));
+            let needs = format!("{user} needs {} there", kind.description);
+            let is_quantised =
+                root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == QUANTIZATION);
+            return Err(wrong(if is_quantised {
+                format!(
+                    "{needs}, and these are quantised by {QUANTIZATION}; export without quantisation, or undo it (`gltf-transform \
+                     dequantize in.glb out.glb` does)"
+                )
+            } else {
+                format!("{needs}; export without quantisation or compression")
+            }));
         }
         if accessor.sparse.is_some() {
             return Err(wrong("sparse accessors are not read; export without them".to_owned()));
         }
         let Some(view_index) = accessor.buffer_view else {
-            return Err(wrong("it has no bufferView, so no data; export it again".to_owned()));
+            let has = |name: &str| root.extensions_used.iter().any(|used| used == name);
+            let by = std::iter::once(DRACO).chain(MESHOPT).find(|name| has(name));
+            return Err(wrong(by.map_or_else(
+                || "it has no bufferView, so no data; export it again".to_owned(),
+                |name| {
+                    format!(
+                        "it has no bufferView, so its data are those of {name}, which is not read; export without compression, or unpack it \
+                         (`gltf-transform copy in.glb out.glb` does)"
+                    )
+                },
+            )));
         };
         let view = item(&root.buffer_views, "bufferView", view_index.value(), || name.clone())?;
         let buffer =

@@ -1,7 +1,7 @@
 //! The bound on what a file can make the loader allocate.
 
 use super::error::GltfError;
-use super::{MAX_EXPANSION, MAX_TRIANGLES};
+use super::{MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// What an object takes besides its mesh: its own size, two names of at most 65 characters, and six
 /// allocations.
@@ -10,32 +10,44 @@ const OBJECT_BYTES: u64 = 1024;
 /// What the meshes of a scene may still take. Asked before memory is taken.
 #[derive(Debug)]
 pub(super) struct Budget {
-    file_bytes: u64,
     bytes: u64,
     triangles: u64,
     vertices: u64,
+    objects: u64,
+    passed_over: u64,
 }
 
 impl Budget {
-    pub(super) fn new(file_bytes: u64) -> Self {
+    pub(super) fn new() -> Self {
         Self {
-            file_bytes,
-            bytes: file_bytes.saturating_mul(MAX_EXPANSION),
+            bytes: MAX_SCENE_BYTES,
             triangles: MAX_TRIANGLES,
             vertices: 3 * MAX_TRIANGLES,
+            objects: MAX_OBJECTS,
+            passed_over: MAX_TRIANGLES,
         }
     }
 
-    /// Takes what one object needs, before it is made. A vertex takes `vertex_bytes`.
-    pub(super) fn take(&mut self, vertices: u64, vertex_bytes: usize, triangles: u64) -> Result<(), GltfError> {
-        let left = self.triangles.checked_sub(triangles);
-        self.triangles = left.ok_or(GltfError::TooManyTriangles)?;
-        let left = self.vertices.checked_sub(vertices);
-        self.vertices = left.ok_or(GltfError::TooManyTriangles)?;
-        // No overflow: both numbers are within the bounds above by now.
-        let bytes = vertices * vertex_bytes as u64 + triangles * 3 * 4 + OBJECT_BYTES;
-        let left = self.bytes.checked_sub(bytes);
-        self.bytes = left.ok_or(GltfError::Expansion { file_bytes: self.file_bytes })?;
+    /// Takes what `objects` objects need together, before they are made. A vertex takes `vertex_bytes`.
+    pub(super) fn take(
+        &mut self,
+        objects: u64,
+        vertices: u64,
+        vertex_bytes: usize,
+        triangles: u64,
+    ) -> Result<(), GltfError> {
+        self.triangles = self.triangles.checked_sub(triangles).ok_or(GltfError::TooManyTriangles)?;
+        self.vertices = self.vertices.checked_sub(vertices).ok_or(GltfError::TooManyTriangles)?;
+        self.objects = self.objects.checked_sub(objects).ok_or(GltfError::TooManyObjects)?;
+        // No overflow: all numbers are within the bounds above by now.
+        let bytes = vertices * vertex_bytes as u64 + triangles * 3 * 4 + objects * OBJECT_BYTES;
+        self.bytes = self.bytes.checked_sub(bytes).ok_or(GltfError::TooMuchMemory)?;
+        Ok(())
+    }
+
+    /// Counts a primitive that is not drawn: it takes time, and a small file may show it very often.
+    pub(super) fn pass_over(&mut self) -> Result<(), GltfError> {
+        self.passed_over = self.passed_over.checked_sub(1).ok_or(GltfError::TooManyObjects)?;
         Ok(())
     }
 }

@@ -16,7 +16,6 @@ use super::error::{GltfError, excerpt};
 #[derive(Debug)]
 pub(super) struct Buffers<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
-    external_bytes: u64,
 }
 
 /// Writers differ in whether they pad base64, and either way it is unambiguous.
@@ -27,7 +26,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 
 impl<'a> Buffers<'a> {
     pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, base: Option<&Path>) -> Result<Self, GltfError> {
-        let mut all = Self { buffers: Vec::with_capacity(root.buffers.len()), external_bytes: 0 };
+        let mut all = Self { buffers: Vec::with_capacity(root.buffers.len()) };
         let mut left = MAX_FILE_BYTES;
         for (index, buffer) in root.buffers.iter().enumerate() {
             let length = buffer.byte_length.0;
@@ -36,57 +35,50 @@ impl<'a> Buffers<'a> {
                 bytes: (MAX_FILE_BYTES - left).saturating_add(length),
                 limit: MAX_FILE_BYTES,
             })?;
-            let bytes = all.bytes_of(index, buffer, binary, base)?;
+            let bytes = bytes_of(index, buffer, binary, base)?;
             all.buffers.push(bytes);
         }
         Ok(all)
     }
 
-    /// The bytes read from files beside the glTF file.
-    pub(super) fn external_bytes(&self) -> u64 {
-        self.external_bytes
-    }
-
     pub(super) fn list(&self) -> &[Cow<'a, [u8]>] {
         &self.buffers
     }
+}
 
-    fn bytes_of(
-        &mut self,
-        index: usize,
-        buffer: &Buffer,
-        binary: Option<&'a [u8]>,
-        base: Option<&Path>,
-    ) -> Result<Cow<'a, [u8]>, GltfError> {
-        let wrong = |problem: String| GltfError::part(format!("buffer {index}"), problem);
-        // The bytes that `load` has bounded; on a 32-bit machine a GiB still fits.
-        let length = buffer.byte_length.0 as usize;
-        let mut bytes = match (&buffer.uri, binary) {
-            (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
-            (None, _) => {
-                return Err(wrong("it has no uri and no binary chunk; export it again".to_owned()));
+/// The bytes of one buffer.
+fn bytes_of<'a>(
+    index: usize,
+    buffer: &Buffer,
+    binary: Option<&'a [u8]>,
+    base: Option<&Path>,
+) -> Result<Cow<'a, [u8]>, GltfError> {
+    let wrong = |problem: String| GltfError::part(format!("buffer {index}"), problem);
+    // The bytes that `load` has bounded; on a 32-bit machine a GiB still fits.
+    let length = buffer.byte_length.0 as usize;
+    let mut bytes = match (&buffer.uri, binary) {
+        (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+        (None, _) => {
+            return Err(wrong("it has no uri and no binary chunk; export it again".to_owned()));
+        }
+        (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
+            Some(data) => decode(data).map_err(wrong)?,
+            None => {
+                let file = resolve(uri, base).map_err(wrong)?;
+                inside(&file, base).map_err(wrong)?;
+                read_named(&file, &format!("buffer {index}"), length as u64)?
             }
-            (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
-                Some(data) => decode(data).map_err(wrong)?,
-                None => {
-                    let file = resolve(uri, base).map_err(wrong)?;
-                    inside(&file, base).map_err(wrong)?;
-                    let bytes = read_named(&file, &format!("buffer {index}"), length as u64)?;
-                    self.external_bytes += bytes.len() as u64;
-                    bytes
-                }
-            }),
-        };
-        if bytes.len() < length {
-            let found = bytes.len();
-            return Err(wrong(format!("it must have {length} bytes but has {found}; export or download it again")));
-        }
-        match &mut bytes {
-            Cow::Borrowed(slice) => *slice = &slice[..length],
-            Cow::Owned(vector) => vector.truncate(length),
-        }
-        Ok(bytes)
+        }),
+    };
+    if bytes.len() < length {
+        let found = bytes.len();
+        return Err(wrong(format!("it must have {length} bytes but has {found}; export or download it again")));
     }
+    match &mut bytes {
+        Cow::Borrowed(slice) => *slice = &slice[..length],
+        Cow::Owned(vector) => vector.truncate(length),
+    }
+    Ok(bytes)
 }
 
 /// The data of a `data:` URI after its scheme.

@@ -16,6 +16,8 @@ pub(super) struct Container<'a> {
 /// it compares them, which overflows on lengths below 12.
 pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
     if !bytes.starts_with(b"glTF") {
+        // A byte-order mark, which editors on Windows put before UTF-8.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
         return match first {
             Some(b'{') => Ok(Container { json: bytes, binary: None }),

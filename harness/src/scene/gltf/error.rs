@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_EXPANSION, MAX_TRIANGLES};
+use super::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_TRIANGLES};
 
 /// What is wrong with a glTF file, in one line. Numbers count from 0, as in the file itself.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -35,7 +35,9 @@ pub enum GltfError {
         problem: String,
     },
     /// Another version of glTF.
-    #[error("this is glTF version {version}, but only 2.x is read; export it as glTF 2.0")]
+    #[error(
+        "this is glTF version {version}, but only 2.x is read; export it as glTF 2.0, or convert it (`gltf-pipeline` does)"
+    )]
     Version {
         /// What the file asks for.
         version: String,
@@ -55,6 +57,15 @@ pub enum GltfError {
     RequiredExtensions {
         /// Their names.
         extensions: String,
+    },
+    /// Meshes whose numbers are compressed.
+    #[error(
+        "its meshes are compressed by {extension}, which is not read; export it without compression, or unpack it (`gltf-transform copy \
+         in.glb out.glb` does)"
+    )]
+    Compressed {
+        /// The extension.
+        extension: String,
     },
     /// A reference to something that is not in the file.
     #[error("{from} refers to {what} {index}, but the file has {count}; export it again")]
@@ -111,15 +122,18 @@ pub enum GltfError {
          instance counted; decimate it or show fewer instances"
     )]
     TooManyTriangles,
-    /// A small file that unfolds to a very large scene.
+    /// Bodies that take more memory than is given to a scene.
     #[error(
-        "its nodes show so many instances that the meshes need over {MAX_EXPANSION} times the file's \
-         {file_bytes} bytes; show fewer instances"
+        "its scene takes more than {} MiB of memory, each instance counted; decimate its meshes or show fewer instances",
+        MAX_SCENE_BYTES >> 20
     )]
-    Expansion {
-        /// Size of the file with its external buffers.
-        file_bytes: u64,
-    },
+    TooMuchMemory,
+    /// Very many bodies.
+    #[error(
+        "its scene shows more than {MAX_OBJECTS} bodies; join them, or show fewer instances (those of one node by \
+         EXT_mesh_gpu_instancing count as one)"
+    )]
+    TooManyObjects,
 }
 
 impl GltfError {

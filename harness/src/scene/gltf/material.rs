@@ -130,7 +130,8 @@ fn surface(json: &JsonMaterial) -> Result<Material, String> {
     if json.alpha_mode == Checked::Invalid {
         return Err("its alphaMode is not one of glTF's, OPAQUE, MASK and BLEND".to_owned());
     }
-    Ok(Material { base_color: Vec3::from_array(color), roughness, ..Material::standard() })
+    let double_sided = json.double_sided;
+    Ok(Material { base_color: Vec3::from_array(color), roughness, double_sided, ..Material::standard() })
 }
 
 fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> {

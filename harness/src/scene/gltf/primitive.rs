@@ -17,7 +17,12 @@ use super::nodes::ShownNode;
 use crate::scene::normals::{Averaging, shared_normals};
 use crate::scene::{Mesh, Object};
 
-/// Adds an object for each primitive of triangles that `node` shows, with all instances of it in one mesh.
+/// The most vertices, and the most corners of triangles, of one mesh of instances. The longest list that is made of them has two nodes of a
+/// hierarchy, 32 bytes each, for a triangle: 85 MiB, which any device holds in a buffer (WebGPU's least is 128 MiB).
+const MOST_JOINED: usize = 1 << 22;
+
+/// Adds an object for each primitive of triangles that `node` shows, with all instances of it in one mesh, or in several where one would be too
+/// large for a device.
 pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
@@ -37,13 +42,12 @@ pub(super) fn add_objects(
     let enlargement = instances.enlargement();
     for (index, primitive) in mesh.primitives.iter().enumerate() {
         let Some(arrangement) = Arrangement::of(primitive.mode) else {
-            // Passing it over takes time, and a small file may ask for it very often.
-            budget.take(0, 0, 0)?;
+            budget.pass_over()?;
             continue;
         };
         let user = format!("{}, primitive {index}", designation("mesh", mesh_index, mesh.name.as_deref()));
         let mut reader = Reader { root, buffers, primitive, user: &user, budget };
-        let mesh_in_world = reader.mesh(arrangement, &instances)?;
+        let meshes_in_world = reader.meshes(arrangement, &instances)?;
         let material_index = primitive.material.map(|material| material.value());
         let mut material = materials.get(material_index, &user)?;
         // glTF states it in the mesh's space, unlike its other lengths.
@@ -51,14 +55,15 @@ pub(super) fn add_objects(
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
             material.thickness = thickness.min(f32::MAX);
         }
-        objects.push(Object {
-            name: match mesh.primitives.len() {
-                1 => name.clone(),
-                _ => format!("{name} / {index}"),
-            },
-            mesh: mesh_in_world,
-            material,
-        });
+        let name = match mesh.primitives.len() {
+            1 => name.clone(),
+            _ => format!("{name} / {index}"),
+        };
+        objects.extend(meshes_in_world.into_iter().map(|mesh| Object {
+            name: name.clone(),
+            mesh,
+            material: material.clone(),
+        }));
     }
     Ok(())
 }
@@ -110,7 +115,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn mesh(&mut self, arrangement: Arrangement, instances: &Instances<'_>) -> Result<Mesh, GltfError> {
+    fn meshes(&mut self, arrangement: Arrangement, instances: &Instances<'_>) -> Result<Vec<Mesh>, GltfError> {
         let positions = self
             .attribute(&Semantic::Positions, VECTORS)?
             .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
@@ -132,7 +137,10 @@ impl<'a> Reader<'a> {
         let uv_bytes = if uvs.is_some() { size_of::<Vec2>() } else { 0 };
         // No overflow: each factor is at most a buffer's length, 2³⁰.
         let times = instances.count() as u64;
-        self.budget.take(times * vertices as u64, 2 * size_of::<Vec3>() + uv_bytes, times * triangles as u64)?;
+        let joined = (MOST_JOINED / vertices.max(3 * triangles).max(1)).max(1);
+        let objects = times.div_ceil(joined as u64);
+        let vertex_bytes = 2 * size_of::<Vec3>() + uv_bytes;
+        self.budget.take(objects, times * vertices as u64, vertex_bytes, times * triangles as u64)?;
 
         let corners = match indices {
             Some(indices) => self.in_range(indices, vertices)?,
@@ -140,7 +148,7 @@ impl<'a> Reader<'a> {
             None => (0..vertices as u32).collect(),
         };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
-        let mut all = Mesh::default();
+        let mut all: Vec<Mesh> = Vec::new();
         for (instance, transform) in instances.transforms().enumerate() {
             let positions = self.positions(positions, transform, instances.is_list().then_some(instance))?;
             let linear = DMat3::from_mat4(transform);
@@ -151,10 +159,9 @@ impl<'a> Reader<'a> {
                 None => shared_normals(&positions, &indices, Averaging::Angle),
             };
             let mesh = Mesh { positions, normals, uvs: uvs.clone(), indices, halo: Vec::new() };
-            if instance == 0 {
-                all = mesh;
-            } else {
-                all.append(&mesh);
+            match all.last_mut().filter(|_| instance % joined != 0) {
+                Some(last) => last.append(&mesh),
+                None => all.push(mesh),
             }
         }
         Ok(all)

@@ -125,3 +125,26 @@ fn instances_count_in_the_budgets() {
     document["buffers"][0]["byteLength"] = json!(data.len());
     assert_eq!(parse(&file(&document, &data), None).unwrap().triangle_count(), 1_000_000);
 }
+
+/// 1,899 teapots of 6,320 triangles, as a public file has them: two or three hundred times the file's bytes. Here each is a strip of as many.
+#[test]
+fn thousands_of_instances_of_a_large_mesh_load_in_bodies_that_a_device_holds() {
+    let count: usize = 1_899;
+    let places: Vec<f32> = (0..count).flat_map(|k| [k as f32, 0.0, 0.0]).collect();
+    let (mut document, mut data) = instanced(&[("TRANSLATION", "VEC3", 5126, floats(&places))], &[count as u64]);
+    let start = data.len();
+    data.extend((0..6_322u32).flat_map(|k| ((k % 3) as u16).to_le_bytes()));
+    document["bufferViews"][1] = json!({"buffer": 0, "byteOffset": start, "byteLength": 2 * 6_322});
+    document["accessors"][1]["count"] = json!(6_322);
+    document["meshes"][0]["primitives"][0]["mode"] = json!(5);
+    document["buffers"][0]["byteLength"] = json!(data.len());
+    let scene = parse(&file(&document, &data), None).unwrap();
+    assert_eq!(scene.triangle_count(), count * 6_320);
+    // WebGPU's least limit of a storage buffer.
+    let held = |mesh: &Mesh| 12 * mesh.positions.len() <= 128 << 20 && 64 * mesh.triangle_count() <= 128 << 20;
+    assert!(
+        scene.objects.len() < 16 && scene.objects.iter().all(|object| held(&object.mesh)),
+        "{}",
+        scene.objects.len()
+    );
+}

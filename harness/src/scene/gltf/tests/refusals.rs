@@ -68,8 +68,114 @@ fn hostile_container_lengths() {
 fn versions_and_extensions() {
     refused("/asset/version", json!("1.0"), "version 1.0");
     refused("/asset/minVersion", json!("3.0"), "version 3.0");
-    let unknown = json!(["KHR_materials_ior", "KHR_draco_mesh_compression", "EXT_x"]);
-    refused("/extensionsRequired", unknown, "supported: KHR_draco_mesh_compression, EXT_x;");
+    let unknown = json!(["KHR_materials_ior", "KHR_texture_transform", "VENDOR_y", "EXT_x"]);
+    refused("/extensionsRequired", unknown, "supported: VENDOR_y, EXT_x;");
+}
+
+/// glTF 1.0 has objects where 2.0 has lists; its version is said, not the place where the JSON differs.
+#[test]
+fn the_first_version_is_named_also_as_text() {
+    let first = |asset: Value| {
+        json!({"asset": asset, "scene": "s", "scenes": {"s": {"nodes": ["n"]}}, "nodes": {"n": {"meshes": ["m"]}},
+            "meshes": {"m": {"primitives": []}}, "buffers": {"b": {"uri": "b.bin", "byteLength": 3}}})
+    };
+    for asset in [json!({"version": "1.0"}), json!({"version": "1.1"}), json!({"version": 1.0}), json!({}), Value::Null]
+    {
+        let message = parse(first(asset).to_string().as_bytes(), None).unwrap_err().to_string();
+        assert!(message.starts_with("this is glTF version 1.") && message.contains("convert it"), "{message}");
+    }
+    refused("/asset", json!({}), "its JSON is not valid glTF");
+}
+
+#[test]
+fn compressed_meshes_are_named_with_what_to_do() {
+    let message = message(|d| {
+        d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+        d["meshes"][0]["primitives"][0]["extensions"] =
+            json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}});
+        d["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    });
+    assert!(
+        message.contains("compressed by KHR_draco_mesh_compression") && message.contains("gltf-transform copy"),
+        "{message}"
+    );
+    for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let message = self::message(|d| {
+            d["extensionsRequired"] = json!([name]);
+            d["bufferViews"][0]["extensions"] =
+                json!({name: {"buffer": 0, "byteLength": 1, "count": 1, "byteStride": 1, "mode": "ATTRIBUTES"}});
+        });
+        assert!(message.contains(&format!("compressed by {name}")), "{message}");
+    }
+    // Used, not required, and yet without plain data beside it.
+    let message = self::message(|d| {
+        d["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+        d["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    });
+    assert!(
+        message.contains("accessor 0: it has no bufferView, so its data are those of KHR_draco_mesh_compression"),
+        "{message}"
+    );
+    let message = self::message(|d| {
+        d["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        d["accessors"][0]["componentType"] = json!(5122);
+    });
+    assert!(message.contains("quantised by KHR_mesh_quantization") && message.contains("dequantize"), "{message}");
+}
+
+/// What is required is no reason to refuse a file in which nothing that is drawn needs it.
+#[test]
+fn what_nothing_drawn_needs_stops_nothing() {
+    let loads = |change: &dyn Fn(&mut Value)| load_changed(change).unwrap_or_else(|error| panic!("{error}"));
+    for name in [
+        "KHR_texture_transform",
+        "EXT_texture_webp",
+        "KHR_texture_basisu",
+        "KHR_animation_pointer",
+        "KHR_mesh_quantization",
+        "KHR_draco_mesh_compression",
+        "EXT_meshopt_compression",
+    ] {
+        let scene = loads(&|d| {
+            d["extensionsRequired"] = json!([name]);
+            d["extensionsUsed"] = json!([name]);
+        });
+        let says = format!("extensions: `{name}` of the file (not known)");
+        assert!(scene.lacking.contains(&says), "{:?}", scene.lacking);
+    }
+    // As exporters write them, and with members that this program's parser does not take.
+    let scene = loads(&|d| {
+        d["extensionsRequired"] = json!(["EXT_texture_webp"]);
+        d["textures"] = json!([{"sampler": 0, "extensions": {"EXT_texture_webp": {"source": 0}}}]);
+        d["images"] = json!([{"bufferView": "x", "mimeType": "image/webp"}]);
+        d["skins"] = json!([{"joints": "none"}]);
+        d["animations"] = json!([{"channels": [{"target": {"path": 7}}], "samplers": 3}, {}]);
+    });
+    assert!(
+        scene.lacking.contains(&"animations: 2 of the file (bodies are drawn at rest)".to_owned()),
+        "{:?}",
+        scene.lacking
+    );
+}
+
+#[test]
+fn scenes_without_nodes_show_nothing_and_others_are_drawn() {
+    refused("/scenes/0", json!({"name": "empty"}), "shows no triangles");
+    let scene = load_changed(|d| d["scenes"] = json!([{"nodes": [0]}, {"name": "empty"}])).unwrap();
+    assert_eq!(scene.objects.len(), 1);
+    let message = message(|d| d["scene"] = json!("first"));
+    assert!(message.contains("its JSON is not valid glTF: invalid type") && message.contains("line 1"), "{message}");
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    use base64::Engine;
+    let text = base64::engine::general_purpose::STANDARD.encode(binary());
+    let mut document = document();
+    document["buffers"][0]["uri"] = json!(format!("data:;base64,{text}"));
+    let marked = [&b"\xef\xbb\xbf"[..], document.to_string().as_bytes()].concat();
+    assert_eq!(parse(&marked, None).unwrap().triangle_count(), 1);
+    assert!(parse(b"\xef\xbb\xbfsolid", None).unwrap_err().to_string().contains("not glTF"));
 }
 
 #[test]

@@ -134,8 +134,7 @@ fn many_nodes_of_many_lines_are_refused() {
 
 #[test]
 fn small_files_that_unfold_to_large_scenes() {
-    // A thousand triangles of three corners, in a thousand primitives of a mesh, shown by a thousand
-    // nodes: 100 MB from some 100 KB.
+    // A thousand primitives of a mesh, shown by a thousand nodes: a million bodies from some 100 KB.
     let message = message(|d| {
         let primitive = d["meshes"][0]["primitives"][0].clone();
         d["meshes"][0]["primitives"] = vec![primitive; 1_000].into();
@@ -143,4 +142,43 @@ fn small_files_that_unfold_to_large_scenes() {
         d["scenes"][0]["nodes"] = (0..1_000).collect();
     });
     assert!(message.contains("show fewer instances"), "{message}");
+}
+
+/// Bytes are bounded as they are, not by the file's size: a mesh of a thousand triangles at two thousand places loads from a small file, and no file
+/// gets more than the budget.
+#[test]
+fn memory_is_bounded_whatever_the_files_size() {
+    let with = |nodes: usize, corners: usize| {
+        load_changed(|d| {
+            // One triangle again and again, by indices that lie in four bytes.
+            d["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "mode": 5, "indices": 1}]);
+            let data: Vec<u8> = (0..corners).flat_map(|k| ((k % 3) as u16).to_le_bytes()).collect();
+            use base64::Engine;
+            let uri = format!("data:;base64,{}", base64::engine::general_purpose::STANDARD.encode(&data));
+            d["buffers"].as_array_mut().unwrap().push(json!({"byteLength": data.len(), "uri": uri}));
+            d["bufferViews"][1] = json!({"buffer": 1, "byteLength": data.len()});
+            d["accessors"][1]["count"] = json!(corners);
+            d["nodes"] = vec![json!({"mesh": 0}); nodes].into();
+            d["scenes"][0]["nodes"] = (0..nodes).collect();
+        })
+    };
+    // 24 MB of mesh from 100 KB, beyond 256 times the file before.
+    let scene = with(2_000, 1_002).unwrap();
+    assert_eq!(scene.triangle_count(), 2_000_000);
+    let message = with(20_000, 1_002).unwrap_err().to_string();
+    assert!(message.contains("more than 16777216 triangles"), "{message}");
+    let message = with(70_000, 3).unwrap_err().to_string();
+    assert!(message.contains("more than 65536 bodies"), "{message}");
+}
+
+/// What one budget lets pass another stops: vertices with texture coordinates that no triangle uses.
+#[test]
+fn the_budget_counts_bytes() {
+    use crate::scene::gltf::budget::Budget;
+    let mut budget = Budget::new();
+    let most = 3 * MAX_TRIANGLES;
+    assert_eq!(budget.take(1, most, 32, MAX_TRIANGLES), Ok(()));
+    assert_eq!(budget.take(MAX_OBJECTS, 0, 0, 0), Err(GltfError::TooManyObjects));
+    assert_eq!(budget.take(0, 1, 32, 0), Err(GltfError::TooManyTriangles));
+    assert_eq!(Budget::new().take(1, most, 64, 0), Err(GltfError::TooMuchMemory));
 }

@@ -1,0 +1,188 @@
+//! What a user should know before a scene is drawn: bodies and lights that a technique cannot do justice to.
+
+use super::{Decisions, thickness};
+use crate::reference::surroundings;
+use crate::render::{Environment, Geometry, Note, Objects, Rung, Settings, clip_from_world};
+use crate::scene::normals::has_hard_edges;
+use crate::scene::{Dispersion, MeshDiagnosis, Object, Scene};
+use glam::{DVec2, DVec3, Vec3, Vec4};
+use lapidary_environment::oracle;
+use std::f64::consts::PI;
+
+/// Meshes of more triangles are not looked through: it takes seconds, and as much memory again as the mesh.
+const MOST_DIAGNOSED: usize = 1 << 20;
+
+/// Of light that is less than this nothing is seen: an eighth of the least step of 8 bits at the exposure 1.
+const INVISIBLE: f32 = 1.0 / 2048.0;
+
+/// The darkest channel of a pixel that is written as 255.
+const WHITE: f32 = 254.5 / 255.0;
+
+/// All notes on a scene, each thing once, with the first object that it is said of. `decisions` are those of the scene's objects.
+pub(super) fn of(scene: &Scene, settings: &Settings, decisions: &[&Decisions]) -> Vec<Note> {
+    let around = mean_radiance(&settings.environment);
+    let mut notes: Vec<Note> = Vec::new();
+    if is_out_of_view(scene, settings) {
+        notes.push(Note::NothingInView);
+    }
+    for (object, decisions) in scene.objects.iter().zip(decisions) {
+        let case = Case { object, rung: decisions.rung, scene, settings };
+        for note in case.notes(around) {
+            add(&mut notes, note);
+        }
+    }
+    notes
+}
+
+/// Adds a note on one object, to the one on others before it where that says the same.
+fn add(notes: &mut Vec<Note>, note: Note) {
+    let known = notes.iter_mut().find_map(|known| match (known, &note) {
+        (Note::NotSolid { objects, rung, .. }, Note::NotSolid { rung: other, .. }) if rung == other => Some(objects),
+        (Note::InsideOut { objects }, Note::InsideOut { .. })
+        | (Note::BackNotDrawn { objects }, Note::BackNotDrawn { .. })
+        | (Note::Black { objects, .. }, Note::Black { .. })
+        | (Note::ClipsToWhite { objects, .. }, Note::ClipsToWhite { .. }) => Some(objects),
+        (Note::ThinWall { objects, unused }, Note::ThinWall { unused: other, .. }) if unused == other => Some(objects),
+        (Note::HardEdges { objects, rung }, Note::HardEdges { rung: other, .. }) if rung == other => Some(objects),
+        (Note::NotClear { objects, instead, .. }, Note::NotClear { instead: other, .. }) if instead == other => {
+            Some(objects)
+        }
+        _ => None,
+    });
+    match known {
+        Some(objects) => objects.count += 1,
+        None => notes.push(note),
+    }
+}
+
+/// One object under its rung.
+struct Case<'a> {
+    object: &'a Object,
+    rung: Rung,
+    scene: &'a Scene,
+    settings: &'a Settings,
+}
+
+impl Case<'_> {
+    fn notes(&self, around: DVec3) -> Vec<Note> {
+        let objects = Objects { first: self.object.name.clone(), count: 1 };
+        let rung = self.rung;
+        let mut notes = Vec::new();
+        if self.settings.rung.is_for_clear_stones() && !self.object.material.is_clear() {
+            notes.push(Note::NotClear { objects: objects.clone(), asked: self.settings.rung, instead: rung });
+        }
+        notes.extend(self.of_mesh(&objects));
+        if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
+            notes.push(Note::HardEdges { objects: objects.clone(), rung });
+        }
+        notes.extend(self.thin_wall(&objects));
+        notes.extend(self.black(&objects));
+        notes.extend(self.white(&objects, around));
+        notes
+    }
+
+    /// What is wrong with its mesh for its rung.
+    fn of_mesh(&self, objects: &Objects) -> Option<Note> {
+        let Object { mesh, material, .. } = self.object;
+        if mesh.triangle_count() > MOST_DIAGNOSED {
+            return None;
+        }
+        let takes_a_solid = match self.rung {
+            Rung::Inside { .. } | Rung::OpticalPath(_) => true,
+            Rung::Reference => material.is_clear(),
+            _ => false,
+        };
+        let found = MeshDiagnosis::of(mesh);
+        if takes_a_solid {
+            let faults = found.clauses();
+            return (!faults.is_empty()).then(|| Note::NotSolid { objects: objects.clone(), rung: self.rung, faults });
+        }
+        if found.is_closed() && found.inverted_parts > 0 {
+            return Some(Note::InsideOut { objects: objects.clone() });
+        }
+        let shows_its_back = material.double_sided && !found.is_closed();
+        shows_its_back.then(|| Note::BackNotDrawn { objects: objects.clone() })
+    }
+
+    fn thin_wall(&self, objects: &Objects) -> Option<Note> {
+        let material = &self.object.material;
+        if self.rung != Rung::Surface || self.settings.rung == Rung::Surface || material.thickness > 0.0 {
+            return None;
+        }
+        let absorbs = material.absorbs().then_some("absorption");
+        let disperses = (material.dispersion != Dispersion::None).then_some("dispersion");
+        Some(Note::ThinWall { objects: objects.clone(), unused: absorbs.into_iter().chain(disperses).collect() })
+    }
+
+    /// Where not even the thin parts of a clear body let light through that could be seen.
+    fn black(&self, objects: &Objects) -> Option<Note> {
+        let Object { material, mesh, .. } = self.object;
+        let is_inside = matches!(self.rung, Rung::Inside { .. } | Rung::Reference) && material.is_clear();
+        if !is_inside || mesh.triangle_count() > MOST_DIAGNOSED {
+            return None;
+        }
+        // Measured only where something is absorbed.
+        let thickness = if material.absorbs() { thickness::measured(mesh) } else { 0.0 };
+        let coefficient = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
+        let left = material.base_color * lapidary_absorption::transmittance(coefficient, thickness);
+        let share = left.max_element();
+        (share * self.settings.exposure < INVISIBLE).then(|| Note::Black { objects: objects.clone(), share, thickness })
+    }
+
+    /// Where a body that the lights meet squarely is shown as plain white.
+    fn white(&self, objects: &Objects, around: DVec3) -> Option<Note> {
+        let Object { material, mesh, .. } = self.object;
+        let mut radiance = around;
+        if !material.is_clear() {
+            let bounds = crate::scene::Bounds::of(mesh.positions.iter().copied());
+            let (middle, radius) = (bounds.centre().as_dvec3(), f64::from(bounds.radius()));
+            let arriving = self.scene.lights.iter().map(|light| {
+                let arrival = light.arrival(middle);
+                // A lamp inside of a body lights its rim.
+                let is_inside = arrival.distance < radius;
+                if is_inside { light.arrival(middle + radius * DVec3::X).irradiance } else { arrival.irradiance }
+            });
+            radiance += arriving.sum::<DVec3>() / PI;
+        }
+        let shown = (self.settings.exposure * radiance.as_vec3() * material.base_color).min(Vec3::splat(f32::MAX));
+        let encoded = lapidary_srgb::encode_color(lapidary_srgb::tone_curve(shown.min(Vec3::splat(1e9))));
+        (encoded.min_element() >= WHITE)
+            .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.min_element() })
+    }
+}
+
+/// Rows of directions from pole to pole, twice as many columns.
+const ROWS: u32 = 64;
+
+/// The mean over all directions.
+fn mean_radiance(environment: &Environment) -> DVec3 {
+    let row = |row: u32| {
+        let v = (f64::from(row) + 0.5) / f64::from(ROWS);
+        let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(ROWS)).cos());
+        // Of a whole row, as a share of the sphere.
+        let share = 0.5 * (edges[0] - edges[1]) / f64::from(2 * ROWS);
+        let columns = (0..2 * ROWS).map(|column| {
+            let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v);
+            surroundings::radiance(environment, oracle::direction_from_uv(uv))
+        });
+        share * columns.sum::<DVec3>()
+    };
+    (0..ROWS).map(row).sum()
+}
+
+/// Whether every triangle lies beyond one of the picture's edges, or behind the eye.
+fn is_out_of_view(scene: &Scene, settings: &Settings) -> bool {
+    let matrix = clip_from_world(scene, settings.width, settings.height);
+    let beyond = |clip: Vec4| {
+        let [x, y, _, w] = clip.to_array();
+        [x < -w, x > w, y < -w, y > w, w <= 0.0]
+    };
+    let mut triangles = scene.objects.iter().flat_map(|object| object.mesh.triangles());
+    triangles.all(|corners| {
+        let [a, b, c] = corners.map(|corner| beyond(matrix * corner.extend(1.0)));
+        (0..a.len()).any(|side| a[side] && b[side] && c[side])
+    })
+}
+
+#[cfg(test)]
+mod tests;

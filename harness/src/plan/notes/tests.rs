@@ -1,0 +1,168 @@
+use super::*;
+use crate::plan;
+use crate::render::Environment;
+use crate::scene::environment_map::EnvironmentMap;
+use crate::scene::light::Light;
+use crate::scene::surfaces::sphere;
+use crate::scene::{BUILT_IN, Camera, Material, Mesh};
+
+fn usual() -> Settings {
+    Settings { rung: Rung::ByMaterial, ..Settings::of_size(64, 64) }
+}
+
+fn by(rung: &str) -> Settings {
+    Settings { rung: rung.parse().expect("a rung"), ..usual() }
+}
+
+fn named(name: &str) -> Scene {
+    Scene::named(name).expect("built in")
+}
+
+/// The built-in `name` with its first object changed.
+fn changed(name: &str, change: impl FnOnce(&mut Object)) -> Scene {
+    let mut scene = named(name);
+    change(&mut scene.objects[0]);
+    scene
+}
+
+fn said(scene: &Scene, settings: &Settings) -> Vec<String> {
+    plan::notes(scene, settings).iter().map(Note::to_string).collect()
+}
+
+/// The only note, which holds `part`.
+fn one(scene: &Scene, settings: &Settings, part: &str) {
+    let said = said(scene, settings);
+    assert!(matches!(&said[..], [note] if note.contains(part)), "`{part}` is not all that is said: {said:?}");
+}
+
+fn turned(mesh: &Mesh) -> Mesh {
+    let indices = mesh.indices.chunks_exact(3).flat_map(|t| [t[0], t[2], t[1]]).collect();
+    Mesh { indices, ..mesh.clone() }
+}
+
+#[test]
+fn nothing_is_said_of_the_built_ins() {
+    for built_in in BUILT_IN {
+        assert_eq!(said(&named(built_in.name), &usual()), [""; 0], "{}", built_in.name);
+    }
+}
+
+#[test]
+fn meshes_that_are_no_solids_are_named_where_a_rung_needs_one() {
+    let open = changed("ruby", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));
+    one(
+        &open,
+        &by("bvh-4"),
+        "object `ruby`: rung `bvh-4` takes a mesh for the surface of a solid, but 3 edges are open;",
+    );
+    let inverted = changed("ruby", |object| object.mesh = turned(&object.mesh));
+    one(&inverted, &by("bvh-4"), "but 1 part is inside out;");
+    let doubled = changed("ruby", |object| {
+        let again = object.mesh.clone();
+        object.mesh.append(&again);
+    });
+    one(&doubled, &by("proxy-1"), "triangles are there twice;");
+    let flat = changed("ruby", |object| object.mesh.positions.iter_mut().for_each(|position| position.y = 0.0));
+    assert!(said(&flat, &by("bvh-4"))[0].contains("all corners lie in one plane"));
+    let degenerate = changed("ruby", |object| object.mesh.indices.extend([0, 1, 1]));
+    one(&degenerate, &by("bvh-4"), "but 1 triangle has no area;");
+    // Ways through a body are sought inside of it too; a surface alone may be open.
+    let open = changed("bunny", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));
+    one(&open, &by("godunov-64"), "3 edges are open");
+    assert_eq!(said(&open, &by("accurate")), [""; 0]);
+    let inverted = changed("bunny", |object| object.mesh = turned(&object.mesh));
+    one(&inverted, &by("accurate"), "the far side is drawn");
+}
+
+#[test]
+fn many_objects_are_one_note() {
+    let mut scene = changed("ruby", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));
+    scene.objects = vec![scene.objects[0].clone(); 5];
+    one(&scene, &by("bvh-4"), "5 objects, first `ruby`: rung `bvh-4`");
+}
+
+#[test]
+fn both_sides_are_asked_for_in_vain_where_there_is_a_hole() {
+    let double = |object: &mut Object| object.material.double_sided = true;
+    assert_eq!(said(&changed("bunny", double), &by("accurate")), [""; 0]);
+    let open = changed("bunny", |object| {
+        double(object);
+        object.mesh.indices.truncate(object.mesh.indices.len() - 3);
+    });
+    one(&open, &by("accurate"), "doubleSided");
+}
+
+#[test]
+fn thin_walls_and_black_insides_are_named() {
+    let thin = changed("ruby", |object| object.material.thickness = 0.0);
+    one(&thin, &usual(), "without refraction, absorption and dispersion;");
+    let thin = changed("brilliant", |object| {
+        object.material =
+            Material { thickness: 0.0, ior: 1.5, dispersion: Dispersion::None, ..object.material.clone() };
+    });
+    one(&thin, &usual(), "without refraction; if it is solid");
+    // Millimetres in a scene of metres.
+    let black = changed("ruby", |object| object.material.attenuation_distance *= 1e-3);
+    one(&black, &usual(), "drawn black");
+    one(&changed("brilliant", |object| object.material.base_color = Vec3::ZERO), &usual(), "drawn black");
+}
+
+#[test]
+fn light_that_no_picture_can_show_is_named() {
+    let mut scene = named("bunny");
+    // Lux for watts.
+    scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(100_000.0) }];
+    one(&scene, &by("lambert"), "is shown as plain white");
+    assert_eq!(said(&scene, &Settings { exposure: 1e-5, ..by("lambert") }), [""; 0]);
+    let near = Light::Point { position: scene.bounds().centre(), intensity: Vec3::splat(1e9) };
+    one(&Scene { lights: vec![near], ..scene.clone() }, &by("lambert"), "plain white");
+    let map = EnvironmentMap { width: 2, height: 2, pixels: vec![[1000.0, 1000.0, 1000.0, 1.0]; 4] };
+    let bright = Settings { environment: Environment::Map(map), ..usual() };
+    one(&named("brilliant"), &bright, "plain white");
+}
+
+#[test]
+fn a_camera_that_sees_nothing_is_named() {
+    let mut scene = named("ruby");
+    let Camera { eye, target, .. } = scene.camera;
+    scene.camera.target = eye + (eye - target);
+    one(&scene, &usual(), "nothing is in view");
+    // Beside the picture, not behind the eye.
+    scene.camera.target = eye + (target - eye).cross(Vec3::Y) + 0.2 * (target - eye);
+    one(&scene, &usual(), "nothing is in view");
+}
+
+#[test]
+fn hard_edges_are_named_where_the_proxy_softens_them() {
+    let split = |object: &mut Object| {
+        let mesh = &object.mesh;
+        let corners: Vec<Vec3> = mesh.indices.iter().map(|&k| mesh.positions[k as usize]).collect();
+        let normals = corners.chunks_exact(3).flat_map(|t| [(t[1] - t[0]).cross(t[2] - t[0]).normalize(); 3]).collect();
+        let indices = (0..corners.len() as u32).collect();
+        object.mesh = Mesh { positions: corners, normals, indices, ..Mesh::default() };
+    };
+    one(&changed("brilliant", split), &by("proxy-1"), "averaged by angle");
+    assert_eq!(said(&changed("brilliant", split), &by("convex-1")), [""; 0]);
+}
+
+#[test]
+fn what_is_not_clear_is_never_drawn_as_glass() {
+    let mut scene = named("ruby");
+    scene.objects.extend(named("bunny").objects);
+    let mut opaque = named("ruby").objects.remove(0);
+    opaque.name = "coin".to_owned();
+    opaque.material = Material { base_color: Vec3::splat(0.5), ..Material::standard() };
+    opaque.mesh = sphere(1.0, 32);
+    scene.objects.push(opaque);
+    for rung in ["convex-2", "proxy-2", "bvh-2", "surface"] {
+        let rungs = scene.objects.iter().map(|object| Decisions::of(object, &scene, &by(rung)).rung.to_string());
+        let rungs: Vec<String> = rungs.collect();
+        assert_eq!((rungs[0].as_str(), rungs[2].as_str()), (rung, "lambert"));
+        assert!(!rungs[1].parse::<Rung>().expect("a rung").is_for_clear_stones(), "{rungs:?}");
+        let said = said(&scene, &by(rung));
+        let of = |name: &str| {
+            said.iter().any(|note| note.contains(&format!("object `{name}`: rung `{rung}` is for clear stones")))
+        };
+        assert!(of("coin") && of(&scene.objects[1].name) && !of("ruby"), "{said:?}");
+    }
+}

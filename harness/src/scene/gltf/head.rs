@@ -1,0 +1,78 @@
+//! The version of a file, read before all else: glTF 1.0 has other members, of which nothing but the version makes a message.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
+
+use super::error::{GltfError, excerpt};
+
+/// What every version has, and what tells the first one where it leaves its version out.
+#[derive(Deserialize)]
+struct Head {
+    asset: Option<Asset>,
+    meshes: Option<Items>,
+    buffers: Option<Items>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: Option<Value>,
+    #[serde(rename = "minVersion")]
+    min_version: Option<Value>,
+}
+
+/// A list since glTF 2.0, an object by name before. Its contents are passed over, so that they take no memory.
+enum Items {
+    Listed,
+    Named,
+}
+
+impl<'de> Deserialize<'de> for Items {
+    fn deserialize<D: Deserializer<'de>>(items: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Items;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list or an object")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Items, A::Error> {
+                while list.next_element::<IgnoredAny>()?.is_some() {}
+                Ok(Items::Listed)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Items, A::Error> {
+                while members.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
+                Ok(Items::Named)
+            }
+
+            fn visit_unit<E: Error>(self) -> Result<Items, E> {
+                Ok(Items::Listed)
+            }
+        }
+        items.deserialize_any(Either)
+    }
+}
+
+/// Refuses a version that is not read. JSON that is none is left to who reads all of it.
+pub(super) fn check(json: &[u8]) -> Result<(), GltfError> {
+    let Ok(head) = serde_json::from_slice::<Head>(json) else { return Ok(()) };
+    let asset = head.asset.unwrap_or(Asset { version: None, min_version: None });
+    // 1.0 files also have it as a number, or leave it out.
+    let text = |version: Value| match version {
+        Value::String(text) => text,
+        other => other.to_string(),
+    };
+    let (version, least) = (asset.version.map(text), asset.min_version.map(text));
+    let is_first = [head.meshes, head.buffers].iter().any(|items| matches!(items, Some(Items::Named)));
+    let refused = match (version, least) {
+        (Some(version), _) if !version.starts_with("2.") => Some(version),
+        (_, Some(least)) if !least.starts_with("2.") => Some(least),
+        (None, _) if is_first => Some("1.0".to_owned()),
+        _ => None,
+    };
+    refused.map_or(Ok(()), |version| Err(GltfError::Version { version: excerpt(&version) }))
+}

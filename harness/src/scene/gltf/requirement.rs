@@ -1,0 +1,53 @@
+//! The extensions that a file says it cannot be shown without: which are read, which change nothing that is drawn, and which stop it.
+
+use ::gltf::json::Root;
+use serde_json::{Map, Value};
+
+use super::KNOWN_EXTENSIONS;
+use super::error::{self, GltfError};
+
+/// Extensions of images, textures, animations and descriptions: nothing that is drawn here needs them.
+const OF_WHAT_IS_NOT_DRAWN: [&str; 9] = [
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "KHR_animation_pointer",
+    "KHR_materials_variants",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MSFT_texture_dds",
+];
+
+/// Extensions by which the numbers of a mesh are stored in fewer bytes.
+pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
+pub(super) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+/// Refuses a file that cannot be shown without what is not read.
+pub(super) fn check(root: &Root) -> Result<(), GltfError> {
+    let required = || root.extensions_required.iter().map(String::as_str);
+    if let Some(name) = required().find(|name| is_compressed_by(root, name)) {
+        return Err(GltfError::Compressed { extension: name.to_owned() });
+    }
+    // What says how numbers are stored has been looked for where they are, or is where they are read.
+    let of_storage = |name: &str| name == DRACO || name == QUANTIZATION || MESHOPT.contains(&name);
+    let stops =
+        |name: &&str| !(KNOWN_EXTENSIONS.contains(name) || OF_WHAT_IS_NOT_DRAWN.contains(name) || of_storage(name));
+    let unknown: Vec<String> = required().filter(stops).map(error::excerpt).collect();
+    if unknown.is_empty() {
+        Ok(())
+    } else {
+        Err(GltfError::RequiredExtensions { extensions: error::shortened(unknown) })
+    }
+}
+
+/// Whether a mesh of the file is stored by a compression.
+fn is_compressed_by(root: &Root, name: &str) -> bool {
+    let has = |all: Option<&Map<String, Value>>| all.is_some_and(|all| all.contains_key(name));
+    if name == DRACO {
+        let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        return primitives.any(|primitive| has(primitive.extensions.as_ref().map(|all| &all.others)));
+    }
+    MESHOPT.contains(&name) && root.buffer_views.iter().any(|view| has(view.extensions.as_ref().map(|all| &all.others)))
+}

@@ -1,0 +1,250 @@
+//! What keeps a mesh from being the surface of a solid: one diagnosis for the notes, for the choice of a rung and for the random walks.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec3;
+
+use super::{Bounds, Mesh};
+
+/// Corners that lie nearer together than this times the mesh's largest coordinate are one: four times the 2^-24 by which f32 rounds.
+/// Where a surface is a grid that closes upon itself, its seam is open by that much.
+const TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
+
+/// What is wrong with a mesh as the surface of a solid. All counts are 0 for a sound one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MeshDiagnosis {
+    /// Edges with an odd number of triangles: the rim of a hole, or a fin.
+    pub open_edges: usize,
+    /// Edges whose triangles are even in number and do not run against each other: neighbours of opposite winding.
+    pub turned_edges: usize,
+    /// Connected parts that enclose a negative volume and do not lie inside another part, as a cavity does: their triangles run clockwise
+    /// seen from outside.
+    pub inverted_parts: usize,
+    /// Triangles beyond the first with the same three corners, in either winding.
+    pub doubled: usize,
+    /// Triangles without area.
+    pub degenerate: usize,
+    /// Whether all corners lie in one plane, so that nothing is enclosed. True of a mesh without any triangle that has area.
+    pub is_flat: bool,
+}
+
+impl MeshDiagnosis {
+    /// Of a mesh in any state; indices past its positions are passed over. Takes time linear in its size.
+    #[must_use]
+    pub fn of(mesh: &Mesh) -> Self {
+        let welded = Welded::of(mesh);
+        let (open_edges, turned_edges) = welded.unbalanced_edges();
+        let proper = || welded.triangles.iter().filter(|triangle| triangle.has_area());
+        let mut seen = HashSet::new();
+        let sorted = |triangle: &Triangle| {
+            let mut corners = triangle.corners;
+            corners.sort_unstable();
+            corners
+        };
+        Self {
+            open_edges,
+            turned_edges,
+            inverted_parts: welded.inverted_parts(),
+            doubled: proper().filter(|triangle| !seen.insert(sorted(triangle))).count(),
+            degenerate: welded.triangles.len() - proper().count(),
+            is_flat: welded.is_flat(),
+        }
+    }
+
+    /// Whether the surface has no hole, no fin, no turned neighbours, and encloses something.
+    #[must_use]
+    pub fn is_closed(self) -> bool {
+        self.open_edges == 0 && self.turned_edges == 0 && !self.is_flat
+    }
+
+    /// Whether rays inside find their way: closed, facing outwards, and nothing there twice.
+    #[must_use]
+    pub fn is_solid(self) -> bool {
+        self.is_closed() && self.inverted_parts == 0 && self.doubled == 0
+    }
+
+    /// What is wrong, in clauses for a message; nothing for a sound solid.
+    #[must_use]
+    pub fn clauses(self) -> Vec<String> {
+        let counted = |count: usize, one: &str, many: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            count => Some(format!("{count} {many}")),
+        };
+        let flat = self.is_flat.then(|| "all corners lie in one plane".to_owned());
+        // A sheet is open all around, which says nothing more.
+        let open = if self.is_flat { 0 } else { self.open_edges };
+        [
+            flat,
+            counted(open, "edge is open", "edges are open"),
+            counted(
+                self.turned_edges,
+                "edge joins triangles of opposite winding",
+                "edges join triangles of opposite winding",
+            ),
+            counted(self.inverted_parts, "part is inside out", "parts are inside out"),
+            counted(self.doubled, "triangle is there twice", "triangles are there twice"),
+            counted(self.degenerate, "triangle has no area", "triangles have no area"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+}
+
+/// How many edges have more triangles on one side than on the other, in either way that [`MeshDiagnosis`] tells apart; none in a closed mesh.
+#[must_use]
+pub fn open_edges(mesh: &Mesh) -> usize {
+    let (open, turned) = Welded::of(mesh).unbalanced_edges();
+    open + turned
+}
+
+/// A triangle by the numbers of its places.
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    corners: [usize; 3],
+    /// Twice its area, as a vector; zero where rounding alone gives it a direction.
+    across: DVec3,
+}
+
+impl Triangle {
+    fn has_area(&self) -> bool {
+        self.across != DVec3::ZERO
+    }
+
+    /// From corner to corner, without those of no length.
+    fn edges(&self) -> impl Iterator<Item = (usize, usize)> {
+        let [a, b, c] = self.corners;
+        [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to)
+    }
+}
+
+/// A mesh by places, each of which stands for all vertices there.
+struct Welded {
+    places: Vec<DVec3>,
+    triangles: Vec<Triangle>,
+    tolerance: f64,
+}
+
+impl Welded {
+    fn of(mesh: &Mesh) -> Self {
+        let positions = || mesh.positions.iter().map(|position| position.as_dvec3());
+        let tolerance = TOLERANCE * positions().fold(0.0, |most: f64, position| most.max(position.abs().max_element()));
+        let (places, numbers) = weld(positions(), tolerance);
+        let triangle = |triangle: &[u32]| {
+            let corner = |k: usize| numbers.get(triangle[k] as usize).copied();
+            let corners = [corner(0)?, corner(1)?, corner(2)?];
+            let [a, b, c] = corners.map(|corner| places[corner]);
+            let (u, v) = (b - a, c - a);
+            let across = u.cross(v);
+            // Differences of f32 are exact to 1e-16 in f64, so a sine below 1e-12 has no direction left.
+            let has_area = across.length() > 1e-12 * u.length() * v.length();
+            Some(Triangle { corners, across: if has_area { across } else { DVec3::ZERO } })
+        };
+        let triangles = mesh.indices.chunks_exact(3).filter_map(triangle).collect();
+        Self { places, triangles, tolerance }
+    }
+
+    /// Edges with an odd number of triangles, and others with more of them on one side than on the other.
+    fn unbalanced_edges(&self) -> (usize, usize) {
+        // How many triangles, and by how many more run from the lower number to the higher.
+        let mut edges: HashMap<(usize, usize), (u32, i32)> = HashMap::new();
+        for (from, to) in self.triangles.iter().flat_map(Triangle::edges) {
+            let (count, balance) = edges.entry((from.min(to), from.max(to))).or_default();
+            *count += 1;
+            *balance += if from < to { 1 } else { -1 };
+        }
+        let unbalanced = edges.values().filter(|(_, balance)| *balance != 0);
+        let odd = unbalanced.clone().filter(|(count, _)| count % 2 == 1).count();
+        (odd, unbalanced.count() - odd)
+    }
+
+    /// Parts of negative volume that are no cavities. A part's volume is about its own middle, so that a hole far from the origin weighs little.
+    fn inverted_parts(&self) -> usize {
+        let parts = self.parts();
+        let volume = |part: &[usize]| -> f64 {
+            let middle = self.places[self.triangles[part[0]].corners[0]];
+            let of = |&triangle: &usize| {
+                let Triangle { corners, across } = self.triangles[triangle];
+                across.dot(self.places[corners[0]] - middle) / 6.0
+            };
+            part.iter().map(of).sum()
+        };
+        let bounds = |part: &[usize]| {
+            let corners = part.iter().flat_map(|&triangle| self.triangles[triangle].corners);
+            Bounds::of(corners.map(|corner| self.places[corner].as_vec3()))
+        };
+        let measured: Vec<(f64, Bounds)> = parts.iter().map(|part| (volume(part), bounds(part))).collect();
+        // What an open or flat part encloses is rounding or less.
+        let least = |bounds: &Bounds| self.tolerance * f64::from(bounds.radius()).powi(2);
+        let (inverted, others): (Vec<_>, Vec<_>) =
+            measured.into_iter().partition(|(volume, bounds)| *volume < -least(bounds));
+        let is_cavity = |bounds: &Bounds| {
+            others.iter().any(|(_, outer)| outer.min.cmple(bounds.min).all() && outer.max.cmpge(bounds.max).all())
+        };
+        inverted.iter().filter(|(_, bounds)| !is_cavity(bounds)).count()
+    }
+
+    /// The triangles, by number, of each part that hangs together by its places.
+    fn parts(&self) -> Vec<Vec<usize>> {
+        let mut parents: Vec<usize> = (0..self.places.len()).collect();
+        fn root(parents: &mut [usize], mut place: usize) -> usize {
+            while parents[place] != place {
+                parents[place] = parents[parents[place]];
+                place = parents[place];
+            }
+            place
+        }
+        for (from, to) in self.triangles.iter().flat_map(Triangle::edges) {
+            let (from, to) = (root(&mut parents, from), root(&mut parents, to));
+            parents[from.max(to)] = from.min(to);
+        }
+        let mut number_of_root: HashMap<usize, usize> = HashMap::new();
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        for (number, triangle) in self.triangles.iter().enumerate() {
+            let root = root(&mut parents, triangle.corners[0]);
+            let part = *number_of_root.entry(root).or_insert_with(|| {
+                parts.push(Vec::new());
+                parts.len() - 1
+            });
+            parts[part].push(number);
+        }
+        parts
+    }
+
+    fn is_flat(&self) -> bool {
+        let largest =
+            self.triangles.iter().max_by(|a, b| a.across.length_squared().total_cmp(&b.across.length_squared()));
+        let Some(largest) = largest.filter(|triangle| triangle.has_area()) else { return true };
+        let (normal, origin) = (largest.across.normalize(), self.places[largest.corners[0]]);
+        let height = |corner: usize| normal.dot(self.places[corner] - origin).abs();
+        // The largest triangle's corners carry their roundings on to the rest, eightfold at most: where it is an eighth as wide as the mesh.
+        self.triangles.iter().flat_map(|triangle| triangle.corners).all(|corner| height(corner) <= 8.0 * self.tolerance)
+    }
+}
+
+/// The places of positions, and for each position the number of its place.
+fn weld(positions: impl Iterator<Item = DVec3>, tolerance: f64) -> (Vec<DVec3>, Vec<usize>) {
+    // A cell is twice as wide as the tolerance, so that what is near lies in one of the eight cells about a corner of it.
+    let cell =
+        |position: DVec3| (position / (2.0 * tolerance).max(f64::MIN_POSITIVE)).floor().to_array().map(|x| x as i64);
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut kept: Vec<DVec3> = Vec::new();
+    let number = |position: DVec3| {
+        let (least, greatest) = (cell(position - tolerance), cell(position + tolerance));
+        let near = (0..8).find_map(|corner| {
+            let place = [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { least[axis] } else { greatest[axis] });
+            cells.get(&place)?.iter().copied().find(|&number| kept[number].distance(position) <= tolerance)
+        });
+        near.unwrap_or_else(|| {
+            kept.push(position);
+            cells.entry(cell(position)).or_default().push(kept.len() - 1);
+            kept.len() - 1
+        })
+    };
+    let numbers = positions.map(number).collect();
+    (kept, numbers)
+}
+
+#[cfg(test)]
+mod tests;

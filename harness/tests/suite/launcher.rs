@@ -1,0 +1,116 @@
+//! The launcher `./cook`, with a toolchain and a binary that stand in: what is tested is what it does with them.
+
+use crate::program::folder;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A clone with the real launcher, a built binary and a cargo of these lines.
+struct Clone {
+    folder: tempfile::TempDir,
+}
+
+fn script(path: &Path, lines: &str) {
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+    std::fs::write(path, format!("#!/usr/bin/env bash\n{lines}\n")).expect("written");
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("set");
+}
+
+impl Clone {
+    fn new(cargo: &str, binary: &str) -> Self {
+        let clone = Self { folder: folder() };
+        for part in ["crates", "harness", "wgsl", "temporary"] {
+            std::fs::create_dir(clone.at(part)).expect("made");
+        }
+        for file in ["Cargo.toml", "Cargo.lock", "harness/lib.rs"] {
+            std::fs::write(clone.at(file), "").expect("written");
+        }
+        std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../cook"), clone.at("cook")).expect("copied");
+        script(&clone.at("tools/cargo"), cargo);
+        script(&clone.at("target/debug/cook"), binary);
+        clone
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The launcher, in an environment without HOME and without a folder for the run time.
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(self.at("cook"));
+        let tools = format!("{}:/usr/local/bin:/usr/bin:/bin", self.at("tools").display());
+        command.args(arguments).current_dir(self.folder.path()).env("PATH", tools).env("TMPDIR", self.at("temporary"));
+        for name in ["HOME", "XDG_RUNTIME_DIR", "XDG_DATA_HOME", "CARGO_TARGET_DIR", "LAPIDARY_CHROMIUM"] {
+            command.env_remove(name);
+        }
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> (Option<i32>, String, String) {
+        self.answer(&mut self.command(arguments))
+    }
+
+    fn answer(&self, command: &mut Command) -> (Option<i32>, String, String) {
+        let Output { status, stdout, stderr } = command.output().expect("it starts");
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (status.code(), text(&stdout), text(&stderr))
+    }
+}
+
+#[test]
+fn the_program_takes_the_launchers_place() {
+    let clone = Clone::new("exit 0", "echo $$");
+    let child = clone.command(&["list"]).stdout(Stdio::piped()).spawn().expect("it starts");
+    let id = child.id();
+    let output = child.wait_with_output().expect("it ends");
+    // A signal to the launcher is one to the program, and none is left running.
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), id.to_string());
+}
+
+#[test]
+fn arguments_and_the_exit_code_are_the_programs_and_nothing_is_left_behind() {
+    let clone = Clone::new("exit 0", "printf '%s|' \"$@\" \"$XDG_RUNTIME_DIR\"; exit 7");
+    let (code, stdout, stderr) = clone.run(&["render", "two words", "*"]);
+    let temporary = clone.at("temporary");
+    assert_eq!((code, stderr.as_str()), (Some(7), ""), "HOME is not needed");
+    assert_eq!(stdout, format!("render|two words|*|{}|", temporary.display()));
+    assert_eq!(std::fs::read_dir(temporary).expect("a folder").count(), 0);
+}
+
+#[test]
+fn what_is_built_runs_where_nothing_can_be_built() {
+    let cargo =
+        "echo 'error: failed to open: target/debug/.cargo-lock: Read-only file system (os error 30)' >&2; exit 101";
+    let clone = Clone::new(cargo, "echo ran");
+    let (code, stdout, stderr) = clone.run(&["list"]);
+    assert_eq!((code, stdout.as_str()), (Some(0), "ran\n"), "{stderr}");
+    assert!(
+        stderr.starts_with("cook: cargo cannot build here (error: failed to open") && stderr.contains("up to date"),
+        "{stderr}"
+    );
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    // Not what was built of other sources.
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(10);
+    std::fs::File::open(clone.at("harness/lib.rs")).and_then(|file| file.set_modified(later)).expect("set");
+    let (code, stdout, stderr) = clone.run(&["list"]);
+    assert_eq!((code, stdout.as_str()), (Some(2), ""), "{stderr}");
+    assert!(stderr.contains("Read-only file system"), "{stderr}");
+}
+
+#[test]
+fn what_is_built_runs_without_a_toolchain() {
+    let clone = Clone::new("exit 0", "echo ran");
+    std::fs::remove_file(clone.at("tools/cargo")).expect("removed");
+    // Nor one in the user's own folder.
+    let (code, stdout, stderr) = clone.answer(clone.command(&["list"]).env("HOME", clone.at("temporary")));
+    assert_eq!((code, stdout.as_str(), stderr.as_str()), (Some(0), "ran\n", ""));
+}
+
+#[test]
+fn a_first_build_is_announced_and_its_failure_is_bad_input() {
+    let clone = Clone::new("echo 'error: no' >&2; exit 101", "");
+    std::fs::remove_file(clone.at("target/debug/cook")).expect("removed");
+    let (code, stdout, stderr) = clone.run(&["list"]);
+    assert_eq!((code, stdout.as_str()), (Some(2), ""), "{stderr}");
+    assert!(stderr.contains("cook: building") && stderr.contains("error: no"), "{stderr}");
+}
