@@ -204,13 +204,18 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
 }
 
 //+shadow {
-// The share of a light that nothing keeps away. Past the terminator the surface turns away from the light by itself, and what creeps there
-// comes from beside: no shadow is thrown on it.
-fn cdrf_shadow(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 {
+// The share of a light that nothing keeps away. A surface that turns away from the light is in the dark by itself.
+fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 {
     if (cosine <= 0.0f) {
         return 1.0f;
     }
     return shadow_of_light(light, position, normal);
+}
+
+// A reflectance without the light that is kept from the point itself, the clamped cosine; what came in beside it stays. So nothing changes at the
+// terminator, where a mask over the whole reflectance would have an edge.
+fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
+    return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
 }
 //+shadow }
 
@@ -224,11 +229,11 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
             curvature = curvature_towards(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction);
         }
         let cosine = dot(normal, arrival.direction);
-        var part = arrival.irradiance * cdrf_reflectance(cosine, curvature);
+        var reflectance = cdrf_reflectance(cosine, curvature);
         if (EFFECT_SHADOW) {  //+shadow
-            part *= cdrf_shadow(index, cosine, input.position, normal);  //+shadow
+            reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));  //+shadow
         }  //+shadow
-        received += part;
+        received += arrival.irradiance * reflectance;
     }
     //+environment {
     if (EFFECT_ENVIRONMENT) {
@@ -261,7 +266,7 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
         let arrival = light_arrival(lights[index], position);
         var highlight = reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
         if (EFFECT_SHADOW) {  //+shadow
-            highlight *= cdrf_shadow(index, dot(normal, arrival.direction), position, normal);  //+shadow
+            highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);  //+shadow
         }  //+shadow
         sum += highlight;
     }

@@ -68,7 +68,8 @@ impl Asked {
         };
         let shadows = self.is_with(SHADOW);
         let (width, height) = self.size;
-        let settings = Settings { rung: self.rung(), scattering, shadows, environment, ..Settings::of_size(width, height) };
+        let settings =
+            Settings { rung: self.rung(), scattering, shadows, environment, ..Settings::of_size(width, height) };
         self.refuse_what_is_ignored(scene, &settings)?;
         Ok(Settings { without: Effects::of(&self.without), ..settings })
     }

@@ -2,8 +2,8 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use super::translucent::{self, Light};
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
+use super::translucent::{self, Light};
 use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};

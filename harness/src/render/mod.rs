@@ -290,7 +290,9 @@ fn scene_pass<'gpu>(
             Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
             }
-            Rung::Diffuse(reflectance) => translucent::pass(gpu, (lighting, shadows.as_ref()), part, reflectance, source)?,
+            Rung::Diffuse(reflectance) => {
+                translucent::pass(gpu, (lighting, shadows.as_ref()), part, reflectance, source)?
+            }
             Rung::OpticalPath(paths) => optical_path::pass(gpu, lighting, part, paths, source)?,
             _ if settings.deferred => gem::pass(gpu, lighting, part, source, ("gem_deferred_fragment", deferred))?,
             _ => gem::pass(gpu, lighting, part, source, ("gem_fragment", forward))?,

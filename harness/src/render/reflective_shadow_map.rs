@@ -1,9 +1,9 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
+use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
-use super::RenderError;
 use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
@@ -144,9 +144,8 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
 pub(super) fn view_buffer(gpu: &Gpu, views: &[LightView]) -> Result<wgpu::Buffer, RenderError> {
     let entry = |from: &LightView| [bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat();
     let views: Vec<u8> = views.iter().flat_map(entry).collect();
-    Ok(gpu.guarded("uploading views", |device| {
-        buffer(device, "views of lights", &views, wgpu::BufferUsages::STORAGE)
-    })?)
+    Ok(gpu
+        .guarded("uploading views", |device| buffer(device, "views of lights", &views, wgpu::BufferUsages::STORAGE))?)
 }
 
 /// `ReflectiveShadowMapView` as WGSL lays it out in a uniform.

@@ -52,10 +52,7 @@ pub(super) fn pass<'gpu>(
 }
 
 /// What the pipeline reads of group 0, beside the view.
-pub(super) fn shared(
-    (lighting, shadows): Light<'_>,
-    pipeline: &Pipeline,
-) -> Result<Vec<(u32, Shared)>, RenderError> {
+pub(super) fn shared((lighting, shadows): Light<'_>, pipeline: &Pipeline) -> Result<Vec<(u32, Shared)>, RenderError> {
     let mut shared = lighting.shared(pipeline)?;
     shared.extend(shadows.into_iter().flat_map(|shadows| shadows.shared(pipeline)));
     Ok(shared)
@@ -124,7 +121,10 @@ fn upload<'gpu>(
         let storage = |(binding, what, contents): (u32, &str, &[u8])| {
             (binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
-        read().map(|part| cast(part.0).unwrap_or_else(|| storage(part))).chain([(0, uniform(device, "material", &uniform_of(material)))]).collect()
+        read()
+            .map(|part| cast(part.0).unwrap_or_else(|| storage(part)))
+            .chain([(0, uniform(device, "material", &uniform_of(material)))])
+            .collect()
     })?;
     let mut textures = Vec::new();
     if let Reflectance::Table(side, format) = reflectance {

@@ -213,7 +213,12 @@ fn cases() -> Vec<Case> {
             one("wax"),
             of_rung("lambert-shadowed"),
             [
-                vec!["view of a light", "views of lights", "reflective shadow maps for shadows", "depth of maps for shadows"],
+                vec![
+                    "view of a light",
+                    "views of lights",
+                    "reflective shadow maps for shadows",
+                    "depth of maps for shadows",
+                ],
                 vec!["reflective_shadow_map"],
                 vec!["reflective_shadow_map"],
             ],

@@ -28,7 +28,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     report.mark_dominated();
     let mut plots = Vec::new();
-    if arguments.out.is_some() && report.rungs.iter().any(|rung: &RungReport| rung.ms().is_some()) {
+    if arguments.out.is_some() && report.rungs.iter().any(|rung: &RungReport| rung.grey("ball").is_some()) {
         plots.push(("optical_path_error.svg".to_owned(), plot::error(&report)?));
         if plot::has_growth(&report) {
             plots.push(("optical_path_growth.svg".to_owned(), plot::growth(&report)?));

@@ -97,7 +97,11 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
     let storage = |contents: &[u8]| buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
-    let lit = Lit { lights: lighting.lights().expect("uploaded").clone(), views: view_buffer(gpu, &views).expect("uploaded"), maps };
+    let lit = Lit {
+        lights: lighting.lights().expect("uploaded").clone(),
+        views: view_buffer(gpu, &views).expect("uploaded"),
+        maps,
+    };
     // Every third voxel is air, and densities differ from one to the next.
     let matter: Vec<bool> = (0..grid.count()).map(|index| index * 7 % 3 != 0).collect();
     let words = grid.words_per_row();
