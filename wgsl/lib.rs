@@ -109,6 +109,7 @@ pub const PARTS: &[Part] = parts![
     "mesh_normals",
     "optical_path_grid",
     "reflection",
+    "shadow",
     "surroundings",
     "trace_nearest"
 ];

@@ -2,7 +2,7 @@
 
 pub mod beside_walks;
 mod comparison;
-mod frames;
+pub(crate) mod frames;
 mod shots;
 pub mod strip;
 mod walked;

@@ -1,8 +1,8 @@
 // cdrf_shading: skin, wax or jade by curvature-dependent reflectance, in one draw call, under lights and an environment.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
-// requires: cdrf, curvature, environment, fresnel, microfacet
-// parts: mesh, mesh_normals, surroundings, lights, harmonics, reflection
+// requires: cdrf, curvature, environment, fresnel, microfacet, reflective_shadow_map
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
 // applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
@@ -17,6 +17,9 @@ override CDRF_FORM: u32 = 4u;  //+cdrf
 override CURVATURE_FORM: u32 = 0u;
 // All that arrives was drawn into the mesh's own texture and blurred there, instead: the recipes texture_irradiance and texture_diffusion.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;  //+texture_diffusion
+// Bodies keep a light from one another and from themselves: the recipe reflective_shadow_map draws what each light sees before. Called for by the rung
+// lambert-shadowed, or by the user.
+override EFFECT_SHADOW: bool = false;  //+shadow
 // Light from all around, beside the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;  //+environment
 // Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
@@ -201,6 +204,22 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
+//+shadow {
+// The share of a light that nothing keeps away. A surface that turns away from the light is in the dark by itself.
+fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 {
+    if (cosine <= 0.0f) {
+        return 1.0f;
+    }
+    return shadow_of_light(light, position, normal);
+}
+
+// A reflectance without the light that is kept from the point itself, the clamped cosine; what came in beside it stays. So nothing changes at the
+// terminator, where a mask over the whole reflectance would have an edge.
+fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
+    return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
+}
+//+shadow }
+
 // Irradiance, each light's part spread by its reflectance.
 fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3f {
     var received = vec3f(0.0f);
@@ -210,7 +229,12 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
         if (CURVATURE_FORM == CURVATURE_FORM_TOWARDS) {
             curvature = curvature_towards(surface.position_x, surface.position_y, surface.normal_x, surface.normal_y, arrival.direction);
         }
-        received += arrival.irradiance * cdrf_reflectance(dot(normal, arrival.direction), curvature);
+        let cosine = dot(normal, arrival.direction);
+        var reflectance = cdrf_reflectance(cosine, curvature);
+        if (EFFECT_SHADOW) {  //+shadow
+            reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));  //+shadow
+        }  //+shadow
+        received += arrival.irradiance * reflectance;
     }
     //+environment {
     if (EFFECT_ENVIRONMENT) {
@@ -241,7 +265,11 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
-        sum += reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
+        var highlight = reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
+        if (EFFECT_SHADOW) {  //+shadow
+            highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);  //+shadow
+        }  //+shadow
+        sum += highlight;
     }
     return sum;
 }

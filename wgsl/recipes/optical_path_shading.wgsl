@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.2.
 // requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
-// parts: mesh, mesh_normals, surroundings, lights, light_views, harmonics, reflection
+// parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 //
 // Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes voxelization, reflective_shadow_map,
 // optical_path_seed and a solver have filled the costs.
@@ -59,34 +59,6 @@ fn optical_path_vertex(@builtin(vertex_index) vertex: u32) -> OpticalPathVertex 
     let index = indices[vertex];
     let position = mesh_position(index);
     return OpticalPathVertex(view.clip_from_world * vec4f(position, 1.0f), position, mesh_normal(index));
-}
-
-// The share of a texel's neighbours, weighted by nearness, that nothing keeps from the light; -1 beside the map.
-fn optical_path_lit(layer: u32, position: vec3f, normal: vec3f) -> f32 {
-    let size = textureDimensions(maps).x;
-    let clip = reflective_shadow_map_clip(views[layer].view, position);
-    let place = reflective_shadow_map_texel(clip, f32(size));
-    if (any(place < vec2f(0.0f)) || any(place > vec2f(f32(size)))) {
-        return -1.0f;
-    }
-    // As high as a texel is wide: w is the depth of a lamp's map, whose texels grow with it, and 1 for a sun's.
-    let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);
-    let corner = place - 0.5f;
-    let weight = fract(corner);
-    let last = i32(size) - 1i;
-    let lower = clamp(vec2i(floor(corner)), vec2i(0i), vec2i(last));
-    let upper = min(vec2i(floor(corner)) + 1i, vec2i(last));
-    let lower_left = optical_path_texel_lit(vec2i(lower.x, lower.y), layer, position, normal, bias);
-    let lower_right = optical_path_texel_lit(vec2i(upper.x, lower.y), layer, position, normal, bias);
-    let upper_left = optical_path_texel_lit(vec2i(lower.x, upper.y), layer, position, normal, bias);
-    let upper_right = optical_path_texel_lit(vec2i(upper.x, upper.y), layer, position, normal, bias);
-    return mix(mix(lower_left, lower_right, weight.x), mix(upper_left, upper_right, weight.x), weight.y);
-}
-
-fn optical_path_texel_lit(texel: vec2i, layer: u32, position: vec3f, normal: vec3f, bias: f32) -> f32 {
-    let seen = textureLoad(maps, texel, layer, 0);
-    let height = reflective_shadow_map_height(seen.xyz, position, normal);
-    return select(0.0f, 1.0f, seen.w < 0.0f || height <= bias);
 }
 
 //+optical_path {
@@ -168,7 +140,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
         let arrival = light_arrival(lights[light], input.position);
         let cosine = reflective_shadow_map_cosine(normal, arrival.direction);
         if (cosine > 0.0f && light != counted) {
-            let lit = optical_path_lit(layer, input.position, normal);
+            let lit = shadow_in_view(layer, input.position, normal);
             if (lit < 0.0f) {
                 continue;
             }

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
-// requires: cdrf, environment, texture_diffusion
-// parts: mesh, mesh_normals, lights, harmonics
+// requires: cdrf, environment, reflective_shadow_map, texture_diffusion
+// parts: mesh, mesh_normals, lights, light_views, shadow, harmonics
 //
 // Draw 3 vertices per triangle, without culling or depth test, into two targets that were cleared to 0: rgba16float and rg32float.
 
+// Bodies keep a light from one another and from themselves. Called for by the user.
+override EFFECT_SHADOW: bool = false;  //+shadow
 // Light from all around, beside the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;  //+environment
 
@@ -46,7 +48,12 @@ fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradia
     var received = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], input.position);
-        received += arrival.irradiance * cdrf_lambert(dot(normal, arrival.direction));
+        let cosine = dot(normal, arrival.direction);
+        var part = arrival.irradiance * cdrf_lambert(cosine);
+        if (EFFECT_SHADOW) {  //+shadow
+            part *= shadow_of_light(index, input.position, normal);  //+shadow
+        }  //+shadow
+        received += part;
     }
     //+environment {
     if (EFFECT_ENVIRONMENT) {

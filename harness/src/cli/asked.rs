@@ -20,9 +20,10 @@ pub(super) struct Asked {
         help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
     rung: Option<Rung>,
-    /// How what scatters light is drawn, whatever its thickness against the mean free path: cdrf or optical_path.
-    #[arg(long = "with", value_name = "EFFECT", value_parser = ["cdrf", "optical_path"])]
-    scattering: Option<String>,
+    /// What is drawn though no material calls for it: shadow, which lights then cast on all that is drawn by its surface alone; and how
+    /// what scatters light is drawn, whatever its thickness against the mean free path: cdrf or optical_path.
+    #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, SHADOW])]
+    with: Vec<String>,
     /// An effect that is left out though the scene calls for it, by the name that `cook plan` gives it.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     without: Vec<Effect>,
@@ -30,6 +31,10 @@ pub(super) struct Asked {
     #[arg(long, value_name = "FILE")]
     environment: Option<PathBuf>,
 }
+
+const CDRF: &str = "cdrf";
+const OPTICAL_PATH: &str = "optical_path";
+const SHADOW: &str = "shadow";
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
@@ -41,6 +46,10 @@ impl Asked {
     /// The rung that was asked for, else each material's own.
     pub(super) fn rung(&self) -> Rung {
         self.rung.unwrap_or(Rung::ByMaterial)
+    }
+
+    fn is_with(&self, name: &str) -> bool {
+        self.with.iter().any(|with| with == name)
     }
 
     /// The settings of what is asked, the rest as usual, and what should be known of the environment.
@@ -56,13 +65,18 @@ impl Asked {
                 Environment::Map(map)
             }
         };
-        let scattering = match self.scattering.as_deref() {
-            Some("cdrf") => Some(Scattering::Cdrf),
-            Some(_) => Some(Scattering::OpticalPath),
-            None => None,
+        let scattering = match [CDRF, OPTICAL_PATH].map(|name| self.is_with(name)) {
+            [true, true] => {
+                return Err(Failure(format!("--with {CDRF} and {OPTICAL_PATH}: a body is drawn by one of them")));
+            }
+            [true, false] => Some(Scattering::Cdrf),
+            [false, true] => Some(Scattering::OpticalPath),
+            [false, false] => None,
         };
+        let shadows = self.is_with(SHADOW);
         let (width, height) = self.size;
-        let settings = Settings { rung: self.rung(), scattering, environment, ..Settings::of_size(width, height) };
+        let settings =
+            Settings { rung: self.rung(), scattering, shadows, environment, ..Settings::of_size(width, height) };
         self.refuse_what_is_ignored(scene, &settings)?;
         Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
     }
@@ -79,6 +93,9 @@ impl Asked {
         }
         // The reference has no recipes, but can do without the environment's diffuse light.
         if settings.rung == Rung::Reference {
+            if settings.shadows {
+                return Err(Failure(format!("rung `reference` casts shadows anyway; leave --with {SHADOW} out")));
+            }
             let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
             // What a scene calls for is what its materials do; and deciding measures bodies.
             let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };
@@ -88,8 +105,23 @@ impl Asked {
                 Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
             });
         }
+        // Deciding measures bodies.
+        if settings.shadows {
+            let all: Vec<Decisions> =
+                scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
+            if !all.iter().any(|decisions| decisions.has(Effect::Shadow)) {
+                let decisions = all.iter().flat_map(|decisions| &decisions.effects);
+                let shadow = decisions.into_iter().find(|decision| decision.effect == Effect::Shadow);
+                let reason = shadow.map_or("it has no object", |decision| &decision.reason);
+                return Err(Failure(format!(
+                    "scene `{}` by rung `{}`: --with {SHADOW} has no meaning: {reason}; leave it out",
+                    scene.name, settings.rung
+                )));
+            }
+        }
         let scatters = scene.objects.iter().any(|object| object.material.medium.is_some());
-        if let Some(name) = self.scattering.as_ref().filter(|_| !scatters || settings.rung != Rung::ByMaterial) {
+        let technique = self.with.iter().find(|name| *name != SHADOW);
+        if let Some(name) = technique.filter(|_| !scatters || settings.rung != Rung::ByMaterial) {
             let reason = if scatters { "a rung is asked for" } else { "nothing there has scattering and absorption" };
             return Err(Failure(format!(
                 "scene `{}`: --with {name} has no meaning, since {reason}; leave one out",

@@ -155,8 +155,8 @@ fn plots() -> Vec<(String, Picture)> {
             "random_walk/sphere_profile.svg",
             sphere,
             "Spheres and the best function",
-            "What leaves a sphere by the angle from the light, as random walks give it with their standard errors, and the function that \
-                comes nearest.",
+            "The scattered light that leaves a sphere by the angle from the light, as random walks give it with their standard errors, and the \
+                function that comes nearest.",
         ),
     ]
 }

@@ -7,7 +7,7 @@ use lapidary_harness::plan::{self, Decisions};
 use lapidary_harness::random_walk::mesh::{Boundary, Origin};
 use lapidary_harness::reference::Lost;
 use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Curvature, Geometry, Note, Reflectance, Rung, Settings, Spectrum, WalkedPicture};
+use lapidary_harness::render::{self, Curvature, Geometry, Note, Rung, Settings, Spectrum, WalkedPicture};
 use lapidary_harness::scene::Scene;
 use std::path::PathBuf;
 
@@ -119,7 +119,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
         (
             "--curvature",
             arguments.curvature != Curvature::Mean,
-            |rung, _| matches!(rung, Rung::Diffuse(of) if of != Reflectance::Lambert),
+            |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
         ),
         ("--rest dropped", arguments.rest == "dropped", inside),
         ("--distance-limit", arguments.distance_limit.is_some(), inside),

@@ -5,12 +5,14 @@ pub mod error;
 mod frames;
 mod page;
 pub mod plot;
+mod scenes;
 mod shader;
 mod table;
 pub mod walks;
 
 pub use error::{Distance, TableReport};
 pub use frames::{CurvatureSource, FrameReport, Part};
+pub use scenes::{SCENES, SceneReport};
 pub use walks::Residuals;
 
 use super::{CostError, Row, mark, mark_rows};
@@ -93,6 +95,8 @@ pub struct CdrfReport {
     pub rungs: Vec<RungReport>,
     /// Lookup tables of several sizes and formats.
     pub tables: Vec<TableReport>,
+    /// Whole pictures beside random walks.
+    pub scenes: Vec<SceneReport>,
     /// How far the spherical form is from the convolution on the circle.
     pub spherical_from_circular: Distance,
 }
@@ -138,6 +142,9 @@ pub fn run(
         rounds: options.rounds,
         vertices: scenes.vertices(),
         spheres: spheres.profiles.len(),
+        scenes: scenes::measure(gpu, &options.rungs, options.rounds, &mut |done, total| {
+            progress("beside walks", done, total);
+        })?,
         rungs,
         tables,
         spherical_from_circular: convolution.distance(lapidary_cdrf::spherical),

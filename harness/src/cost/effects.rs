@@ -173,6 +173,13 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             stands_on: &[(Effect::EnvironmentMap, Effect::Reflection)],
         },
         Case {
+            name: "wax_bunny",
+            scene: one("wax_bunny")?,
+            settings: settings("lambert-shadowed"),
+            effects: &[Effect::Shadow, Effect::Environment, Effect::Microfacet],
+            stands_on: &[],
+        },
+        Case {
             name: "wax_ring",
             scene: one("wax_ring")?,
             settings: settings("blur"),

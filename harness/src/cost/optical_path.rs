@@ -1,5 +1,5 @@
 //! The ladder of light's ways through stone: solver, stencil and size of the grid, each rung's error against a closed form, the finest grid
-//! and random walks, and its time stage by stage.
+//! and random walks, and the time of the very pictures that these errors are of.
 
 pub mod frames;
 mod page;
@@ -9,19 +9,21 @@ pub mod views;
 mod walks;
 
 pub use frames::{PathTiming, Solved};
-pub use views::{Distance, VIEWS};
+pub use views::{COMPARED, Distance, VIEWS, WALKED};
 
 use super::{CostError, Row, mark, mark_rows};
 use crate::gpu::Gpu;
-use crate::render::Rung;
+use crate::optical_path::Method;
+use crate::render::{Paths, Rung};
 use serde::{Deserialize, Serialize};
 use walks::Walks;
 
 /// The ladder's name.
 pub const TECHNIQUE: &str = "optical_path";
 /// The rungs: no way through the body, the paper's solver, stencils on rising grids by two solvers, the Eikonal equation, random walks.
-pub const RUNGS: [&str; 21] = [
+pub const RUNGS: [&str; 22] = [
     LAMBERT,
+    LAMBERT_SHADOWED,
     "paper-64",
     "ping-pong-6-64",
     "ping-pong-18-64",
@@ -45,6 +47,10 @@ pub const RUNGS: [&str; 21] = [
 ];
 /// What knows no way through a body.
 pub const LAMBERT: &str = "lambert";
+/// The same with cast shadows: what one would use who has no ways, and so what they are measured by.
+pub const LAMBERT_SHADOWED: &str = "lambert-shadowed";
+/// The paper's own form: its solver, and nothing taken off the extinction.
+pub const UNSCALED: &str = "paper-64-unscaled";
 /// What stands for the converged costs of a body without a closed form.
 pub const FINEST: &str = "godunov-256";
 /// Random walks.
@@ -83,16 +89,47 @@ pub struct RungReport {
     pub rung: String,
     /// Its errors by view, in the order of [`VIEWS`].
     pub distances: Vec<Distance>,
-    /// The frame of the bunny of one extinction for all channels.
-    pub grey: Option<PathTiming>,
-    /// The same where red, green and blue have costs of their own.
-    pub rgb: Option<PathTiming>,
+    /// The times of the pictures whose errors those are, in the order of [`VIEWS`].
+    pub times: Vec<ViewTimes>,
     /// How far the solver of the grey bunny came; none where nothing is solved.
     pub solved: Option<Solved>,
     /// Bytes of the maps, voxels, costs and solver of the grey bunny.
     pub bytes: u64,
     /// Another rung is faster, and errs no more in any view.
     pub dominated: bool,
+}
+
+/// The times of a view's frames.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewTimes {
+    /// White and of one extinction for all channels: where it is compared with other costs.
+    pub grey: Option<PathTiming>,
+    /// In its own colours, as `cook plan` has it: where it is compared with random walks.
+    pub rgb: Option<PathTiming>,
+}
+
+/// What a row of the ladder is drawn by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Measured {
+    rung: Rung,
+    /// With the whole extinction for a cost.
+    unscaled: bool,
+}
+
+impl Measured {
+    /// Each rung; after one by the paper's solver the same unscaled, which is the paper's own form.
+    fn all(rungs: &[Rung]) -> Vec<Self> {
+        let is_papers = |rung: Rung| matches!(rung, Rung::OpticalPath(Paths { method: Method::Paper, .. }));
+        let of = |&rung: &Rung| {
+            let ways = [false, true].into_iter().filter(move |unscaled| !unscaled || is_papers(rung));
+            ways.map(move |unscaled| Self { rung, unscaled })
+        };
+        rungs.iter().flat_map(of).collect()
+    }
+
+    fn name(self) -> String {
+        format!("{}{}", self.rung, if self.unscaled { "-unscaled" } else { "" })
+    }
 }
 
 /// The ladder, measured.
@@ -118,34 +155,34 @@ pub fn run(
     options: &Options,
     progress: &mut dyn FnMut(&'static str, u64, u64),
 ) -> Result<OpticalPathReport, CostError> {
-    let mut rungs: Vec<RungReport> = options.rungs.iter().map(|rung| RungReport::unmeasured(*rung)).collect();
+    let measured = Measured::all(&options.rungs);
+    let mut rungs: Vec<RungReport> = measured.iter().map(|of| RungReport::unmeasured(of.name())).collect();
     let total = (VIEWS.len() * rungs.len()) as u64;
     let mut done = 0;
     for name in VIEWS {
         progress("comparing", done, total);
         let view = views::View::new(gpu, name)?;
         let walks = Walks::of(gpu, name)?;
-        for (report, &rung) in rungs.iter_mut().zip(&options.rungs) {
-            let mut distance = if rung == Rung::Reference { Distance::default() } else { view.distance(gpu, rung)? };
-            distance.walks = walks.as_ref().map(|walks| walks.distance(gpu, rung)).transpose()?;
+        for (report, &of) in rungs.iter_mut().zip(&measured) {
+            let mut distance = if of.rung == Rung::Reference { Distance::default() } else { view.distance(gpu, of)? };
+            distance.walks = walks.as_ref().map(|walks| walks.distance(gpu, of)).transpose()?;
             report.distances.push(distance);
             done += 1;
             progress("comparing", done, total);
         }
     }
-    frames::measure(gpu, options, &mut rungs, &mut |done, total| progress("timing", done, total))?;
+    frames::measure(gpu, options, &measured, &mut rungs, &mut |done, total| progress("timing", done, total))?;
     let mut report = OpticalPathReport { adapter: gpu.describe(), frame: options.frame, rounds: options.rounds, rungs };
     report.mark_dominated();
     Ok(report)
 }
 
 impl RungReport {
-    fn unmeasured(rung: Rung) -> Self {
+    fn unmeasured(rung: String) -> Self {
         Self {
-            rung: rung.to_string(),
+            rung,
             distances: Vec::new(),
-            grey: None,
-            rgb: None,
+            times: vec![ViewTimes::default(); VIEWS.len()],
             solved: None,
             bytes: 0,
             dominated: false,
@@ -154,7 +191,21 @@ impl RungReport {
 
     /// The time of the grey bunny's frame in milliseconds.
     pub fn ms(&self) -> Option<f64> {
-        Some(self.grey.as_ref()?.ms)
+        Some(self.grey("bunny")?.ms)
+    }
+
+    fn times(&self, view: &str) -> Option<&ViewTimes> {
+        self.times.get(VIEWS.iter().position(|name| *name == view)?)
+    }
+
+    /// The time of a view's frame of one extinction for all channels.
+    pub fn grey(&self, view: &str) -> Option<&PathTiming> {
+        self.times(view)?.grey.as_ref()
+    }
+
+    /// The time of a view's frame in its own colours.
+    pub fn rgb(&self, view: &str) -> Option<&PathTiming> {
+        self.times(view)?.rgb.as_ref()
     }
 
     /// Its errors in the view of that name.
@@ -182,19 +233,21 @@ impl OpticalPathReport {
         mark(&mut self.rungs, RungReport::beats, |rung| &mut rung.dominated);
     }
 
-    /// A row for each rung, view and measure. The time is that of the grey bunny's frame in all of them.
+    /// A row for each rung, view and measure, with the time of the frame that the error is of: of costs and luminance the grey one, of the distance
+    /// from walks the one in the view's own colours.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for rung in &self.rungs {
             for view in VIEWS {
                 for (measure, error_measure) in MEASURES.into_iter().enumerate() {
+                    let timing = if error_measure == "walks" { rung.rgb(view) } else { rung.grey(view) };
                     rows.push(Row {
                         technique: TECHNIQUE,
                         rung: rung.rung.clone(),
                         view: view.to_owned(),
                         error: rung.distance(view).of(measure),
                         error_measure,
-                        ms: rung.ms(),
+                        ms: timing.map(|timing| timing.ms),
                         dominated: false,
                         adapter: self.adapter.clone(),
                     });

@@ -52,6 +52,8 @@ pub struct Row {
     pub sigma: f64,
     /// Width times radius, in mean free paths: `sigma0`, were the paper's rule true.
     pub sigma_radius: f64,
+    /// Its standard error by the walks' statistics; none where they settle no width.
+    pub sigma_radius_error: Option<f64>,
     /// What the function is multiplied by.
     pub scale: f64,
     /// RMS of the difference over the sphere's surface, over the irradiance of a surface that faces the light.
@@ -82,12 +84,16 @@ pub struct SphereReport {
     pub seed: u64,
     /// What leaves each sphere.
     pub profiles: Vec<Profile>,
-    /// The best of each form and kind of scale beside each.
+    /// The best of each form and kind of scale beside each: of the light that was scattered.
     pub rows: Vec<Row>,
+    /// The same of all light, that which went straight through with it.
+    pub rows_with_unscattered: Vec<Row>,
     /// Infinite radii.
     pub limits: Vec<Limit>,
-    /// How the width goes with the radius.
+    /// How the width goes with the radius, of scattered light.
     pub laws: Vec<Law>,
+    /// The same of all light.
+    pub laws_with_unscattered: Vec<Law>,
     /// One width times radius for a whole range of radii.
     pub choices: Vec<Choice>,
 }
@@ -111,7 +117,7 @@ pub fn run(walks: u64, seed: u64, progress: &mut dyn FnMut(&'static str, u64, u6
 impl SphereReport {
     /// Fits what walks gave.
     pub fn of(walks: u64, seed: u64, profiles: Vec<Profile>) -> Self {
-        let mut rows = Vec::new();
+        let (mut rows, mut rows_with_unscattered) = (Vec::new(), Vec::new());
         let mut limits = Vec::new();
         let mut choices = Vec::new();
         let mut albedos: Vec<f64> = profiles.iter().map(|profile| profile.albedo).collect();
@@ -119,14 +125,16 @@ impl SphereReport {
         for &albedo in &albedos {
             for profile in profiles.iter().filter(|profile| profile.albedo == albedo) {
                 rows.extend(fits(profile));
+                rows_with_unscattered.extend(fits(&profile.with_unscattered()));
             }
             limits.push(limit(albedo));
         }
         let laws = rule::laws(&albedos, &rows);
+        let laws_with_unscattered = rule::laws(&albedos, &rows_with_unscattered);
         for &albedo in &albedos {
             choices.extend(rule::choices(albedo, &profiles, &rows, &laws));
         }
-        Self { walks, seed, profiles, rows, limits, laws, choices }
+        Self { walks, seed, profiles, rows, rows_with_unscattered, limits, laws, laws_with_unscattered, choices }
     }
 
     /// The sphere of that albedo and radius.
@@ -137,6 +145,11 @@ impl SphereReport {
     /// A form's best beside the sphere of that albedo and radius.
     pub fn row(&self, albedo: f64, radius: f64, form: Form, kind: ScaleKind) -> Option<&Row> {
         self.best(albedo, form, kind).find(|row| row.radius == radius)
+    }
+
+    /// The same of all light.
+    pub fn best_with_unscattered(&self, albedo: f64, form: Form, kind: ScaleKind) -> impl Iterator<Item = &Row> {
+        rows_of(&self.rows_with_unscattered, albedo, form, kind)
     }
 
     /// The rows of a form and a kind of scale for an albedo, by radius.
@@ -157,8 +170,20 @@ fn rows_of(rows: &[Row], albedo: f64, form: Form, kind: ScaleKind) -> impl Itera
 fn fits(profile: &Profile) -> Vec<Row> {
     let &Profile { albedo, radius, .. } = profile;
     let fit = |scale_kind: ScaleKind, form: Form| {
-        let Fit { sigma, scale, residual } = Fit::best(profile, form, scale_kind.of(albedo));
-        Row { albedo, radius, form, scale_kind, sigma, sigma_radius: sigma * radius, scale, residual }
+        let fixed = scale_kind.of(albedo);
+        let fit @ Fit { sigma, scale, residual } = Fit::best(profile, form, fixed);
+        let sigma_radius_error = fit.sigma_error(profile, form, fixed).map(|error| error * radius);
+        Row {
+            albedo,
+            radius,
+            form,
+            scale_kind,
+            sigma,
+            sigma_radius: sigma * radius,
+            sigma_radius_error,
+            scale,
+            residual,
+        }
     };
     ScaleKind::ALL.into_iter().flat_map(|kind| FORMS.map(|form| fit(kind, form))).collect()
 }
@@ -223,12 +248,25 @@ mod tests {
         assert_eq!(again.profiles.len(), 5);
         for (again, before) in again.rows.iter().zip(&report.rows) {
             assert_eq!((again.form, again.scale_kind), (before.form, before.scale_kind));
+            assert_eq!(again.sigma_radius_error.is_some(), before.sigma_radius_error.is_some());
             assert!((again.sigma / before.sigma - 1.0).abs() < 1e-12 || again.sigma == before.sigma);
         }
         // One interval too few.
         let short = json.replacen("\"exitance\":[", "\"exitance\":[],\"gone\":[", 1);
         let error = serde_json::from_str::<SphereReport>(&short).expect_err("no interval at all").to_string();
         assert!(error.contains("a value for each interval"), "{error}");
+    }
+
+    /// Of all light a small sphere wants a wider function, and a large one, through which nothing goes straight, the same.
+    #[test]
+    fn what_goes_straight_through_widens_small_spheres_alone() {
+        let report = report();
+        let widths = |rows: Vec<&Row>| rows.iter().map(|row| row.sigma_radius).collect::<Vec<f64>>();
+        let kind = ScaleKind::Free;
+        let scattered = widths(report.best(0.99, Form::Circular, kind).collect());
+        let all = widths(report.best_with_unscattered(0.99, Form::Circular, kind).collect());
+        assert_eq!((scattered.len(), all.len()), (5, 5));
+        assert!(all[0] > 1.1 * scattered[0] && (all[4] / scattered[4] - 1.0).abs() < 0.02, "{scattered:?} {all:?}");
     }
 
     /// Were sigma = sigma_0 / R true, sigma R were one number for a matter. It is not.

@@ -217,6 +217,7 @@ impl Case<'_> {
             }
             Effect::Color => self.color(),
             Effect::ExtinctionPerVoxel => self.extinction_per_voxel(),
+            Effect::Shadow => self.shadow(),
             Effect::Environment => self.environment(),
             Effect::EnvironmentMap => self.environment_map(),
             Effect::Microfacet => self.microfacet(),
@@ -313,7 +314,7 @@ impl Case<'_> {
             return off("sigma0 0");
         }
         match reflectance {
-            Reflectance::Lambert => return off("the rung is Lambert's law"),
+            Reflectance::Lambert | Reflectance::LambertShadowed => return off("the rung is Lambert's law"),
             Reflectance::Blur => return off("light is blurred in the texture instead"),
             _ => {}
         }
@@ -337,7 +338,7 @@ impl Case<'_> {
     fn texture_diffusion(&self) -> Answer {
         match self.rung {
             Rung::Diffuse(Reflectance::Blur) => on("the rung is blur"),
-            Rung::Diffuse(Reflectance::Lambert) if self.material.scatters() => off("the rung is Lambert's law"),
+            Rung::Diffuse(of) if of.is_lambert() && self.material.scatters() => off("the rung is Lambert's law"),
             Rung::Diffuse(_) if self.material.scatters() => {
                 off(format!("the rung {} spreads light by curvature", self.rung))
             }
@@ -401,6 +402,20 @@ impl Case<'_> {
             Some(Density::Veins(_)) => on("veins"),
             Some(Density::Grid(_)) => on("a grid of densities"),
         }
+    }
+
+    fn shadow(&self) -> Answer {
+        let called = match self.rung {
+            Rung::Diffuse(Reflectance::LambertShadowed) => "the rung casts shadows",
+            Rung::Diffuse(_) if self.settings.shadows => "asked for",
+            Rung::Diffuse(_) => return off("not asked for by --with shadow or the rung lambert-shadowed"),
+            Rung::OpticalPath(_) => return off("part of the rung: ways start where a light sees the body"),
+            _ => return off("clear bodies are lit by the environment"),
+        };
+        if self.lights.is_empty() {
+            return off("no light but the environment, which casts none");
+        }
+        on(called)
     }
 
     fn environment(&self) -> Answer {

@@ -31,6 +31,8 @@ pub enum Effect {
     Color,
     /// Matter is denser here than there.
     ExtinctionPerVoxel,
+    /// Bodies keep a light from one another and from themselves.
+    Shadow,
     /// Diffuse light from all around.
     Environment,
     /// The environment is an image.
@@ -45,7 +47,7 @@ pub enum Effect {
 
 impl Effect {
     /// Every effect, each once.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::ProxyGeometry,
         Self::ConvexTrace,
         Self::BvhTrace,
@@ -58,6 +60,7 @@ impl Effect {
         Self::Surface,
         Self::Color,
         Self::ExtinctionPerVoxel,
+        Self::Shadow,
         Self::Environment,
         Self::EnvironmentMap,
         Self::Microfacet,
@@ -82,6 +85,7 @@ impl Effect {
             Self::Surface => "surface",
             Self::Color => "color",
             Self::ExtinctionPerVoxel => "extinction_per_voxel",
+            Self::Shadow => "shadow",
             Self::Environment => "environment",
             Self::EnvironmentMap => "environment_map",
             Self::Microfacet => "microfacet",
@@ -106,6 +110,7 @@ impl Effect {
             Self::Surface => "EFFECT_SURFACE",
             Self::Color => "EFFECT_COLOR",
             Self::ExtinctionPerVoxel => "EFFECT_EXTINCTION_PER_VOXEL",
+            Self::Shadow => "EFFECT_SHADOW",
             Self::Environment => "EFFECT_ENVIRONMENT",
             Self::EnvironmentMap => "EFFECT_ENVIRONMENT_MAP",
             Self::Microfacet => "EFFECT_MICROFACET",

@@ -2,8 +2,8 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use super::lighting::Lighting;
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
+use super::translucent::{self, Light};
 use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
@@ -41,7 +41,7 @@ impl<'gpu> Diffusion<'gpu> {
     pub(super) fn new(
         gpu: &'gpu Gpu,
         (object, name): (&Object, &str),
-        (lighting, constants): (&Lighting<'_>, &[(&str, f64)]),
+        (light, constants): (Light<'_>, &[(&str, f64)]),
         mesh: &MeshBuffers<'_>,
     ) -> Result<Self, RenderError> {
         let pipeline = device::pipeline(
@@ -60,19 +60,14 @@ impl<'gpu> Diffusion<'gpu> {
         // Halos first, so that of two that touch a texel the chart's own triangle stays.
         let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
         let vertices = device::mesh_vertices(gpu, object, &drawn, [bytemuck::cast_slice(&drawn)])?;
-        let lights = if pipeline.binds(0, 2) { Some((2, lighting.lights()?)) } else { None };
-        let harmonics = if pipeline.binds(0, 3) { Some((3, lighting.harmonics()?)) } else { None };
+        let shared = translucent::shared(light, &pipeline)?;
         let groups = gpu.guarded("uploading a mesh", |device| {
             let contents = bytemuck::cast_slice(&drawn);
             let indices = device::buffer(device, "indices with halos", contents, wgpu::BufferUsages::STORAGE);
-            let shared: Vec<_> = lights.into_iter().chain(harmonics).collect();
             let own = [(0, mesh.positions), (1, &indices), (2, mesh.normals), (3, mesh.uvs)];
-            let bind = |group, buffers: &[(u32, &wgpu::Buffer)]| {
-                let resources: Vec<_> =
-                    buffers.iter().map(|(binding, buffer)| (*binding, buffer.as_entire_binding())).collect();
-                pipeline.bind(device, group, &resources)
-            };
-            [bind(0, &shared), bind(1, &own)]
+            let shared: Vec<_> = shared.iter().map(|(binding, shared)| (*binding, shared.resource())).collect();
+            let own = own.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
+            [pipeline.bind(device, 0, &shared), pipeline.bind(device, 1, &own)]
         })?;
         Ok(Self {
             gpu,

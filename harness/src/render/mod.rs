@@ -20,6 +20,7 @@ mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
 mod rung;
+mod shadows;
 mod stone;
 pub mod texture_diffusion;
 mod translucent;
@@ -39,9 +40,10 @@ pub use frame::{Frame, FrameTime};
 use lighting::Lighting;
 pub use note::{Note, Objects};
 pub use optical_path::{Paths, Stage};
-use pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::{Curvature, Reflectance};
 pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
+use shadows::Shadows;
 use std::borrow::Cow;
 use std::sync::Mutex;
 pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
@@ -94,6 +96,8 @@ pub struct Settings {
     pub without: Effects,
     /// How bodies that scatter light are drawn whatever their thickness, where the rung is each material's own.
     pub scattering: Option<Scattering>,
+    /// Whether lights cast shadows on what is drawn by its surface alone.
+    pub shadows: bool,
     /// What a ray still carries at the last hit comes from the environment along it; dropped otherwise.
     pub rest_from_environment: bool,
     /// In units of length: a ray ends that has travelled farther inside.
@@ -138,6 +142,7 @@ impl Settings {
             dispersion_strength: 1.0,
             without: Effects::NONE,
             scattering: None,
+            shadows: false,
             rest_from_environment: true,
             distance_limit: None,
             limit_throughput: None,
@@ -289,7 +294,9 @@ fn scene_pass<'gpu>(
     source: Option<&str>,
 ) -> Result<ScenePass<'gpu>, RenderError> {
     let mut all = ScenePass::empty(gpu);
-    for part in Part::all(scene, settings) {
+    let parts = Part::all(scene, settings);
+    let shadows = Shadows::of(gpu, &scene.lights, &parts)?;
+    for part in &parts {
         let composed = || Cow::Owned(cookbook::recipe_source(part.rung.recipe()));
         let source = &*source.map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
@@ -298,12 +305,16 @@ fn scene_pass<'gpu>(
             Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.deferred => {
                 return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
             }
-            Rung::Diffuse(reflectance) => translucent::pass(gpu, lighting, &part, reflectance, source)?,
-            Rung::OpticalPath(paths) => optical_path::pass(gpu, lighting, &part, paths, source)?,
-            _ if settings.deferred => gem::pass(gpu, lighting, &part, source, ("gem_deferred_fragment", deferred))?,
-            _ => gem::pass(gpu, lighting, &part, source, ("gem_fragment", forward))?,
+            Rung::Diffuse(reflectance) => {
+                translucent::pass(gpu, (lighting, shadows.as_ref()), part, reflectance, source)?
+            }
+            Rung::OpticalPath(paths) => optical_path::pass(gpu, lighting, part, paths, source)?,
+            _ if settings.deferred => gem::pass(gpu, lighting, part, source, ("gem_deferred_fragment", deferred))?,
+            _ => gem::pass(gpu, lighting, part, source, ("gem_fragment", forward))?,
         });
     }
+    // What is blurred in a texture is shadowed there: the maps come first.
+    all.before.splice(0..0, shadows.map(Before::Shadows));
     Ok(all)
 }
 

@@ -6,7 +6,7 @@ mod seeds;
 mod stage;
 
 use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices};
-use super::light_views::{self, LightView};
+use super::light_views;
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
@@ -94,10 +94,8 @@ pub(super) fn pass<'gpu>(
     // Where there is no light, a texel is enough to say so.
     let side = if part.lights.is_empty() { 1 } else { map_side(part, paths.cells) };
     let side = side.min(gpu.device.limits().max_texture_dimension_2d);
-    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side, part.rung)?;
-    let views = gpu.guarded("uploading views", |device| {
-        buffer(device, "views of lights", &view_bytes(&views), wgpu::BufferUsages::STORAGE)
-    })?;
+    let mut maps = ReflectiveShadowMaps::new(gpu, &views, side, &format!("of {}", part.rung))?;
+    let views = reflective_shadow_map::view_buffer(gpu, &views)?;
     let lit = Lit { views, maps: maps.view(), lights: lighting.lights()?.clone() };
     let mut pass = ScenePass::empty(gpu);
     let (mut seeds, mut bodies) = (Vec::new(), Vec::new());
@@ -295,14 +293,6 @@ fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: V
     ];
     let tail = tail.map(|row| row.to_array()).concat();
     bytemuck::cast_slice(&[&grid.words()[..], &tail].concat()).to_vec()
-}
-
-/// `array<LightView>` of the part `light_views`.
-fn view_bytes(views: &[LightView]) -> Vec<u8> {
-    let entry = |from: &LightView| {
-        [reflective_shadow_map::bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat()
-    };
-    views.iter().flat_map(entry).collect()
 }
 
 impl OpticalPaths<'_> {

@@ -3,6 +3,7 @@
 use super::device::{self, Pipeline};
 use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
+use super::shadows::Shadows;
 use super::{Note, RenderError};
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu, RenderPass};
@@ -20,6 +21,16 @@ pub(super) enum Shared {
     Texture(wgpu::TextureView),
     /// A whole buffer.
     Buffer(wgpu::Buffer),
+}
+
+impl Shared {
+    /// To be bound.
+    pub(super) fn resource(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Texture(view) => wgpu::BindingResource::TextureView(view),
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+        }
+    }
 }
 
 /// One object on the device.
@@ -59,6 +70,8 @@ pub(super) struct ScenePass<'gpu> {
 
 /// What is done before, once a frame, for the objects to look up.
 pub(super) enum Before<'gpu> {
+    /// What each light sees of the scene.
+    Shadows(Shadows<'gpu>),
     /// Irradiance, drawn into an object's texture and blurred.
     Diffusion(Diffusion<'gpu>),
     /// Paths of light through the objects.
@@ -98,10 +111,7 @@ impl<'gpu> ScenePass<'gpu> {
         let uniform = device::uniform(device, "view", &values);
         let of_variant = |variant: &Variant| {
             let mut resources = vec![(0, uniform.as_entire_binding())];
-            resources.extend(variant.shared.iter().map(|(binding, shared)| match shared {
-                Shared::Texture(view) => (*binding, wgpu::BindingResource::TextureView(view)),
-                Shared::Buffer(buffer) => (*binding, buffer.as_entire_binding()),
-            }));
+            resources.extend(variant.shared.iter().map(|(binding, shared)| (*binding, shared.resource())));
             variant.pipeline.bind(device, 0, &resources)
         };
         View(self.variants.iter().map(of_variant).collect())
@@ -110,6 +120,7 @@ impl<'gpu> ScenePass<'gpu> {
     /// Does what comes before, in passes of its own.
     pub(super) fn prepare(&self, encoder: &mut Encoder) -> Result<(), RenderError> {
         self.before.iter().try_for_each(|before| match before {
+            Before::Shadows(shadows) => shadows.encode(encoder),
             Before::Diffusion(diffusion) => diffusion.encode(encoder),
             Before::Paths(paths) => paths.encode(encoder),
         })
@@ -119,14 +130,14 @@ impl<'gpu> ScenePass<'gpu> {
     pub(super) fn paths(&self) -> Option<&OpticalPaths<'_>> {
         self.before.iter().find_map(|before| match before {
             Before::Paths(paths) => Some(paths),
-            Before::Diffusion(_) => None,
+            Before::Shadows(_) | Before::Diffusion(_) => None,
         })
     }
 
     /// What is to be said about the last submitted frame. Waits for it.
     pub(super) fn notes(&self) -> Result<Vec<Note>, RenderError> {
         let of = |before: &Before<'_>| match before {
-            Before::Diffusion(_) => Ok(Vec::new()),
+            Before::Shadows(_) | Before::Diffusion(_) => Ok(Vec::new()),
             Before::Paths(paths) => paths.notes(),
         };
         self.before.iter().map(of).collect::<Result<Vec<_>, _>>().map(|notes| notes.concat())
@@ -156,6 +167,7 @@ impl<'gpu> ScenePass<'gpu> {
     /// How many draw calls a frame takes.
     pub(super) fn draw_calls(&self) -> usize {
         let before = self.before.iter().map(|before| match before {
+            Before::Shadows(shadows) => shadows.draw_calls(),
             Before::Diffusion(diffusion) => diffusion.draw_calls(),
             Before::Paths(paths) => paths.draw_calls(),
         });

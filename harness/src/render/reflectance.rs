@@ -7,6 +7,8 @@ use crate::cdrf::table::Format;
 pub enum Reflectance {
     /// Lambert's law: no scattering.
     Lambert,
+    /// Lambert's law with cast shadows: what a renderer without scattering would show.
+    LambertShadowed,
     /// Wrap lighting.
     Wrap,
     /// A lookup table of this many texels a side.
@@ -24,8 +26,9 @@ pub enum Reflectance {
 }
 
 /// Every one, by its rung's name.
-pub(super) const REFLECTANCES: [(&str, Reflectance); 10] = [
+pub(super) const REFLECTANCES: [(&str, Reflectance); 11] = [
     ("lambert", Reflectance::Lambert),
+    ("lambert-shadowed", Reflectance::LambertShadowed),
     ("wrap", Reflectance::Wrap),
     ("table-256-rgba8", Reflectance::Table(256, Format::Rgba8)),
     ("table-257-rgba16f", Reflectance::Table(257, Format::Rgba16Float)),
@@ -43,10 +46,15 @@ impl Reflectance {
         REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
     }
 
+    /// Whether it is Lambert's law, with shadows or without: nothing scatters.
+    pub fn is_lambert(self) -> bool {
+        matches!(self, Self::Lambert | Self::LambertShadowed)
+    }
+
     /// `CDRF_FORM` of the recipe; none where it is not used.
     pub(super) fn form(self) -> Option<u32> {
         match self {
-            Self::Lambert | Self::Blur => None,
+            Self::Lambert | Self::LambertShadowed | Self::Blur => None,
             Self::Wrap => Some(0),
             Self::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
             Self::Table(_, Format::R32Float) => Some(2),

@@ -1,9 +1,9 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
+use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
-use super::{RenderError, Rung};
 use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
@@ -26,8 +26,8 @@ pub(super) struct ReflectiveShadowMaps<'gpu> {
 }
 
 impl<'gpu> ReflectiveShadowMaps<'gpu> {
-    /// Maps of `side` texels a side for `views`, of which there is at least one, for the bodies of a rung.
-    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32, rung: Rung) -> Result<Self, RenderError> {
+    /// Maps of `side` texels a side for `views`, of which there is at least one; `whose` tells them from others.
+    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32, whose: &str) -> Result<Self, RenderError> {
         let limit = gpu.device.limits().max_texture_array_layers;
         if views.len() > limit as usize {
             return Err(RenderError::TooManyViews { views: views.len(), limit });
@@ -46,7 +46,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
         )?;
         let (texture, depth, views) = gpu.guarded("allocating reflective shadow maps", |device| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(&format!("reflective shadow maps of {rung}")),
+                label: Some(&format!("reflective shadow maps {whose}")),
                 size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: views.len() as u32 },
                 mip_level_count: 1,
                 sample_count: 1,
@@ -57,7 +57,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
             });
             let depth = device::target(
                 device,
-                &format!("depth of maps of {rung}"),
+                &format!("depth of maps {whose}"),
                 [side; 2],
                 DEPTH_FORMAT,
                 wgpu::TextureUsages::empty(),
@@ -140,8 +140,16 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
     }
 }
 
+/// The part `light_views`: `array<LightView>`.
+pub(super) fn view_buffer(gpu: &Gpu, views: &[LightView]) -> Result<wgpu::Buffer, RenderError> {
+    let entry = |from: &LightView| [bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat();
+    let views: Vec<u8> = views.iter().flat_map(entry).collect();
+    Ok(gpu
+        .guarded("uploading views", |device| buffer(device, "views of lights", &views, wgpu::BufferUsages::STORAGE))?)
+}
+
 /// `ReflectiveShadowMapView` as WGSL lays it out in a uniform.
-pub(super) fn bytes(view: ReflectiveShadowMapView) -> Vec<u8> {
+fn bytes(view: ReflectiveShadowMapView) -> Vec<u8> {
     let ReflectiveShadowMapView { origin, lamp, axis, extent, near, far } = view;
     let words =
         [origin.x, origin.y, origin.z, f32::from_bits(lamp), axis.x, axis.y, axis.z, extent, near, far, 0.0, 0.0];

@@ -63,7 +63,7 @@ pub const MOST_HITS: u32 = 64;
 /// Most wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs that are offered when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 31] = [
+pub const NAMES: [&str; 32] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -81,6 +81,7 @@ pub const NAMES: [&str; 31] = [
     "triangles-1",
     "bvh-8",
     "lambert",
+    "lambert-shadowed",
     "wrap",
     "table-256-rgba8",
     "table-257-rgba16f",
@@ -98,7 +99,7 @@ pub const NAMES: [&str; 31] = [
 ];
 /// How a rung is written, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
-     convex-8+31; for what scatters light lambert, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
+     convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
      quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
      cells, such as godunov-64; for both reference";
 

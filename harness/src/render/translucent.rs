@@ -3,7 +3,8 @@
 use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, record};
 use super::diffusion::{Diffusion, MeshBuffers};
 use super::lighting::Lighting;
-use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
+use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
+use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
 use super::{Reflectance, RenderError, Rung, Settings};
 use crate::cdrf::table::{self, Format};
@@ -14,10 +15,13 @@ use crate::scene::curvatures::vertex_curvatures;
 use crate::scene::{Material, Object};
 use glam::{UVec2, Vec2, Vec3};
 
+/// What shines on the objects, and what keeps it from them, where anything does.
+pub(super) type Light<'a> = (&'a Lighting<'a>, Option<&'a Shadows<'a>>);
+
 /// Compiles `source`, the composed recipe, for the effects of each object, and uploads the objects.
 pub(super) fn pass<'gpu>(
     gpu: &'gpu Gpu,
-    lighting: &Lighting<'_>,
+    light: Light<'_>,
     part: &Part<'_>,
     reflectance: Reflectance,
     source: &str,
@@ -38,13 +42,20 @@ pub(super) fn pass<'gpu>(
         let pipeline = device::pipeline(gpu, &from)?;
         let mut bodies = Vec::new();
         for drawn in objects {
-            let (body, diffusion) = upload(gpu, &pipeline, drawn, reflectance, (lighting, &constants))?;
+            let (body, diffusion) = upload(gpu, &pipeline, drawn, reflectance, (light, &constants))?;
             bodies.push(body);
             pass.before.extend(diffusion.map(Before::Diffusion));
         }
-        pass.variants.push(Variant { shared: lighting.shared(&pipeline)?, pipeline, bodies });
+        pass.variants.push(Variant { shared: shared(light, &pipeline)?, pipeline, bodies });
     }
     Ok(pass)
+}
+
+/// What the pipeline reads of group 0, beside the view.
+pub(super) fn shared((lighting, shadows): Light<'_>, pipeline: &Pipeline) -> Result<Vec<(u32, Shared)>, RenderError> {
+    let mut shared = lighting.shared(pipeline)?;
+    shared.extend(shadows.into_iter().flat_map(|shadows| shadows.shared(pipeline)));
+    Ok(shared)
 }
 
 /// Refuses what the rung cannot draw.
@@ -57,7 +68,7 @@ fn check(object: &Object, rung: Rung, reflectance: Reflectance) -> Result<(), Re
     if reflectance == Reflectance::Blur && !mesh.uvs.iter().all(inside) {
         return Err(RenderError::TextureCoordinatesOutside { object: name.clone() });
     }
-    if thickness::sigma0(material).is_none() && reflectance != Reflectance::Lambert {
+    if thickness::sigma0(material).is_none() && !reflectance.is_lambert() {
         return Err(RenderError::NoSigma0 { object: name.clone(), material: material.name.clone(), rung });
     }
     Ok(())
@@ -84,7 +95,7 @@ fn upload<'gpu>(
     pipeline: &Pipeline,
     Drawn { object, name, .. }: &Drawn<'_>,
     reflectance: Reflectance,
-    lighting: (&Lighting<'_>, &[(&str, f64)]),
+    (light, constants): (Light<'_>, &[(&str, f64)]),
 ) -> Result<(Body, Option<Diffusion<'gpu>>), RenderError> {
     let _of = OfObject::named(name);
     let Object { mesh, material, .. } = object;
@@ -101,11 +112,19 @@ fn upload<'gpu>(
     let is_read = |binding: u32| pipeline.binds(1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read = || parts.into_iter().filter(|(binding, _, _)| is_read(*binding));
     let vertices = mesh_vertices(gpu, object, &mesh.indices, read().map(|(_, _, contents)| contents))?;
+    // What casts shadows is there already.
+    let cast = |binding: u32| {
+        let mesh = light.1?.mesh(name)?;
+        Some((binding, mesh.get(binding.checked_sub(1)? as usize)?.clone()))
+    };
     let buffers: Vec<(u32, wgpu::Buffer)> = gpu.guarded("uploading a mesh", |device| {
         let storage = |(binding, what, contents): (u32, &str, &[u8])| {
             (binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
-        read().map(storage).chain([(0, record(device, "material", &record_of(material)))]).collect()
+        read()
+            .map(|part| cast(part.0).unwrap_or_else(|| storage(part)))
+            .chain([(0, record(device, "material", &record_of(material)))])
+            .collect()
     })?;
     let mut textures = Vec::new();
     if let Reflectance::Table(side, format) = reflectance {
@@ -117,7 +136,7 @@ fn upload<'gpu>(
     let mut diffusion = None;
     let of = |wanted: u32| buffers.iter().find(|(binding, _)| *binding == wanted).map(|(_, buffer)| buffer);
     if let (true, Some(positions), Some(normals), Some(uvs)) = (blurs, of(1), of(3), of(8)) {
-        let made = Diffusion::new(gpu, (object, name), lighting, &MeshBuffers { positions, normals, uvs })?;
+        let made = Diffusion::new(gpu, (object, name), (light, constants), &MeshBuffers { positions, normals, uvs })?;
         textures.push((9, made.diffused()));
         diffusion = Some(made);
     }

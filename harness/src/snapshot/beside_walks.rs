@@ -14,10 +14,10 @@ pub const NAME: &str = "beside_walks";
 /// What the gallery calls it.
 pub const TITLE: &str = "Translucent stone beside random walks";
 /// What it shows.
-pub const PARAGRAPH: &str = "Lambert's law, light along the cheapest ways, random walks, and what is between these two: the absolute difference of the linear radiance, shown \
+pub const PARAGRAPH: &str = "Lambert's law with the shadows that bodies cast, light along the cheapest ways, random walks, and what is between these two: the absolute difference of the linear radiance, shown \
     as bright as the pictures. Both sides of a comparison have the one exposure that brings them nearest. Thin parts glow, thick ones are dark.";
 /// The rungs that are shown before the walks, the last one's difference after them.
-pub const RUNGS: [&str; 2] = ["lambert", "godunov-128"];
+pub const RUNGS: [&str; 2] = ["lambert-shadowed", "godunov-128"];
 /// Pictures in a row.
 pub const COLUMNS: u32 = 4;
 

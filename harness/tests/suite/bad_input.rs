@@ -67,6 +67,11 @@ const RENDER: &[Row] = &[
     ("octahedron --without fire --out {}/out.png", Usage, &["--without", "absorption"]),
     ("octahedron --with cdrf --out {}/out.png", One, &["--with cdrf has no meaning", "scattering and absorption"]),
     ("bunny --with cdrf --rung lambert --out {}/out.png", One, &["a rung is asked for"]),
+    ("octahedron --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "lit by the environment"]),
+    ("bunny --rung godunov-16 --with shadow --out {}/out.png", One, &["--with shadow has no meaning", "a light sees"]),
+    ("skin --rung reference --with shadow --out {}/out.png", One, &["casts shadows anyway"]),
+    ("bunny --with cdrf,optical_path --out {}/out.png", One, &["by one of them"]),
+    ("bunny --with fog --out {}/out.png", Usage, &["--with", "shadow"]),
     ("bunny --deferred --out {}/out.png", One, &["knows no --deferred"]),
     ("vitrine --deferred --out {}/out.png", One, &["only clear stones", "leave --deferred out"]),
     (

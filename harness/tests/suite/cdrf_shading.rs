@@ -378,17 +378,20 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
     for reference in WalkedReference::of("cdrf") {
         let truth = reference.picture(super::gpu()).expect(reference.scene).linear;
         let scene = Scene::named(reference.scene).expect("built in");
-        let distance = |rung: &str| {
-            let usual = settings(rung);
-            let settings =
-                Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, curvature: Curvature::Vertex, ..usual };
-            exposed_distance(&draw(&scene, &settings).linear, &truth)
-        };
-        let [lambert, blur, accurate, spherical] = ["lambert", "blur", "accurate", "spherical"].map(distance);
-        println!(
-            "{}: root mean square from the walks, of theirs: Lambert {lambert:.3}, blur {blur:.3}, accurate {accurate:.3}, spherical {spherical:.3}",
-            reference.scene
-        );
-        assert!(accurate < lambert, "{}: {accurate} {lambert}", reference.scene);
+        for shadows in [false, true] {
+            let distance = |rung: &str| {
+                let usual = Settings { shadows, ..settings(rung) };
+                let settings =
+                    Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, curvature: Curvature::Vertex, ..usual };
+                exposed_distance(&draw(&scene, &settings).linear, &truth)
+            };
+            let [lambert, blur, accurate, spherical] = ["lambert", "blur", "accurate", "spherical"].map(distance);
+            println!(
+                "{}, shadows {shadows}: root mean square from the walks, of theirs: Lambert {lambert:.3}, blur {blur:.3}, accurate {accurate:.3}, \
+                 spherical {spherical:.3}",
+                reference.scene
+            );
+            assert!(accurate < lambert, "{}: {accurate} {lambert}", reference.scene);
+        }
     }
 }

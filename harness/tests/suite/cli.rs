@@ -68,6 +68,12 @@ fn plan_prints_one_json_document() {
     assert!(plan(&["brilliant", "--without", "dispersion"]).contains("left out on request"));
     assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung accurate of recipe cdrf_shading"));
     assert!(plan(&["wax", "--with", "optical_path"]).contains("asked for, whatever its thickness"));
+    let shadowed = plan(&["wax", "--with", "cdrf,shadow"]);
+    assert!(
+        shadowed.contains("by rung accurate") && shadowed.contains("reflective shadow maps for shadows"),
+        "{shadowed}"
+    );
+    assert!(plan(&["bunny", "--rung", "lambert-shadowed"]).contains("the rung casts shadows"));
 }
 
 #[test]

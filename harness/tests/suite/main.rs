@@ -30,6 +30,7 @@ mod program;
 mod random_walk;
 mod reference;
 mod restraint;
+mod shadows;
 mod snapshots;
 mod specialise;
 mod text;

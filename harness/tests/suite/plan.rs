@@ -51,6 +51,8 @@ fn what_is_drawn_is_what_was_planned() {
         ("bunny_stone", of_rung("bvh-2")),
         ("wax", settings()),
         ("skin_ring", of_rung("blur")),
+        ("skin_bunny", of_rung("lambert-shadowed")),
+        ("vitrine", Settings { shadows: true, ..settings() }),
         ("jade", Settings { environment: sky(), ..of_rung("table-256-rgba8") }),
         ("dragon", of_rung("tiled-26-32")),
         ("bunny", of_rung("paper-16")),
@@ -205,6 +207,21 @@ fn cases() -> Vec<Case> {
             one("dragon"),
             tiled(),
             [vec!["grid of densities", "veins", "densities"], vec!["optical_path_density"], vec!["densities"]],
+        ),
+        case(
+            Effect::Shadow,
+            one("wax"),
+            of_rung("lambert-shadowed"),
+            [
+                vec![
+                    "view of a light",
+                    "views of lights",
+                    "reflective shadow maps for shadows",
+                    "depth of maps for shadows",
+                ],
+                vec!["reflective_shadow_map"],
+                vec!["reflective_shadow_map"],
+            ],
         ),
         case(Effect::Environment, one("wax"), of_rung("accurate"), [vec!["harmonics"], vec![], vec![]]),
         case(

@@ -4,6 +4,7 @@
 //
 // A recipe adds: the module reflective_shadow_map. The maps, which the recipe of that name draws, are bound here.
 
+//+shadow {
 struct LightView {
     view: ReflectiveShadowMapView,
     // Its light's number.
@@ -13,3 +14,4 @@ struct LightView {
 // A view for each layer of the maps.
 @group(0) @binding(4) var<storage, read> views: array<LightView>;
 @group(0) @binding(5) var maps: texture_2d_array<f32>;
+//+shadow }

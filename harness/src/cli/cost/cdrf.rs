@@ -33,7 +33,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 /// A rung of this ladder.
 fn reflectance(rung: Rung) -> Result<Reflectance, Failure> {
     match rung {
-        Rung::Diffuse(reflectance) => Ok(reflectance),
+        Rung::Diffuse(reflectance) if cdrf::RUNGS.contains(&reflectance.name()) => Ok(reflectance),
         other => Err(Failure(format!("`cdrf` has no rung {other}; there are {}", cdrf::RUNGS.join(", ")))),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
 use lapidary_harness::cost::optical_path::{self, Options, RungReport, plot};
-use lapidary_harness::render::{Reflectance, Rung};
+use lapidary_harness::render::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(optical_path::TECHNIQUE, &["--rungs", "--rounds"])?;
@@ -10,7 +10,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if let Some(rounds) = arguments.rounds {
         options.rounds = rounds;
     }
-    let draws_no_stone = |rung: &&Rung| !matches!(rung, Rung::OpticalPath(_) | Rung::Diffuse(Reflectance::Lambert));
+    let draws_no_stone = |rung: &&Rung| match rung {
+        Rung::Diffuse(reflectance) => !reflectance.is_lambert(),
+        other => !matches!(other, Rung::OpticalPath(_)),
+    };
     if let Some(other) = arguments.rungs.iter().find(draws_no_stone) {
         let names = optical_path::RUNGS.join(", ");
         return Err(Failure(format!("`optical_path` has no rung {other}; there are {names}")));
@@ -25,7 +28,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     report.mark_dominated();
     let mut plots = Vec::new();
-    if arguments.out.is_some() && report.rungs.iter().any(|rung: &RungReport| rung.ms().is_some()) {
+    if arguments.out.is_some() && report.rungs.iter().any(|rung: &RungReport| rung.grey("ball").is_some()) {
         plots.push(("optical_path_error.svg".to_owned(), plot::error(&report)?));
         if plot::has_growth(&report) {
             plots.push(("optical_path_growth.svg".to_owned(), plot::growth(&report)?));

@@ -83,7 +83,7 @@ pub fn baked(gpu: &Gpu, side: u32, format: Format) -> Result<Table, CostError> {
 /// As [`baked`].
 pub fn function(gpu: &Gpu, reflectance: Reflectance) -> Result<Option<Function>, CostError> {
     Ok(Some(match reflectance {
-        Reflectance::Lambert => Box::new(|cosine, _| mirror::lambert(cosine)),
+        Reflectance::Lambert | Reflectance::LambertShadowed => Box::new(|cosine, _| mirror::lambert(cosine)),
         Reflectance::Wrap => Box::new(mirror::wrap),
         Reflectance::Table(side, format) => {
             let table = baked(gpu, side, format)?;

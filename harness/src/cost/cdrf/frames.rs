@@ -114,7 +114,7 @@ impl Scenes {
     pub(super) fn mesh_bytes(&self, reflectance: Reflectance) -> u64 {
         let shown = self.vertices();
         let bytes = match reflectance {
-            Reflectance::Lambert => 0,
+            Reflectance::Lambert | Reflectance::LambertShadowed => 0,
             // Texture coordinates, the vertices of halos, and a list of triangles with halos among them.
             Reflectance::Blur => {
                 let meshes = || self.whole.objects.iter().map(|object| &object.mesh);
@@ -158,7 +158,7 @@ fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflect
 /// A rung's frames, untimed.
 pub(super) fn frames(scenes: &Scenes, reflectance: Reflectance, size: [u32; 2]) -> Result<Vec<FrameReport>, CostError> {
     let sources: &[Option<CurvatureSource>] = match reflectance {
-        Reflectance::Lambert | Reflectance::Blur => &[None],
+        Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur => &[None],
         _ => &CurvatureSource::ALL.map(Some),
     };
     let mut frames = Vec::new();

@@ -1,7 +1,10 @@
 //! The ladder's tables for the pages of `docs/`.
 
+use super::scenes::SIDE;
 use super::table::{NONE, milliseconds, over_lambert, residuals, scientific, under_blur};
-use super::{ANALYTIC, BLUR, CdrfReport, CurvatureSource, Distance, PAPER, Part, RUNGS, RungReport, frames};
+use super::{
+    ANALYTIC, BLUR, CdrfReport, CurvatureSource, Distance, PAPER, Part, RUNGS, RungReport, SCENES, SceneReport, frames,
+};
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
 use std::fmt::Write as _;
 
@@ -11,6 +14,7 @@ impl Tables for CdrfReport {
         ("cdrf_ladder", ladder),
         ("cdrf_lit", |report| times(report, Part::Lit)),
         ("cdrf_whole", |report| times(report, Part::Whole)),
+        ("cdrf_scenes", scenes),
         ("cdrf_goals", goals),
         ("cdrf_paper", paper),
     ];
@@ -21,9 +25,40 @@ impl Tables for CdrfReport {
             Some(name) => {
                 Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"))
             }
+            None if self.scenes.is_empty() || self.scenes.iter().any(|scene| scene.timing.is_none()) => {
+                Err("the report has no times of pictures beside random walks; measure it anew".to_owned())
+            }
             None => Ok(()),
         }
     }
+}
+
+/// Whole pictures beside random walks.
+fn scenes(report: &CdrfReport) -> String {
+    let mut columns = vec!["rung".to_owned(), "shadows".to_owned()];
+    columns.extend(SCENES.iter().flat_map(|scene| [format!("{scene}, from walks"), "ms".to_owned()]));
+    let mut table = header(&columns.iter().map(String::as_str).collect::<Vec<_>>());
+    for rung in &report.rungs {
+        for shadows in [false, true] {
+            let mut cells = vec![rung.rung.clone(), if shadows { "cast" } else { "none" }.to_owned()];
+            for name in SCENES {
+                let is =
+                    |scene: &&SceneReport| scene.scene == name && scene.rung == rung.rung && scene.shadows == shadows;
+                let found = report.scenes.iter().find(is);
+                let ms =
+                    found.and_then(|scene| scene.timing).map_or(NONE.to_owned(), |timing| format!("{:.1}", timing.ms));
+                cells.extend([found.map_or(NONE.to_owned(), |scene| format!("{:.3}", scene.walks)), ms]);
+            }
+            row(&mut table, &cells);
+        }
+    }
+    let _ = writeln!(
+        table,
+        "\nOf pictures of {SIDE} × {SIDE} pixels, one sample each, curvature from vertices; two by two pixels are compared with one of the walks'. \
+         Milliseconds for the same pictures, the least of {} interleaved rounds, on {}.",
+        report.rounds, report.adapter
+    );
+    table
 }
 
 /// Functions and tables beside each other, by their errors alone.

@@ -1,5 +1,6 @@
 //! The ladder as text.
 
+use super::scenes::SIDE;
 use super::{BLUR, CdrfReport, CurvatureSource, LAMBERT, Part, RungReport};
 use std::fmt::Write as _;
 
@@ -26,6 +27,7 @@ pub(super) fn text(report: &CdrfReport) -> String {
          in the lit part another rung is faster with\ncurvature from either source, and errs no more.",
         report.rounds
     );
+    scenes(&mut text, report);
     tables(&mut text, report);
     let _ = writeln!(text, "\n{PAPER}");
     text
@@ -109,6 +111,20 @@ fn times(text: &mut String, report: &CdrfReport, part: Part) {
         }
         text.push('\n');
     }
+}
+
+fn scenes(text: &mut String, report: &CdrfReport) {
+    let _ = writeln!(text, "\n{:12} {:20} {:>8} {:>7} {:>9}", "from walks", "rung", "shadows", "error", "ms");
+    for scene in &report.scenes {
+        let ms = scene.timing.map_or(NONE.to_owned(), |timing| format!("{:.1}", timing.ms));
+        let shadows = if scene.shadows { "cast" } else { "none" };
+        let _ = writeln!(text, "{:12} {:20} {shadows:>8} {:>7.3} {ms:>9}", scene.scene, scene.rung, scene.walks);
+    }
+    let _ = writeln!(
+        text,
+        "\nerror: of the picture from the committed one by random walks, over its root mean square, after the best exposure. Pictures of {SIDE}x{SIDE} \
+         pixels, one\nsample each, curvature from vertices, by the lights alone; ms is of these very pictures."
+    );
 }
 
 fn tables(text: &mut String, report: &CdrfReport) {

@@ -1,15 +1,14 @@
-//! The frames that a rung draws of the bunny: timed as wholes and stage by stage, and the memory that they take.
+//! The frames that a rung draws, of which the ladder has errors: timed as wholes, the bunny's stage by stage as well, and the memory that they take.
 
-use super::views::{grey, settings};
-use super::{CostError, Options, RungReport};
+use super::views::{grey, scene, settings};
+use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
 use crate::gpu::Gpu;
-use crate::render::{Frame, Rung, Settings, Stage};
-use crate::scene::Scene;
+use crate::render::{Frame, Rung, Stage};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The scene that is timed.
-const SCENE: &str = "bunny";
+/// The view that is timed stage by stage.
+const STAGED: &str = "bunny";
 /// A frame that takes longer is timed in fewer rounds, ...
 pub(super) const SLOW: Duration = Duration::from_secs(2);
 /// ... in so many.
@@ -45,7 +44,8 @@ struct Timed<'gpu> {
     /// Its rung's number.
     rung: usize,
     frame: Frame<'gpu>,
-    grey: bool,
+    /// Stage by stage, too.
+    staged: bool,
     totals: Vec<Duration>,
     stages: Vec<[Duration; Stage::ALL.len()]>,
 }
@@ -59,7 +59,7 @@ impl Timed<'_> {
     fn round(&mut self) -> Result<(), CostError> {
         self.totals.push(self.frame.run()?.total);
         // Once is enough to know where the time goes.
-        if self.grey {
+        if self.staged {
             self.stages.extend(self.frame.run_stages()?);
         }
         Ok(())
@@ -79,26 +79,29 @@ impl Timed<'_> {
     }
 }
 
-/// Draws every rung's frames, and times them, interleaved. `rungs` are those of the options, in their order.
+/// Draws every rung's frames, and times them: all rungs of a view interleaved, in one colour or in its own. `measured` and `rungs` go together.
 pub(super) fn measure(
     gpu: &Gpu,
     options: &Options,
+    measured: &[Measured],
     rungs: &mut [RungReport],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
-    let colored = Scene::named(SCENE)?;
-    let scenes = [(grey(colored.clone()), true), (colored, false)];
-    let [width, height] = options.frame;
-    let drawn: Vec<(usize, Rung)> =
-        options.rungs.iter().copied().enumerate().filter(|(_, rung)| *rung != Rung::Reference).collect();
-    let total = (scenes.len() * drawn.len()) as u64 * (u64::from(options.rounds) + 1);
-    let (mut timed, mut done) = (Vec::new(), 0);
-    for &(rung, of) in &drawn {
-        for (scene, grey) in &scenes {
-            let frame = Frame::new(gpu, scene, &Settings { width, height, ..settings(of, width) })?;
+    let drawn: Vec<(usize, Measured)> =
+        measured.iter().copied().enumerate().filter(|(_, of)| of.rung != Rung::Reference).collect();
+    let kinds = COMPARED.map(|view| (view, true)).into_iter().chain(WALKED.map(|view| (view, false)));
+    let total = (COMPARED.len() + WALKED.len()) as u64 * drawn.len() as u64 * (u64::from(options.rounds) + 1);
+    let mut done = 0;
+    for (view, is_grey) in kinds {
+        let scene = scene(view)?;
+        let scene = if is_grey { grey(scene) } else { scene };
+        let staged = is_grey && view == STAGED;
+        let mut timed = Vec::new();
+        for &(rung, of) in &drawn {
+            let frame = Frame::new(gpu, &scene, &settings(view, of, options.frame))?;
             // The first frame compiles.
             frame.run()?;
-            if *grey {
+            if staged {
                 rungs[rung].bytes = frame.path_bytes();
                 rungs[rung].solved = frame.solved()?.first().map(|status| Solved {
                     passes: status.passes,
@@ -106,23 +109,24 @@ pub(super) fn measure(
                     active: status.active,
                 });
             }
-            timed.push(Timed { rung, frame, grey: *grey, totals: Vec::new(), stages: Vec::new() });
+            timed.push(Timed { rung, frame, staged, totals: Vec::new(), stages: Vec::new() });
             done += 1;
             progress(done, total);
         }
-    }
-    for _ in 0..options.rounds {
-        for timed in &mut timed {
-            if !timed.done() {
-                timed.round()?;
+        for _ in 0..options.rounds {
+            for timed in &mut timed {
+                if !timed.done() {
+                    timed.round()?;
+                }
+                done += 1;
+                progress(done, total);
             }
-            done += 1;
-            progress(done, total);
         }
-    }
-    for timed in &timed {
-        let report = &mut rungs[timed.rung];
-        *(if timed.grey { &mut report.grey } else { &mut report.rgb }) = timed.timing();
+        let Some(place) = VIEWS.iter().position(|name| *name == view) else { continue };
+        for timed in &timed {
+            let times = &mut rungs[timed.rung].times[place];
+            *(if is_grey { &mut times.grey } else { &mut times.rgb }) = timed.timing();
+        }
     }
     Ok(())
 }
@@ -131,14 +135,33 @@ pub(super) fn measure(
 mod tests {
     use super::*;
     use crate::gpu::AdapterChoice;
+    use crate::plan::{Decisions, Effect};
+    use crate::scene::Scene;
+
+    fn of(rung: &str) -> Measured {
+        Measured { rung: rung.parse().expect(rung), unscaled: false }
+    }
+
+    /// The goal of ten frames a second is for pictures in the colours that a plan gives them: three solves.
+    #[test]
+    fn views_in_their_own_colours_have_a_solve_for_each() {
+        for view in WALKED {
+            let scene = scene(view).expect("built in");
+            let settings = settings(view, of("godunov-64"), [64; 2]);
+            for (scene, colored) in [(scene.clone(), true), (grey(scene), false)] {
+                let decisions = Decisions::of(&scene.objects[0], &scene, &settings);
+                assert!(decisions.has(Effect::Color) == colored && decisions.has(Effect::OpticalPath), "{view}");
+            }
+        }
+    }
 
     #[test]
     fn memory_is_what_is_allocated() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-        let bunny = Scene::named(SCENE).expect("built in");
+        let bunny = Scene::named(STAGED).expect("built in");
         let grey = grey(bunny.clone());
         let bytes = |scene: &Scene, rung: &str| {
-            Frame::new(gpu, scene, &settings(rung.parse().expect(rung), 64)).expect(rung).path_bytes()
+            Frame::new(gpu, scene, &settings(STAGED, of(rung), [64; 2])).expect(rung).path_bytes()
         };
         assert_eq!(bytes(&grey, "lambert"), 0);
         let one = bytes(&grey, "godunov-32");
@@ -153,8 +176,8 @@ mod tests {
     #[test]
     fn stages_are_the_frame() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-        let scene = Scene::named(SCENE).expect("built in");
-        let frame = |rung: &str| Frame::new(gpu, &scene, &settings(rung.parse().expect(rung), 64)).expect(rung);
+        let scene = Scene::named(STAGED).expect("built in");
+        let frame = |rung: &str| Frame::new(gpu, &scene, &settings(STAGED, of(rung), [64; 2])).expect(rung);
         let paths = frame("tiled-26-16");
         paths.run().expect("drawn");
         let whole = paths.solved().expect("a device");

@@ -35,7 +35,7 @@ struct Point<'a> {
 }
 
 fn points<'a>(report: &'a OpticalPathReport, view: &str) -> Vec<Point<'a>> {
-    let found = |rung: &'a RungReport| Some((rung, (rung.ms()?, rung.distance(view).nats?)));
+    let found = |rung: &'a RungReport| Some((rung, (rung.grey(view)?.ms, rung.distance(view).nats?)));
     let all: Vec<_> =
         report.rungs.iter().filter_map(found).filter(|(_, (ms, error))| *ms > 0.0 && *error > 0.0).collect();
     let beaten = |(ms, error): (f64, f64)| all.iter().any(|(_, other)| other.0 < ms && other.1 <= error);
@@ -80,7 +80,7 @@ fn draw_error(root: &Root<'_>, report: &OpticalPathReport) -> Drawn {
     )?;
     chart
         .configure_mesh()
-        .x_desc("milliseconds a frame of the bunny, one channel (least of interleaved rounds)")
+        .x_desc("milliseconds a frame of the ball, one channel (least of interleaved rounds)")
         .y_desc("root mean square error on the ball, nats")
         .x_label_formatter(&|ms| format!("{ms:.0}"))
         .y_label_formatter(&|error| format!("{error}"))
@@ -96,7 +96,7 @@ fn draw_error(root: &Root<'_>, report: &OpticalPathReport) -> Drawn {
         chart.draw_series([Circle::new(point.at, 6, color(&point.rung.rung).filled())])?;
     }
     for (name, start) in [
-        ("Lambert's law, no way through", "lambert"),
+        ("Lambert's law, no way through, and with shadows", "lambert"),
         ("the paper's solver", "paper"),
         ("ping-pong", "ping-pong"),
         ("tiles", "tiled"),

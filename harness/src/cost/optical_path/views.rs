@@ -1,6 +1,6 @@
 //! What is looked at, and how far a rung's costs are from the truth there, pixel by pixel.
 
-use super::FINEST;
+use super::{FINEST, Measured};
 use crate::cost::CostError;
 use crate::gpu::Gpu;
 use crate::plan::{Effect, Effects};
@@ -13,8 +13,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A ball of eight optical depths' radius, lit from the side; the bunny; the dragon, whose density differs from place to place.
-pub const VIEWS: [&str; 3] = [BALL, "bunny", "dragon"];
+/// A ball of eight optical depths' radius, lit from the side; the bunny; the dragon, whose density differs from place to place; wax; and thin marble.
+pub const VIEWS: [&str; 5] = [BALL, "bunny", "dragon", "wax_bunny", "figure"];
+/// Those in which costs are compared: with the closed form and with the finest grid.
+pub const COMPARED: [&str; 3] = [BALL, "bunny", "dragon"];
+/// Those of which a picture by random walks is committed.
+pub const WALKED: [&str; 4] = ["bunny", "dragon", "wax_bunny", "figure"];
 /// The view that has a closed form.
 pub const BALL: &str = "ball";
 /// Pixels along a side of a compared picture.
@@ -54,8 +58,8 @@ impl Distance {
 
 /// A scene of one extinction and what its pixels' costs should be.
 pub(super) struct View {
+    name: &'static str,
     scene: Scene,
-    extinction_scale: f32,
     /// None where there is nothing to compare.
     truth: Vec<Option<f64>>,
     /// The rung that the truth is made by, if any.
@@ -63,45 +67,46 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, name: &str) -> Result<Self, CostError> {
+    pub(super) fn new(gpu: &Gpu, name: &'static str) -> Result<Self, CostError> {
+        let scene = grey(scene(name)?);
         if name == BALL {
-            let scene = ball()?;
             let truth = exact(&scene);
-            return Ok(Self { scene, extinction_scale: 1.0, truth, maker: None });
+            return Ok(Self { name, scene, truth, maker: None });
         }
-        let maker = FINEST.parse().ok();
-        let mut view = Self {
-            scene: grey(Scene::named(name)?),
-            extinction_scale: render::EXTINCTION_SCALE,
-            truth: Vec::new(),
-            maker,
-        };
+        let maker = FINEST.parse().ok().filter(|_| COMPARED.contains(&name));
+        let mut view = Self { name, scene, truth: Vec::new(), maker };
         view.truth = maker.map(|rung| view.costs(gpu, rung)).transpose()?.unwrap_or_default();
         Ok(view)
     }
 
-    /// Errors but those beside random walks. The rung that made the truth has none.
-    pub(super) fn distance(&self, gpu: &Gpu, rung: Rung) -> Result<Distance, CostError> {
-        if self.maker == Some(rung) {
+    /// Errors but those beside random walks. The rung that made the truth has none, nor has one of another extinction than the truth's.
+    pub(super) fn distance(&self, gpu: &Gpu, Measured { rung, unscaled }: Measured) -> Result<Distance, CostError> {
+        if self.maker == Some(rung) || self.truth.is_empty() || unscaled && self.name != BALL {
             return Ok(Distance::default());
         }
         Ok(between(&self.costs(gpu, rung)?, &self.truth))
     }
 
     fn costs(&self, gpu: &Gpu, rung: Rung) -> Result<Vec<Option<f64>>, RenderError> {
-        let settings = Settings { extinction_scale: self.extinction_scale, ..settings(rung, SIDE) };
+        let settings = settings(self.name, Measured { rung, unscaled: false }, [SIDE; 2]);
         Ok(costs(&self.scene, &render::render(gpu, &self.scene, &settings)?))
     }
 }
 
-/// One sample a pixel, by the scene's lights alone, and nothing mirrors.
-pub(super) fn settings(rung: Rung, side: u32) -> Settings {
+/// One sample a pixel, by the scene's lights alone, and nothing mirrors. The ball's extinction is what its closed form has.
+pub(super) fn settings(view: &str, Measured { rung, unscaled }: Measured, [width, height]: [u32; 2]) -> Settings {
     Settings {
         rung,
         samples: 1,
+        extinction_scale: if unscaled || view == BALL { 1.0 } else { render::EXTINCTION_SCALE },
         without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
-        ..Settings::of_size(side, side)
+        ..Settings::of_size(width, height)
     }
+}
+
+/// The scene of a view, in its own colours.
+pub(super) fn scene(view: &str) -> Result<Scene, SceneError> {
+    if view == BALL { ball() } else { Scene::named(view) }
 }
 
 /// The scene white and with one extinction for all channels, the green one's.

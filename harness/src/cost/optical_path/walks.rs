@@ -1,11 +1,13 @@
 //! The committed pictures by random walks: how far a rung is from one after its best exposure, and how sure the picture is of itself.
 
-use super::views::settings;
+use super::Measured;
+use super::views::{SIDE, settings};
 use crate::cost::{CostError, exposed_distance};
 use crate::gpu::Gpu;
 use crate::random_walk::mesh;
-use crate::render::{self, RenderError, Rung, SAMPLES, Settings};
+use crate::render::{self, RenderError, Rung};
 use crate::scene::Scene;
+use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WALKED};
 
 /// The picture that is walked again, for the spread of its walks, has so many for each pixel.
@@ -13,6 +15,7 @@ const FEW: u32 = 4;
 
 /// A scene and its picture by random walks.
 pub(super) struct Walks {
+    name: &'static str,
     scene: Scene,
     linear: Vec<[f32; 4]>,
     /// For each pixel.
@@ -22,19 +25,20 @@ pub(super) struct Walks {
 
 impl Walks {
     /// Of the built-in scene of that name, in its own colours; nothing where no picture of it is committed.
-    pub(super) fn of(gpu: &Gpu, name: &str) -> Result<Option<Self>, CostError> {
+    pub(super) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
         let Some(reference) = WALKED.iter().find(|reference| reference.scene == name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
-        Ok(Some(Self { scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
+        Ok(Some(Self { name, scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
     }
 
-    /// How far a rung's picture is from this one; of the reference, this one's own standard error.
-    pub(super) fn distance(&self, gpu: &Gpu, rung: Rung) -> Result<f64, CostError> {
-        if rung == Rung::Reference {
+    /// How far a rung's picture, the one that is timed, is from this one, which has half its side: four pixels of one sample each make one; of the
+    /// reference, this one's own standard error.
+    pub(super) fn distance(&self, gpu: &Gpu, of: Measured) -> Result<f64, CostError> {
+        if of.rung == Rung::Reference {
             return self.standard_error();
         }
-        let settings = Settings { samples: SAMPLES, ..settings(rung, EXR_SIDE) };
-        Ok(exposed_distance(&render::render(gpu, &self.scene, &settings)?.linear, &self.linear))
+        let picture = render::render(gpu, &self.scene, &settings(self.name, of, [SIDE; 2]))?;
+        Ok(exposed_distance(&halved(&picture).linear, &self.linear))
     }
 
     /// Root mean square of the pixels' standard errors, over the root mean square of their radiance. A picture holds no errors: a few walks
@@ -67,10 +71,14 @@ mod tests {
     fn a_committed_picture_is_found_by_its_scene_and_its_walks_are_surer_than_lamberts_law() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let walks = Walks::of(gpu, "skin_bunny").expect("read").expect("committed");
-        let of = |rung: &str| walks.distance(gpu, rung.parse().expect(rung)).expect(rung);
-        let [own, lambert, paths] = ["reference", "lambert", "godunov-32"].map(of);
-        println!("the walks' own {own:.4}, Lambert {lambert:.4}, ways {paths:.4}");
+        let of = |rung: &str| {
+            let rung = rung.parse().expect(rung);
+            walks.distance(gpu, Measured { rung, unscaled: false }).expect("rendered")
+        };
+        let [own, lambert, shadowed, paths] = ["reference", "lambert", "lambert-shadowed", "godunov-32"].map(of);
+        println!("the walks' own {own:.4}, Lambert {lambert:.4}, with shadows {shadowed:.4}, ways {paths:.4}");
         assert!(own > 0.0 && own < 0.3 * lambert && lambert < 1.0 && paths < 1.0);
+        assert!(shadowed < 0.8 * lambert, "a body that is in the way of its own light: {shadowed} {lambert}");
         assert!(Walks::of(gpu, "ball").expect("read").is_none());
     }
 }

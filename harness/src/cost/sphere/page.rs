@@ -1,6 +1,6 @@
 //! The spheres' tables for the pages of `docs/`.
 
-use super::{ALBEDOS, Choice, FORMS, RADII, ScaleKind, SphereReport, table};
+use super::{ALBEDOS, Choice, FORMS, Law, RADII, Row, ScaleKind, SphereReport, table};
 use crate::cost::page::{Table, Tables, header, row};
 use crate::random_walk::Form;
 
@@ -10,7 +10,10 @@ const SHOWN: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 impl Tables for SphereReport {
     const TABLES: &'static [Table<Self>] = &[
         ("sphere_walks", walks),
-        ("sphere_widths", widths),
+        ("sphere_widths", |report| widths(&|albedo| report.best(albedo, Form::Circular, ScaleKind::Free).collect())),
+        ("sphere_widths_with_unscattered", |report| {
+            widths(&|albedo| report.best_with_unscattered(albedo, Form::Circular, ScaleKind::Free).collect())
+        }),
         ("sphere_residuals", residuals),
         ("sphere_albedos", albedos),
         ("sphere_laws", laws),
@@ -49,17 +52,17 @@ fn walks(report: &SphereReport) -> String {
     format!("{} walks each; chance alone leaves a residual of at most {most:.4}.\n", report.walks)
 }
 
-fn widths(report: &SphereReport) -> String {
+/// Widths times radii, of each albedo's rows.
+fn widths<'a>(rows: &dyn Fn(f64) -> Vec<&'a Row>) -> String {
     let mut table = radii(&["albedo"], &RADII, &["largest over least, to 20", "to 100"]);
     for albedo in ALBEDOS {
-        let found: Vec<[f64; 2]> =
-            report.best(albedo, Form::Circular, ScaleKind::Free).map(|row| [row.radius, row.sigma_radius]).collect();
+        let found = rows(albedo);
         let drift = |to: f64| {
-            let inside = found.iter().filter(|[radius, _]| *radius <= to).map(|[_, width]| *width);
+            let inside = found.iter().filter(|row| row.radius <= to).map(|row| row.sigma_radius);
             inside.clone().fold(0.0, f64::max) / inside.fold(f64::INFINITY, f64::min)
         };
         let mut cells = vec![albedo.to_string()];
-        cells.extend(found.iter().map(|[_, width]| format!("{width:.2}")));
+        cells.extend(found.iter().map(|row| table::width(row)));
         cells.extend([20.0, 100.0].map(|to| format!("{:.1}", drift(to))));
         row(&mut table, &cells);
     }
@@ -105,16 +108,28 @@ fn albedos(report: &SphereReport) -> String {
 }
 
 fn laws(report: &SphereReport) -> String {
-    let mut table = header(&["form", "albedo", "a, mean free paths", "b", "largest error of σ"]);
+    let columns = [
+        "form",
+        "albedo",
+        "a, mean free paths",
+        "b",
+        "largest error of σ",
+        "of all light: a",
+        "b",
+        "largest error of σ",
+    ];
+    let mut table = header(&columns);
     for form in [Form::Circular, Form::Spherical] {
         for law in report.laws.iter().filter(|law| law.form == form) {
-            let cells = [
-                table::name(form).to_owned(),
-                law.albedo.map_or("all".to_owned(), |albedo| albedo.to_string()),
-                format!("{:.2}", law.factor),
-                format!("{:.2}", law.exponent),
-                format!("{:.0} %", 100.0 * law.worst),
-            ];
+            let mut cells =
+                vec![table::name(form).to_owned(), law.albedo.map_or("all".to_owned(), |albedo| albedo.to_string())];
+            let same = |other: &&Law| (other.form, other.albedo) == (law.form, law.albedo);
+            for law in [Some(law), report.laws_with_unscattered.iter().find(same)] {
+                cells.extend(law.map_or(["-"; 3].map(str::to_owned), |law| {
+                    let Law { factor, exponent, worst, .. } = law;
+                    [format!("{factor:.2}"), format!("{exponent:.2}"), format!("{:.0} %", 100.0 * worst)]
+                }));
+            }
             row(&mut table, &cells);
         }
     }

@@ -152,6 +152,7 @@ mod tests {
                 scale_kind: ScaleKind::Free,
                 sigma: sigma_radius / radius,
                 sigma_radius,
+                sigma_radius_error: None,
                 scale: 1.0,
                 residual: 0.0,
             }

@@ -1,6 +1,6 @@
 //! The spheres as text.
 
-use super::{FORMS, ScaleKind, SphereReport};
+use super::{FORMS, Row, ScaleKind, SphereReport};
 use crate::random_walk::Form;
 use std::fmt::Write as _;
 
@@ -11,6 +11,12 @@ pub(super) fn name(form: Form) -> &'static str {
         Form::Circular => "circular",
         Form::Spherical => "spherical",
     }
+}
+
+/// Width times radius, with its standard error.
+pub(super) fn width(row: &Row) -> String {
+    let width = row.sigma_radius;
+    row.sigma_radius_error.map_or_else(|| format!("{width:.3}"), |error| format!("{width:.3} ± {error:.3}"))
 }
 
 fn kind_name(kind: ScaleKind) -> &'static str {
@@ -28,6 +34,7 @@ pub(super) fn text(report: &SphereReport) -> String {
     fits(&mut text, report);
     spheres(&mut text, report);
     rules(&mut text, report);
+    unscattered(&mut text, report);
     text
 }
 
@@ -96,6 +103,39 @@ fn spheres(text: &mut String, report: &SphereReport) {
     for limit in &report.limits {
         let _ =
             writeln!(text, "{:6} {:>8.4} {:>8.4} {:>8.4}", limit.albedo, limit.lambert, limit.sigma, limit.residual);
+    }
+}
+
+fn unscattered(text: &mut String, report: &SphereReport) {
+    let _ = writeln!(
+        text,
+        "\nsigma R by the circular form, scale free, with the walks' standard errors: of scattered light, and of all, what went straight through \
+         with it\n{:6} {:>6} {:>18} {:>18}",
+        "albedo", "radius", "scattered", "all light"
+    );
+    let free = |row: &&Row| row.form == Form::Circular && row.scale_kind == ScaleKind::Free;
+    let all = report.rows_with_unscattered.iter().filter(free);
+    for (scattered, all) in report.rows.iter().filter(free).zip(all) {
+        let _ = writeln!(
+            text,
+            "{:6} {:>6} {:>18} {:>18}",
+            scattered.albedo,
+            scattered.radius,
+            width(scattered),
+            width(all)
+        );
+    }
+    for law in &report.laws_with_unscattered {
+        let albedo = law.albedo.map_or("all".to_owned(), |albedo| albedo.to_string());
+        let [low, high] = law.radii;
+        let _ = writeln!(
+            text,
+            "all light, {albedo:4} {:9} {low}-{high}: sigma R = {:.3} R^{:.3}, {:.1}% off at worst",
+            name(law.form),
+            law.factor,
+            law.exponent,
+            100.0 * law.worst
+        );
     }
 }
 

@@ -1,3 +1,4 @@
+use super::super::lighting::Lighting;
 use super::super::pass::Before;
 use super::*;
 use crate::extremum::larger;

@@ -217,7 +217,7 @@ fn what_is_left_of_an_effect_is_seen() {
     // One constant more, one operation for another, and the same in another order.
     for (right, wrong) in [
         ("squared < 1.1754944e-38f", "squared < 1.1754942e-38f"),
-        ("received += arrival.irradiance", "received -= arrival.irradiance"),
+        ("received += part", "received -= part"),
         ("return LightArrival(direction, power /", "return LightArrival(direction, (power + 0.0f) /"),
     ] {
         let planted = without.replace(right, wrong);

@@ -22,7 +22,7 @@ const fn case(scene: &'static str, rung: &'static str, effects: &'static [Effect
 }
 
 /// Each effect where it is on, by each recipe that has it; and a few where nothing calls for it.
-const CASES: [Case; 13] = [
+const CASES: [Case; 15] = [
     case("sapphire", "proxy-2+tracker", &[Effect::ProxyGeometry, Effect::Absorption, Effect::Dispersion]),
     case("sapphire", "convex-2+3", &[Effect::ConvexTrace, Effect::Absorption, Effect::Dispersion]),
     case("sapphire", "bvh-2+paper", &[Effect::BvhTrace, Effect::Absorption, Effect::Dispersion]),
@@ -33,6 +33,8 @@ const CASES: [Case; 13] = [
     case("skin, a spot", "cheap", &[Effect::Cdrf, Effect::Environment, Effect::Microfacet, Effect::Spot]),
     case("jade, a map", "accurate", &[Effect::Reflection, Effect::EnvironmentMap, Effect::TextureDiffusion]),
     case("skin", "blur", &[Effect::TextureDiffusion, Effect::Microfacet]),
+    case("skin, a spot", "lambert-shadowed", &[Effect::Shadow, Effect::Microfacet, Effect::Spot]),
+    case("skin_bunny", "blur", &[Effect::Shadow, Effect::TextureDiffusion]),
     case("dragon", "tiled-26-16", &[Effect::OpticalPath, Effect::ExtinctionPerVoxel, Effect::Color]),
     case("jade, a map", "tiled-26-16", &[Effect::Reflection, Effect::EnvironmentMap, Effect::Spot]),
     case("skin, a spot", "tiled-26-16", &[Effect::Environment, Effect::Microfacet, Effect::Spot]),
@@ -55,7 +57,9 @@ fn scene(name: &str) -> Scene {
 }
 
 fn settings(case: &Case) -> Settings {
-    let mut settings = Settings { rung: case.rung.parse().expect(case.rung), samples: 1, ..Settings::of_size(64, 48) };
+    let shadows = case.effects.contains(&Effect::Shadow);
+    let rung = case.rung.parse().expect(case.rung);
+    let mut settings = Settings { rung, shadows, samples: 1, ..Settings::of_size(64, 48) };
     if case.scene.ends_with("a map") {
         let pixels = (0..8 * 4).map(|pixel| [0.1 + 0.2 * (pixel % 5) as f32, 0.5, 1.0, 1.0]).collect();
         settings.environment = Environment::Map(EnvironmentMap { width: 8, height: 4, pixels });

@@ -5,7 +5,7 @@ use crate::render::Settings;
 use crate::render::device::texture;
 use crate::render::light_views::{self, LightView};
 use crate::render::lighting::Lighting;
-use crate::render::optical_path::view_bytes;
+use crate::render::reflective_shadow_map::view_buffer;
 use crate::scene::{Bounds, Light, Scene};
 use glam::{IVec3, UVec3, Vec3, Vec4};
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, decode, seed};
@@ -98,7 +98,11 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
     let storage = |contents: &[u8]| buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
-    let lit = Lit { lights: lighting.lights().expect("uploaded").clone(), views: storage(&view_bytes(&views)), maps };
+    let lit = Lit {
+        lights: lighting.lights().expect("uploaded").clone(),
+        views: view_buffer(gpu, &views).expect("uploaded"),
+        maps,
+    };
     // Every third voxel is air, and densities differ from one to the next.
     let matter: Vec<bool> = (0..grid.count()).map(|index| index * 7 % 3 != 0).collect();
     let words = grid.words_per_row();

@@ -1,0 +1,116 @@
+//! Whole pictures beside the committed ones by random walks, with cast shadows and without, and the time of these very pictures.
+
+use super::CostError;
+use crate::cost::exposed_distance;
+use crate::cost::timing::{self, Timed, Timing};
+use crate::gpu::Gpu;
+use crate::plan::{Effect, Effects};
+use crate::render::{self, Curvature, Reflectance, Rung, Settings};
+use crate::scene::Scene;
+use crate::snapshot::frames::halved;
+use crate::snapshot::{EXR_SIDE, WalkedReference};
+use serde::{Deserialize, Serialize};
+
+/// The scenes.
+pub const SCENES: [&str; 3] = ["skin", "skin_ring", "skin_bunny"];
+/// Pixels along a side of the picture, of which two by two are one of the walks'.
+pub(super) const SIDE: u32 = 2 * EXR_SIDE;
+
+/// A rung's picture of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneReport {
+    /// The scene.
+    pub scene: String,
+    /// The rung's name.
+    pub rung: String,
+    /// Whether lights cast shadows.
+    pub shadows: bool,
+    /// From the picture by random walks, over its root mean square, after the best exposure.
+    pub walks: f64,
+    /// The picture's time.
+    pub timing: Option<Timing>,
+}
+
+/// One sample a pixel, by the lights alone, with the mesh's own curvature.
+fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
+    Settings {
+        samples: 1,
+        rung: Rung::Diffuse(reflectance),
+        shadows,
+        curvature: Curvature::Vertex,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
+        ..Settings::of_size(SIDE, SIDE)
+    }
+}
+
+/// What is drawn: of each scene each rung, without shadows and with them.
+fn drawn(rungs: &[Reflectance]) -> impl Iterator<Item = (&'static str, Reflectance, bool)> {
+    SCENES.into_iter().flat_map(move |scene| {
+        rungs.iter().flat_map(move |&rung| [false, true].map(move |shadows| (scene, rung, shadows)))
+    })
+}
+
+/// Distances of all rungs, and their times where there are rounds.
+///
+/// # Errors
+/// Where a committed picture is missing or damaged, or the device refuses.
+pub(super) fn measure(
+    gpu: &Gpu,
+    rungs: &[Reflectance],
+    rounds: u32,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<SceneReport>, CostError> {
+    let mut scenes = Vec::new();
+    for name in SCENES {
+        let reference = WalkedReference::of("cdrf").find(|reference| reference.scene == name);
+        let truth = reference.map(|reference| reference.picture(gpu)).transpose()?;
+        scenes.push((name, Scene::named(name)?, truth.map_or_else(Vec::new, |truth| truth.linear)));
+    }
+    let mut reports = Vec::new();
+    let mut timed = Vec::new();
+    for (of, reflectance, shadows) in drawn(rungs) {
+        let Some((_, scene, truth)) = scenes.iter().find(|(name, ..)| *name == of) else { continue };
+        let settings = settings(reflectance, shadows);
+        let picture = render::render(gpu, scene, &settings)?;
+        reports.push(SceneReport {
+            scene: of.to_owned(),
+            rung: reflectance.name().to_owned(),
+            shadows,
+            walks: exposed_distance(&halved(&picture).linear, truth),
+            timing: None,
+        });
+        timed.push(Timed { source: None, settings, scene, displayed: false, scales: false });
+    }
+    if rounds > 0 {
+        for (report, timing) in reports.iter_mut().zip(timing::time(gpu, &timed, rounds, progress)?) {
+            report.timing = Some(timing);
+        }
+    }
+    Ok(reports)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::AdapterChoice;
+
+    /// A body that is in the way of its own light: Lambert's law with shadows is the nearer baseline, and the reflectance is nearer still.
+    #[test]
+    fn shadows_bring_the_bunny_nearer() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let reports =
+            measure(gpu, &[Reflectance::Lambert, Reflectance::Accurate], 0, &mut |_, _| {}).expect("measured");
+        assert_eq!(reports.len(), SCENES.len() * 4);
+        let of = |rung: &str, shadows: bool| {
+            let is = |report: &&SceneReport| {
+                (report.scene.as_str(), report.rung.as_str(), report.shadows) == ("skin_bunny", rung, shadows)
+            };
+            reports.iter().find(is).expect("measured").walks
+        };
+        for report in &reports {
+            println!("{} by {}, shadows {}: {:.3}", report.scene, report.rung, report.shadows, report.walks);
+        }
+        assert!(of("lambert", true) < 0.8 * of("lambert", false));
+        assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
+    }
+}

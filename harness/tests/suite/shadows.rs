@@ -1,0 +1,268 @@
+//! Cast shadows of what is drawn by its surface: what the lights' maps let through, pixel by pixel, is what rays through a hierarchy of the triangles find.
+
+use crate::pixels::rays;
+use glam::{DVec3, Vec3};
+use lapidary_bvh_trace::BvhTraceHit;
+use lapidary_bvh_trace::traversal::{self, met};
+use lapidary_harness::cookbook;
+use lapidary_harness::plan::{Effect, Effects};
+use lapidary_harness::render::{self, Settings};
+use lapidary_harness::scene::surfaces::{sphere, torus};
+use lapidary_harness::scene::{Bvh, Light, Material, Mesh, Object, Scene};
+use std::f64::consts::{FRAC_1_PI, TAU};
+
+const SIDE: u32 = 200;
+/// Texels of a map along a side, as the renderer has them.
+const TEXELS: f64 = 1024.0;
+/// The least cosine, towards light and eye, at which pixels are compared: of grazing ones the mesh has its own view.
+const GRAZING: f64 = 0.2;
+
+fn settings(rung: &str) -> Settings {
+    Settings {
+        rung: rung.parse().expect(rung),
+        samples: 1,
+        without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
+        ..Settings::of_size(SIDE, SIDE)
+    }
+}
+
+/// A ring that lies, and a ball in the air over its rim: each throws shadows on itself or on the other.
+fn scene(light: Light) -> Scene {
+    let skin = Scene::named("skin").expect("built in");
+    let material = Material { sigma0: Some(Vec3::splat(1.0)), ..skin.objects[0].material.clone() };
+    let ball = sphere(3.0, 256).placed(glam::DQuat::IDENTITY, DVec3::new(7.0, 8.0, 7.0));
+    let body = |name: &str, mesh| Object { name: name.to_owned(), mesh, material: material.clone() };
+    let objects = vec![body("ring", torus(10.0, 4.0, 256, 128)), body("ball", ball)];
+    Scene { objects, lights: vec![light], ..skin }.seen_from(50.0, 40.0)
+}
+
+/// All of a scene's triangles.
+struct Triangles {
+    mesh: Mesh,
+    bvh: Bvh,
+}
+
+impl Triangles {
+    fn of(scene: &Scene) -> Self {
+        let mut mesh = Mesh::default();
+        for object in &scene.objects {
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(&object.mesh.positions);
+            mesh.normals.extend(&object.mesh.normals);
+            mesh.indices.extend(object.mesh.indices.iter().map(|index| first + index));
+        }
+        let bvh = Bvh::build(&mesh);
+        Self { mesh, bvh }
+    }
+
+    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<BvhTraceHit> {
+        let (nodes, indices) = (&self.bvh.nodes, &self.bvh.indices);
+        let (origin, direction) = (origin.as_vec3(), direction.as_vec3());
+        let hit = traversal::trace(nodes, &self.mesh.positions, indices, origin, direction, u32::MAX);
+        met(&hit).then_some(hit)
+    }
+
+    /// The normal where a ray met them, as the recipe has it.
+    fn normal(&self, hit: &BvhTraceHit) -> DVec3 {
+        let corner = |k: usize| self.mesh.normals[self.bvh.indices[3 * hit.triangle as usize + k] as usize].as_dvec3();
+        let [second, third] = hit.barycentrics.to_array().map(f64::from);
+        ((1.0 - second - third) * corner(0) + second * corner(1) + third * corner(2)).normalize()
+    }
+
+    /// Whether anything stands between a place and a light, `distance` away.
+    fn is_hidden(&self, place: DVec3, toward: DVec3, distance: f64) -> bool {
+        self.trace(place, toward).is_some_and(|hit| f64::from(hit.distance) < distance)
+    }
+}
+
+/// What rays say of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Seen {
+    Lit,
+    Dark,
+    /// So near to a shadow's edge, or to what throws it, that a map of texels cannot tell.
+    Between,
+}
+
+/// From a point and eight about it, three texels away: all see the light or none does. A bias of a texel's width forgives what stands out less, so rays
+/// that must be free start as high over the surface, and rays that must be hidden twice as high.
+fn seen(triangles: &Triangles, [point, normal]: [DVec3; 2], light: &Light, texel: f64) -> Seen {
+    let along = normal.any_orthonormal_vector();
+    let across = normal.cross(along);
+    let about = (0..8).map(|step| 3.0 * texel * glam::DVec2::from_angle(TAU * f64::from(step) / 8.0));
+    let places: Vec<DVec3> =
+        std::iter::once(glam::DVec2::ZERO).chain(about).map(|at| point + at.x * along + at.y * across).collect();
+    let hidden = |height: f64| {
+        places.iter().filter(move |place| {
+            let start = **place + height * texel * normal;
+            let arrival = light.arrival(start);
+            triangles.is_hidden(start, arrival.direction, arrival.distance)
+        })
+    };
+    if hidden(1.0).count() == 0 {
+        Seen::Lit
+    } else if hidden(2.0).count() == places.len() {
+        Seen::Dark
+    } else {
+        Seen::Between
+    }
+}
+
+/// A pixel that is far enough from edges: what it shows, the cosine, what a white surface square to the light would show, and what rays say.
+struct Compared {
+    found: f64,
+    cosine: f64,
+    full: f64,
+    seen: Seen,
+    index: usize,
+}
+
+/// Width of a texel in the world, for a point that a light sees: of a sun's map, or of one of a lamp's, whose half angle's tangent is at most 1.5.
+fn texel(scene: &Scene, light: &Light, point: DVec3) -> f64 {
+    match light {
+        Light::Directional { .. } => 2.0 * f64::from(scene.bounds().radius()) / TEXELS,
+        Light::Point { position, .. } | Light::Spot { position, .. } => {
+            3.0 * point.distance(position.as_dvec3()) / TEXELS
+        }
+    }
+}
+
+fn compared(scene: &Scene, light: &Light, pixels: &[[f32; 4]]) -> Vec<Compared> {
+    let triangles = Triangles::of(scene);
+    let base = f64::from(scene.objects[0].material.base_color.x);
+    let eye = scene.camera.eye.as_dvec3();
+    let picture = render::Picture {
+        width: SIDE,
+        height: SIDE,
+        linear: pixels.to_vec(),
+        encoded: Vec::new(),
+        lost: None,
+        walked: None,
+        notes: Vec::new(),
+    };
+    let mut all = Vec::new();
+    for (index, (direction, pixel)) in rays(scene, &picture).into_iter().enumerate() {
+        let Some(hit) = triangles.trace(eye, direction).filter(|_| pixel[3] == 1.0) else { continue };
+        let point = eye + f64::from(hit.distance) * direction;
+        let normal = triangles.normal(&hit);
+        let arrival = light.arrival(point);
+        let cosine = normal.dot(arrival.direction);
+        if normal.dot(-direction) < GRAZING || arrival.irradiance.x < 1e-2 {
+            continue;
+        }
+        let full = base * arrival.irradiance.x * FRAC_1_PI;
+        let seen = if cosine < GRAZING {
+            Seen::Between
+        } else {
+            seen(&triangles, [point, normal], light, texel(scene, light, point))
+        };
+        all.push(Compared { found: pixel[0].into(), cosine, full, seen, index });
+    }
+    all
+}
+
+/// How many are lit, dark, between, and how many of the first two the picture has otherwise.
+fn judged(all: &[Compared]) -> [usize; 4] {
+    let count = |seen: Seen| all.iter().filter(|one| one.seen == seen && one.cosine >= GRAZING).count();
+    let is_wrong = |one: &&Compared| {
+        let share = one.found / (one.cosine * one.full);
+        // Interpolated in f32 and by perspective, against f64: a pixel's place is off by 1e-6 of its distance, 40, its cosine by that over the radius. In a
+        // spot's soft edge light falls off by all of itself in a fifth of a radian.
+        match one.seen {
+            Seen::Lit => (share - 1.0).abs() > 2e-3,
+            Seen::Dark => share > 1e-6,
+            Seen::Between => false,
+        }
+    };
+    [count(Seen::Lit), count(Seen::Dark), count(Seen::Between), all.iter().filter(is_wrong).count()]
+}
+
+fn lights() -> [(&'static str, Light); 4] {
+    let position = Vec3::new(20.0, 26.0, 16.0);
+    let direction = (Vec3::new(6.0, 2.0, 6.0) - position).normalize();
+    let (inner_angle, outer_angle) = (0.3, 0.5);
+    [
+        ("sun", Light::Directional { toward: Vec3::new(0.5, 0.7, 0.5).normalize(), irradiance: Vec3::splat(2.0) }),
+        ("lamp", Light::Point { position, intensity: Vec3::splat(1500.0) }),
+        ("spot", Light::Spot { position, direction, intensity: Vec3::splat(1500.0), inner_angle, outer_angle }),
+        // Amid the bodies: six views.
+        ("lamp amid the bodies", Light::Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: Vec3::splat(300.0) }),
+    ]
+}
+
+#[test]
+fn shadows_are_those_that_rays_find() {
+    let recipe = cookbook::recipe_source("cdrf_shading");
+    let bias = "let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);";
+    assert!(recipe.contains(bias));
+    for (name, light) in lights() {
+        let scene = scene(light);
+        let settings = settings("lambert-shadowed");
+        let of = |source: &str| {
+            let picture = render::render_with(super::gpu(), &scene, &settings, source).expect("rendered");
+            judged(&compared(&scene, &light, &picture.linear))
+        };
+        let [lit, dark, between, wrong] = of(&recipe);
+        println!("{name}: {lit} lit, {dark} dark, {between} between, {wrong} wrong");
+        assert_eq!(wrong, 0, "{name}");
+        assert!(lit > 1000 && dark > 150 && between < (lit + dark) / 2, "{name}: {lit} {dark} {between}");
+        // A bias that forgives what stands two bodies high, one that forgives nothing, and a map that is turned over.
+        for planted in [
+            recipe.replace(bias, &bias.replace("2.0f *", "2000.0f *")),
+            recipe.replace(bias, &bias.replace("2.0f *", "-2.0f *")),
+            recipe.replace("seen.w < 0.0f || height <= bias", "seen.w < 0.0f || height > bias"),
+        ] {
+            let [.., wrong] = of(&planted);
+            println!("{name}, planted: {wrong} wrong");
+            assert!(wrong > 100, "{name}: {wrong}");
+        }
+    }
+}
+
+/// A reflectance loses what fell on the point itself; what creeps in from beside it stays, so that nothing changes at the terminator and behind it.
+#[test]
+fn a_reflectance_loses_what_fell_on_the_point_itself() {
+    let light = lights()[0].1;
+    let scene = scene(light);
+    let draw = |shadows: bool, rung: &str| {
+        let settings = Settings { shadows, ..settings(rung) };
+        render::render(super::gpu(), &scene, &settings).expect("rendered").linear
+    };
+    for rung in ["accurate", "table-257-r32f", "wrap"] {
+        let [without, with] = [false, true].map(|shadows| draw(shadows, rung));
+        let (mut taken, mut kept) = (0, 0);
+        for Compared { found, cosine, full, seen, index } in compared(&scene, &light, &with) {
+            let before = f64::from(without[index][0]);
+            let expected = match seen {
+                Seen::Lit => before,
+                Seen::Dark => (before - cosine * full).max(0.0),
+                Seen::Between if cosine <= 0.0 => before,
+                Seen::Between => continue,
+            };
+            taken += usize::from(seen == Seen::Dark);
+            kept += usize::from(cosine <= 0.0);
+            assert!((found - expected).abs() < 1e-4 * full, "{rung} at {cosine}, {seen:?}: {found}, {expected}");
+        }
+        assert!(taken > 150 && kept > 300, "{rung}: {taken} {kept}");
+    }
+    // Lambert's law is the reflectance without a width.
+    assert_eq!(draw(true, "lambert"), draw(false, "lambert-shadowed"));
+}
+
+/// Without lights there is nothing to cast, and what lies behind clear stone is not in its shadow.
+#[test]
+fn shadows_are_made_only_where_something_is_in_them() {
+    use lapidary_harness::plan::Plan;
+    let light = lights()[0].1;
+    let maps = |scene: &Scene, settings: &Settings| {
+        let capture = Plan::of(scene, settings).expect("a plan").capture;
+        capture.resources.iter().filter(|resource| resource.name.contains("for shadows")).count()
+    };
+    let asked = Settings { shadows: true, ..settings("accurate") };
+    assert!(maps(&scene(light), &asked) > 0 && maps(&scene(light), &settings("accurate")) == 0);
+    assert_eq!(maps(&Scene { lights: Vec::new(), ..scene(light) }, &asked), 0);
+    assert_eq!(
+        maps(&Scene::named("brilliant").expect("built in"), &Settings { shadows: true, ..settings("proxy-1") }),
+        0
+    );
+}
