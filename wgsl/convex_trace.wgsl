@@ -1,5 +1,6 @@
 // convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
+// Version: 0.2.0, hash fbe4c4c545a98a0b
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon; Cyrus and Beck, "Generalized two- and
 //   three-dimensional clipping", 1978, for planes in place of polygons.
 //

@@ -98,6 +98,12 @@ pub const RECIPES: &[Recipe] = recipes![
     "voxelization"
 ];
 
+/// The hashes of each release's functions, the oldest first, as JSON.
+pub const RELEASES: &[&str] = &[include_str!("releases/0.1.0.json"), include_str!("releases/0.2.0.json")];
+
+/// What changed from release to release, by function.
+pub const CHANGELOG: &str = include_str!("../CHANGELOG.md");
+
 /// Every part, in the order of their names.
 pub const PARTS: &[Part] = parts![
     "gem_shading",

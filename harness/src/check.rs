@@ -1,5 +1,11 @@
 //! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
 
+pub mod bounds;
+pub mod failure;
+pub mod guard;
+pub mod literal;
+pub mod user_file;
+
 use crate::cookbook::{self, header::FunctionDoc};
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
@@ -9,6 +15,7 @@ use crate::gpu::Gpu;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
 use crate::property::{Check, DEFAULT_CASES, Report, Settings};
+use failure::Failure;
 use serde::Serialize;
 
 /// Why a check could not run; a check that ran and failed is a report.
@@ -17,8 +24,11 @@ pub enum CheckError {
     /// No such module or function.
     #[error("{0}")]
     Unknown(String),
+    /// A user's file is not to be read, or nothing of it can be checked.
+    #[error("{0}")]
+    File(String),
     /// The source or the device refused.
-    #[error("{path}: {error}")]
+    #[error("{}", at_line(path, error))]
     Dispatch {
         /// Whose source.
         path: String,
@@ -30,9 +40,19 @@ pub enum CheckError {
     Persistence(#[from] PersistenceError),
 }
 
+/// File and line, as compilers write them, where there is a line.
+fn at_line(path: &str, error: &DispatchError) -> String {
+    match error {
+        DispatchError::Fault { line: Some(line), message } => format!("{path}:{line}: {message}"),
+        error => format!("{path}: {error}"),
+    }
+}
+
 /// A row of `cook check`'s table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
+    /// Whether the formula holds.
+    pub passed: bool,
     /// The module.
     pub module: String,
     /// The WGSL function.
@@ -43,6 +63,8 @@ pub struct Row {
     pub failed: u64,
     /// Results with a NaN or an infinity.
     pub nonfinite: u64,
+    /// Inputs at which a loop took more turns than the kernel follows, so that the result says nothing; they count as failed.
+    pub stopped: u64,
     /// Forward error against the oracle in ulp of the exact value's largest component.
     pub max_ulp: f64,
     /// The same, at the 99th percentile.
@@ -57,10 +79,22 @@ pub struct Row {
     pub shrunk_input: Option<String>,
     /// What the worst input broke; null where nothing failed.
     pub reason: Option<String>,
+    /// What the simplest failing input gives; null where nothing failed.
+    pub failure: Option<Failure>,
+    /// Hard cases tested.
+    pub hard_cases: usize,
+    /// Those that hold.
+    pub held_hard_cases: usize,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
+    /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
+    pub release: Option<String>,
+    /// What was changed in the function since that release.
+    pub changed_since: Vec<String>,
+    /// The file that the simplest failing input was written to; null where none was.
+    pub kept_in: Option<String>,
     /// Wall-clock time.
     pub seconds: f64,
 }
@@ -68,6 +102,10 @@ pub struct Row {
 impl Row {
     /// Whether the formula holds. Edges count from the default number of cases on: a shorter run may well miss some.
     pub fn passed(&self) -> bool {
+        self.passed
+    }
+
+    fn judge(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
         self.failed == 0 && edges && self.broken_hard_cases.is_empty()
     }
@@ -76,7 +114,7 @@ impl Row {
 /// The source that a check runs on.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<'a> {
-    /// The cookbook's own. Failing inputs are kept.
+    /// The cookbook's own.
     Cookbook,
     /// The user's copy: path for messages, and text. The tolerance stays the cookbook's.
     Copy(&'a str, &'a str),
@@ -138,30 +176,56 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
     Ok(kernel)
 }
 
-/// Runs the property tests of one formula. Inputs that failed in earlier runs and those of the hard cases go first.
+/// Runs the property tests of one formula. Failing inputs of the cookbook's own are kept in the target folder, and go first
+/// in later runs; those of a user's copy are not kept.
 pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings) -> Result<Row, CheckError> {
+    match source {
+        Source::Cookbook => run_keeping(gpu, formula, source, settings, Some(&Regressions::of_target())),
+        Source::Copy(..) => run_keeping(gpu, formula, source, settings, None),
+    }
+}
+
+/// The same with another place for failing inputs, or none. What is kept there goes first where the cookbook's own is
+/// tested, never into the test of a user's copy. The inputs of the hard cases go first always.
+pub fn run_keeping(
+    gpu: &Gpu,
+    formula: &Formula,
+    source: Source<'_>,
+    settings: Settings,
+    regressions: Option<&Regressions>,
+) -> Result<Row, CheckError> {
     let mut kernel = kernel(gpu, formula, source)?;
-    let regressions = Regressions::of_cookbook();
-    let mut replayed = regressions.load(formula.function, kernel.argument_words())?;
+    let mut replayed = match (source, regressions) {
+        (Source::Cookbook, Some(regressions)) => regressions.load(formula.function, kernel.argument_words())?,
+        _ => Vec::new(),
+    };
     replayed.extend(formula.hard_cases.iter().map(|case| case.arguments.clone()));
     let tolerance = tolerance(gpu, formula);
-    let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }
-        .run(settings, &replayed)
-        .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+    let in_function = |error| CheckError::Dispatch { path: formula.function.to_owned(), error };
+    let report =
+        Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &replayed).map_err(in_function)?;
     // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
     let mut broken = Vec::new();
     for case in &formula.hard_cases {
-        let distance = distance_from_limit(&mut kernel, &case.arguments, &case.limit, &formula.result)
-            .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
-        // A NaN is no distance within the bound.
-        if distance.is_nan() || distance > case.bound {
+        let distance =
+            distance_from_limit(&mut kernel, &case.arguments, &case.limit, &formula.result).map_err(in_function)?;
+        if kernel.any_stopped() {
+            broken.push(format!("{}: {}", case.name, kernel.why_stopped()));
+        } else if distance.is_nan() || distance > case.bound {
+            // A NaN is no distance within the bound.
             broken.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
         }
     }
-    if let (Source::Cookbook, Some(shrunk)) = (source, &report.shrunk) {
-        regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
+    let failure = match &report.shrunk {
+        None => None,
+        Some(shrunk) => Some(Failure::at(formula, &mut kernel, &tolerance, shrunk).map_err(in_function)?),
+    };
+    let mut row = row(formula, &report, broken, failure);
+    if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
+        let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
+        row.kept_in = Some(file.display().to_string());
     }
-    Ok(row(formula, &report, broken))
+    Ok(row)
 }
 
 /// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
@@ -185,13 +249,15 @@ pub fn distance_from_limit(
     ))
 }
 
-fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Row {
-    Row {
+fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>, failure: Option<Failure>) -> Row {
+    let mut row = Row {
+        passed: false,
         module: formula.module.to_owned(),
         function: formula.function.to_owned(),
         cases: report.cases,
         failed: report.failed,
         nonfinite: report.nonfinite,
+        stopped: report.stopped,
         // JSON has no infinity.
         max_ulp: report.max_ulp.min(f64::MAX),
         p99_ulp: report.ulps.quantile(0.99).min(f64::MAX),
@@ -200,10 +266,18 @@ fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Ro
         worst_input: spell(formula, &report.worst),
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
         reason: report.reason.clone(),
+        failure,
+        hard_cases: formula.hard_cases.len(),
+        held_hard_cases: formula.hard_cases.len() - broken_hard_cases.len(),
         broken_hard_cases,
         missed_edges: report.missed_edges().collect(),
+        release: None,
+        changed_since: Vec::new(),
+        kept_in: None,
         seconds: report.seconds,
-    }
+    };
+    row.passed = row.judge();
+    row
 }
 
 /// The input as a person reads it: shortest decimals that name the f32 exactly, vectors in parentheses.

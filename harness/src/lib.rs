@@ -27,5 +27,7 @@ pub mod shader;
 pub mod snapshot;
 pub mod specialise;
 pub mod spirv_counts;
+pub mod text_file;
+pub mod tokens;
 pub mod voxel_grid;
 pub mod voxelization;

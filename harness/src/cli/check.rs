@@ -1,8 +1,15 @@
 //! `cook check`.
 
+mod text;
+
 use super::{Context, Failure, Outcome, number, output};
-use lapidary_harness::check::{self, Row, Source};
+use lapidary_harness::check::guard::{self, Stage};
+use lapidary_harness::check::user_file::{Contents, UserFile};
+use lapidary_harness::check::{self, CheckError, Row, Source};
+use lapidary_harness::cookbook::release::Standing;
 use lapidary_harness::formula::Formula;
+use lapidary_harness::gpu::Gpu;
+use lapidary_harness::property::persistence::Regressions;
 use lapidary_harness::property::{DEFAULT_CASES, Settings};
 use std::path::PathBuf;
 
@@ -24,118 +31,106 @@ pub(super) struct Arguments {
     /// Where the random inputs start; the same seed gives the same inputs.
     #[arg(long, default_value_t = Settings::default().seed, value_parser = number::whole(0..=u64::MAX))]
     seed: u64,
+    /// Folder for failing inputs, a file a function; target/lapidary/failures where left out, none for --wgsl. The
+    /// cookbook's own functions are tested with what is there first.
+    #[arg(long, value_name = "DIR")]
+    failures: Option<PathBuf>,
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
 }
 
+/// What was checked, and what there is to say besides.
+#[derive(Default)]
+struct Checked {
+    rows: Vec<Row>,
+    notes: Vec<String>,
+    releases: Vec<Standing>,
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let copy = match &arguments.wgsl {
-        None => None,
+    let settings = Settings { cases: arguments.cases, seed: arguments.seed };
+    let checked = match &arguments.wgsl {
+        None => {
+            let formulas = check::select(arguments.filter.as_deref())?;
+            let gpu = context.gpu()?;
+            let regressions = arguments.failures.as_ref().map_or_else(Regressions::of_target, Regressions::in_folder);
+            let rows = all(gpu, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
+            Checked { rows, ..Checked::default() }
+        }
         Some(path) => {
-            let text = std::fs::read_to_string(path)
-                .map_err(|error| Failure(format!("{}: cannot be read: {error}", path.display())))?;
-            Some((path.display().to_string(), text))
+            // What the command line alone can be wrong in goes before the file, and both before the device.
+            check::select(arguments.filter.as_deref())?;
+            let file = UserFile::read(path)?;
+            let gpu = context.gpu()?;
+            let filter = arguments.filter.clone();
+            let regressions = arguments.failures.as_ref().map(Regressions::in_folder);
+            let work =
+                move |stage: &Stage| of_file(gpu, &file, filter.as_deref(), settings, regressions.as_ref(), stage);
+            guard::watched(work).map_err(|error| Failure(format!("{}: {error}", path.display())))??
         }
     };
-    let source = copy.as_ref().map_or(Source::Cookbook, |(path, text)| Source::Copy(path, text));
-    let formulas = match (&arguments.filter, source) {
-        (None, Source::Copy(path, text)) => functions_of(path, text)?,
-        (filter, _) => check::select(filter.as_deref())?,
-    };
-    let gpu = context.gpu()?;
-    let settings = Settings { cases: arguments.cases, seed: arguments.seed };
+    if arguments.json {
+        // stdout is the array alone.
+        for line in text::notes(&checked.notes, &checked.releases) {
+            eprintln!("cook: {line}");
+        }
+        output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
+    } else {
+        let style = text::Style::of_stdout();
+        output::bytes(text::report(&checked, &context.gpu()?.describe(), style).as_bytes())?;
+    }
+    Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
+}
+
+/// Checks a user's file.
+fn of_file(
+    gpu: &Gpu,
+    file: &UserFile,
+    filter: Option<&str>,
+    settings: Settings,
+    regressions: Option<&Regressions>,
+    stage: &Stage,
+) -> Result<Checked, CheckError> {
+    let Contents { formulas, notes, releases } = file.contents(filter)?;
+    let source = Source::Copy(&file.path, &file.text);
+    let mut rows = all(gpu, &formulas, source, settings, regressions, Some(stage))?;
+    for row in &mut rows {
+        for standing in releases.iter().filter(|standing| standing.module == row.module) {
+            if let Some(origin) = standing.origins.iter().find(|origin| origin.function == row.function) {
+                row.release.clone_from(&origin.release);
+                row.changed_since.clone_from(&origin.changes);
+            }
+        }
+    }
+    Ok(Checked { rows, notes, releases })
+}
+
+fn all(
+    gpu: &Gpu,
+    formulas: &[&'static Formula],
+    source: Source<'_>,
+    settings: Settings,
+    regressions: Option<&Regressions>,
+    stage: Option<&Stage>,
+) -> Result<Vec<Row>, CheckError> {
     // All signatures first, so that a wrong one is said before minutes of testing.
-    for formula in &formulas {
+    for formula in formulas {
+        if let Some(stage) = stage {
+            stage.compiling(&format!("compiling `{}`", formula.function));
+        }
         check::kernel(gpu, formula, source)?;
     }
     let bar = super::progress::bar(formulas.len() as u64, "checking");
     let mut rows = Vec::new();
     for formula in formulas {
+        if let Some(stage) = stage {
+            stage.running(&format!("running `{}`", formula.function));
+        }
         bar.set_message(formula.function);
-        rows.push(check::run(gpu, formula, source, settings)?);
+        rows.push(check::run_keeping(gpu, formula, source, settings, regressions)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
-    if arguments.json {
-        output::line(&serde_json::to_string_pretty(&rows)?.to_string())?;
-    } else {
-        output::bytes(table(&rows, &gpu.describe()).as_bytes())?;
-    }
-    Ok(if rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
-}
-
-/// The formulas of the functions that a user's file defines, where the user did not say which to test.
-fn functions_of(path: &str, text: &str) -> Result<Vec<&'static Formula>, Failure> {
-    let defined = |formula: &&Formula| {
-        let definition = format!("fn {}(", formula.function);
-        text.lines().any(|line| line.split("//").next().unwrap_or_default().contains(&definition))
-    };
-    let found: Vec<&Formula> = check::select(None)?.into_iter().filter(defined).collect();
-    if found.is_empty() {
-        let message = format!("{path}: defines no function of the cookbook; keep the names, or see `./cook list`");
-        return Err(Failure(message));
-    }
-    Ok(found)
-}
-
-fn table(rows: &[Row], adapter: &str) -> String {
-    use std::fmt::Write as _;
-    let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "on {adapter}; forward error against the f64 oracle in ulp, and the worst error over the allowed one"
-    );
-    let _ = writeln!(
-        text,
-        "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7}",
-        "function", "cases", "failed", "nonfinite", "max ulp", "p99", "median", "of bound", "seconds"
-    );
-    for row in rows {
-        let _ = writeln!(
-            text,
-            "{:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>7.2}",
-            row.function,
-            row.cases,
-            row.failed,
-            row.nonfinite,
-            short(row.max_ulp),
-            short(row.p99_ulp),
-            short(row.median_ulp),
-            short(row.worst_ratio),
-            row.seconds
-        );
-    }
-    for row in rows.iter().filter(|row| !row.passed()) {
-        let _ = writeln!(text, "\nFAILED {}", row.function);
-        if let Some(reason) = &row.reason {
-            let _ = writeln!(text, "  {reason}");
-            let _ = writeln!(text, "  worst input:  {}", row.worst_input);
-        }
-        if let Some(shrunk) = &row.shrunk_input {
-            let _ = writeln!(text, "  shrunk input: {shrunk}");
-        }
-        for case in &row.broken_hard_cases {
-            let _ = writeln!(text, "  hard case {case}");
-        }
-        for edge in &row.missed_edges {
-            let _ = writeln!(text, "  the inputs never reached: {edge}; run more --cases");
-        }
-    }
-    let failed = rows.iter().filter(|row| !row.passed()).count();
-    let _ = writeln!(
-        text,
-        "\n{} functions hold, {failed} fail. Where `of bound` is at most 1 all is within the Accuracy line; `backward` there allows more\n\
-         ulp where the input's own last place makes them. Naive forms are left out unless named; they are tested where they do well.",
-        rows.len() - failed
-    );
-    text
-}
-
-/// Three digits, in whichever notation is shorter.
-fn short(value: f64) -> String {
-    if value >= f64::MAX {
-        return "inf".to_owned();
-    }
-    if value == 0.0 || (0.01..10_000.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.1e}") }
+    Ok(rows)
 }

@@ -12,6 +12,7 @@ use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::{CostError, Options, views};
 use lapidary_harness::render::Rung;
 use lapidary_harness::render::file;
+use lapidary_harness::text_file;
 use serde::{Serialize, de::DeserializeOwned};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -128,8 +129,11 @@ fn behind_a_bar<T>(
     Ok(done)
 }
 
+/// Bytes of a record or a page; the largest record takes a hundredth.
+const MOST_BYTES: u64 = 64 << 20;
+
 fn read_text(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| Failure(format!("{}: cannot be read: {error}", path.display())))
+    text_file::read(path, MOST_BYTES).map_err(Failure)
 }
 
 /// Where a report goes, found fit before anything is measured.

@@ -1,6 +1,7 @@
 //! What a module's comments say: its header and the tags of each function. Format in `docs/contract.md`.
 
 use super::accuracy_line::Accuracy;
+use super::release;
 
 /// The licence line that every module carries.
 pub const LICENCE: &str = "MIT-0 OR Apache-2.0";
@@ -14,6 +15,8 @@ pub struct Header {
     pub name: String,
     /// Its purpose in one line.
     pub purpose: String,
+    /// The release and the hash of the text that its `// Version:` line states; a module has one.
+    pub version: Option<(String, String)>,
     /// Where its mathematics comes from.
     pub source: String,
 }
@@ -60,15 +63,26 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
     if licence != Some(LICENCE) {
         return Err(fault(2, &format!("expected `// SPDX-License-Identifier: {LICENCE}`")));
     }
-    let source_line = lines.next().and_then(|line| line.strip_prefix("// Source: "));
+    let mut third = lines.next();
+    let mut at = 3;
+    let mut version = None;
+    if let Some(line) = third.filter(|line| line.starts_with("// Version:")) {
+        let Some((release, hash)) = release::stated(line) else {
+            return Err(fault(3, "expected `// Version: <release>, hash <16 hexadecimal digits>`"));
+        };
+        version = Some((release.to_owned(), hash.to_owned()));
+        third = lines.next();
+        at = 4;
+    }
+    let source_line = third.and_then(|line| line.strip_prefix("// Source: "));
     let Some(source_line) = source_line.filter(|source| !source.trim().is_empty()) else {
-        return Err(fault(3, "expected `// Source: <paper, book or specification, with equation numbers>`"));
+        return Err(fault(at, "expected `// Source: <paper, book or specification, with equation numbers>`"));
     };
     // A source may run on, up to an empty comment line or the end of the comment.
     let more =
         lines.map_while(|line| line.strip_prefix("// ").map(str::trim)).filter(|line| !line.starts_with("requires:"));
     let source = std::iter::once(source_line.trim()).chain(more).collect::<Vec<_>>().join(" ");
-    Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), source })
+    Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), version, source })
 }
 
 /// Reads the comment of every function of a module.

@@ -175,11 +175,7 @@ fn check_purity(source: &str, module: &naga::Module, report: &mut Report<'_>) {
 }
 
 fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Report<'_>) {
-    let camel: String = name
-        .split('_')
-        .map(|part| part.chars().next().map_or(String::new(), |c| c.to_uppercase().collect::<String>() + &part[1..]))
-        .collect();
-    let prefixes = [format!("{name}_"), camel, format!("{}_", name.to_uppercase())];
+    let prefixes = super::prefixes(name);
     let mut globals: Vec<(&str, &str)> = Vec::new();
     let functions = module.functions.iter().filter_map(|(_, function)| function.name.as_deref());
     globals.extend(functions.map(|found| (found, prefixes[0].as_str())));

@@ -6,6 +6,7 @@ pub mod header;
 pub mod lint;
 pub mod marks;
 mod precedence;
+pub mod release;
 pub mod translate;
 
 use header::{FunctionDoc, Header};
@@ -82,6 +83,15 @@ pub fn modules() -> &'static [Module] {
             })
             .collect()
     })
+}
+
+/// What the names of a module's functions, structs and consts start with.
+pub fn prefixes(module: &str) -> [String; 3] {
+    let camel = module
+        .split('_')
+        .map(|part| part.chars().next().map_or(String::new(), |c| c.to_uppercase().collect::<String>() + &part[1..]))
+        .collect();
+    [format!("{module}_"), camel, format!("{}_", module.to_uppercase())]
 }
 
 /// The module of that name.

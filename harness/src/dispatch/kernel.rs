@@ -12,6 +12,23 @@ pub const ENTRY_POINT: &str = "lapidary_kernel";
 pub const INPUT: &str = "LapidaryKernelInput";
 /// The struct that holds one row's result.
 pub const OUTPUT: &str = "LapidaryKernelOutput";
+/// Words of the kernel's text that a source may declare too: the entry point's own variables and members, and what means
+/// something only where it stands.
+pub const HARMLESS: [&str; 13] = [
+    "invocation",
+    "row",
+    "result",
+    "x",
+    "group",
+    "binding",
+    "compute",
+    "workgroup_size",
+    "builtin",
+    "global_invocation_id",
+    "storage",
+    "read",
+    "read_write",
+];
 /// Invocations in a workgroup.
 pub const WORKGROUP_SIZE: u32 = 64;
 

@@ -1,22 +1,32 @@
 //! Any WGSL function as a compute kernel: reflected on naga's IR, run over rows of words.
 
+mod batch;
 mod kernel;
 mod layout;
+pub mod reach;
 pub mod shape;
+mod turns;
 pub mod value;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
 
 use crate::gpu::{Gpu, GpuError};
+use crate::tokens::{items, tokens};
+use batch::Buffers;
 use layout::Layout;
 use shape::{Signature, SignatureError};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 use value::{Arguments, Value};
 
 /// Rows in one dispatch: enough to fill the device, few enough that memory stays bounded (16 MiB at 64 words a row).
 pub const ROWS_PER_DISPATCH: usize = 65_536;
+
+/// Bytes of a message of naga's, with its excerpt of the source, that are passed on as they are.
+const MOST_MESSAGE: usize = 4_096;
+/// Most words of a row of arguments or results.
+const MOST_WORDS: usize = 16_384;
 
 /// Why a function could not be made into a kernel, or run.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +34,14 @@ pub enum DispatchError {
     /// The source is not valid WGSL; naga's message with line and column.
     #[error("{0}")]
     Source(String),
+    /// The source is valid WGSL, but no kernel can be made of it.
+    #[error("{message}")]
+    Fault {
+        /// The line, from 1, where there is one.
+        line: Option<u32>,
+        /// What is wrong and what to do.
+        message: String,
+    },
     /// The function is not there or cannot be dispatched.
     #[error(transparent)]
     Signature(#[from] SignatureError),
@@ -34,11 +52,25 @@ pub enum DispatchError {
 
 /// Parses and validates WGSL; an error holds naga's message with `path`, line and column.
 pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), DispatchError> {
-    let module = naga::front::wgsl::parse_str(source)
-        .map_err(|error| DispatchError::Source(error.emit_to_string_with_path(source, path)))?;
-    let info =
-        validate(&module).map_err(|error| DispatchError::Source(error.emit_to_string_with_path(source, path)))?;
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| {
+        let place = error.location(source).map(|place| (place.line_number, place.line_position));
+        DispatchError::Source(short(error.emit_to_string_with_path(source, path), place, error.message(), path))
+    })?;
+    let info = validate(&module).map_err(|error| {
+        let place = error.location(source).map(|place| (place.line_number, place.line_position));
+        DispatchError::Source(short(error.emit_to_string_with_path(source, path), place, &error.to_string(), path))
+    })?;
     Ok((module, info))
+}
+
+/// The whole message, or one line where the excerpt of the source would fill the screen.
+fn short(whole: String, place: Option<(u32, u32)>, message: &str, path: &str) -> String {
+    if whole.len() <= MOST_MESSAGE {
+        return whole;
+    }
+    let (line, column) = place.unwrap_or_default();
+    let first: String = message.lines().next().unwrap_or_default().chars().take(400).collect();
+    format!("{path}:{line}:{column}: {first}")
 }
 
 /// Those of `constants` that `module` declares as overrides. One that it does not is an error to wgpu and naga; a user's recipe
@@ -72,12 +104,45 @@ impl KernelModule {
     /// Reflects `function` in `source` (`path` is for messages) and appends its entry point.
     pub fn reflect(source: &str, path: &str, function: &str) -> Result<KernelModule, DispatchError> {
         let (module, _) = parse(source, path)?;
+        reach::check(&module, function).map_err(|fault| DispatchError::Fault {
+            line: fault.span.is_defined().then(|| fault.span.location(source).line_number),
+            message: fault.message,
+        })?;
         let signature = Signature::reflect(&module, function)?;
-        let source = format!("{source}\n{}", kernel_source(&signature));
+        let words: usize = signature.arguments.iter().map(|(_, shape)| shape.words()).sum();
+        if words.max(signature.result.words()) > MOST_WORDS {
+            let message = format!("`{function}` takes or returns over {MOST_WORDS} numbers; make its arrays smaller");
+            return Err(DispatchError::Fault { line: None, message });
+        }
+        let kernel = kernel_source(&signature);
+        refuse_clashes(source, &kernel, &signature)?;
+        let source = format!("{source}\n{kernel}");
         let (module, _) = parse(&source, path)?;
         let input = Layout::of_struct(&module, kernel::INPUT);
         let output = Layout::of_struct(&module, kernel::OUTPUT);
         Ok(KernelModule { signature, module, input, output })
+    }
+}
+
+/// Refuses a source that declares a name that the kernel's text needs for something else, such as a built-in's.
+fn refuse_clashes(source: &str, kernel: &str, signature: &Signature) -> Result<(), DispatchError> {
+    let mut needed: BTreeSet<&str> = tokens(kernel).iter().map(|token| token.text).collect();
+    for name in kernel::HARMLESS {
+        needed.remove(name);
+    }
+    needed.remove(signature.function.as_str());
+    let meant = signature.structs();
+    let code = tokens(source);
+    let clash = items(&code).into_iter().find(|item| needed.contains(item.name) && !meant.contains(item.name));
+    match clash {
+        None => Ok(()),
+        Some(item) => Err(DispatchError::Fault {
+            line: Some(item.line),
+            message: format!(
+                "declares `{}`, a name that WGSL or the check's kernel needs for something else; rename it",
+                item.name
+            ),
+        }),
     }
 }
 
@@ -88,6 +153,17 @@ struct Compiled {
     input: Layout,
     output: Layout,
     pipeline: wgpu::ComputePipeline,
+    /// Where the function has a loop.
+    turns: Option<Turns>,
+}
+
+/// How the turns of a kernel's loops are counted.
+#[derive(Clone, Debug)]
+struct Turns {
+    /// Most that an invocation may take.
+    limit: u32,
+    /// On lavapipe: the kernel with one invocation a workgroup, for rows that may have been cut short by their neighbours.
+    alone: Option<wgpu::ComputePipeline>,
 }
 
 /// The kernels of this process, by source and function: it has one device.
@@ -99,15 +175,8 @@ pub struct Kernel<'gpu> {
     gpu: &'gpu Gpu,
     compiled: Compiled,
     buffers: Option<Buffers>,
-}
-
-#[derive(Debug)]
-struct Buffers {
-    capacity: usize,
-    inputs: wgpu::Buffer,
-    outputs: wgpu::Buffer,
-    readback: wgpu::Buffer,
-    staging: Vec<u8>,
+    /// Of each row of the last run; empty where the function has no loop.
+    turns: Vec<u32>,
 }
 
 impl<'gpu> Kernel<'gpu> {
@@ -128,7 +197,7 @@ impl<'gpu> Kernel<'gpu> {
                 compiled
             }
         };
-        Ok(Kernel { gpu, compiled, buffers: None })
+        Ok(Kernel { gpu, compiled, buffers: None, turns: Vec::new() })
     }
 
     /// Compiles a kernel that nobody asks for again, such as a mutant.
@@ -142,7 +211,7 @@ impl<'gpu> Kernel<'gpu> {
         kernel: KernelModule,
         constants: &[(&str, f64)],
     ) -> Result<Kernel<'gpu>, DispatchError> {
-        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None })
+        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None, turns: Vec::new() })
     }
 
     /// The function's signature.
@@ -160,6 +229,42 @@ impl<'gpu> Kernel<'gpu> {
         self.compiled.output.offsets.len()
     }
 
+    /// Most turns that the function's loops may take together in one call; none where it has no loop. Beyond it the
+    /// kernel ends them, and the row's result is not the function's.
+    pub fn turn_limit(&self) -> Option<u32> {
+        self.compiled.turns.as_ref().map(|turns| turns.limit)
+    }
+
+    /// Whether the loops of that row of the last run were ended at the limit.
+    pub fn stopped(&self, row: usize) -> bool {
+        self.turns.get(row).is_some_and(|turns| self.is_over(*turns))
+    }
+
+    fn is_over(&self, turns: u32) -> bool {
+        self.turn_limit().is_some_and(|limit| turns > limit)
+    }
+
+    /// Whether those of any row of the last run were.
+    pub fn any_stopped(&self) -> bool {
+        self.turns.iter().any(|turns| self.is_over(*turns))
+    }
+
+    /// What there is to say of a stopped row.
+    pub fn why_stopped(&self) -> String {
+        let limit = self.turn_limit().unwrap_or_default();
+        let (reason, remedy) = if self.gpu.is_lavapipe() {
+            (
+                format!("; lavapipe itself would end them without a word after {}", turns::LAVAPIPE_ENDS_AT),
+                format!("; a GPU (--adapter NAME) follows up to {}", turns::LIMIT),
+            )
+        } else {
+            (String::new(), String::new())
+        };
+        format!(
+            "took over {limit} turns of its loops and was stopped there{reason}: an endless loop, or one too long to be judged here{remedy}"
+        )
+    }
+
     /// Calls the function for each row of `arguments`; `results` then holds a row for each, in order.
     ///
     /// # Panics
@@ -167,76 +272,45 @@ impl<'gpu> Kernel<'gpu> {
     pub fn run(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError> {
         assert_eq!(arguments.len() % self.argument_words(), 0, "whole rows");
         results.clear();
-        let mut part = Vec::new();
+        self.turns.clear();
+        let (mut part, mut turns) = (Vec::new(), Vec::new());
         for rows in arguments.chunks(ROWS_PER_DISPATCH * self.argument_words()) {
-            self.dispatch(rows, &mut part)?;
+            self.batch(rows, &mut part, &mut turns)?;
             results.extend_from_slice(&part);
+            self.turns.extend_from_slice(&turns);
         }
         Ok(())
-    }
-
-    fn dispatch(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError> {
-        let rows = arguments.len() / self.argument_words();
-        if self.buffers.as_ref().is_none_or(|buffers| buffers.capacity < rows) {
-            self.buffers = Some(self.allocate(rows)?);
-        }
-        let Some(buffers) = &mut self.buffers else { unreachable!("allocated above") };
-        let input_bytes = rows * self.compiled.input.stride;
-        let output_bytes = (rows * self.compiled.output.stride) as u64;
-        self.compiled.input.scatter(arguments, &mut buffers.staging[..input_bytes]);
-        self.gpu.queue.write_buffer(&buffers.inputs, 0, &buffers.staging[..input_bytes]);
-        self.gpu.guarded(&format!("running `{}`", self.compiled.signature.function), |device| {
-            // Bound to the rows in use, so that arrayLength is their number.
-            let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &self.compiled.pipeline.get_bind_group_layout(0),
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: sized(&buffers.inputs, input_bytes as u64) },
-                    wgpu::BindGroupEntry { binding: 1, resource: sized(&buffers.outputs, output_bytes) },
-                ],
-            });
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                pass.set_pipeline(&self.compiled.pipeline);
-                pass.set_bind_group(0, &bind_group);
-                let workgroups = rows.div_ceil(kernel::WORKGROUP_SIZE as usize);
-                pass.dispatch_workgroups(u32::try_from(workgroups).expect("at most 1024 workgroups"), 1, 1);
-            }
-            encoder.copy_buffer_to_buffer(&buffers.outputs, 0, &buffers.readback, 0, output_bytes);
-            self.gpu.queue.submit([encoder.finish()]);
-        })?;
-        self.gpu
-            .read_back(&buffers.readback, output_bytes, |bytes| self.compiled.output.gather(bytes, rows, results))?;
-        Ok(())
-    }
-
-    fn allocate(&self, rows: usize) -> Result<Buffers, DispatchError> {
-        let capacity = rows.next_power_of_two();
-        let buffer = |label, bytes: usize, usage| {
-            self.gpu.guarded("allocating kernel buffers", |device| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size: bytes as u64,
-                    usage,
-                    mapped_at_creation: false,
-                })
-            })
-        };
-        use wgpu::BufferUsages as Usage;
-        Ok(Buffers {
-            capacity,
-            inputs: buffer("inputs", capacity * self.compiled.input.stride, Usage::STORAGE | Usage::COPY_DST)?,
-            outputs: buffer("outputs", capacity * self.compiled.output.stride, Usage::STORAGE | Usage::COPY_SRC)?,
-            readback: buffer("readback", capacity * self.compiled.output.stride, Usage::COPY_DST | Usage::MAP_READ)?,
-            staging: vec![0; capacity * self.compiled.input.stride],
-        })
     }
 }
 
 fn compile(gpu: &Gpu, kernel: KernelModule, constants: &[(&str, f64)]) -> Result<Compiled, DispatchError> {
-    let KernelModule { signature, module, input, output } = kernel;
-    let pipeline = gpu.guarded(&format!("compiling `{}`", signature.function), |device| {
+    let KernelModule { signature, mut module, input, output } = kernel;
+    module.entry_points.retain(|point| point.name == ENTRY_POINT);
+    if constants.is_empty() {
+        // What the function does not reach is no business of the driver's compiler; with constants, an override that
+        // is not there any more would be an error.
+        naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    }
+    let limit = if gpu.is_lavapipe() { turns::LAVAPIPE_LIMIT } else { turns::LIMIT };
+    let counts = turns::count(&mut module, limit);
+    let alone = if counts && gpu.is_lavapipe() {
+        let mut alone = module.clone();
+        alone.entry_points.iter_mut().for_each(|point| point.workgroup_size = [1, 1, 1]);
+        Some(pipeline(gpu, &signature, alone, constants)?)
+    } else {
+        None
+    };
+    let pipeline = pipeline(gpu, &signature, module, constants)?;
+    Ok(Compiled { signature, input, output, pipeline, turns: counts.then_some(Turns { limit, alone }) })
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    signature: &Signature,
+    module: naga::Module,
+    constants: &[(&str, f64)],
+) -> Result<wgpu::ComputePipeline, DispatchError> {
+    Ok(gpu.guarded(&format!("compiling `{}`", signature.function), |device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&signature.function),
             source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
@@ -249,12 +323,7 @@ fn compile(gpu: &Gpu, kernel: KernelModule, constants: &[(&str, f64)]) -> Result
             compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         })
-    })?;
-    Ok(Compiled { signature, input, output, pipeline })
-}
-
-fn sized(buffer: &wgpu::Buffer, size: u64) -> wgpu::BindingResource<'_> {
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size: wgpu::BufferSize::new(size) })
+    })?)
 }
 
 /// Calls a WGSL function for each of `inputs` and returns its results: a slice in, a vector out, types checked against

@@ -214,6 +214,30 @@ impl Signature {
         Ok(Signature { function: function.to_owned(), arguments, result })
     }
 
+    /// The names of all structs in the arguments and the result, those inside others included, with their members'.
+    pub fn structs(&self) -> std::collections::BTreeSet<&str> {
+        fn collect<'a>(shape: &'a Shape, names: &mut std::collections::BTreeSet<&'a str>) {
+            match shape {
+                Shape::Struct(name, fields) => {
+                    names.insert(name);
+                    for (field, shape) in fields {
+                        names.insert(field);
+                        collect(shape, names);
+                    }
+                }
+                Shape::Array(element, _) => collect(element, names),
+                Shape::Scalar(_) | Shape::Vector(..) | Shape::Matrix(..) => {}
+            }
+        }
+        let mut names = std::collections::BTreeSet::new();
+        self.arguments
+            .iter()
+            .map(|(_, shape)| shape)
+            .chain([&self.result])
+            .for_each(|shape| collect(shape, &mut names));
+        names
+    }
+
     /// Checks that this, the WGSL function's signature, is what the Rust side expects.
     pub fn expect(&self, arguments: &[Shape], result: &Shape) -> Result<(), SignatureError> {
         let mismatch = |part: String, expected: &str, found: &str| SignatureError::Mismatch {

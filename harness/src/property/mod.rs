@@ -18,6 +18,8 @@ use tolerance::{Tolerance, Verdict, number};
 pub const DEFAULT_CASES: u64 = 65_536;
 /// Dispatches spent on shrinking one row at most.
 const MOST_SHRINKS: usize = 4_000;
+/// Rows of the first dispatch of a function with a loop, which may have no end.
+const FIRST_ROWS: usize = 1_024;
 /// Rows that one thread generates or compares at a time.
 const ROWS_PER_TASK: usize = 512;
 
@@ -45,6 +47,8 @@ pub struct Report {
     pub failed: u64,
     /// Rows with a NaN or an infinity.
     pub nonfinite: u64,
+    /// Rows whose loops were ended at the kernel's limit of turns, so that their results say nothing.
+    pub stopped: u64,
     /// Distribution of the forward error in ulp.
     pub ulps: Histogram,
     /// Largest forward error in ulp.
@@ -85,10 +89,29 @@ pub struct Check<'a, 'gpu> {
     pub tolerance: &'a Tolerance,
 }
 
-/// Results for a batch of rows.
-struct Batch {
-    verdicts: Vec<Verdict>,
-    broken: Vec<Option<String>>,
+/// What a row's results are worth.
+struct Judged {
+    verdict: Verdict,
+    /// The first invariant or pair that is broken.
+    broken: Option<String>,
+    /// Whether loops were ended at the limit of turns, of the row or of its pair.
+    stopped: bool,
+}
+
+impl Judged {
+    fn fails(&self) -> bool {
+        self.stopped || !self.verdict.holds() || self.broken.is_some()
+    }
+
+    /// How badly the row fails; above 1 where it does.
+    fn badness(&self) -> f64 {
+        if self.stopped || self.verdict.nonfinite {
+            return f64::INFINITY;
+        }
+        // A broken invariant has no measure of its own; it counts as just failing, so that a larger error leads.
+        let invariant = if self.broken.is_some() { 1.0 + f64::EPSILON } else { 0.0 };
+        self.verdict.ratio.max(invariant)
+    }
 }
 
 impl Check<'_, '_> {
@@ -99,6 +122,7 @@ impl Check<'_, '_> {
             cases: 0,
             failed: 0,
             nonfinite: 0,
+            stopped: 0,
             ulps: Histogram::default(),
             max_ulp: 0.0,
             worst_ratio: -1.0,
@@ -115,8 +139,10 @@ impl Check<'_, '_> {
         }
         let width = self.kernel.argument_words();
         let mut first = 0;
-        while first < settings.cases {
-            let rows = (settings.cases - first).min(ROWS_PER_DISPATCH as u64) as usize;
+        // Where loops are ended at the limit the verdict is clear, and more rows of so many turns take long.
+        while first < settings.cases && report.stopped == 0 {
+            let most = if self.kernel.turn_limit().is_some() && first == 0 { FIRST_ROWS } else { ROWS_PER_DISPATCH };
+            let rows = (settings.cases - first).min(most as u64) as usize;
             let mut arguments = vec![0; rows * width];
             let domain = &self.formula.domain;
             arguments.par_chunks_mut(ROWS_PER_TASK * width).enumerate().for_each(|(task, words)| {
@@ -151,43 +177,54 @@ impl Check<'_, '_> {
         let width = self.kernel.argument_words();
         let batch = self.judge(arguments)?;
         let mut worst = (0, -1.0);
-        for (index, (verdict, broken)) in batch.verdicts.iter().zip(&batch.broken).enumerate() {
-            let fails = !verdict.holds() || broken.is_some();
-            report.failed += u64::from(fails);
+        for (index, row) in batch.iter().enumerate() {
+            let verdict = &row.verdict;
+            report.failed += u64::from(row.fails());
             report.nonfinite += u64::from(verdict.nonfinite);
+            report.stopped += u64::from(row.stopped);
             report.ulps.add(verdict.ulp);
             report.max_ulp = report.max_ulp.max(verdict.ulp);
-            let badness = badness(verdict, broken.as_ref());
+            let badness = row.badness();
             if badness > report.worst_ratio {
                 report.worst_ratio = badness;
                 report.worst = arguments[index * width..(index + 1) * width].to_vec();
-                report.reason = broken.clone().or_else(|| (!verdict.holds()).then(|| describe(verdict)));
+                report.reason = self.reason(row);
             }
             if badness > worst.1 {
                 worst = (index, badness);
             }
         }
-        report.cases += batch.verdicts.len() as u64;
+        report.cases += batch.len() as u64;
         Ok(worst)
     }
 
-    fn judge(&mut self, arguments: &[u32]) -> Result<Batch, DispatchError> {
+    /// What a row breaks; none where it holds.
+    fn reason(&self, row: &Judged) -> Option<String> {
+        if row.stopped {
+            return Some(self.kernel.why_stopped());
+        }
+        row.broken.clone().or_else(|| (!row.verdict.holds()).then(|| describe(&row.verdict)))
+    }
+
+    fn judge(&mut self, arguments: &[u32]) -> Result<Vec<Judged>, DispatchError> {
         let formula = self.formula;
         let (width, result_width) = (self.kernel.argument_words(), self.kernel.result_words());
         let rows = arguments.len() / width;
         let mut results = Words::new();
         self.kernel.run(arguments, &mut results)?;
+        let mut stopped: Vec<bool> = (0..rows).map(|row| self.kernel.stopped(row)).collect();
         let mut others = Vec::with_capacity(formula.pairs.len());
         for pair in &formula.pairs {
             let mut transformed = Words::with_capacity(arguments.len());
             arguments.chunks_exact(width).for_each(|row| (pair.transform)(row, &mut transformed));
             let mut other = Words::new();
             self.kernel.run(&transformed, &mut other)?;
+            stopped.iter_mut().enumerate().for_each(|(row, stopped)| *stopped |= self.kernel.stopped(row));
             others.push(other);
         }
         let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::dispatch::shape::Shape::scalars).collect();
         let tolerance = self.tolerance;
-        let judged: Vec<(Verdict, Option<String>)> = (0..rows)
+        Ok((0..rows)
             .into_par_iter()
             .with_min_len(ROWS_PER_TASK)
             .map_init(
@@ -210,12 +247,10 @@ impl Check<'_, '_> {
                         (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
                     });
                     let broken = invariants.chain(pairs).find_map(Result::err);
-                    (verdict, broken)
+                    Judged { verdict, broken, stopped: stopped[row] }
                 },
             )
-            .collect();
-        let (verdicts, broken) = judged.into_iter().unzip();
-        Ok(Batch { verdicts, broken })
+            .collect())
     }
 
     /// The simplest input near row `row` that still fails at least half as badly.
@@ -230,7 +265,7 @@ impl Check<'_, '_> {
             }
             let candidate = tree.current();
             let batch = self.judge(&candidate)?;
-            let badness = badness(&batch.verdicts[0], batch.broken[0].as_ref());
+            let badness = batch[0].badness();
             if badness >= enough && badness > 1.0 {
                 simplest = candidate;
             } else {
@@ -239,14 +274,6 @@ impl Check<'_, '_> {
         }
         Ok(simplest)
     }
-}
-
-/// How badly a row fails; above 1 where it does.
-fn badness(verdict: &Verdict, broken: Option<&String>) -> f64 {
-    // A broken invariant has no measure of its own; it counts as just failing, so that a larger error leads.
-    let invariant = if broken.is_some() { 1.0 + f64::EPSILON } else { 0.0 };
-    let ratio = if verdict.nonfinite { f64::INFINITY } else { verdict.ratio };
-    ratio.max(invariant)
 }
 
 fn describe(verdict: &Verdict) -> String {

@@ -1,4 +1,4 @@
-//! Failing inputs, kept as bits beside the formulas and replayed first in every later run.
+//! Failing inputs, kept as bits in a folder and replayed first in later runs of the cookbook's own functions.
 //!
 //! One file a function, one line an input: the words in hexadecimal, then a comment that says what they failed.
 
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum PersistenceError {
     /// The system's word.
-    #[error("{path}: {error}")]
+    #[error("{path}: failing inputs cannot be kept there: {error}; choose another folder with --failures DIR")]
     Io {
         /// Which file.
         path: PathBuf,
@@ -41,9 +41,11 @@ impl Regressions {
         Self { folder: folder.into() }
     }
 
-    /// The cookbook's own, committed with it.
-    pub fn of_cookbook() -> Self {
-        Self::in_folder(Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions"))
+    /// In the folder of what is built: `CARGO_TARGET_DIR`, else the cookbook's `target`.
+    pub fn of_target() -> Self {
+        let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+        let target = target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"));
+        Self::in_folder(target.join("lapidary/failures"))
     }
 
     fn path(&self, function: &str) -> PathBuf {
@@ -73,11 +75,11 @@ impl Regressions {
         Ok(rows)
     }
 
-    /// Keeps a failing row, unless it is kept already.
-    pub fn store(&self, function: &str, row: &Words, reason: &str) -> Result<(), PersistenceError> {
+    /// Keeps a failing row, unless it is kept already, and returns the file.
+    pub fn store(&self, function: &str, row: &Words, reason: &str) -> Result<PathBuf, PersistenceError> {
         let path = self.path(function);
         if self.load(function, row.len())?.contains(row) {
-            return Ok(());
+            return Ok(path);
         }
         let write = || {
             std::fs::create_dir_all(&self.folder)?;
@@ -85,7 +87,8 @@ impl Regressions {
             let words: Vec<String> = row.iter().map(|word| format!("{word:08x}")).collect();
             writeln!(file, "{} # {}", words.join(" "), reason.replace('\n', " "))
         };
-        write().map_err(|error| PersistenceError::Io { path: path.clone(), error })
+        write().map_err(|error| PersistenceError::Io { path: path.clone(), error })?;
+        Ok(path)
     }
 }
 

@@ -44,6 +44,17 @@ impl Verdict {
     }
 }
 
+/// How far a part of a result may be off.
+#[derive(Clone, Debug)]
+pub struct Allowed {
+    /// The part.
+    pub leaf: Leaf,
+    /// The largest error of a component, whatever the input.
+    pub allowed: f64,
+    /// By how many ulp the input may be off besides.
+    pub backward: f64,
+}
+
 /// The comparison for one function.
 #[derive(Clone, Debug)]
 pub struct Tolerance {
@@ -126,6 +137,19 @@ impl Tolerance {
             }
         }
         Verdict { ulp, ratio, nonfinite }
+    }
+
+    /// How far each part of a result may be off from the exact one, by the plain bounds.
+    pub fn allowed(&self, exact: &[f64]) -> Vec<Allowed> {
+        let of = |(leaf, bound): &(Leaf, Bound)| {
+            let scale = largest(&exact[leaf.start..leaf.start + leaf.length]);
+            let allowed = match leaf.scalar {
+                Scalar::F32 => bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED,
+                _ => 0.0,
+            };
+            Allowed { leaf: leaf.clone(), allowed, backward: bound.backward }
+        };
+        self.results.iter().map(of).collect()
     }
 
     fn floats(&self) -> impl Iterator<Item = &(Leaf, Bound)> {

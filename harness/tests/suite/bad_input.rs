@@ -178,7 +178,9 @@ const CHECK: &[Row] = &[
         &["type.wgsl: ", "`refraction_reflect`", "argument `incident`", "expected vec3f, found f32"],
     ),
     ("refraction::refract --wgsl {}/type.wgsl", One, &["type.wgsl: ", "`refraction_refract` is missing"]),
-    ("refraction --wgsl {}/type.wgsl", One, &["type.wgsl: ", "is missing"]),
+    ("refraction --wgsl {}/type.wgsl", One, &["type.wgsl: ", "expected vec3f, found f32"]),
+    ("fresnel --wgsl {}/type.wgsl", One, &["type.wgsl: ", "no function of module `fresnel`"]),
+    ("refraction::reflect --failures {}/text.glb", One, &["text.glb/refraction_reflect.txt: ", "--failures DIR"]),
     ("--wgsl {}/other.wgsl", One, &["other.wgsl: ", "no function of the cookbook"]),
 ];
 

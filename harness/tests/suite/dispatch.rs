@@ -408,3 +408,50 @@ fn broken_source_is_said_with_line_and_column() {
         .expect_err("invalid WGSL");
     assert!(error.to_string().contains("broken.wgsl:"), "{error}");
 }
+
+/// Turns of a pseudo-random sequence, which no compiler writes as a formula.
+const SEQUENCE: &str = "fn after(turns: u32) -> u32 {\n    var state = 1u;\n    for (var turn = 0u; turn < turns; turn++) {\n\
+    state = state * 1664525u + 1013904223u;\n    }\n    return state;\n}\n";
+
+fn after(turns: u32) -> u32 {
+    (0..turns).fold(1, |state: u32, _| state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))
+}
+
+#[test]
+fn rows_are_not_cut_short_by_their_neighbours() {
+    // lavapipe counts the turns of a group of rows together: here each row takes 40,000, and all together 80,000.
+    let source = format!(
+        "{SEQUENCE}fn both(row: u32) -> u32 {{\n    var sum = 0u;\n    if (row % 2u == 0u) {{ sum = after(40000u + row); }}\n\
+         if (row % 2u == 1u) {{ sum = after(40000u + row); }}\n    return sum;\n}}\n"
+    );
+    let module = KernelModule::reflect(&source, "both.wgsl", "both").expect("valid WGSL");
+    let mut kernel = Kernel::new(gpu(), module).expect("compiles");
+    let arguments: Vec<u32> = (0..100).collect();
+    let mut results = Vec::new();
+    kernel.run(&arguments, &mut results).expect("runs");
+    assert!(!kernel.any_stopped());
+    let wanted: Vec<u32> = arguments.iter().map(|row| after(40_000 + row)).collect();
+    assert_eq!(results, wanted);
+}
+
+#[test]
+fn turns_are_counted_to_the_limit_and_no_further() {
+    let module = KernelModule::reflect(SEQUENCE, "after.wgsl", "after").expect("valid WGSL");
+    let mut kernel = Kernel::new(gpu(), module).expect("compiles");
+    let limit = kernel.turn_limit().expect("it has a loop");
+    // The turn after the last, at which the condition is asked, counts too.
+    let arguments = [0, 1, 7, limit - 1, limit, limit + 100, u32::MAX];
+    let mut results = Vec::new();
+    kernel.run(&arguments, &mut results).expect("runs");
+    let stopped: Vec<bool> = (0..arguments.len()).map(|row| kernel.stopped(row)).collect();
+    assert_eq!(stopped, [false, false, false, false, true, true, true]);
+    for (turns, result) in arguments.iter().zip(&results).take(4) {
+        assert_eq!(*result, after(*turns), "{turns} turns");
+    }
+    // Nothing is counted where there is no loop.
+    let plain = "fn twice(value: u32) -> u32 {\n    return 2u * value;\n}\n";
+    let mut kernel =
+        Kernel::new(gpu(), KernelModule::reflect(plain, "twice.wgsl", "twice").expect("valid")).expect("compiles");
+    kernel.run(&[1], &mut results).expect("runs");
+    assert_eq!((kernel.turn_limit(), kernel.any_stopped()), (None, false));
+}

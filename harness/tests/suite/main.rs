@@ -29,12 +29,14 @@ mod plan;
 mod program;
 mod random_walk;
 mod reference;
+mod releases;
 mod restraint;
 mod shadows;
 mod snapshots;
 mod specialise;
 mod text;
 mod texture_diffusion;
+mod user_file;
 mod voxelization;
 mod walked_references;
 

@@ -1,0 +1,106 @@
+//! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
+
+use super::literal::{Language, call, value};
+use crate::dispatch::shape::{Scalar, Shape};
+use crate::dispatch::{DispatchError, Kernel};
+use crate::formula::{Formula, Words};
+use crate::property::tolerance::{Allowed, Tolerance, number};
+use serde::Serialize;
+
+/// A failing input and its results, as literals and as numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Failure {
+    /// The call in WGSL.
+    pub wgsl: String,
+    /// The call of the mirror in Rust.
+    pub rust: String,
+    /// The shader's result as a WGSL literal.
+    pub got: String,
+    /// The oracle's, rounded to f32, as a WGSL literal.
+    pub expected: String,
+    /// The mirror's as a WGSL literal.
+    pub mirror: String,
+    /// The same in Rust.
+    pub got_rust: String,
+    /// The same in Rust.
+    pub expected_rust: String,
+    /// The same in Rust.
+    pub mirror_rust: String,
+    /// The numbers, one entry per scalar, vector or matrix column of the result.
+    pub fields: Vec<Field>,
+}
+
+/// A part of a result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Field {
+    /// Which, as `field.member[index]`; empty where the result has one part.
+    pub field: String,
+    /// By the shader.
+    pub got: Vec<f64>,
+    /// By the mirror.
+    pub mirror: Vec<f64>,
+    /// By the oracle.
+    pub expected: Vec<f64>,
+    /// How far a component may be off; 0 for a flag or an integer.
+    pub allowed: f64,
+    /// By how many ulp the input may be off besides, so that the result counts as right.
+    pub backward_ulp: f64,
+}
+
+impl Failure {
+    /// Runs the three at one input.
+    pub fn at(
+        formula: &Formula,
+        kernel: &mut Kernel<'_>,
+        tolerance: &Tolerance,
+        arguments: &Words,
+    ) -> Result<Failure, DispatchError> {
+        let (mut got, mut mirrored, mut exact) = (Words::new(), Words::new(), Vec::new());
+        kernel.run(arguments, &mut got)?;
+        (formula.mirror)(arguments, &mut mirrored);
+        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
+        let numbers: Vec<f64> = arguments.iter().zip(&scalars).map(|(word, kind)| number(*kind, *word)).collect();
+        (formula.oracle)(&numbers, &mut exact);
+        let rounded: Words =
+            formula.result.scalars().iter().zip(&exact).map(|(kind, number)| to_word(*kind, *number)).collect();
+        let fields = tolerance
+            .allowed(&exact)
+            .into_iter()
+            .map(|Allowed { leaf, allowed, backward }| {
+                let range = leaf.start..leaf.start + leaf.length;
+                let numbers =
+                    |words: &[u32]| words[range.clone()].iter().map(|word| number(leaf.scalar, *word)).collect();
+                Field {
+                    got: numbers(&got),
+                    mirror: numbers(&mirrored),
+                    expected: exact[range.clone()].to_vec(),
+                    field: leaf.path,
+                    allowed,
+                    backward_ulp: backward,
+                }
+            })
+            .collect();
+        let [wgsl, rust] = [Language::Wgsl, Language::Rust];
+        Ok(Failure {
+            wgsl: call(wgsl, formula, arguments),
+            rust: call(rust, formula, arguments),
+            got: value(wgsl, formula, &got),
+            expected: value(wgsl, formula, &rounded),
+            mirror: value(wgsl, formula, &mirrored),
+            got_rust: value(rust, formula, &got),
+            expected_rust: value(rust, formula, &rounded),
+            mirror_rust: value(rust, formula, &mirrored),
+            fields,
+        })
+    }
+}
+
+/// The word nearest to a number of the oracle.
+fn to_word(kind: Scalar, number: f64) -> u32 {
+    match kind {
+        Scalar::F32 => (number as f32).to_bits(),
+        Scalar::I32 => (number as i32).cast_unsigned(),
+        Scalar::U32 => number as u32,
+        Scalar::Bool => u32::from(number != 0.0),
+    }
+}

@@ -1,0 +1,167 @@
+//! A user's file is worked on in a thread of its own, with a stack for deep texts, while its time and memory are watched: a
+//! compiler may be asked for more than the machine has.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, Once, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The stack: naga goes down some kilobytes for each of the operators that may follow one another in a text.
+const STACK_BYTES: usize = 512 << 20;
+/// The memory that the work may take; checks of the cookbook's own functions stay below a tenth of it.
+const MOST_BYTES: u64 = 2 << 30;
+/// The time for reading and compiling. Running has none: `--cases` decides it.
+const MOST_COMPILING: Duration = Duration::from_secs(120);
+/// Between two looks at memory and time.
+const LOOK: Duration = Duration::from_millis(10);
+/// The name of the thread, by which its panics are told apart.
+const THREAD: &str = "a user's file";
+
+/// What the thread is at.
+#[derive(Clone, Debug)]
+pub struct Stage(Arc<Mutex<(String, Option<Instant>)>>);
+
+impl Stage {
+    /// Something that compiles, and so has a time limit.
+    pub fn compiling(&self, what: &str) {
+        self.set(what, Some(Instant::now()));
+    }
+
+    /// Something that takes the time that it takes.
+    pub fn running(&self, what: &str) {
+        self.set(what, None);
+    }
+
+    fn set(&self, what: &str, since: Option<Instant>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = (what.to_owned(), since);
+    }
+
+    fn get(&self) -> (String, Option<Instant>) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Why the work was given up; one line.
+#[derive(Debug, thiserror::Error)]
+pub enum GuardError {
+    /// Too much memory.
+    #[error("{0} takes over {most} MiB of memory; make its arrays smaller", most = MOST_BYTES >> 20)]
+    Memory(String),
+    /// Too much time.
+    #[error("{0} takes over {most} s; make it simpler", most = MOST_COMPILING.as_secs())]
+    Time(String),
+    /// A fault of the compiler or of this program.
+    #[error("{stage} breaks the compiler ({reason}); change the lines that it cannot take")]
+    Panic {
+        /// What it was at.
+        stage: String,
+        /// The panic's word.
+        reason: String,
+    },
+    /// The system gives no thread.
+    #[error("no thread with a stack of {size} MiB: {0}", size = STACK_BYTES >> 20)]
+    Thread(std::io::Error),
+}
+
+/// Does `work` in a thread of its own. Where it takes too much the error comes at once, and the thread ends with the
+/// process, which is to end then.
+pub fn watched<T: Send + 'static>(work: impl FnOnce(&Stage) -> T + Send + 'static) -> Result<T, GuardError> {
+    watched_within(MOST_BYTES, work)
+}
+
+fn watched_within<T: Send + 'static>(
+    most_bytes: u64,
+    work: impl FnOnce(&Stage) -> T + Send + 'static,
+) -> Result<T, GuardError> {
+    silence_panics();
+    let stage = Stage(Arc::new(Mutex::new(("reading the file".to_owned(), Some(Instant::now())))));
+    let before = resident_bytes();
+    let (sender, receiver) = channel();
+    let its_stage = stage.clone();
+    let thread = std::thread::Builder::new()
+        .name(THREAD.to_owned())
+        .stack_size(STACK_BYTES)
+        // Where nobody waits any more, the process is about to end.
+        .spawn(move || sender.send(work(&its_stage)).unwrap_or_default())
+        .map_err(GuardError::Thread)?;
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok(done) => return Ok(done),
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        let (what, since) = stage.get();
+        if resident_bytes().saturating_sub(before) > most_bytes {
+            return Err(GuardError::Memory(what));
+        }
+        if since.is_some_and(|since| since.elapsed() > MOST_COMPILING) {
+            return Err(GuardError::Time(what));
+        }
+    }
+    let reason = match thread.join() {
+        Err(panic) => match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+            (Some(text), _) => (*text).to_owned(),
+            (_, Some(text)) => text.clone(),
+            _ => String::new(),
+        },
+        Ok(()) => String::new(),
+    };
+    let reason = reason.lines().next().unwrap_or_default().to_owned();
+    Err(GuardError::Panic { stage: stage.get().0, reason })
+}
+
+/// The process's memory; 0 where the system does not say.
+fn resident_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let kibibytes =
+        status.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok());
+    kibibytes.map_or(0, |kibibytes: u64| kibibytes << 10)
+}
+
+/// A panic of the thread becomes an error; it is not to be printed besides.
+fn silence_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if std::thread::current().name() != Some(THREAD) {
+                usual(panic);
+            }
+        }));
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_done_and_what_breaks_is_said() {
+        assert_eq!(watched(|_| 7).expect("done"), 7);
+        let error = watched(|stage| {
+            stage.compiling("compiling `f`");
+            panic!("no such type\nat all")
+        });
+        let error = error.map(|()| ()).expect_err("a panic").to_string();
+        assert_eq!(error, "compiling `f` breaks the compiler (no such type); change the lines that it cannot take");
+        // Far more than a thread usually has.
+        fn deep(depth: u64) -> u64 {
+            let frame = std::hint::black_box([depth; 64]);
+            if depth == 0 { frame[0] } else { deep(depth - 1) + frame[63] - depth + 1 }
+        }
+        assert_eq!(watched(|_| deep(100_000)).expect("done"), 100_000);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn memory_is_bounded() {
+        let error = watched_within(128 << 20, |_| {
+            let mut kept = Vec::new();
+            while kept.len() < 64 {
+                kept.push(std::hint::black_box(vec![1u8; 8 << 20]));
+                std::thread::sleep(Duration::from_millis(15));
+            }
+            kept.len()
+        });
+        assert!(matches!(error, Err(GuardError::Memory(_))), "{error:?}");
+    }
+}

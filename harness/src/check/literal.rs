@@ -1,0 +1,117 @@
+//! Values as literals that can be pasted: Rust for the mirrors' crates, WGSL for a shader. Decimals are the shortest that
+//! name the f32 exactly.
+
+use crate::dispatch::shape::{Scalar, Shape};
+use crate::formula::Formula;
+
+/// The language of a literal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// With glam's types and the module's own crate.
+    Rust,
+    /// With the short names of types.
+    Wgsl,
+}
+
+/// The call of a formula's function with these arguments: the WGSL function, or its mirror.
+pub fn call(language: Language, formula: &Formula, arguments: &[u32]) -> String {
+    let name = match language {
+        Language::Wgsl => formula.function.to_owned(),
+        Language::Rust => {
+            let prefix = format!("{}_", formula.module);
+            let name = formula.function.strip_prefix(&prefix).unwrap_or(formula.function);
+            format!("lapidary_{}::{name}", formula.module)
+        }
+    };
+    let mut rest = arguments;
+    let values: Vec<String> =
+        formula.arguments.iter().map(|shape| write(language, formula.module, shape, &mut rest)).collect();
+    format!("{name}({})", values.join(", "))
+}
+
+/// A value of a formula's result.
+pub fn value(language: Language, formula: &Formula, words: &[u32]) -> String {
+    let mut rest = words;
+    write(language, formula.module, &formula.result, &mut rest)
+}
+
+/// Takes the value's words off the front.
+fn write(language: Language, module: &str, shape: &Shape, words: &mut &[u32]) -> String {
+    use Language::{Rust, Wgsl};
+    let mut list = |shapes: &mut dyn Iterator<Item = &Shape>| -> Vec<String> {
+        shapes.map(|shape| write(language, module, shape, words)).collect()
+    };
+    match shape {
+        Shape::Scalar(kind) => {
+            let (first, rest) = words.split_first().unwrap_or((&0, &[]));
+            *words = rest;
+            scalar(language, *kind, *first)
+        }
+        Shape::Vector(size, kind) => {
+            let element = Shape::Scalar(*kind);
+            let parts = list(&mut std::iter::repeat_n(&element, usize::from(*size))).join(", ");
+            match language {
+                Wgsl => format!("{shape}({parts})"),
+                Rust => format!("{}Vec{size}::new({parts})", prefix(*kind)),
+            }
+        }
+        Shape::Matrix(columns, rows) => {
+            let column = Shape::Vector(*rows, Scalar::F32);
+            let parts = list(&mut std::iter::repeat_n(&column, usize::from(*columns))).join(", ");
+            match language {
+                Wgsl => format!("{shape}({parts})"),
+                // The mirrors' matrices are square.
+                Rust => format!("Mat{columns}::from_cols({parts})"),
+            }
+        }
+        Shape::Array(element, length) => {
+            let parts = list(&mut std::iter::repeat_n(&**element, *length as usize)).join(", ");
+            match language {
+                Wgsl => format!("{shape}({parts})"),
+                Rust => format!("[{parts}]"),
+            }
+        }
+        Shape::Struct(name, fields) => {
+            let parts = list(&mut fields.iter().map(|(_, shape)| shape));
+            match language {
+                Wgsl => format!("{name}({})", parts.join(", ")),
+                Rust => {
+                    let members: Vec<String> =
+                        fields.iter().zip(&parts).map(|((name, _), part)| format!("{name}: {part}")).collect();
+                    format!("lapidary_{module}::{name} {{ {} }}", members.join(", "))
+                }
+            }
+        }
+    }
+}
+
+/// What glam puts before `Vec`.
+fn prefix(kind: Scalar) -> &'static str {
+    match kind {
+        Scalar::F32 => "",
+        Scalar::I32 => "I",
+        Scalar::U32 => "U",
+        Scalar::Bool => "B",
+    }
+}
+
+fn scalar(language: Language, kind: Scalar, word: u32) -> String {
+    let rust = language == Language::Rust;
+    match kind {
+        Scalar::F32 => {
+            let value = f32::from_bits(word);
+            match (value.is_finite(), rust) {
+                (true, true) => format!("{value:?}"),
+                (true, false) => format!("{value:?}f"),
+                (false, true) => format!("f32::from_bits({word:#x})"),
+                (false, false) => format!("bitcast<f32>({word:#x}u)"),
+            }
+        }
+        Scalar::I32 if rust => word.cast_signed().to_string(),
+        // -2147483648i would be a minus before a literal that is out of range.
+        Scalar::I32 => format!("i32({})", word.cast_signed()),
+        Scalar::U32 if rust => word.to_string(),
+        Scalar::U32 => format!("{word}u"),
+        Scalar::Bool => (word != 0).to_string(),
+    }
+}

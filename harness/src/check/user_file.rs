@@ -1,0 +1,135 @@
+//! A user's file of WGSL: which of the cookbook's functions it holds, which it lacks, and what else is in it.
+
+use super::{CheckError, bounds, select};
+use crate::cookbook::release::{History, Standing};
+use crate::cookbook::{self, Module};
+use crate::dispatch;
+use crate::formula::Formula;
+use crate::nearest;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A user's file.
+#[derive(Clone, Debug)]
+pub struct UserFile {
+    /// Its path, for messages.
+    pub path: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// What of a file is checked, and what there is to say of the rest.
+#[derive(Debug)]
+pub struct Contents {
+    /// The functions to check.
+    pub formulas: Vec<&'static Formula>,
+    /// One line each: functions that are lacking or unknown, and what else takes no part.
+    pub notes: Vec<String>,
+    /// Of each module with a function in the file: which release it is, and what was mended since.
+    pub releases: Vec<Standing>,
+}
+
+impl UserFile {
+    /// Reads a file, and refuses one that no compiler could take.
+    pub fn read(path: &Path) -> Result<UserFile, CheckError> {
+        let text = bounds::read(path).map_err(CheckError::File)?;
+        let path = path.display().to_string();
+        bounds::check(&path, &text).map_err(CheckError::File)?;
+        Ok(UserFile { path, text })
+    }
+
+    /// What the file holds of what `filter` asks for: a module, one function, or all that it has where there is none.
+    pub fn contents(&self, filter: Option<&str>) -> Result<Contents, CheckError> {
+        let in_path = |error| CheckError::Dispatch { path: self.path.clone(), error };
+        let asked = select(filter)?;
+        let (ir, _) = dispatch::parse(&self.text, &self.path).map_err(in_path)?;
+        let held: BTreeSet<&str> = ir.functions.iter().filter_map(|(_, found)| found.name.as_deref()).collect();
+        let points: BTreeSet<&str> = ir.entry_points.iter().map(|point| point.name.as_str()).collect();
+        let formulas: Vec<&Formula> = asked
+            .iter()
+            .copied()
+            .filter(|formula| held.contains(formula.function) || points.contains(formula.function))
+            .collect();
+        // One function that is asked for by name must be there.
+        if let ([only], Some(true)) = (asked.as_slice(), filter.map(|filter| filter.contains("::")))
+            && formulas.is_empty()
+        {
+            let error = dispatch::shape::SignatureError::Missing { function: only.function.to_owned() };
+            return Err(in_path(error.into()));
+        }
+        if formulas.is_empty() {
+            let of = filter.map_or("the cookbook".to_owned(), |module| format!("module `{module}`"));
+            let message =
+                format!("{}: defines no function of {of} to check; keep the names, or see `./cook list`", self.path);
+            return Err(CheckError::File(message));
+        }
+        let by_function = filter.is_some_and(|filter| filter.contains("::"));
+        let mut notes = Vec::new();
+        let modules: Vec<&Module> = cookbook::modules()
+            .iter()
+            .filter(|module| formulas.iter().any(|formula| formula.module == module.name))
+            .collect();
+        if !by_function {
+            for module in &modules {
+                notes.extend(self.lacking(module, &asked, &held));
+            }
+            notes.extend(self.unknown(filter, &held));
+            notes.extend(self.others(&ir));
+        }
+        let standing = |module: &&Module| {
+            let of_module = |name: &&str| formulas.iter().any(|formula| formula.function == *name);
+            let names = module.functions.iter().map(|function| function.name.as_str());
+            let functions: Vec<&str> = names.filter(of_module).collect();
+            History::of_cookbook().standing(module.name, &functions, &self.text)
+        };
+        let releases = modules.iter().map(standing).collect();
+        Ok(Contents { formulas, notes, releases })
+    }
+
+    fn lacking(&self, module: &Module, asked: &[&Formula], held: &BTreeSet<&str>) -> Option<String> {
+        let lacking: Vec<String> = asked
+            .iter()
+            .filter(|formula| formula.module == module.name && !held.contains(formula.function))
+            .map(|formula| format!("`{}`", formula.function))
+            .collect();
+        let lacks = lacking.join(", ");
+        (!lacking.is_empty())
+            .then(|| format!("{}: lacks {lacks} of module `{}`, which is not checked", self.path, module.name))
+    }
+
+    /// Functions with a module's prefix that the module does not have.
+    fn unknown(&self, filter: Option<&str>, held: &BTreeSet<&str>) -> Vec<String> {
+        let modules = cookbook::modules().iter().filter(|module| filter.is_none_or(|filter| filter == module.name));
+        let mut notes = Vec::new();
+        for module in modules {
+            let prefix = format!("{}_", module.name);
+            let known: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
+            for name in held.iter().filter(|name| name.starts_with(&prefix) && !known.contains(name)) {
+                let hint = match nearest::nearest(name, known.iter().copied()) {
+                    Some((similarity, near)) if similarity > 0.95 && !held.contains(near) => {
+                        format!("; did you mean `{near}`?")
+                    }
+                    _ => String::new(),
+                };
+                notes.push(format!(
+                    "{}: `{name}` is no function of module `{}`, and is not checked{hint}",
+                    self.path, module.name
+                ));
+            }
+        }
+        notes
+    }
+
+    /// What a module does not hold.
+    fn others(&self, ir: &naga::Module) -> Option<String> {
+        let names = |kind: &str, names: Vec<&str>| (!names.is_empty()).then(|| format!("{kind} {}", names.join(", ")));
+        let variables =
+            ir.global_variables.iter().map(|(_, variable)| variable.name.as_deref().unwrap_or("_")).collect();
+        let overrides = ir.overrides.iter().map(|(_, value)| value.name.as_deref().unwrap_or("_")).collect();
+        let points = ir.entry_points.iter().map(|point| point.name.as_str()).collect();
+        let kinds = [names("bindings", variables), names("overrides", overrides), names("entry points", points)];
+        let found: Vec<String> = kinds.into_iter().flatten().collect();
+        (!found.is_empty())
+            .then(|| format!("{}: {} belong to no module, and take no part in the check", self.path, found.join("; ")))
+    }
+}

@@ -1,0 +1,161 @@
+//! What `cook check` says to a person.
+
+use super::Checked;
+use anstyle::AnsiColor;
+use lapidary_harness::check::Row;
+use lapidary_harness::check::failure::Failure;
+use lapidary_harness::cookbook::release::Standing;
+use std::fmt::Write as _;
+
+/// Whether to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Style {
+    Plain,
+    Coloured,
+}
+
+impl Style {
+    /// Coloured on a terminal that takes it and where `NO_COLOR` and its like do not say otherwise.
+    pub(super) fn of_stdout() -> Style {
+        match anstream::AutoStream::choice(&std::io::stdout()) {
+            anstream::ColorChoice::Never => Style::Plain,
+            _ => Style::Coloured,
+        }
+    }
+
+    fn paint(self, colour: AnsiColor, text: &str) -> String {
+        match self {
+            Style::Plain => text.to_owned(),
+            Style::Coloured => {
+                let style = anstyle::Style::new().bold().fg_color(Some(colour.into()));
+                format!("{style}{text}{style:#}")
+            }
+        }
+    }
+
+    fn verdict(self, row: &Row) -> String {
+        if row.passed() { self.paint(AnsiColor::Green, "PASS") } else { self.paint(AnsiColor::Red, "FAIL") }
+    }
+}
+
+/// The whole report: notes, the table, each failure, the sum.
+pub(super) fn report(checked: &Checked, adapter: &str, style: Style) -> String {
+    let mut text = String::new();
+    for line in notes(&checked.notes, &checked.releases) {
+        let _ = writeln!(text, "{line}");
+    }
+    let _ = writeln!(
+        text,
+        "Each result of the shader on {adapter} is compared with that of its mirror in\n\
+         Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound. `max ulp` to\n\
+         `median` are the shader's error against the oracle; `of bound` is the worst error over the allowed one.\n"
+    );
+    let _ = writeln!(
+        text,
+        "     {:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>10} {:>7}",
+        "function", "cases", "failed", "nonfinite", "max ulp", "p99", "median", "of bound", "hard cases", "seconds"
+    );
+    for row in &checked.rows {
+        let _ = writeln!(
+            text,
+            "{} {:<44} {:>9} {:>7} {:>9} {:>10} {:>9} {:>9} {:>8} {:>10} {:>7.2}",
+            style.verdict(row),
+            row.function,
+            row.cases,
+            row.failed,
+            row.nonfinite,
+            short(row.max_ulp),
+            short(row.p99_ulp),
+            short(row.median_ulp),
+            short(row.worst_ratio),
+            if row.hard_cases == 0 { "-".to_owned() } else { format!("{}/{}", row.held_hard_cases, row.hard_cases) },
+            row.seconds
+        );
+    }
+    for row in &checked.rows {
+        details(row, style, &mut text);
+    }
+    let failed = checked.rows.iter().filter(|row| !row.passed()).count();
+    let held = checked.rows.len() - failed;
+    let _ = writeln!(
+        text,
+        "\n{held} of {} functions hold{}. `backward` in an Accuracy line allows more ulp where the input's own last place makes\n\
+         them. Naive forms are left out unless named; they are tested where they do well.",
+        checked.rows.len(),
+        if failed == 0 { String::new() } else { style.paint(AnsiColor::Red, &format!(", {failed} fail")) }
+    );
+    text
+}
+
+/// A line each.
+pub(super) fn notes(notes: &[String], releases: &[Standing]) -> Vec<String> {
+    let standing = releases.iter().flat_map(|standing| {
+        let text = standing.describe();
+        text.lines().map(|line| format!("note: {line}")).collect::<Vec<_>>()
+    });
+    notes.iter().map(|note| format!("note: {note}")).chain(standing).collect()
+}
+
+/// What is wrong with a function, or missing in its test; nothing where all is well.
+fn details(row: &Row, style: Style, text: &mut String) {
+    if row.passed() && row.missed_edges.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n{} {}", style.verdict(row), row.function);
+    if let Some(reason) = &row.reason {
+        let _ = writeln!(text, "  {} of {} inputs fail; the worst: {reason}", row.failed, row.cases);
+    }
+    if let Some(failure) = &row.failure {
+        compared(failure, text);
+    }
+    for case in &row.broken_hard_cases {
+        let _ = writeln!(text, "  hard case {case}");
+    }
+    for edge in &row.missed_edges {
+        let advice = if row.passed() { "" } else { ", which fails the check" };
+        let _ = writeln!(text, "  edge missed: the inputs never reached {edge}{advice}; run more --cases");
+    }
+    if let Some(file) = &row.kept_in {
+        let _ = writeln!(text, "  the input is kept in {file}");
+    }
+}
+
+fn compared(failure: &Failure, text: &mut String) {
+    let _ = writeln!(text, "  the simplest that fails, in WGSL and in Rust:");
+    for (call, got, expected, mirror) in [
+        (&failure.wgsl, &failure.got, &failure.expected, &failure.mirror),
+        (&failure.rust, &failure.got_rust, &failure.expected_rust, &failure.mirror_rust),
+    ] {
+        let _ = writeln!(text, "    {call}\n      = {got}\n      expected {expected}");
+        if mirror != expected {
+            let _ = writeln!(text, "      mirror   {mirror}");
+        }
+    }
+    let allowed: Vec<String> = failure
+        .fields
+        .iter()
+        .map(|field| {
+            let name = if field.field.is_empty() { String::new() } else { format!("{} ", field.field) };
+            let plain = if field.allowed == 0.0 { "none".to_owned() } else { format!("{:e}", rounded(field.allowed)) };
+            let backward = match field.backward_ulp {
+                0.0 => String::new(),
+                ulp => format!(", or what {ulp} ulp of the input make"),
+            };
+            format!("{name}{plain}{backward}")
+        })
+        .collect();
+    let _ = writeln!(text, "    allowed error: {}", allowed.join("; "));
+}
+
+/// Three digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// Three digits, in whichever notation is shorter.
+fn short(value: f64) -> String {
+    if value >= f64::MAX {
+        return "inf".to_owned();
+    }
+    if value == 0.0 || (0.01..10_000.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.1e}") }
+}

@@ -1,0 +1,285 @@
+//! Releases of the modules: what a pasted copy is, told by its tokens, and what was mended since.
+//!
+//! `wgsl/releases/<release>.json` holds a hash of each function with the structs and consts that it uses, and one of each
+//! module's text, which the module's own `// Version:` line repeats. `CHANGELOG.md` says what changed, by function.
+
+use crate::tokens::{Item, items, tokens};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+/// The release that this is, or will be.
+pub const CURRENT: &str = env!("CARGO_PKG_VERSION");
+/// What starts the line of a module's header that holds release and hash.
+const TAG: &str = "// Version: ";
+
+/// A release's hashes, as `wgsl/releases/` keeps them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Release {
+    /// Its number.
+    pub release: String,
+    /// Its modules by name.
+    pub modules: BTreeMap<String, Hashes>,
+}
+
+/// A module's hashes in one release.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hashes {
+    /// Of its text without the `// Version:` line.
+    pub text: String,
+    /// Of each function with the structs and consts that it uses, by tokens: comments and white space do not count. What a
+    /// function calls has a hash of its own.
+    pub functions: BTreeMap<String, String>,
+}
+
+impl Hashes {
+    /// The hashes of a text of the module `name`: of those functions in it that carry the module's prefix.
+    pub fn of(name: &str, source: &str) -> Hashes {
+        let code = tokens(source);
+        // Only the module's own: in a larger file other names may be those of locals here.
+        let own: Vec<Item<'_>> = items(&code).into_iter().filter(|item| belongs(name, item.name)).collect();
+        let functions = own.iter().filter(|item| item.kind == "fn");
+        let functions = functions.map(|function| (function.name.to_owned(), function_hash(&own, function))).collect();
+        Hashes { text: text_hash(source), functions }
+    }
+}
+
+/// Whether a name starts with the module's: in the way of functions, structs or consts.
+fn belongs(module: &str, name: &str) -> bool {
+    super::prefixes(module).iter().any(|prefix| name.starts_with(prefix))
+}
+
+/// Of a function's tokens, then of those of the structs and consts that it uses in the order of their names.
+fn function_hash(own: &[Item<'_>], function: &Item<'_>) -> String {
+    let mut reached = BTreeSet::from([function.name]);
+    let mut ahead = vec![function];
+    while let Some(item) = ahead.pop() {
+        let named: BTreeSet<&str> = item.tokens.iter().map(|token| token.text).collect();
+        for other in own.iter().filter(|other| other.kind != "fn" && named.contains(other.name)) {
+            if reached.insert(other.name) {
+                ahead.push(other);
+            }
+        }
+    }
+    let mut hash = Fnv::default();
+    let others = reached.iter().filter(|name| **name != function.name);
+    for name in std::iter::once(&function.name).chain(others) {
+        for item in own.iter().filter(|item| item.name == *name) {
+            item.tokens.iter().for_each(|token| hash.add(token.text));
+        }
+    }
+    hash.hex()
+}
+
+/// Of a module's text without its `// Version:` line; line ends do not count.
+pub fn text_hash(source: &str) -> String {
+    let mut hash = Fnv::default();
+    source.lines().filter(|line| !line.starts_with(TAG)).for_each(|line| hash.add(line));
+    hash.hex()
+}
+
+/// The 64-bit hash of Fowler, Noll and Vo (FNV-1a), each text ended by a zero byte. It tells texts apart that nobody made to
+/// collide.
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn add(&mut self, text: &str) {
+        for byte in text.bytes().chain([0]) {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn hex(&self) -> String {
+        format!("{:016x}", self.0)
+    }
+}
+
+/// The release and the hash that a text's first `// Version:` line states; none where there is no such line.
+pub fn stated(source: &str) -> Option<(&str, &str)> {
+    let line = source.lines().find_map(|line| line.strip_prefix(TAG))?;
+    line.trim_end().split_once(", hash ")
+}
+
+/// A module's text with the line that states its release and its hash, in the place of an earlier one or after the
+/// licence.
+pub fn with_version(source: &str) -> String {
+    let version = format!("{TAG}{CURRENT}, hash {}", text_hash(source));
+    let mut lines: Vec<&str> = source.lines().filter(|line| !line.starts_with(TAG)).collect();
+    let after =
+        lines.iter().position(|line| line.starts_with("// SPDX-License-Identifier:")).map_or(1, |line| line + 1);
+    lines.insert(after.min(lines.len()), &version);
+    lines.join("\n") + "\n"
+}
+
+/// The releases and what changed between them.
+#[derive(Clone, Debug)]
+pub struct History {
+    /// The releases, the oldest first; the last is the current one.
+    pub releases: Vec<Release>,
+    /// The changelog's entries that name functions.
+    pub changes: Vec<Change>,
+}
+
+impl History {
+    /// The cookbook's own.
+    ///
+    /// # Panics
+    /// Where a table in `wgsl/releases/` is damaged, which a test forbids.
+    pub fn of_cookbook() -> &'static History {
+        static HISTORY: OnceLock<History> = OnceLock::new();
+        HISTORY.get_or_init(|| {
+            let read =
+                |text: &&str| serde_json::from_str(text).unwrap_or_else(|error| panic!("wgsl/releases: {error}"));
+            let releases = lapidary_wgsl::RELEASES.iter().map(read).collect();
+            History { releases, changes: parse_changes(lapidary_wgsl::CHANGELOG) }
+        })
+    }
+
+    /// Where those `functions` of the module `name` stand that are in `text`.
+    pub fn standing(&self, name: &str, functions: &[&str], text: &str) -> Standing {
+        let found = Hashes::of(name, text);
+        let origin = |function: &&str| {
+            let hash = found.functions.get(*function)?;
+            let holds = |release: &&Release| {
+                release.modules.get(name).is_some_and(|hashes| hashes.functions.get(*function) == Some(hash))
+            };
+            let release = self.releases.iter().rev().find(holds).map(|release| release.release.clone());
+            let changes = release.as_deref().map_or_else(Vec::new, |release| self.changes_since(function, release));
+            Some(Origin { function: (*function).to_owned(), release, changes })
+        };
+        // Of several modules pasted together, the first line below this one's heading.
+        let start = text.find(&format!("// {name}: "));
+        Standing {
+            module: name.to_owned(),
+            origins: functions.iter().filter_map(origin).collect(),
+            stated: start.and_then(|start| stated(&text[start..])).map(|(release, _)| release.to_owned()),
+            oldest: None,
+            current: self.releases.last().map(|release| release.release.clone()).unwrap_or_default(),
+        }
+        .with_oldest(self)
+    }
+
+    /// What was changed in a function after a release, the oldest first.
+    fn changes_since(&self, function: &str, release: &str) -> Vec<String> {
+        let from = self.position(release);
+        let concerns = |change: &&Change| {
+            change.functions.iter().any(|name| name == function) && self.position(&change.release) > from
+        };
+        let mut found: Vec<&Change> = self.changes.iter().filter(concerns).collect();
+        found.sort_by_key(|change| self.position(&change.release));
+        found.into_iter().map(|change| format!("{}: {}", change.release, change.text)).collect()
+    }
+
+    fn position(&self, release: &str) -> Option<usize> {
+        self.releases.iter().position(|known| known.release == release)
+    }
+}
+
+/// An entry of `CHANGELOG.md` that names functions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// The release that brought it.
+    pub release: String,
+    /// The functions.
+    pub functions: Vec<String>,
+    /// What changed and why.
+    pub text: String,
+}
+
+/// Reads entries such as "- `one`, `two`: text", which may run on over indented lines, below headings such as
+/// "## 0.2.0 (unreleased)".
+pub fn parse_changes(changelog: &str) -> Vec<Change> {
+    let mut changes: Vec<Change> = Vec::new();
+    let mut release = "";
+    let mut open = false;
+    for line in changelog.lines() {
+        if let Some(heading) = line.strip_prefix("## ") {
+            release = heading.split([' ', ',']).next().unwrap_or_default();
+            open = false;
+        } else if let Some(entry) = line.strip_prefix("- ") {
+            let entry = entry.strip_prefix('`').and_then(|_| entry.split_once(": "));
+            open = entry.is_some();
+            changes.extend(entry.map(|(names, text)| Change {
+                release: release.to_owned(),
+                functions: names.split(", ").map(|name| name.trim_matches('`').to_owned()).collect(),
+                text: text.to_owned(),
+            }));
+        } else if let (true, Some(more), Some(last)) = (open, line.strip_prefix("  "), changes.last_mut()) {
+            last.text.push(' ');
+            last.text.push_str(more.trim());
+        } else {
+            open = false;
+        }
+    }
+    changes
+}
+
+/// Where a function of a user's file stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The function.
+    pub function: String,
+    /// The newest release whose function it is; none where it is none's.
+    pub release: Option<String>,
+    /// What was changed in it since, the oldest first.
+    pub changes: Vec<String>,
+}
+
+/// Where a module's functions of a user's file stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Standing {
+    /// The module.
+    pub module: String,
+    /// Its functions in the file, in the module's order.
+    pub origins: Vec<Origin>,
+    /// The release that its `// Version:` line in the file states, where there is one.
+    pub stated: Option<String>,
+    /// The oldest release that a function is left from; none where all are the current one's or no release's.
+    pub oldest: Option<String>,
+    /// The current release.
+    pub current: String,
+}
+
+impl Standing {
+    fn with_oldest(mut self, history: &History) -> Standing {
+        let old = self.origins.iter().filter_map(|origin| origin.release.as_ref());
+        let old = old.filter(|release| **release != self.current);
+        self.oldest = old.min_by_key(|release| history.position(release)).cloned();
+        self
+    }
+
+    /// A few lines for a reader: which release, what was changed since, what is no release's.
+    pub fn describe(&self) -> String {
+        let Standing { module, current, .. } = self;
+        let own: Vec<String> = self
+            .origins
+            .iter()
+            .filter(|origin| origin.release.is_none())
+            .map(|origin| format!("`{}`", origin.function))
+            .collect();
+        let mut text = match &self.oldest {
+            Some(oldest) => format!("this is {module} of release {oldest}; the cookbook's is {current}"),
+            None if own.is_empty() => format!("this is {module} of release {current}, the cookbook's own"),
+            None if own.len() == self.origins.len() => format!("this is {module} of no release"),
+            None => format!("this is {module} of release {current} with changes"),
+        };
+        let is_old = |origin: &&Origin| origin.release.as_ref().is_some_and(|release| release != current);
+        for origin in self.origins.iter().filter(is_old) {
+            let what = if origin.changes.is_empty() { "see CHANGELOG.md".to_owned() } else { origin.changes.join(" ") };
+            text.push_str(&format!("\n  mended since: `{}` ({what})", origin.function));
+        }
+        if !own.is_empty() && own.len() < self.origins.len() {
+            text.push_str(&format!("\n  changed from every release: {}", own.join(", ")));
+        }
+        if let Some(stated) = self.stated.as_ref().filter(|_| !own.is_empty()) {
+            text.push_str(&format!("\n  its header says {stated}: it was changed after it was copied"));
+        }
+        text
+    }
+}
