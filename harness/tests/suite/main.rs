@@ -27,6 +27,8 @@ mod program;
 mod random_walk;
 mod reference;
 mod restraint;
+mod seams;
+mod slack;
 mod snapshots;
 mod specialise;
 mod text;
