@@ -69,7 +69,7 @@ fn absorption_coefficient_naive(attenuation_color: vec3f, attenuation_distance: 
 // Units: none; the coefficient's unit is the inverse of the distance's.
 // Domain: coefficient in [0, 1e32], distance up to 1e6, negative ones counted as 0.
 // Outside: overflows where the product exceeds 3e38; above 1 for a negative coefficient.
-// Accuracy: lavapipe 3 ulp + 2 backward; portable 4 ulp + 3 backward
+// Accuracy: lavapipe 3 ulp + 2.5 backward; portable 4 ulp + 3 backward
 fn absorption_transmittance(coefficient: vec3f, distance: f32) -> vec3f {
     let depth = coefficient * max(distance, 0.0f);
     // Said apart, and held to 1: WGSL lets exp err by 3 ulp near 0, where a colourless stone must not gain or lose light.

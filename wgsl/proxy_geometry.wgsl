@@ -70,26 +70,36 @@ fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: v
     );
 }
 
-// Unit normal of a triangle, counter-clockwise seen from where it points. Edges are scaled to size 1 first: their cross
-// product and its square leave the range of f32 for triangles of size 1e-10 and of 1e10. Of nearly parallel edges it is the
-// difference that is crossed (of nearly opposite ones the sum), which is exact, so that slivers keep their digits.
+// Unit normal of a triangle, counter-clockwise seen from where it points. The two shortest edges are crossed: each is as exact as
+// its own ends, while two long ones that differ by a short third have lost it if their common end is far from the origin. They are
+// scaled to size 1 first: their cross product and its square leave the range of f32 for triangles of size 1e-10 and of 1e10. It is their
+// difference that is crossed, which is exact where they are nearly parallel, so that slivers keep their digits.
 // Returns: unit normal; zero for a degenerate triangle, one whose edges' cross product is zero in f32.
 // Units: lengths in, none out.
-// Domain: size of the triangle in [1e-30, 1e30], sine of the angle at the first vertex at least 1e-6.
+// Domain: edges in [1e-30, 1e30], sine of the angle between the two shortest at least 1e-6.
 // Outside: finite; zero or ill-conditioned.
 // Accuracy: lavapipe 5 ulp + 3 backward; portable 9 ulp + 6 backward
 fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
     let edge_first = position_second - position_first;
-    let edge_second = position_third - position_first;
+    let edge_second = position_third - position_second;
+    let edge_third = position_first - position_third;
     let size_first = max(max(abs(edge_first.x), abs(edge_first.y)), abs(edge_first.z));
     let size_second = max(max(abs(edge_second.x), abs(edge_second.y)), abs(edge_second.z));
-    if (min(size_first, size_second) == 0.0f) {
+    let size_third = max(max(abs(edge_third.x), abs(edge_third.y)), abs(edge_third.z));
+    if (min(min(size_first, size_second), size_third) == 0.0f) {
         return vec3f(0.0f);
     }
-    let first = edge_first / size_first;
-    let second = edge_second / size_second;
-    let apart = select(second - first, second + first, dot(first, second) < 0.0f);
-    let perpendicular = cross(first, apart);
+    // The two edges in turn that follow the longest: the cross product of any two in turn is the same.
+    var first = edge_first / size_first;
+    var second = edge_second / size_second;
+    if (size_first >= max(size_second, size_third)) {
+        first = second;
+        second = edge_third / size_third;
+    } else if (size_second >= size_third) {
+        second = first;
+        first = edge_third / size_third;
+    }
+    let perpendicular = cross(first, second - first);
     let squared = dot(perpendicular, perpendicular);
     if (squared == 0.0f) {
         return vec3f(0.0f);

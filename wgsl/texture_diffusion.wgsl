@@ -62,7 +62,7 @@ fn texture_diffusion_clip_naive(uv: vec2f) -> vec4f {
 // Units: that of the position, per texel.
 // Domain: components of derivatives 0 or in [1e-15, 1e15].
 // Outside: 0 for shorter ones, infinite for longer ones; texture_diffusion_width takes both.
-// Accuracy: lavapipe 2 ulp; portable 6 ulp
+// Accuracy: lavapipe 2 ulp; portable 10 ulp
 fn texture_diffusion_stretch(position_x: vec3f, position_y: vec3f) -> vec2f {
     return vec2f(length(position_x), length(position_y));
 }

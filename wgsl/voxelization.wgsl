@@ -12,10 +12,11 @@
 // share an edge agree about it, however it is rounded; and where each edge belongs to an even number of triangles, each column meets an even
 // number of triangles.
 
-// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2^-20. With u = 2^-24, the share by which + - * of
-// WGSL round: a grid coordinate is off by 6 u of itself; a projection onto a separating axis by 4 u times the corner's distance from the voxel,
-// which is at most twice the largest coordinate and 1 where both are near; its half size by 2 u. The sum, 14 u and 7 u, is under 16 u.
-const VOXELIZATION_MARGIN: f32 = 9.5367431640625e-7f;
+// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2^-19. With e = 2^-23, by which WGSL lets + - * be
+// off, since it lets them round either way: a grid coordinate is off by 3.5 e of itself (a difference, and 2.5 e of a division); a projection
+// onto a separating axis by 4 e times the corner's distance from the voxel, which is at most twice the largest coordinate and 1 where both are
+// near; its half size by 3 e. The sum, 11.5 e and 7 e, is under 16 e.
+const VOXELIZATION_MARGIN: f32 = 1.9073486328125e-6f;
 // Steeper planes than this are cut off by the triangle's own extent, whatever the grid.
 const VOXELIZATION_STEEPEST: f32 = 1048576.0f;
 
@@ -192,7 +193,7 @@ fn voxelization_taxicab(vector: vec3f) -> f32 {
 }
 
 // How far beyond itself a triangle touches voxels, so that rounding misses none.
-// Returns: 2^-20 (1 + the largest coordinate).
+// Returns: 2^-19 (1 + the largest coordinate).
 // Units: voxels.
 // Domain: coordinates up to 1e30.
 // Outside: infinite or a NaN.
@@ -216,12 +217,13 @@ fn voxelization_range(low: f32, high: f32, cells: u32) -> vec2u {
 
 // The interval along x in which a triangle's plane passes over the square of a column, `corner` to `corner` + 1 in y and z, cut off by the
 // triangle's own extent. A voxel that voxelization_overlaps finds meets it, so that no other need be looked at.
-// Returns: low and high; low > high where the plane passes the extent by. The absolute error is that of half a length of 64, 3 u of it, which may be
-//   taken from as much; where WGSL divides by 5 u instead of u, 12 u of it.
+// Returns: low and high; low > high where the plane passes the extent by. The absolute error is that of half a length of 64, which may be taken from as
+//   much: a product, a quotient and a sum, 3 units of 2^-24 where each is rounded to nearest. By WGSL's guarantees the half has e + 2.5 e + e with
+//   e = 2^-23, and what it is taken from another 2.5 e of its quotient: 7 e of 64.
 // Units: voxels.
 // Domain: coordinates up to 1e9.
 // Outside: finite as long as products of two coordinates are.
-// Accuracy: lavapipe 4 ulp + 1.2e-5 abs + 16 backward; portable 8 ulp + 4.6e-5 abs + 24 backward
+// Accuracy: lavapipe 4 ulp + 1.2e-5 abs + 16 backward; portable 8 ulp + 5.4e-5 abs + 32 backward
 fn voxelization_span(a: vec3f, b: vec3f, c: vec3f, corner: vec2f) -> vec2f {
     let margin = voxelization_margin(a, b, c);
     let extent = vec2f(min(a.x, min(b.x, c.x)) - margin, max(a.x, max(b.x, c.x)) + margin);

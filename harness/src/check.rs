@@ -12,9 +12,10 @@ use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
+use crate::interpreter::Program;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
-use crate::property::{Check, DEFAULT_CASES, Report, Settings};
+use crate::property::{Check, DEFAULT_CASES, Report, Settings, seams};
 use failure::Failure;
 use serde::Serialize;
 
@@ -87,6 +88,8 @@ pub struct Row {
     pub held_hard_cases: usize,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
+    /// Inputs next to a branch that do not hold, each as a sentence.
+    pub broken_seams: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
@@ -107,7 +110,7 @@ impl Row {
 
     fn judge(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        self.failed == 0 && edges && self.broken_hard_cases.is_empty()
+        self.failed == 0 && edges && self.broken_hard_cases.is_empty() && self.broken_seams.is_empty()
     }
 }
 
@@ -165,13 +168,9 @@ pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
 
 /// Reflects, checks the signature against the mirror's, and compiles.
 pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Result<Kernel<'gpu>, CheckError> {
-    let own_path = format!("wgsl/{}.wgsl", formula.module);
-    let (path, text) = match source {
-        Source::Cookbook => (own_path.as_str(), cookbook::module(formula.module).map_or("", |module| module.source)),
-        Source::Copy(path, text) => (path, text),
-    };
-    let in_path = |error| CheckError::Dispatch { path: path.to_owned(), error };
-    let kernel = Kernel::of_function(gpu, text, path, formula.function).map_err(in_path)?;
+    let (path, text) = located(formula, source);
+    let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
+    let kernel = Kernel::of_function(gpu, text, &path, formula.function).map_err(in_path)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
     Ok(kernel)
 }
@@ -220,12 +219,39 @@ pub fn run_keeping(
         None => None,
         Some(shrunk) => Some(Failure::at(formula, &mut kernel, &tolerance, shrunk).map_err(in_function)?),
     };
-    let mut row = row(formula, &report, broken, failure);
+    let broken_seams = broken_seams(formula, source, &mut kernel, &tolerance, settings.seed)?;
+    let mut row = row(formula, &report, broken, broken_seams, failure);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
     }
     Ok(row)
+}
+
+/// What does not hold next to the branches of a function; nothing of one that the interpreter cannot run.
+fn broken_seams(
+    formula: &Formula,
+    source: Source<'_>,
+    kernel: &mut Kernel<'_>,
+    tolerance: &Tolerance,
+    seed: u64,
+) -> Result<Vec<String>, CheckError> {
+    let in_path = |error| CheckError::Dispatch { path: formula.function.to_owned(), error };
+    let (path, text) = located(formula, source);
+    let program = Program::new(text, &path, formula.function).map_err(in_path)?;
+    let Ok(seams) = seams::find(&program, formula, seed) else { return Ok(Vec::new()) };
+    seams::faults(&program, formula, kernel, tolerance, &seams).map_err(in_path)
+}
+
+/// A source's path, for messages, and its text.
+fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
+    match source {
+        Source::Cookbook => {
+            let text = cookbook::module(formula.module).map_or("", |module| module.source);
+            (format!("wgsl/{}.wgsl", formula.module), text)
+        }
+        Source::Copy(path, text) => (path.to_owned(), text),
+    }
 }
 
 /// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
@@ -249,7 +275,13 @@ pub fn distance_from_limit(
     ))
 }
 
-fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>, failure: Option<Failure>) -> Row {
+fn row(
+    formula: &Formula,
+    report: &Report,
+    broken_hard_cases: Vec<String>,
+    broken_seams: Vec<String>,
+    failure: Option<Failure>,
+) -> Row {
     let mut row = Row {
         passed: false,
         module: formula.module.to_owned(),
@@ -270,6 +302,7 @@ fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>, failu
         hard_cases: formula.hard_cases.len(),
         held_hard_cases: formula.hard_cases.len() - broken_hard_cases.len(),
         broken_hard_cases,
+        broken_seams,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),

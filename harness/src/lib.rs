@@ -13,6 +13,7 @@ pub mod formulas;
 pub mod gallery;
 pub mod golden_section;
 pub mod gpu;
+pub mod interpreter;
 pub mod mutation;
 pub mod nearest;
 pub mod optical_path;

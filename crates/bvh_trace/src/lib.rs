@@ -40,6 +40,17 @@ pub struct BvhTraceRay {
     pub margin: f32,
 }
 
+/// A ray in the coordinates of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceObjectRay {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub direction: Vec3,
+    /// A distance along the ray in the body's coordinates over the same in the world's.
+    pub stretch: f32,
+}
+
 /// A ray against a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceBox {
@@ -65,6 +76,27 @@ pub fn turn(vector: Vec3, axis: u32) -> Vec3 {
     let x_or_y =
         if axis == 0 { Vec3::new(vector.y, vector.z, vector.x) } else { Vec3::new(vector.z, vector.x, vector.y) };
     if axis < 2 { x_or_y } else { vector }
+}
+
+/// A ray of the world in the coordinates of a body.
+pub fn to_object(
+    origin: Vec3,
+    direction: Vec3,
+    place: Vec3,
+    row_x: Vec3,
+    row_y: Vec3,
+    row_z: Vec3,
+) -> BvhTraceObjectRay {
+    let offset = origin - place;
+    let turned = Vec3::new(row_x.dot(direction), row_y.dot(direction), row_z.dot(direction));
+    let size = turned.x.abs().max(turned.y.abs().max(turned.z.abs()));
+    let scaled = turned / size;
+    let length_of_scaled = scaled.dot(scaled).sqrt();
+    BvhTraceObjectRay {
+        origin: Vec3::new(row_x.dot(offset), row_y.dot(offset), row_z.dot(offset)),
+        direction: scaled / length_of_scaled,
+        stretch: size * length_of_scaled,
+    }
 }
 
 /// What the tests of all boxes and triangles need of a ray, computed once.

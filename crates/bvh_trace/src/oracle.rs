@@ -2,7 +2,7 @@
 //! judged by the signed volumes of tetrahedra and by its plane, without a turned or sheared frame. [`crossings`] is the
 //! whole mesh by brute force, without any margin: what [`crate::traversal::trace`] is compared with.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// What the tests of all boxes and triangles need of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,17 @@ pub struct BvhTraceRay {
     pub axis: u32,
     /// By how far along an axis the ray may be off.
     pub margin: f64,
+}
+
+/// A ray in the coordinates of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceObjectRay {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Unit direction.
+    pub direction: DVec3,
+    /// A distance along the ray in the body's coordinates over the same in the world's.
+    pub stretch: f64,
 }
 
 /// A ray against a box.
@@ -55,6 +66,22 @@ fn turn_back(vector: DVec3, axis: u32) -> DVec3 {
         result[(axis + 1 + place) % 3] = vector[place];
     }
     result
+}
+
+/// By the matrix's columns, as the world's axes are turned: the sum of each times a component.
+pub fn to_object(
+    origin: DVec3,
+    direction: DVec3,
+    place: DVec3,
+    row_x: DVec3,
+    row_y: DVec3,
+    row_z: DVec3,
+) -> BvhTraceObjectRay {
+    let columns = DMat3::from_cols(row_x, row_y, row_z).transpose();
+    let turned = |v: DVec3| columns.x_axis * v.x + columns.y_axis * v.y + columns.z_axis * v.z;
+    let along = turned(direction);
+    let stretch = along.x.hypot(along.y).hypot(along.z);
+    BvhTraceObjectRay { origin: turned(origin) - turned(place), direction: along / stretch, stretch }
 }
 
 /// Shears as tangents of angles, reciprocals by logarithms, the reach over the box's eight corners.

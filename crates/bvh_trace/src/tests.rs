@@ -274,3 +274,31 @@ fn sixty_four_reflections_stay_inside_at_every_size() {
 fn the_tests_own_hierarchy_is_shallow() {
     assert!((bumpy().nodes.len().ilog2() as usize) < BVH_TRACE_DEPTH);
 }
+
+/// A body a million times its size away from the world's origin: there f32 is eighths, so that its mesh is no more what it was. In its own
+/// coordinates the ray meets what f64 finds, as far along as its origin is exact.
+#[test]
+fn a_body_far_away_is_traced_in_its_own_coordinates() {
+    let body = sphere();
+    let place = Vec3::new(1_048_576.0, -2_097_152.0, 524_288.0);
+    let moved = self::body(body.positions.iter().map(|position| *position + place).collect(), &body.indices);
+    let positions: Vec<DVec3> = body.positions.iter().map(|position| position.as_dvec3()).collect();
+    let mut random = Random(11);
+    let (mut worst, mut worst_there) = (0.0f64, 0.0f64);
+    for _ in 0..200 {
+        let origin = place + (Vec3::new(1.0, 0.0, -2.0) * 0.125);
+        let direction = random.direction().as_vec3();
+        let ray = to_object(origin, direction, place, Vec3::X, Vec3::Y, Vec3::Z);
+        let hit = trace(&body.nodes, &body.positions, &body.indices, ray.origin, ray.direction, BVH_TRACE_NONE);
+        assert!(met(&hit));
+        let (start, along) = ((origin - place).as_dvec3(), direction.as_dvec3());
+        let crossings = oracle::crossings(&positions, &body.indices, start, along, BVH_TRACE_NONE, 1e-9);
+        let ahead = crossings.iter().map(|crossing| crossing.distance).filter(|distance| *distance > 0.0);
+        let exact = ahead.fold(f64::INFINITY, f64::min);
+        worst = worst.max((f64::from(hit.distance / ray.stretch) - exact).abs());
+        let there = trace(&moved.nodes, &moved.positions, &moved.indices, origin, direction, BVH_TRACE_NONE);
+        worst_there = worst_there.max((f64::from(there.distance) - exact).abs());
+    }
+    assert!(worst < 1e-5, "{worst:e}");
+    assert!(worst_there > 0.01, "{worst_there:e}");
+}

@@ -48,6 +48,18 @@ pub const DISPERSION_CUBIC_ZIRCONIA: DispersionSellmeier = DispersionSellmeier {
     strengths: vec3(1.347091, 2.117788, 9.452943),
     resonances: vec3(0.00391162685, 0.0278018941, 591.490125),
 };
+/// Rutile, the ordinary ray, DeVore 1951.
+pub const DISPERSION_RUTILE: DispersionSellmeier = DispersionSellmeier {
+    constant: 1.8731494,
+    strengths: vec3(3.0398506, 0.0, 0.0),
+    resonances: vec3(0.0803, 0.0, 0.0),
+};
+/// Strontium titanate, Dodge 1986.
+pub const DISPERSION_STRONTIUM_TITANATE: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: vec3(3.042143, 1.170065, 30.83326),
+    resonances: vec3(0.0217828671, 0.0872071692, 1101.31458),
+};
 
 /// Fraunhofer's line B, in nm.
 pub const DISPERSION_LINE_B: f32 = 686.7;

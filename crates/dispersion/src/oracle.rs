@@ -46,6 +46,18 @@ pub const DISPERSION_CUBIC_ZIRCONIA: DispersionSellmeier = DispersionSellmeier {
     strengths: dvec3(1.347091, 2.117788, 9.452943),
     resonances: dvec3(0.062543 * 0.062543, 0.166739 * 0.166739, 24.320570 * 24.320570),
 };
+/// Rutile, the ordinary ray, DeVore 1951.
+pub const DISPERSION_RUTILE: DispersionSellmeier = DispersionSellmeier {
+    constant: 5.913 - 1.0 - 0.2441 / 0.0803,
+    strengths: dvec3(0.2441 / 0.0803, 0.0, 0.0),
+    resonances: dvec3(0.0803, 0.0, 0.0),
+};
+/// Strontium titanate, Dodge 1986.
+pub const DISPERSION_STRONTIUM_TITANATE: DispersionSellmeier = DispersionSellmeier {
+    constant: 0.0,
+    strengths: dvec3(3.042143, 1.170065, 30.83326),
+    resonances: dvec3(0.1475902 * 0.1475902, 0.2953086 * 0.2953086, 33.18606 * 33.18606),
+};
 
 /// The shortest chord that is more than noise.
 const CHORD: f64 = 1.0 / (1 << 20) as f64;

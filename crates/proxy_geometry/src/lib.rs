@@ -69,16 +69,25 @@ pub fn plane(centre: Vec3, position_first: Vec3, position_second: Vec3, position
 /// Unit normal of a triangle, zero for a degenerate one.
 pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
     let edge_first = position_second - position_first;
-    let edge_second = position_third - position_first;
+    let edge_second = position_third - position_second;
+    let edge_third = position_first - position_third;
     let size_first = edge_first.x.abs().max(edge_first.y.abs()).max(edge_first.z.abs());
     let size_second = edge_second.x.abs().max(edge_second.y.abs()).max(edge_second.z.abs());
-    if size_first.min(size_second) == 0.0 {
+    let size_third = edge_third.x.abs().max(edge_third.y.abs()).max(edge_third.z.abs());
+    if size_first.min(size_second).min(size_third) == 0.0 {
         return Vec3::ZERO;
     }
-    let first = edge_first / size_first;
-    let second = edge_second / size_second;
-    let apart = if first.dot(second) < 0.0 { second + first } else { second - first };
-    let perpendicular = first.cross(apart);
+    // The two edges in turn that follow the longest: the cross product of any two in turn is the same.
+    let mut first = edge_first / size_first;
+    let mut second = edge_second / size_second;
+    if size_first >= size_second.max(size_third) {
+        first = second;
+        second = edge_third / size_third;
+    } else if size_second >= size_third {
+        second = first;
+        first = edge_third / size_third;
+    }
+    let perpendicular = first.cross(second - first);
     let squared = perpendicular.dot(perpendicular);
     if squared == 0.0 {
         return Vec3::ZERO;

@@ -63,10 +63,16 @@ pub fn plane(
     ProxyGeometryPlane { origin: first + position_first, edge_first: second - first, edge_second: third - first }
 }
 
-/// The second edge made perpendicular to the first (Gram and Schmidt), then completed to a right-handed frame.
+/// At the corner with the largest angle, one edge made perpendicular to the other (Gram and Schmidt), then completed to a right-handed frame.
 pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third: DVec3) -> DVec3 {
-    let first = (position_second - position_first).normalize_or_zero();
-    let second = (position_third - position_first).normalize_or_zero();
+    let corners = [position_first, position_second, position_third];
+    let edges = |at: usize| [1, 2].map(|step| (corners[(at + step) % 3] - corners[at]).normalize_or_zero());
+    let cosine = |at: usize| {
+        let [one, other] = edges(at);
+        one.dot(other)
+    };
+    let widest = (0..3).min_by(|one, other| cosine(*one).total_cmp(&cosine(*other))).unwrap_or(0);
+    let [first, second] = edges(widest);
     let mut across = second - second.dot(first) * first;
     // Once more: twice is enough, for what cancelled in the first round (Kahan).
     across -= across.dot(first) * first;

@@ -9,6 +9,8 @@ use glam::{IVec3, UVec4, Vec3, Vec4, Vec4Swizzles as _};
 pub const VEINS_FARTHEST: f32 = 4194304.0;
 /// A vein's width counts as at least this.
 pub const VEINS_NARROWEST: f32 = 0.0009765625;
+/// And as at most this, 2²⁰.
+pub const VEINS_WIDEST: f32 = 1_048_576.0;
 /// The most octaves that are summed.
 pub const VEINS_MOST_OCTAVES: u32 = 8;
 
@@ -119,8 +121,9 @@ pub fn fractal(position: Vec3, octaves: u32, seed: u32) -> f32 {
 
 /// A vein where the noise passes 0.
 pub fn fold(value: f32, width: f32) -> f32 {
-    let distance = value / width.max(VEINS_NARROWEST);
-    1.0 / (1.0 + distance * distance)
+    let half = width.clamp(VEINS_NARROWEST, VEINS_WIDEST);
+    let squared = half * half;
+    squared / (squared + value * value)
 }
 
 /// The vein by the absolute value, a naive form.

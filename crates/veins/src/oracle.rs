@@ -103,10 +103,9 @@ pub fn fractal(position: DVec3, octaves: u32, seed: u32) -> f64 {
     }
 }
 
-/// width² / (width² + value²).
+/// The squared cosine of the angle whose tangent is value / width.
 pub fn fold(value: f64, width: f64) -> f64 {
-    let width = width.max(NARROWEST);
-    width * width / (width * width + value * value)
+    (value / width.max(NARROWEST)).atan().cos().powi(2)
 }
 
 /// The line, which is another function.

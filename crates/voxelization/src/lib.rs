@@ -12,8 +12,8 @@ mod tests;
 
 use glam::{UVec2, UVec3, Vec2, Vec3, Vec3Swizzles as _};
 
-/// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2⁻²⁰.
-pub const VOXELIZATION_MARGIN: f32 = 9.5367431640625e-7;
+/// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2⁻¹⁹.
+pub const VOXELIZATION_MARGIN: f32 = 1.9073486328125e-6;
 /// Steeper planes than this are cut off by the triangle's own extent, whatever the grid.
 pub const VOXELIZATION_STEEPEST: f32 = 1048576.0;
 

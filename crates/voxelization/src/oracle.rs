@@ -142,11 +142,11 @@ pub fn taxicab(vector: DVec3) -> f64 {
     sums.into_iter().flatten().flatten().fold(0.0, f64::max)
 }
 
-/// 2⁻²⁰ of the largest coordinate, of one at least as large as a voxel added.
+/// 2⁻¹⁹ of the largest coordinate, of one at least as large as a voxel added.
 pub fn margin(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let all = [a, b, c].map(|corner| corner.to_array());
     let largest = all.into_iter().flatten().fold(0.0, |largest: f64, x| largest.max(x).max(-x));
-    (largest + 1.0) / f64::from(1 << 20)
+    (largest + 1.0) / f64::from(1 << 19)
 }
 
 /// Voxels that end before the interval, and those that begin in it or before it, counted.
@@ -176,7 +176,7 @@ pub fn span(a: DVec3, b: DVec3, c: DVec3, corner: DVec2) -> DVec2 {
     let [least, most] =
         [corners.into_iter().fold(f64::INFINITY, f64::min), corners.into_iter().fold(-f64::INFINITY, f64::max)];
     let beyond = slack / normal.x.abs();
-    let more = beyond + (0.5 * (most - least) + beyond) / f64::from(1 << 20) + margin;
+    let more = beyond + (0.5 * (most - least) + beyond) / f64::from(1 << 19) + margin;
     DVec2::new(low.max(least - more), high.min(most + more))
 }
 

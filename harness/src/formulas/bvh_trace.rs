@@ -6,10 +6,12 @@ use crate::mirror_struct;
 use crate::property::draws::Draws;
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::{
-    self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceRay, oracle,
+    self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceObjectRay, BvhTraceRay,
+    oracle,
 };
 
 mirror_struct!(lapidary_bvh_trace, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
+mirror_struct!(lapidary_bvh_trace, BvhTraceObjectRay { origin, direction, stretch });
 mirror_struct!(lapidary_bvh_trace, BvhTraceBox { entry, hit });
 mirror_struct!(lapidary_bvh_trace, BvhTraceHit { distance, barycentrics, triangle });
 
@@ -320,7 +322,37 @@ fn any_box(draws: &mut Draws<'_>) -> BoxCase {
 }
 
 pub(super) fn formulas() -> Vec<Formula> {
-    [ray_formulas(), box_formulas(), triangle_formulas()].into_iter().flatten().collect()
+    let all = [vec![to_object_formula()], ray_formulas(), box_formulas(), triangle_formulas()];
+    all.into_iter().flatten().collect()
+}
+
+/// The rows of a matrix that turns, and scales each axis of the body by itself.
+fn rows(draws: &mut Draws<'_>) -> [Vec3; 3] {
+    let first = draws.unit_vector().as_dvec3().normalize();
+    let second = draws.perpendicular(first);
+    let size = if draws.below(2) == 0 { 1.0 } else { f64::from(draws.magnitude(-12, 12)) };
+    [first, second, first.cross(second)].map(|row| {
+        let of_axis = if draws.below(3) == 0 { f64::from(draws.magnitude(-3, 3)) } else { 1.0 };
+        (size * of_axis * row).as_vec3()
+    })
+}
+
+fn to_object_formula() -> Formula {
+    formula(M, "bvh_trace_to_object", mirror::to_object, oracle::to_object, |draws| {
+        let [row_x, row_y, row_z] = rows(draws);
+        let far = if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-10, 30) };
+        let place = if draws.below(4) == 0 { Vec3::ZERO } else { far * draws.in_cube() };
+        let from_place = draws.pick(&[1.0, 1e-3, 1e3]) * draws.in_cube();
+        (place + from_place, direction(draws), place, row_x, row_y, row_z)
+    })
+    .edge("a body far away", |(origin, _, place, ..)| place.length() > 1e4 * origin.distance(place) && origin != place)
+    .edge("a body at the origin", |(_, _, place, ..)| place == Vec3::ZERO)
+    .edge("stretched along one axis", |(_, _, _, x, y, _)| x.length() > 2.0 * y.length())
+    .edge("of another size", |(_, _, _, x, y, z)| x.length().max(y.length()).max(z.length()) < 0.01)
+    .invariant("a unit direction", |_, ray: BvhTraceObjectRay| {
+        near("length", ray.direction.as_dvec3().length(), 1.0, 16.0 / f64::from(1 << 24))
+    })
+    .build()
 }
 
 fn ray_formulas() -> Vec<Formula> {

@@ -56,16 +56,20 @@ fn material(draws: &mut Draws<'_>) -> DispersionSellmeier {
             mirror::DISPERSION_QUARTZ,
             mirror::DISPERSION_CROWN_GLASS,
             mirror::DISPERSION_CUBIC_ZIRCONIA,
+            mirror::DISPERSION_RUTILE,
+            mirror::DISPERSION_STRONTIUM_TITANATE,
         ]);
     }
     // Without ultraviolet resonances the formula falls below 1.
     let infrared = draws.below(4) == 0;
     let mut resonance = || -> (f32, f32) {
-        let strength = draws.between(0.0, 10.0);
-        match draws.below(3) {
+        let strongest = if draws.below(4) == 0 { 40.0 } else { 10.0 };
+        let strength = draws.between(0.0, strongest);
+        match draws.below(4) {
             _ if infrared => (strength, draws.between(50.0, 600.0)),
             0 => (strength, draws.between(50.0, 600.0)),
-            _ => (strength, draws.between(0.0, 0.05)),
+            1 => (strength, draws.between(0.0, 0.05)),
+            _ => (strength, draws.between(0.05, 0.1)),
         }
     };
     let [first, second, third] = [resonance(), resonance(), resonance()];
@@ -81,7 +85,11 @@ fn sellmeier() -> Formula {
     formula(M, "dispersion_sellmeier", mirror::sellmeier, oracle::sellmeier, |draws| {
         (material(draws), wavelength(draws))
     })
-    .edge("one of the five materials", |(material, _)| material == mirror::DISPERSION_CUBIC_ZIRCONIA)
+    .edge("one of the materials", |(material, _)| material == mirror::DISPERSION_CUBIC_ZIRCONIA)
+    .edge("rutile at its strongest", |(material, at)| material == mirror::DISPERSION_RUTILE && at < 400.0)
+    .edge("a resonance next to the visible", |(material, at)| {
+        material.resonances.to_array().iter().any(|resonance| (0.095..0.1).contains(resonance)) && at < 390.0
+    })
     .edge("a constant", |(material, _)| material.constant > 0.0)
     .edge("held at 1", |(material, _)| material.constant == 0.0 && material.resonances.min_element() > 1.0)
     .edge("an end of the visible", |(_, wavelength)| wavelength == 380.0)
@@ -90,7 +98,7 @@ fn sellmeier() -> Formula {
     .pair(
         "a shorter wavelength has a higher index",
         |(material, wavelength)| (material, 0.9 * wavelength),
-        |_, index: f32, shorter: f32| near("fall", f64::from(index - shorter).max(0.0), 0.0, 4e-6),
+        |_, index: f32, shorter: f32| near("fall", f64::from(index - shorter).max(0.0), 0.0, 1.5e-6 * f64::from(index)),
     )
     .build()
 }

@@ -61,6 +61,41 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     if turn < 0.01 { shifted } else { at(DVec3::ZERO) }
 }
 
+/// A triangle of two corners that are close together and near the origin, and one that is far from both, in any order: the two long edges are
+/// rounded by far more than the short one is long.
+fn far_corner(draws: &mut Draws<'_>) -> [Vec3; 3] {
+    let size = size(draws, -60, 60);
+    let close = size * draws.magnitude(-30, -2);
+    let (first, second) = (draws.unit_vector(), draws.unit_vector());
+    let far = if draws.below(2) == 0 { draws.in_cube() } else { draws.direction().as_vec3() };
+    let turn = draws.below(3) as usize;
+    let mut triangle = [size * far, close * first, close * draws.between(0.0, 1.0) * second];
+    triangle.rotate_right(turn);
+    // Where the short edge points at the far corner, or is none, the triangle is too thin.
+    if widest_sine(triangle) > 2e-6 { triangle } else { [Vec3::ZERO, Vec3::X * size, Vec3::Y * size] }
+}
+
+/// Sine of the angle between the two shortest edges, in f64.
+fn widest_sine([a, b, c]: [Vec3; 3]) -> f64 {
+    let sines = [[a, b, c], [b, c, a], [c, a, b]].map(|[at, next, last]| {
+        let opposite = next.as_dvec3().distance(last.as_dvec3());
+        (opposite, thinness([at, next, last]))
+    });
+    let [(_, sine), ..] = {
+        let mut sorted = sines;
+        sorted.sort_by(|one, other| other.0.total_cmp(&one.0));
+        sorted
+    };
+    sine
+}
+
+/// The shortest edge over the largest coordinate.
+fn closeness([a, b, c]: [Vec3; 3]) -> f64 {
+    let shortest = [(a, b), (b, c), (c, a)].map(|(one, other)| one.as_dvec3().distance(other.as_dvec3()));
+    let farthest = [a, b, c].map(|corner| f64::from(corner.abs().max_element())).into_iter().fold(0.0, f64::max);
+    shortest.into_iter().fold(f64::INFINITY, f64::min) / farthest
+}
+
 /// Sine of the angle at the first vertex, in f64.
 fn thinness([first, second, third]: [Vec3; 3]) -> f64 {
     let [a, b, c] = [first, second, third].map(|vertex| vertex.as_dvec3());
@@ -198,6 +233,12 @@ fn plane_formulas() -> Vec<Formula> {
     ]
 }
 
+/// The normal of a triangle whose edges f64 holds, as one writes it.
+fn far_normal(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
+    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    (b - a).cross(c - a).normalize().to_array()
+}
+
 fn normal_formulas() -> Vec<Formula> {
     let huge = 1e19f32;
     let tiny = 1e-20f32;
@@ -206,7 +247,7 @@ fn normal_formulas() -> Vec<Formula> {
     let tile = |size: f32| (Vec3::Z * size, Vec3::X * size, Vec3::NEG_X * size, Vec3::ZERO, ray);
     vec![
         formula(M, "proxy_geometry_face_normal", mirror::face_normal, oracle::face_normal, |draws| {
-            let [a, b, c] = triangle(draws);
+            let [a, b, c] = if draws.below(4) == 0 { far_corner(draws) } else { triangle(draws) };
             match draws.below(16) {
                 0 => (a, a, c),
                 1 => (a, b, a),
@@ -215,8 +256,14 @@ fn normal_formulas() -> Vec<Formula> {
                 _ => (a, b, c),
             }
         })
-        .edge("a sliver", |(a, b, c)| (1e-6..1e-4).contains(&thinness([a, b, c])))
+        .edge("a sliver", |(a, b, c)| (1e-6..1e-4).contains(&widest_sine([a, b, c])))
         .edge("two equal corners", |(a, b, c)| a == b && b != c)
+        .edge("the first corner far from two that are close together", |(a, b, c)| {
+            (1e-9..1e-6).contains(&closeness([a, b, c])) && b.distance(c) < 1e-3 * b.distance(a)
+        })
+        .edge("the second corner far from two that are close together", |(a, b, c)| {
+            (1e-9..1e-6).contains(&closeness([a, b, c])) && c.distance(a) < 1e-3 * b.distance(a)
+        })
         .edge("three equal corners", |(a, b, c)| a == b && b == c)
         .edge("size below 1e-20", |(a, b, c)| a.distance(b).max(a.distance(c)) < 1e-20 && thinness([a, b, c]) > 1e-3)
         .edge("size above 1e19", |(a, b, c)| (b - a).abs().max_element() > 1e19 && thinness([a, b, c]) > 1e-3)
@@ -235,6 +282,12 @@ fn normal_formulas() -> Vec<Formula> {
             ("proxy_geometry_face_normal_naive", f64::INFINITY),
         )
         .hard_case("edges of 1e19", scaled(huge), (&[0.0, 0.0, 1.0], 1e-6), ("proxy_geometry_face_normal_naive", 0.9))
+        .hard_case(
+            "the first corner far from two that are close together",
+            (Vec3::new(1.0, 1.0, 1.0), Vec3::new(2e-8, 0.0, 0.0), Vec3::new(0.0, 3e-8, 0.0)),
+            (&far_normal(Vec3::new(1.0, 1.0, 1.0), Vec3::new(2e-8, 0.0, 0.0), Vec3::new(0.0, 3e-8, 0.0)), 1e-6),
+            ("proxy_geometry_face_normal_naive", 0.1),
+        )
         .hard_case(
             "two equal corners",
             (Vec3::X, Vec3::X, Vec3::Y),

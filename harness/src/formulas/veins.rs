@@ -44,7 +44,7 @@ fn seed(draws: &mut Draws<'_>) -> u32 {
 /// Widths: those of use, every magnitude, and those that are clamped.
 fn width(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
-        0 => draws.pick(&[1.0, mirror::VEINS_NARROWEST, 0.0, -1.0, 1e-5]),
+        0 => draws.pick(&[1.0, mirror::VEINS_NARROWEST, 0.0, -1.0, 1e-5, mirror::VEINS_WIDEST, 1e30]),
         1 => draws.magnitude(-12, 4),
         _ => draws.between(0.0625, 1.0),
     }
@@ -158,6 +158,7 @@ fn folds() -> Vec<Formula> {
         .edge("no width", |(value, width)| width == 0.0 && value != 0.0)
         .edge("the narrowest", |(_, width)| width == mirror::VEINS_NARROWEST)
         .edge("a negative width", |(_, width)| width < 0.0)
+        .edge("a width whose square overflows", |(value, width)| width == 1e30 && value != 0.0)
         .invariant("in [0, 1]", |_, share: f32| near("share", share.into(), 0.5, 0.5))
         .hard_case("four widths away", (1.0, 0.25), (&[1.0 / 17.0], 1e-7), (NAIVE, 1.0))
         .hard_case("no width in the middle", (0.0, 0.0), (&[1.0], 0.0), (NAIVE, f64::INFINITY))

@@ -159,13 +159,23 @@ impl<T> Domain<T> {
         (self.generate)(&mut Draws::of_row(seed, row))
     }
 
-    /// The tree of row `row`, to be shrunk.
-    pub fn tree(&self, seed: u64, row: u64) -> DrawTree<T> {
+    /// The draws that row `row` is made of.
+    pub fn draws(&self, seed: u64, row: u64) -> Vec<u32> {
         let mut draws = Draws::of_row(seed, row);
         (self.generate)(&mut draws);
         let count = draws.count;
         let mut again = Draws::of_row(seed, row);
-        let draws: Vec<u32> = (0..count).map(|_| again.bits()).collect();
+        (0..count).map(|_| again.bits()).collect()
+    }
+
+    /// The value of these draws.
+    pub fn of_draws(&self, draws: &[u32]) -> T {
+        (self.generate)(&mut Draws::replay(draws))
+    }
+
+    /// The tree of row `row`, to be shrunk.
+    pub fn tree(&self, seed: u64, row: u64) -> DrawTree<T> {
+        let draws = self.draws(seed, row);
         DrawTree { domain: self.clone(), draws, at: 0, stage: 0, undo: None, moved: false }
     }
 }
@@ -223,7 +233,7 @@ impl<T: std::fmt::Debug> ValueTree for DrawTree<T> {
     type Value = T;
 
     fn current(&self) -> T {
-        (self.domain.generate)(&mut Draws::replay(&self.draws))
+        self.domain.of_draws(&self.draws)
     }
 
     fn simplify(&mut self) -> bool {

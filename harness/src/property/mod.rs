@@ -3,6 +3,8 @@
 pub mod draws;
 pub mod histogram;
 pub mod persistence;
+pub mod seams;
+pub mod slack;
 pub mod tolerance;
 
 use crate::dispatch::shape::Scalar;

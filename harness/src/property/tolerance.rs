@@ -22,6 +22,9 @@ const SECTIONS: usize = 20;
 /// Rounds over all inputs on the way to an extremum inside the box.
 const ROUNDS: usize = 6;
 
+/// Places along an input, its ends included, that tell where an extremum may lie: a function may have several, and the least may be at an end.
+const PLACES: usize = 9;
+
 /// An oracle on numbers.
 pub type OracleFn<'a> = &'a dyn Fn(&[f64], &mut Vec<f64>);
 
@@ -126,6 +129,7 @@ impl Tolerance {
             if wants_backward && ratio > 1.0 {
                 let (centre, steps) = input_box(&self.arguments, arguments, self.backward());
                 let mut search = Search::new(self, gpu, mirror, oracle);
+                search.ends = (effort == Effort::Boundaries).then(|| vec![Default::default(); exact.len()]);
                 let judge = |spread: &Spread| self.ratio(gpu, mirror, exact, Some(spread));
                 search.run(effort, &centre, &steps, |spread| judge(spread) <= 1.0);
                 if effort == Effort::Boundaries && judge(&search.spread) > 1.0 {
@@ -144,12 +148,36 @@ impl Tolerance {
         let of = |(leaf, bound): &(Leaf, Bound)| {
             let scale = largest(&exact[leaf.start..leaf.start + leaf.length]);
             let allowed = match leaf.scalar {
-                Scalar::F32 => bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED,
+                Scalar::F32 => forward(bound, scale),
                 _ => 0.0,
             };
             Allowed { leaf: leaf.clone(), allowed, backward: bound.backward }
         };
         self.results.iter().map(of).collect()
+    }
+
+    /// A result's error over the allowed one, without what `backward` allows; infinite where a discrete field differs.
+    pub fn forward(&self, result: &[u32], exact: &[f64]) -> f64 {
+        self.ratio(result, result, exact, None)
+    }
+
+    /// Whether two of the oracle's results differ in a bool or an integer.
+    pub fn discrete_differ(&self, one: &[f64], other: &[f64]) -> bool {
+        let discrete = self.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32);
+        discrete.flat_map(|(leaf, _)| leaf.start..leaf.start + leaf.length).any(|index| one[index] != other[index])
+    }
+
+    /// By how much two of the oracle's results are apart, where that is more than a result that is right for one may be off and one that is
+    /// right for the other, without what `backward` allows; the largest over fields.
+    pub fn apart(&self, one: &[f64], other: &[f64]) -> Option<f64> {
+        let excess = self.floats().filter_map(|(leaf, bound)| {
+            let range = leaf.start..leaf.start + leaf.length;
+            let scale = largest(&one[range.clone()]).max(largest(&other[range.clone()]));
+            let allowed = forward(bound, scale);
+            let apart = range.map(|index| (one[index] - other[index]).abs()).fold(0.0, f64::max);
+            (apart > 2.0 * allowed).then_some(apart)
+        });
+        excess.reduce(f64::max)
     }
 
     fn floats(&self) -> impl Iterator<Item = &(Leaf, Bound)> {
@@ -189,7 +217,7 @@ impl Tolerance {
             // As a vector's ulp is that of its largest component, so its range is that of the component that varies most.
             let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
             let scale = largest(low).max(largest(high));
-            let allowed = bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED;
+            let allowed = forward(bound, scale);
             let mut between: f64 = 0.0;
             for (index, (low, high)) in range.zip(low.iter().zip(high)) {
                 let middle = 0.5 * (low + high);
@@ -250,6 +278,8 @@ struct Search<'a> {
     met: [bool; 2],
     /// The range over the points where it gave either.
     spread: Spread,
+    /// Where each result was least and where it was greatest, once a search for extrema may start from there.
+    ends: Option<Vec<[Vec<f64>; 2]>>,
     result: Vec<f64>,
 }
 
@@ -270,7 +300,7 @@ impl<'a> Search<'a> {
             high: vec![f64::NEG_INFINITY; gpu.len()],
             gpu_and_mirror_agree: wanted[0] == wanted[1],
         };
-        Self { oracle, places, wanted, met: [false; 2], spread, result: Vec::with_capacity(gpu.len()) }
+        Self { oracle, places, wanted, met: [false; 2], spread, ends: None, result: Vec::with_capacity(gpu.len()) }
     }
 
     /// Asks the oracle at a point.
@@ -285,8 +315,15 @@ impl<'a> Search<'a> {
         self.met = [self.met[0] | agrees[0], self.met[1] | agrees[1]];
         if agrees[0] || agrees[1] {
             for (index, value) in self.result.iter().enumerate() {
+                let below = *value < self.spread.low[index];
+                let above = *value > self.spread.high[index];
                 self.spread.low[index] = self.spread.low[index].min(*value);
                 self.spread.high[index] = self.spread.high[index].max(*value);
+                if let Some(ends) = &mut self.ends {
+                    for end in [below, above].iter().zip(&mut ends[index]).filter_map(|(is, end)| is.then_some(end)) {
+                        point.clone_into(end);
+                    }
+                }
             }
         }
         Some(found)
@@ -322,7 +359,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lowers `sign` times result `index` by golden-section searches along one input after another.
+    /// Lowers `sign` times result `index` along one input after another, from where it is lowest so far: at the best of places from end to end, then
+    /// by golden-section search between that one's neighbours.
     fn descend(
         &mut self,
         centre: &[f64],
@@ -330,21 +368,42 @@ impl<'a> Search<'a> {
         (index, sign): (usize, f64),
         enough: &impl Fn(&Spread) -> bool,
     ) {
-        let mut point = centre.to_vec();
+        let known = self.ends.as_ref().map(|ends| ends[index][usize::from(sign < 0.0)].clone());
+        let mut point = known.filter(|point| point.len() == centre.len()).unwrap_or_else(|| centre.to_vec());
+        let mut lowest = f64::INFINITY;
         for _ in 0..ROUNDS {
+            let before = lowest;
             for moving in (0..steps.len()).filter(|moving| steps[*moving] > 0.0) {
+                let start = point[moving];
                 let mut at = |search: &mut Self, place: f64| {
                     point[moving] = place;
-                    search.visit(&point);
-                    let value = sign * search.result[index];
-                    if value.is_nan() { f64::INFINITY } else { value }
+                    // Where the discrete results are others, it is another function's value.
+                    let found = search.visit(&point);
+                    let wanted = found.is_some_and(|found| search.wanted.contains(&found));
+                    if wanted { sign * search.result[index] } else { f64::INFINITY }
                 };
-                let across = [centre[moving] - steps[moving], centre[moving] + steps[moving]];
+                let mut best = (at(self, start), start);
+                let mut consider = |value: f64, place: f64| {
+                    if value < best.0 {
+                        best = (value, place);
+                    }
+                };
+                let place =
+                    |number: usize| centre[moving] + steps[moving] * (2.0 * number as f64 / (PLACES - 1) as f64 - 1.0);
+                let values: Vec<f64> = (0..PLACES).map(|number| at(self, place(number))).collect();
+                let least = (0..PLACES).min_by(|one, other| values[*one].total_cmp(&values[*other])).unwrap_or(0);
+                consider(values[least], place(least));
+                let across = [place(least.saturating_sub(1)), place((least + 1).min(PLACES - 1))];
                 let Ok(nearest) = golden_section::<Infallible>(across, SECTIONS, |place| Ok(at(self, place)));
-                at(self, nearest);
+                consider(at(self, nearest), nearest);
+                (lowest, point[moving]) = best;
                 if enough(&self.spread) {
                     return;
                 }
+            }
+            // Nothing moves any more.
+            if lowest >= before {
+                return;
             }
         }
     }
@@ -419,6 +478,11 @@ pub fn number(scalar: Scalar, word: u32) -> f64 {
         Scalar::U32 => f64::from(word),
         Scalar::Bool => f64::from(u8::from(word != 0)),
     }
+}
+
+/// How far a component may be off where the exact value's largest is `scale`, without what `backward` allows.
+fn forward(bound: &Bound, scale: f64) -> f64 {
+    bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED
 }
 
 /// The unit in the last place of an f32 of this magnitude; that of the smallest normal below it.

@@ -242,6 +242,23 @@ fn backward_error_reaches_an_extremum_inside_the_box() {
 }
 
 #[test]
+fn backward_error_reaches_the_one_corner_of_many_where_the_extremum_is() {
+    // x₁ - x₂ + x₃ - …: one corner of 65,536 has the greatest sum, and it lies at the end of every input.
+    const INPUTS: usize = 16;
+    let oracle = |numbers: &[f64], result: &mut Vec<f64>| {
+        result.push(numbers.chunks_exact(2).map(|pair| pair[0] - pair[1]).sum());
+    };
+    let tolerance = tolerance(&[FLOAT; INPUTS], &FLOAT, Bound { backward: 2.0, ..NONE });
+    let accepts = |value: f32| {
+        let words = [value.to_bits()];
+        tolerance.judge(&[1.0f32.to_bits(); INPUTS], &words, &words, &[0.0], &oracle).holds()
+    };
+    let greatest = 2.0 * INPUTS as f32 * ULP;
+    assert!(accepts(greatest) && accepts(-greatest));
+    assert!(!accepts(greatest.next_up()) && !accepts(-greatest.next_up()));
+}
+
+#[test]
 fn backward_error_explains_nothing_where_the_input_does_not_matter() {
     let oracle = |_: &[f64], result: &mut Vec<f64>| result.push(1.0);
     let tolerance = tolerance(&[FLOAT], &FLOAT, Bound { backward: 1000.0, ..NONE });

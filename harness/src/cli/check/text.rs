@@ -111,6 +111,9 @@ fn details(row: &Row, style: Style, text: &mut String) {
     for case in &row.broken_hard_cases {
         let _ = writeln!(text, "  hard case {case}");
     }
+    for seam in &row.broken_seams {
+        let _ = writeln!(text, "  {seam}");
+    }
     for edge in &row.missed_edges {
         let advice = if row.passed() { "" } else { ", which fails the check" };
         let _ = writeln!(text, "  edge missed: the inputs never reached {edge}{advice}; run more --cases");
