@@ -3,6 +3,7 @@
 pub mod draws;
 pub mod histogram;
 pub mod persistence;
+pub mod seed;
 pub mod tolerance;
 
 use crate::dispatch::shape::Scalar;
