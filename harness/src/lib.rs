@@ -15,6 +15,7 @@ pub mod gpu;
 pub mod mutation;
 pub mod nearest;
 pub mod optical_path;
+pub mod outside;
 pub mod pixel;
 pub mod plan;
 pub mod property;
