@@ -2,6 +2,7 @@
 
 mod kernel;
 mod layout;
+mod nonfinite;
 pub mod shape;
 pub mod value;
 
