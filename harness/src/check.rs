@@ -6,6 +6,7 @@ use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
+use crate::outside;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
 use crate::property::{Check, DEFAULT_CASES, Report, Settings};
@@ -59,17 +60,21 @@ pub struct Row {
     pub reason: Option<String>,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
+    /// Promises of the `Outside:` line that do not hold, with the input at which they do not.
+    pub broken_promises: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// Wall-clock time.
     pub seconds: f64,
+    /// The command that runs this again.
+    pub reproduce: String,
 }
 
 impl Row {
     /// Whether the formula holds. Edges count from the default number of cases on: a shorter run may well miss some.
     pub fn passed(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        self.failed == 0 && edges && self.broken_hard_cases.is_empty()
+        self.failed == 0 && edges && self.broken_hard_cases.is_empty() && self.broken_promises.is_empty()
     }
 }
 
@@ -158,10 +163,13 @@ pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings)
             broken.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
         }
     }
+    let promises = outside::broken(&mut kernel, formula, &tolerance, formulas::outside::all(), settings.seed)
+        .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
     if let (Source::Cookbook, Some(shrunk)) = (source, &report.shrunk) {
         regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
     }
-    Ok(row(formula, &report, broken))
+    let reproduce = reproduce(formula, source, settings);
+    Ok(Row { broken_promises: promises, reproduce, ..row(formula, &report, broken) })
 }
 
 /// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
@@ -185,6 +193,16 @@ pub fn distance_from_limit(
     ))
 }
 
+/// The command that runs the same inputs again.
+fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> String {
+    let copy = match source {
+        Source::Cookbook => String::new(),
+        Source::Copy(path, _) => format!(" --wgsl {path}"),
+    };
+    let Settings { cases, seed } = settings;
+    format!("./cook check {}::{}{copy} --seed {seed} --cases {cases}", formula.module, formula.function)
+}
+
 fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Row {
     Row {
         module: formula.module.to_owned(),
@@ -201,8 +219,10 @@ fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Ro
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
         reason: report.reason.clone(),
         broken_hard_cases,
+        broken_promises: Vec::new(),
         missed_edges: report.missed_edges().collect(),
         seconds: report.seconds,
+        reproduce: String::new(),
     }
 }
 

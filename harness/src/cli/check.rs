@@ -24,9 +24,39 @@ pub(super) struct Arguments {
     /// Where the random inputs start; the same seed gives the same inputs.
     #[arg(long, default_value_t = Settings::default().seed)]
     seed: u64,
+    /// Test the I-th of N parts of the functions, to share the work between machines or runs.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
+}
+
+/// One part of several.
+#[derive(Clone, Copy, Debug)]
+struct Shard {
+    /// From 1.
+    index: usize,
+    count: usize,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        match numbers {
+            Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err("expected I/N with I from 1 to N, such as 1/4".to_owned()),
+        }
+    }
+}
+
+impl Shard {
+    /// Every N-th function, so that the slow ones of a module fall to several parts.
+    fn of<T>(self, all: Vec<T>) -> Vec<T> {
+        all.into_iter().skip(self.index - 1).step_by(self.count).collect()
+    }
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -42,6 +72,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let formulas = match (&arguments.filter, source) {
         (None, Source::Copy(path, text)) => functions_of(path, text)?,
         (filter, _) => check::select(filter.as_deref())?,
+    };
+    let formulas = match arguments.shard {
+        Some(shard) => shard.of(formulas),
+        None => formulas,
     };
     let gpu = context.gpu()?;
     let settings = Settings { cases: arguments.cases, seed: arguments.seed };
@@ -118,9 +152,13 @@ fn table(rows: &[Row], adapter: &str) -> String {
         for case in &row.broken_hard_cases {
             let _ = writeln!(text, "  hard case {case}");
         }
+        for promise in &row.broken_promises {
+            let _ = writeln!(text, "  {promise}");
+        }
         for edge in &row.missed_edges {
             let _ = writeln!(text, "  the inputs never reached: {edge}; run more --cases");
         }
+        let _ = writeln!(text, "  again with: {}", row.reproduce);
     }
     let failed = rows.iter().filter(|row| !row.passed()).count();
     let _ = writeln!(
