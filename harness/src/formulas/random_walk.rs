@@ -246,6 +246,12 @@ fn scattering() -> Vec<Formula> {
                 |(c, g)| (-c, -g),
                 |_, one: f32, other: f32| near("difference", f64::from(one) - f64::from(other), 0.0, 0.0),
             )
+            .hard_case(
+                "1 - g * g instead of two factors: backwards, nearly always straight on",
+                (-f32::from_bits(0x3f4d_c5fc), f32::from_bits(0x3f7f_f4b1)),
+                (&[4.008_624_400_82e-6], 1e-11),
+                (PHASE, 3e-10),
+            )
             .hard_case("straight on, g 1", (1.0, 1.0), (&[peak], 1e-5 * peak), (PHASE, f64::INFINITY))
             .build(),
         formula(M, "random_walk_phase_naive", mirror::phase_naive, oracle::phase_naive, |draws| {
