@@ -68,7 +68,7 @@ fn absorption_coefficient_naive(attenuation_color: vec3f, attenuation_distance: 
 //   88 on, 0 or less than 2^-126.
 // Units: none; the coefficient's unit is the inverse of the distance's.
 // Domain: coefficient in [0, 1e32], distance up to 1e6, negative ones counted as 0.
-// Outside: overflows where the product exceeds 3e38; above 1 for a negative coefficient.
+// Outside: overflows where the product exceeds 3e38; 1 for a negative coefficient.
 // Accuracy: lavapipe 3 ulp + 2.5 backward; portable 4 ulp + 3 backward
 fn absorption_transmittance(coefficient: vec3f, distance: f32) -> vec3f {
     let depth = coefficient * max(distance, 0.0f);

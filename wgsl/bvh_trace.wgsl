@@ -144,7 +144,7 @@ fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) ->
 // Returns: BvhTraceBox; without a hit, `entry` is the distance of the last plane that the ray enters by, or 0.
 // Units: those of the positions.
 // Domain: lower <= upper inside the box that the ray was made for; nearest in [0, 1e37].
-// Outside: finite for coordinates up to 1e30; lower > upper is no box.
+// Outside: finite for coordinates up to 1e30; where lower > upper, the box between them less the margin.
 // Accuracy: lavapipe entry 2 ulp + 2 backward, hit 2 backward; portable entry 4 ulp + 3 backward, hit 3 backward
 fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> BvhTraceBox {
     let first = (lower - ray.origin - ray.margin) * ray.reciprocal;

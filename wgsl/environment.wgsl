@@ -39,7 +39,7 @@ fn environment_turns(y: f32, x: f32) -> f32 {
 // Returns: sqrt(a^2 + b^2).
 // Units: that of a and b.
 // Domain: a, b zero or of magnitude in [2^-126, 2^126].
-// Outside: finite; a subnormal may count as zero.
+// Outside: finite below 2^127; a subnormal may count as zero.
 // Accuracy: lavapipe 3 ulp; portable 12 ulp
 fn environment_hypot(a: f32, b: f32) -> f32 {
     let longer = max(abs(a), abs(b));

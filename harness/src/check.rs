@@ -13,6 +13,7 @@ use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
 use crate::interpreter::Program;
+use crate::outside;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
 use crate::property::{Check, DEFAULT_CASES, Report, Settings, seams};
@@ -90,6 +91,8 @@ pub struct Row {
     pub broken_hard_cases: Vec<String>,
     /// Inputs next to a branch that do not hold, each as a sentence.
     pub broken_seams: Vec<String>,
+    /// Promises of the `Outside:` line that do not hold, with the input at which they do not.
+    pub broken_promises: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
@@ -100,6 +103,8 @@ pub struct Row {
     pub kept_in: Option<String>,
     /// Wall-clock time.
     pub seconds: f64,
+    /// The command that runs this again.
+    pub reproduce: String,
 }
 
 impl Row {
@@ -110,7 +115,8 @@ impl Row {
 
     fn judge(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        self.failed == 0 && edges && self.broken_hard_cases.is_empty() && self.broken_seams.is_empty()
+        let beside = [&self.broken_hard_cases, &self.broken_seams, &self.broken_promises];
+        self.failed == 0 && edges && beside.into_iter().all(Vec::is_empty)
     }
 }
 
@@ -204,23 +210,26 @@ pub fn run_keeping(
     let report =
         Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &replayed).map_err(in_function)?;
     // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
-    let mut broken = Vec::new();
+    let mut hard_cases = Vec::new();
     for case in &formula.hard_cases {
         let distance =
             distance_from_limit(&mut kernel, &case.arguments, &case.limit, &formula.result).map_err(in_function)?;
         if kernel.any_stopped() {
-            broken.push(format!("{}: {}", case.name, kernel.why_stopped()));
+            hard_cases.push(format!("{}: {}", case.name, kernel.why_stopped()));
         } else if distance.is_nan() || distance > case.bound {
             // A NaN is no distance within the bound.
-            broken.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
+            hard_cases.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
         }
     }
     let failure = match &report.shrunk {
         None => None,
         Some(shrunk) => Some(Failure::at(formula, &mut kernel, &tolerance, shrunk).map_err(in_function)?),
     };
-    let broken_seams = broken_seams(formula, source, &mut kernel, &tolerance, settings.seed)?;
-    let mut row = row(formula, &report, broken, broken_seams, failure);
+    let promises = outside::broken(&mut kernel, formula, &tolerance, formulas::outside::all(), settings.seed)
+        .map_err(in_function)?;
+    let seams = broken_seams(formula, source, &mut kernel, &tolerance, settings.seed)?;
+    let reproduce = reproduce(formula, source, settings);
+    let mut row = row(formula, &report, Broken { hard_cases, seams, promises }, failure, reproduce);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
@@ -275,13 +284,24 @@ pub fn distance_from_limit(
     ))
 }
 
-fn row(
-    formula: &Formula,
-    report: &Report,
-    broken_hard_cases: Vec<String>,
-    broken_seams: Vec<String>,
-    failure: Option<Failure>,
-) -> Row {
+/// The command that runs the same inputs again.
+fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> String {
+    let copy = match source {
+        Source::Cookbook => String::new(),
+        Source::Copy(path, _) => format!(" --wgsl {path}"),
+    };
+    let Settings { cases, seed } = settings;
+    format!("./cook check {}::{}{copy} --seed {seed} --cases {cases}", formula.module, formula.function)
+}
+
+/// What does not hold besides the random inputs.
+struct Broken {
+    hard_cases: Vec<String>,
+    seams: Vec<String>,
+    promises: Vec<String>,
+}
+
+fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failure>, reproduce: String) -> Row {
     let mut row = Row {
         passed: false,
         module: formula.module.to_owned(),
@@ -300,14 +320,16 @@ fn row(
         reason: report.reason.clone(),
         failure,
         hard_cases: formula.hard_cases.len(),
-        held_hard_cases: formula.hard_cases.len() - broken_hard_cases.len(),
-        broken_hard_cases,
-        broken_seams,
+        held_hard_cases: formula.hard_cases.len() - broken.hard_cases.len(),
+        broken_hard_cases: broken.hard_cases,
+        broken_seams: broken.seams,
+        broken_promises: broken.promises,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),
         kept_in: None,
         seconds: report.seconds,
+        reproduce,
     };
     row.passed = row.judge();
     row

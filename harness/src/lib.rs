@@ -17,6 +17,7 @@ pub mod interpreter;
 pub mod mutation;
 pub mod nearest;
 pub mod optical_path;
+pub mod outside;
 pub mod pixel;
 pub mod plan;
 pub mod property;

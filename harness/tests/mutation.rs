@@ -1,9 +1,12 @@
 //! Every operator, comparison and constant of every module's functions, changed one at a time: the property tests of the module
 //! must notice each.
 //!
-//! Mutants run in child processes (this same program, as a worker), two at a time; one that takes over 10 s hangs, and counts
-//! as caught. A mutant that no input can tell from the original is listed, with the reason, in `equivalent_mutants.txt`; at
-//! most 5 % may be.
+//! Mutants run in child processes (this same program, as a worker), two at a time. One that gives no answer in time is asked once
+//! more, alone in a fresh worker and for longer; if it still gives none it has timed out, which is not to be caught: it fails. A
+//! mutant that no input can tell from the original is listed, with the reason, in `equivalent_mutants.txt`; at most 5 % may be.
+//!
+//! All mutants take minutes. `LAPIDARY_MUTANTS=sample` judges one in ten, chosen by the suite's seed, so that another change meets
+//! others; `listed` those that are listed; `all` all. Without it a run that names a module or function judges all of its mutants, any other run a sample.
 
 use lapidary_harness::check;
 use lapidary_harness::cookbook;
@@ -13,8 +16,11 @@ use lapidary_harness::formula::{Formula, Words};
 use lapidary_harness::formulas;
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
 use lapidary_harness::mutation::{self, Mutant};
+use lapidary_harness::outside;
+use lapidary_harness::property::seed::SuiteSeed;
 use lapidary_harness::property::tolerance::{Tolerance, number};
 use lapidary_harness::property::{Check, Settings};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
@@ -22,14 +28,24 @@ use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// A mutant that takes longer hangs.
-const LIMIT: Duration = Duration::from_secs(10);
+/// How long to wait for an answer: at first, where a machine under load may be slow, and the second time.
+const LIMITS: [Duration; 2] = [Duration::from_secs(20), Duration::from_secs(120)];
+/// Which mutants are judged.
+const MUTANTS_VARIABLE: &str = "LAPIDARY_MUTANTS";
+/// How a reason begins that holds for this device alone.
+const ANOTHER_DEVICE: &str = "Another device tells";
+/// One mutant in so many is in a sample.
+const SAMPLE: u64 = 10;
 /// The start of a worker, its device and its first rows; not held against a mutant.
 const START_LIMIT: Duration = Duration::from_secs(120);
 /// Worker processes.
 const WORKERS: usize = 2;
 /// Most mutants that may be listed as equivalent.
 const MOST_EQUIVALENT: f64 = 0.05;
+/// Of the rows, always the same: what is listed as equivalent must not depend on the commit.
+const SEED: u64 = 0x1a91_da21;
+/// Rows that are compared first: a loop that ends only where the driver ends it is soon over with them, and mostly wrong.
+const FIRST_ROWS: usize = 256;
 /// Rows whose right results a worker keeps.
 const KEPT_ROWS: u64 = 8_192;
 /// Rows for what those do not tell apart.
@@ -49,7 +65,47 @@ fn main() -> ExitCode {
     }
     // As libtest does: a name filters, here by module or function.
     let filter = arguments.iter().find(|argument| !argument.starts_with('-')).cloned().unwrap_or_default();
-    coordinate(if filter == "mutation" { "" } else { &filter })
+    let filter = if filter == "mutation" { "" } else { &filter };
+    let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
+    let choice = match std::env::var(MUTANTS_VARIABLE).ok().as_deref() {
+        Some("all") => Choice::All,
+        Some("listed") => Choice::Listed(equivalent_mutants()),
+        Some("sample") => Choice::Sample(seed.value),
+        None if filter.is_empty() => Choice::Sample(seed.value),
+        None => Choice::All,
+        Some(other) => panic!("{MUTANTS_VARIABLE}={other}: expected all, listed or sample"),
+    };
+    println!("seed {}, {}", seed.value, seed.origin);
+    coordinate(filter, &choice)
+}
+
+/// Which mutants are judged.
+enum Choice {
+    All,
+    /// Those that are listed as equivalent.
+    Listed(BTreeMap<String, String>),
+    /// One in ten, by this seed.
+    Sample(u64),
+}
+
+impl Choice {
+    fn holds(&self, name: &str) -> bool {
+        match self {
+            Choice::All => true,
+            Choice::Listed(listed) => listed.contains_key(name),
+            Choice::Sample(seed) => in_sample(*seed, name),
+        }
+    }
+}
+
+/// Whether a mutant is in the sample of a seed.
+fn in_sample(seed: u64, name: &str) -> bool {
+    // FNV-1a: the same on every machine and in every version of Rust.
+    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325 ^ seed, |hash: u64, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    // The low bits of the product depend on the low bits of the bytes alone.
+    (hash ^ (hash >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32 < (1 << 32) / SAMPLE
 }
 
 /// In place of a mutant's number: the unchanged function, which must survive.
@@ -68,7 +124,7 @@ fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
     (valid, invalid.len())
 }
 
-fn coordinate(filter: &str) -> ExitCode {
+fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
     let start = Instant::now();
     let mut jobs: Vec<(usize, usize, String)> = Vec::new();
     let mut constants = Vec::new();
@@ -86,10 +142,14 @@ fn coordinate(filter: &str) -> ExitCode {
             if constant {
                 constants.push(name.clone());
             }
+            if !choice.holds(&name) {
+                continue;
+            }
             jobs.push((index, position, name));
         }
     }
     let total = jobs.len();
+    let judged: BTreeSet<String> = jobs.iter().map(|(.., name)| name.clone()).collect();
     if total == 0 {
         // A filter for other tests.
         println!("\ntest result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 1 filtered out\n");
@@ -102,7 +162,7 @@ fn coordinate(filter: &str) -> ExitCode {
     jobs.reverse();
     let queue = Mutex::new(jobs);
     let survived = Mutex::new(Vec::new());
-    let hung = Mutex::new(Vec::new());
+    let timed_out = Mutex::new(Vec::new());
     let broken = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..WORKERS {
@@ -116,20 +176,24 @@ fn coordinate(filter: &str) -> ExitCode {
                         _ if position == UNCHANGED => broken.lock().expect("no thread panics").push(name),
                         Verdict::Caught => {}
                         Verdict::Survived => survived.lock().expect("no thread panics").push(name),
-                        Verdict::Hung => hung.lock().expect("no thread panics").push(name),
+                        Verdict::TimedOut => timed_out.lock().expect("no thread panics").push(name),
                     }
                 }
             });
         }
     });
     let survived = survived.into_inner().expect("no thread panics");
-    let hung = hung.into_inner().expect("no thread panics");
+    let timed_out = timed_out.into_inner().expect("no thread panics");
     let broken = broken.into_inner().expect("no thread panics");
     for name in &broken {
         println!("BROKEN: the unchanged `{name}` does not pass its own tests in a worker");
     }
     println!("{invalid} changes make no valid program and are no mutants");
-    let passed = report(filter, total, &survived, &hung, start.elapsed()) && broken.is_empty();
+    if let Choice::Sample(seed) = choice {
+        println!("a sample of one in {SAMPLE} by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
+    }
+    let whole = filter.is_empty() && matches!(choice, Choice::All);
+    let passed = report(whole, &judged, total, &survived, &timed_out, start.elapsed()) && broken.is_empty();
     println!(
         "\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n",
         if passed { "ok" } else { "FAILED" },
@@ -139,13 +203,22 @@ fn coordinate(filter: &str) -> ExitCode {
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took: Duration) -> bool {
+fn report(
+    whole: bool,
+    judged: &BTreeSet<String>,
+    total: usize,
+    survived: &[String],
+    timed_out: &[String],
+    took: Duration,
+) -> bool {
     let listed = equivalent_mutants();
     let (equivalent, missed): (Vec<&String>, Vec<&String>) =
         survived.iter().partition(|name| listed.contains_key(*name));
-    let stale: Vec<&String> = listed.keys().filter(|name| filter.is_empty() && !survived.contains(name)).collect();
-    for name in hung {
-        println!("hung, so caught: {name}");
+    // One that is not judged here may well survive; one that is no mutant any more is found by a whole run.
+    let stale: Vec<&String> =
+        listed.keys().filter(|name| (whole || judged.contains(*name)) && !survived.contains(name)).collect();
+    for name in timed_out {
+        println!("TIMED OUT, neither caught nor survived: {name}");
     }
     for name in &missed {
         println!("SURVIVED: {name}");
@@ -153,18 +226,19 @@ fn report(filter: &str, total: usize, survived: &[String], hung: &[String], took
     for name in &stale {
         println!("STALE: listed as equivalent, but caught or gone: {name}");
     }
-    let caught = total - survived.len();
+    let caught = total - survived.len() - timed_out.len();
+    let elsewhere = equivalent.iter().filter(|name| listed[**name].starts_with(ANOTHER_DEVICE)).count();
     let share = equivalent.len() as f64 / total.max(1) as f64;
     println!(
-        "mutation score: {caught} of {total} mutants caught ({:.1} %), {} equivalent and listed ({:.1} %, at most 5 %), {} survived, {} hung, {:.0} s",
+        "mutation score: {caught} of {total} mutants caught ({:.1} %), {} equivalent and listed ({:.1} %, of all at most 5 %; {elsewhere} of them only on this device), {} survived, {} timed out, {:.0} s",
         100.0 * caught as f64 / total.max(1) as f64,
         equivalent.len(),
         100.0 * share,
         missed.len(),
-        hung.len(),
+        timed_out.len(),
         took.as_secs_f64()
     );
-    missed.is_empty() && stale.is_empty() && share <= MOST_EQUIVALENT
+    missed.is_empty() && stale.is_empty() && timed_out.is_empty() && (!whole || share <= MOST_EQUIVALENT)
 }
 
 /// Name and reason of each listed mutant.
@@ -172,9 +246,17 @@ fn equivalent_mutants() -> BTreeMap<String, String> {
     let text = include_str!("equivalent_mutants.txt");
     let mut listed = BTreeMap::new();
     let mut reason = String::new();
-    for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
-        match line.strip_prefix('#') {
-            // A reason stands over the mutants that it is for.
+    let mut continues = false;
+    for line in text.lines().map(str::trim) {
+        let comment = line.strip_prefix('#');
+        let first = !continues;
+        continues = comment.is_some();
+        if line.is_empty() {
+            continue;
+        }
+        match comment {
+            // A reason stands over the mutants that it is for, on one line or several.
+            Some(comment) if !first => reason = format!("{reason} {}", comment.trim()),
             Some(comment) => comment.trim().clone_into(&mut reason),
             None => {
                 assert!(!reason.is_empty(), "equivalent_mutants.txt: `{line}` has no reason");
@@ -188,7 +270,7 @@ fn equivalent_mutants() -> BTreeMap<String, String> {
 enum Verdict {
     Caught,
     Survived,
-    Hung,
+    TimedOut,
 }
 
 /// A child and the lines that it answers.
@@ -235,11 +317,11 @@ impl Drop for Worker {
 
 fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdict {
     // A worker may die of what an earlier mutant did to the driver: only one that dies again, fresh, is noticed by dying.
-    for _ in 0..2 {
+    for limit in LIMITS {
         let active = worker.get_or_insert_with(Worker::spawn);
         let asked = writeln!(active.stdin, "{formula} {position}").and_then(|()| active.stdin.flush());
         let answer = match asked {
-            Ok(()) => active.answers.recv_timeout(LIMIT),
+            Ok(()) => active.answers.recv_timeout(limit),
             Err(_) => Err(RecvTimeoutError::Disconnected),
         };
         match answer.as_deref() {
@@ -247,7 +329,9 @@ fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdic
             Ok(_) => return Verdict::Caught,
             Err(RecvTimeoutError::Timeout) => {
                 *worker = None;
-                return Verdict::Hung;
+                if limit == LIMITS[1] {
+                    return Verdict::TimedOut;
+                }
             }
             Err(RecvTimeoutError::Disconnected) => *worker = None,
         }
@@ -263,6 +347,8 @@ struct Kept<'gpu> {
     arguments: Words,
     mirrored: Vec<Words>,
     exact: Vec<Vec<f64>>,
+    /// The kernel that says where it computes an infinity or a NaN, and where the right one does; made when first asked for.
+    watched: OnceCell<(KernelModule, Vec<bool>)>,
     gpu: &'gpu Gpu,
 }
 
@@ -297,8 +383,7 @@ impl<'gpu> Kept<'gpu> {
         let module = cookbook::module(formula.module).expect("a formula's module exists");
         let kernel =
             KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
-        let seed = Settings::default().seed;
-        let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(seed, row));
+        let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(SEED, row));
         let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
         let scalars: Vec<_> = formula.arguments.iter().flat_map(Shape::scalars).collect();
         let mut mirrored = Vec::new();
@@ -313,30 +398,69 @@ impl<'gpu> Kept<'gpu> {
             exact.push(result);
         }
         let tolerance = check::tolerance(gpu, formula);
-        Kept { formula, kernel: mutation::compacted(kernel), tolerance, arguments: rows.concat(), mirrored, exact, gpu }
+        Kept {
+            formula,
+            kernel: mutation::compacted(kernel),
+            tolerance,
+            arguments: rows.concat(),
+            mirrored,
+            exact,
+            watched: OnceCell::new(),
+            gpu,
+        }
     }
 
     fn catches(&self, mutant: &Mutant) -> bool {
-        mutation::apply(&self.kernel, mutant).is_some_and(|mutated| self.notices(mutated))
+        mutation::apply(&self.kernel, mutant)
+            .is_some_and(|mutated| self.notices(mutated) || self.computes_more_infinities(mutant))
+    }
+
+    /// Whether the mutant computes an infinity or a NaN where the function computes none: what comes of it is left to each device,
+    /// even where this one makes the right result of it.
+    fn computes_more_infinities(&self, mutant: &Mutant) -> bool {
+        let nonfinite = |kernel: KernelModule| -> Option<Vec<bool>> {
+            let mut kernel = Kernel::new(self.gpu, kernel.watched()).ok()?;
+            let mut results = Words::new();
+            kernel.run(&self.arguments, &mut results).ok()?;
+            Some(results.chunks_exact(kernel.result_words()).map(|row| row.last() == Some(&1)).collect())
+        };
+        let (kernel, right) = self.watched.get_or_init(|| {
+            let module = cookbook::module(self.formula.module).expect("a formula's module exists");
+            let kernel = KernelModule::reflect_watched(module.source, module.name, self.formula.function);
+            let kernel = mutation::compacted(kernel.expect("the cookbook's WGSL is valid"));
+            let right = nonfinite(kernel.clone()).expect("the cookbook's kernel runs");
+            (kernel, right)
+        });
+        let Some(found) = mutation::apply(kernel, mutant).and_then(nonfinite) else { return false };
+        found.iter().zip(right).any(|(found, right)| *found && !right)
     }
 
     /// Whether the property tests tell this kernel from the right one.
     fn notices(&self, mutated: KernelModule) -> bool {
         let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
-        let mut results = Words::new();
-        if kernel.run(&self.arguments, &mut results).is_err() {
+        let (width, all) = (kernel.argument_words(), self.mirrored.len());
+        for (first, last) in [(0, FIRST_ROWS.min(all)), (FIRST_ROWS.min(all), all)] {
+            let arguments = &self.arguments[first * width..last * width];
+            let mut results = Words::new();
+            if kernel.run(arguments, &mut results).is_err() {
+                return true;
+            }
+            let rows = arguments.chunks_exact(width).zip(results.chunks_exact(kernel.result_words()));
+            let right = self.mirrored[first..last].iter().zip(&self.exact[first..last]);
+            let broken = rows.zip(right).any(|((arguments, result), (mirrored, exact))| {
+                !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
+                    || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
+            });
+            if broken {
+                return true;
+            }
+        }
+        let promises = formulas::outside::all();
+        let broken = outside::broken(&mut kernel, self.formula, &self.tolerance, promises, SEED);
+        if broken.is_ok_and(|broken| !broken.is_empty()) {
             return true;
         }
-        let rows =
-            self.arguments.chunks_exact(kernel.argument_words()).zip(results.chunks_exact(kernel.result_words()));
-        let broken = rows.zip(self.mirrored.iter().zip(&self.exact)).any(|((arguments, result), (mirrored, exact))| {
-            !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
-                || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
-        });
-        if broken {
-            return true;
-        }
-        let settings = Settings { cases: MORE_ROWS, seed: Settings::default().seed + 1 };
+        let settings = Settings { cases: MORE_ROWS, seed: SEED + 1 };
         let report =
             Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
         report.map_or(true, |report| report.failed > 0)

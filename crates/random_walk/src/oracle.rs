@@ -98,7 +98,7 @@ pub fn deflection(u: f64, g: f64) -> DVec2 {
         return DVec2::new(-mirrored.x, mirrored.y);
     }
     let t = 2.0 * u - 1.0;
-    if t.abs() == 1.0 {
+    if u == 0.0 || u == 1.0 {
         return DVec2::new(t, 0.0);
     }
     if g < 1e-5 {
@@ -107,10 +107,14 @@ pub fn deflection(u: f64, g: f64) -> DVec2 {
         let more = 1.5 * g * sine;
         return DVec2::new(t + more * sine, sine - more * t);
     }
-    let root = (1.0 - g * g) / (1.0 + g * t);
+    // 1 + g t, and with it the differences of half the circumference and a side, without what cancels for u next to 0 and to 1.
+    let sum = (1.0 - g) + 2.0 * g * u;
+    let root = (1.0 - g) * (1.0 + g) / sum;
     let half = 0.5 * (1.0 + g + root);
-    let near = ((half - 1.0) * (half - g)).max(0.0).sqrt();
-    let angle = 2.0 * near.atan2((half * (half - root)).max(0.0).sqrt());
+    let less_one = g * (1.0 - g) * (1.0 - u) / sum;
+    let less_root = g * (1.0 + g) * u / sum;
+    let near = (less_one * (half - g)).sqrt();
+    let angle = 2.0 * near.atan2((half * less_root).sqrt());
     DVec2::new(angle.cos(), angle.sin())
 }
 

@@ -35,9 +35,40 @@ pub(super) struct Arguments {
     /// cookbook's own functions are tested with what is there first.
     #[arg(long, value_name = "DIR")]
     failures: Option<PathBuf>,
+    /// Test the I-th of N parts of the functions, to share the work between machines or runs.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
+}
+
+/// One part of several.
+#[derive(Clone, Copy, Debug)]
+struct Shard {
+    /// From 1.
+    index: usize,
+    count: usize,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        match numbers {
+            Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err("expected I/N with I from 1 to N, such as 1/4".to_owned()),
+        }
+    }
+}
+
+impl Shard {
+    /// Every N-th function, so that the slow ones of a module fall to several parts; all of them without a shard.
+    fn share<T>(shard: Option<Self>, all: Vec<T>) -> Vec<T> {
+        let Self { index, count } = shard.unwrap_or(Self { index: 1, count: 1 });
+        all.into_iter().skip(index - 1).step_by(count).collect()
+    }
 }
 
 /// What was checked, and what there is to say besides.
@@ -53,6 +84,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let checked = match &arguments.wgsl {
         None => {
             let formulas = check::select(arguments.filter.as_deref())?;
+            let formulas = Shard::share(arguments.shard, formulas);
             let gpu = context.gpu()?;
             let regressions = arguments.failures.as_ref().map_or_else(Regressions::of_target, Regressions::in_folder);
             let rows = all(gpu, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
@@ -64,9 +96,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let file = UserFile::read(path)?;
             let gpu = context.gpu()?;
             let filter = arguments.filter.clone();
+            let shard = arguments.shard;
             let regressions = arguments.failures.as_ref().map(Regressions::in_folder);
-            let work =
-                move |stage: &Stage| of_file(gpu, &file, filter.as_deref(), settings, regressions.as_ref(), stage);
+            let work = move |stage: &Stage| {
+                of_file(gpu, &file, (filter.as_deref(), shard), settings, regressions.as_ref(), stage)
+            };
             guard::watched(work).map_err(|error| Failure(format!("{}: {error}", path.display())))??
         }
     };
@@ -87,12 +121,13 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
 fn of_file(
     gpu: &Gpu,
     file: &UserFile,
-    filter: Option<&str>,
+    (filter, shard): (Option<&str>, Option<Shard>),
     settings: Settings,
     regressions: Option<&Regressions>,
     stage: &Stage,
 ) -> Result<Checked, CheckError> {
     let Contents { formulas, notes, releases } = file.contents(filter)?;
+    let formulas = Shard::share(shard, formulas);
     let source = Source::Copy(&file.path, &file.text);
     let mut rows = all(gpu, &formulas, source, settings, regressions, Some(stage))?;
     for row in &mut rows {

@@ -2,6 +2,7 @@
 
 use super::{Context, Failure, Outcome};
 use lapidary_harness::gpu::ADAPTER_VARIABLE;
+use lapidary_harness::property::seed::{SEED_VARIABLE, SuiteSeed};
 use std::path::Path;
 use std::process::Command;
 
@@ -16,6 +17,9 @@ pub(super) struct Arguments {
     /// Leave out the mutation tests, which take minutes.
     #[arg(long)]
     quick: bool,
+    /// Judge every mutant, not the sample of one in ten that the seed chooses.
+    #[arg(long, conflicts_with = "quick")]
+    all_mutants: bool,
     /// Show what the tests measure, too.
     #[arg(long)]
     show: bool,
@@ -24,6 +28,8 @@ pub(super) struct Arguments {
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     // Says at once what is missing, before minutes of building.
     context.gpu()?;
+    let seed = SuiteSeed::of_environment().map_err(Failure)?;
+    eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     // The mutation tests last and apart: cargo stops at the first target that fails.
     let parts: [&[&str]; 2] = [
         &["--workspace", "--lib", "--bins", "--test", "suite"],
@@ -37,6 +43,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         command.arg("test").args(*part).arg("--manifest-path");
         command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
+        // The same for all parts, whatever changes in the tree meanwhile.
+        command.env(SEED_VARIABLE, seed.value.to_string());
+        if arguments.all_mutants {
+            command.env("LAPIDARY_MUTANTS", "all");
+        }
         command.arg("--").args(&arguments.filter);
         if arguments.show {
             command.arg("--nocapture");

@@ -3,6 +3,7 @@
 mod batch;
 mod kernel;
 mod layout;
+mod nonfinite;
 pub mod reach;
 pub mod shape;
 mod turns;

@@ -221,6 +221,17 @@ fn line_formulas() -> Vec<Formula> {
                 (&[-9_999_999.863_139_018, -9_999_999.883_139_025], 8.0),
                 (NAIVE, f64::INFINITY),
             )
+            .hard_case(
+                "a plain cross product of two normals 5e-5 apart",
+                (
+                    Vec3::ZERO,
+                    Vec3::new(0.839_001_95, 0.538_878_56, -0.075_402_99),
+                    Vec3::new(0.3, 1.0, -0.2),
+                    Vec3::new(0.839_005_05, 0.538_867_6, -0.075_446_75),
+                ),
+                (&[625.768_916_925_23, 624.963_263_509_1], 0.02),
+                (NAIVE, 100.0),
+            )
             .hard_case("parallel normals", at_angle([0.6, 0.0, 0.8]), (&[0.0, 0.0], 0.0), (NAIVE, f64::INFINITY))
             .hard_case(
                 "two axes, where a sphere cannot tell t_i from t_j",
@@ -278,6 +289,16 @@ fn fallback_formulas() -> Vec<Formula> {
             |_, p: Vec3, doubled: Vec3| {
                 near("difference", (2.0 * p - doubled).as_dvec3().length(), 0.0, 1e-6 * p.as_dvec3().length())
             },
+        )
+        .hard_case(
+            "a cross product of the two long edges of a needle",
+            (
+                Vec3::ZERO,
+                Vec3::new(-0.842_004_954_814_910_9, 0.048_710_234_463_214_874, 0.537_266_254_425_048_8),
+                Vec3::new(-0.838_605_642_318_725_6, 0.048_597_883_433_103_56, 0.535_161_018_371_582),
+            ),
+            (&[-0.517_225_082_239, -0.022_292_148_624_3, 0.429_793_515_345], 4e-6),
+            (NAIVE, 1e-3),
         )
         .hard_case("edges of 1e-20", right_angled(1e-20), (&below(f64::from(1e-20f32)), 1e-26), (NAIVE, f64::INFINITY))
         .hard_case("edges of 1e19", right_angled(1e19), (&below(1e19), 1e13), (NAIVE, 1e18))

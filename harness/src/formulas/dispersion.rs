@@ -303,6 +303,7 @@ fn refract() -> Formula {
     let (past, past_limit) = refraction_case(critical + 1e-6, 0.2, out, out_slope);
     let (close, close_limit) = refraction_case(critical + 1e-3, 0.2, out, out_slope);
     let (grazing, grazing_limit) = refraction_case(0.0, 0.0, 1.0, 1.0);
+    let (squared, squared_limit) = refraction_case(f32::from_bits(0x3d72_1b3b), 0.0, f32::from_bits(0x3f80_07fb), 1.0);
     let (denser, denser_limit) = refraction_case(1e-4, 0.0, 1.0f32.next_up(), 1.0);
     // Diamond between parallel faces, entered at 0.6 rad.
     let [ray, _] = in_plane(0.6f64.cos());
@@ -345,6 +346,12 @@ fn refract() -> Formula {
         .hard_case("1e-6 inside the critical angle", past, (&past_limit, 1e-5), (NAIVE, 10.0))
         .hard_case("1e-3 inside the critical angle", close, (&close_limit, 1e-5), (NAIVE, 1.0))
         .hard_case("equal indices, exactly grazing", grazing, (&grazing_limit, 0.0), (NAIVE, f64::INFINITY))
+        .hard_case(
+            "n * n - 1 instead of two factors: a nearly equal index",
+            squared,
+            (&squared_limit, 1e-5),
+            (NAIVE, 1e-4),
+        )
         .hard_case("an index one ulp above 1, grazing", denser, (&denser_limit, 1e-5), (NAIVE, 100.0))
         .hard_case_with(
             "a parallel slab: eq. (11) leaves a spread of unit length",

@@ -127,6 +127,30 @@ fn exact() -> Formula {
             (&[0.443_268_811_5], 3e-7),
             (NAIVE, 5e-3),
         )
+        .hard_case(
+            "n * n - 1 instead of two factors: a nearly equal index at 51.5 degrees",
+            (f32::from_bits(0x3f1f_56ec), f32::from_bits(0x3f80_07fb)),
+            (&[5.184_650_042_522_7e-8], 5e-13),
+            (NAIVE, 1e-11),
+        )
+        .hard_case(
+            "c - g instead of m / (c + g): a nearly equal index at 42.1 degrees",
+            (f32::from_bits(0x3f3e_0280), f32::from_bits(0x3f7f_f7d9)),
+            (&[6.441_410_680_326_8e-9], 5e-14),
+            (NAIVE, 4e-12),
+        )
+        .hard_case(
+            "1 - c * c instead of two factors: just inside the critical angle of a thin medium",
+            (f32::from_bits(0x3f75_df23), f32::from_bits(0x3e8e_9c39)),
+            (&[0.885_257_645_391], 2e-5),
+            (NAIVE, 7e-5),
+        )
+        .hard_case(
+            "m + c * c, of which c * c is rounded near 1: just inside the critical angle of a thin medium",
+            (f32::from_bits(0x3f74_0933), f32::from_bits(0x3e9a_b2a8)),
+            (&[0.941_471_705_084_22], 2e-5),
+            (NAIVE, 1e-4),
+        )
         .hard_case("no interface, grazing", (grazing, 1.0), (&[0.0], 0.0), (NAIVE, 0.9))
         .hard_case("no interface, a subnormal cosine", (f32::from_bits(1), 1.0), (&[0.0], 0.0), (NAIVE, 0.9))
         .hard_case("no interface, exactly grazing", (0.0, 1.0), (&[0.0], 0.0), (NAIVE, f64::INFINITY))

@@ -12,6 +12,7 @@ mod environment;
 mod fresnel;
 mod microfacet;
 mod optical_path;
+pub mod outside;
 mod proxy_geometry;
 mod random_walk;
 mod reflective_shadow_map;

@@ -246,6 +246,12 @@ fn scattering() -> Vec<Formula> {
                 |(c, g)| (-c, -g),
                 |_, one: f32, other: f32| near("difference", f64::from(one) - f64::from(other), 0.0, 0.0),
             )
+            .hard_case(
+                "1 - g * g instead of two factors: backwards, nearly always straight on",
+                (-f32::from_bits(0x3f4d_c5fc), f32::from_bits(0x3f7f_f4b1)),
+                (&[4.008_624_400_82e-6], 1e-11),
+                (PHASE, 3e-10),
+            )
             .hard_case("straight on, g 1", (1.0, 1.0), (&[peak], 1e-5 * peak), (PHASE, f64::INFINITY))
             .build(),
         formula(M, "random_walk_phase_naive", mirror::phase_naive, oracle::phase_naive, |draws| {
@@ -267,6 +273,12 @@ fn scattering() -> Vec<Formula> {
         })
         .hard_case("isotropic", (0.75, 0.0), (&[0.5, 0.75f64.sqrt()], 1e-6), (NAIVE, f64::INFINITY))
         .hard_case("g 1e-5", (0.75, 1e-5), (&[0.500_011_25, 0.866_018_91], 1e-6), (NAIVE, 1e-4))
+        .hard_case(
+            "1 - g * g instead of two factors: nearly straight on, sent back",
+            (f32::from_bits(0x35a3_ac14), f32::from_bits(0x3f7f_f4c3)),
+            (&[-0.944_310_531_09, 0.329_055_650_115], 2e-6),
+            (NAIVE, 5e-4),
+        )
         .hard_case("a sine of 3e-4", (0.3, 0.9999), (&[0.999_999_949_436, 3.180_076e-4], 1e-7), (NAIVE, 1e-5))
         .build(),
         formula(M, "random_walk_deflection_naive", mirror::deflection_naive, oracle::deflection_naive, |draws| {

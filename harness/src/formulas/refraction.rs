@@ -149,6 +149,12 @@ pub(super) fn formulas() -> Vec<Formula> {
             (&[refracted(1e-4, barely_denser)[2].powi(2)], 1e-13),
             ("refraction_radicand_naive", 1e-9),
         )
+        .hard_case(
+            "n * n - 1 instead of two factors: an index of 1.0002277 close to grazing",
+            (f32::from_bits(0x399b_7e0a), f32::from_bits(0x3f80_0776)),
+            (&[4.553_119_239_593_2e-4], 5e-10),
+            ("refraction_radicand_naive", 5e-8),
+        )
         .build(),
         formula(M, "refraction_radicand_naive", mirror::radicand_naive, oracle::radicand, |draws| {
             (draws.between(0.3, 1.0), draws.between(1.25, 4.0))
@@ -194,6 +200,12 @@ pub(super) fn formulas() -> Vec<Formula> {
                 (grazing(1e-4), Vec3::Z, barely_denser),
                 (&refracted(1e-4, barely_denser), 1e-7),
                 ("refraction_refract_naive", 5e-6),
+            )
+            .hard_case(
+                "n * n - 1 instead of two factors: an index of 1.0002266 close to grazing",
+                (grazing(f32::from_bits(0x392c_3424)), Vec3::Z, f32::from_bits(0x3f80_076d)),
+                (&refracted(f32::from_bits(0x392c_3424), f32::from_bits(0x3f80_076d)), 2e-7),
+                ("refraction_refract_naive", 1e-6),
             )
             .hard_case(
                 "an index one ulp below 1, one part in 400 inside the critical angle",

@@ -4,6 +4,7 @@ pub mod draws;
 pub mod histogram;
 pub mod persistence;
 pub mod seams;
+pub mod seed;
 pub mod slack;
 pub mod tolerance;
 

@@ -1,28 +1,47 @@
-//! The property tests of every formula, at the default number of cases, and of every naive form on its benign domain.
+//! The property tests of every formula, at the default number of cases, and of every naive form on its benign domain: from the
+//! suite's seed, and from a second one.
 
 use lapidary_harness::check::{self, Source};
 use lapidary_harness::formulas;
-use lapidary_harness::property::Settings;
+use lapidary_harness::property::seed::SuiteSeed;
+use lapidary_harness::property::{DEFAULT_CASES, Settings};
 
-#[test]
-fn every_formula_holds_over_its_domain() {
+/// A line for each formula that does not hold; it ends with the command that runs the same inputs again.
+fn faults(seed: u64) -> Vec<String> {
     let gpu = super::gpu();
     let mut faults = Vec::new();
     for formula in formulas::all() {
-        let row = check::run(gpu, formula, Source::Cookbook, Settings::default()).expect("the check runs");
-        assert!(row.cases >= Settings::default().cases);
+        let settings = Settings { cases: DEFAULT_CASES, seed };
+        let row = check::run(gpu, formula, Source::Cookbook, settings).expect("the check runs");
+        assert!(row.cases >= DEFAULT_CASES);
         if !row.passed() {
             faults.push(format!(
-                "{}: {} failed, {:?}, worst {}, shrunk {:?}, missed {:?}, {:?}",
+                "{}: {} failed, {:?}, worst {}, shrunk {:?}, missed {:?}, {:?}, {:?}; again with: {}",
                 row.function,
                 row.failed,
                 row.reason,
                 row.worst_input,
                 row.shrunk_input,
                 row.missed_edges,
-                row.broken_hard_cases
+                row.broken_hard_cases,
+                row.broken_promises,
+                row.reproduce
             ));
         }
     }
+    faults
+}
+
+#[test]
+fn every_formula_holds_over_its_domain() {
+    let faults = faults(super::seed());
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn every_formula_holds_over_its_domain_from_a_second_seed() {
+    super::seed();
+    let second = SuiteSeed::of_environment().expect("read above").second();
+    let faults = faults(second);
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }

@@ -9,6 +9,7 @@ mod cdrf_shading;
 mod chromium;
 mod cli;
 mod comparator;
+mod constants;
 mod contract;
 mod cost;
 mod curvature;
@@ -23,6 +24,7 @@ mod hard_cases;
 mod launcher;
 mod optical_path;
 mod optical_path_shading;
+mod outside;
 mod parity;
 mod pixels;
 mod plan;
@@ -31,7 +33,9 @@ mod random_walk;
 mod reference;
 mod releases;
 mod restraint;
+mod rewrites;
 mod seams;
+mod seeds;
 mod shadows;
 mod slack;
 mod snapshots;
@@ -43,6 +47,14 @@ mod voxelization;
 mod walked_references;
 
 use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use lapidary_harness::property::seed::{SEED_VARIABLE, SuiteSeed};
+
+/// The seed of the property tests. What it is stands in the output of every test that uses it and fails.
+fn seed() -> u64 {
+    let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
+    eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
+    seed.value
+}
 
 /// The process's one device. A missing adapter fails the test: a suite that skips itself checks nothing.
 fn gpu() -> &'static Gpu {

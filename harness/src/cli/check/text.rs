@@ -114,9 +114,15 @@ fn details(row: &Row, style: Style, text: &mut String) {
     for seam in &row.broken_seams {
         let _ = writeln!(text, "  {seam}");
     }
+    for promise in &row.broken_promises {
+        let _ = writeln!(text, "  {promise}");
+    }
     for edge in &row.missed_edges {
         let advice = if row.passed() { "" } else { ", which fails the check" };
         let _ = writeln!(text, "  edge missed: the inputs never reached {edge}{advice}; run more --cases");
+    }
+    if !row.passed() {
+        let _ = writeln!(text, "  again with: {}", row.reproduce);
     }
     if let Some(file) = &row.kept_in {
         let _ = writeln!(text, "  the input is kept in {file}");

@@ -1,0 +1,105 @@
+//! The `Outside:` lines: each clause is a promise that is tested, or is said to promise nothing; and a promise that does not hold
+//! is noticed.
+
+use lapidary_harness::check::{self, Source};
+use lapidary_harness::cookbook::{self, accuracy_line::Accuracy};
+use lapidary_harness::formulas;
+use lapidary_harness::outside::{self, Promise, accurate, any_bits, finite, holds, like};
+
+#[test]
+fn every_promise_holds() {
+    let gpu = super::gpu();
+    let seed = super::seed();
+    let mut faults = Vec::new();
+    for formula in formulas::all() {
+        let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+        let tolerance = check::tolerance(gpu, formula);
+        let promises = formulas::outside::all();
+        let broken = outside::broken(&mut kernel, formula, &tolerance, promises, seed).expect("runs");
+        faults.extend(broken.into_iter().map(|fault| format!("{}: {fault}", formula.function)));
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
+    let mut faults = Vec::new();
+    let mut tested = 0;
+    for module in cookbook::modules() {
+        for function in module.functions.iter().filter(|function| !matches!(function.accuracy, Accuracy::Naive)) {
+            let mut promises: Vec<&Promise> =
+                formulas::outside::all().iter().filter(|promise| promise.function == function.name).collect();
+            tested += promises.iter().filter(|promise| promise.is_tested()).count();
+            // The longer ones first: `finite` may be a part of another.
+            promises.sort_by_key(|promise| std::cmp::Reverse(promise.says.len()));
+            let mut left = function.outside.clone();
+            let mut said: Vec<&str> = promises.iter().map(|promise| promise.says).collect();
+            said.dedup();
+            for clause in said {
+                if !left.contains(clause) {
+                    faults.push(format!("{}: `{clause}` is no part of its line `{}`", function.name, function.outside));
+                }
+                left = left.replacen(clause, "", 1);
+            }
+            if left.chars().any(char::is_alphanumeric) {
+                faults.push(format!(
+                    "{}: neither tested nor said to promise nothing: `{}`",
+                    function.name,
+                    left.trim()
+                ));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+    println!("{tested} promises outside of domains are tested");
+    assert!(tested >= 140, "{tested}");
+}
+
+#[test]
+fn promises_are_made_for_functions_as_they_are() {
+    for promise in formulas::outside::all() {
+        let formula = formulas::of_function(promise.function);
+        let formula = formula.unwrap_or_else(|| panic!("no function `{}`", promise.function));
+        if promise.is_tested() {
+            assert_eq!(promise.arguments, formula.arguments, "{promise:?}");
+        }
+    }
+}
+
+/// One of each kind, all false.
+#[test]
+fn a_promise_that_does_not_hold_is_noticed() {
+    const FUNCTION: &str = "cdrf_lambert";
+    let gpu = super::gpu();
+    let formula = formulas::of_function(FUNCTION).expect("a formula");
+    let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("compiles");
+    let tolerance = check::tolerance(gpu, formula);
+    let root = formulas::of_function("refraction_relative_index").expect("a formula");
+    let mut quotient = check::kernel(gpu, root, Source::Cookbook).expect("compiles");
+    let of_quotient = check::tolerance(gpu, root);
+    let mut broken = |promise: Promise| {
+        let found = if promise.function == FUNCTION {
+            outside::broken(&mut kernel, formula, &tolerance, &[promise], 1)
+        } else {
+            outside::broken(&mut quotient, root, &of_quotient, &[promise], 1)
+        };
+        found.expect("runs")
+    };
+    let faults = broken(finite(root.function, "finite", |_| (0.0f32, 1.0f32)));
+    assert_eq!(faults.len(), 1);
+    assert!(faults[0].contains("`finite`") && faults[0].contains("0.0, 1.0"), "{faults:?}");
+    assert_eq!(broken(accurate(root.function, "accurate", |draws| (any_bits(draws), any_bits(draws)))).len(), 1);
+    let shifted = like(FUNCTION, "like", |draws| (draws.between(0.1, 0.5),), |(cosine,): (f32,)| (cosine + 0.1,));
+    assert_eq!(broken(shifted).len(), 1);
+    let wrong = holds(
+        FUNCTION,
+        "holds",
+        |draws| (draws.between(0.1, 0.5),),
+        |(cosine,): (f32,), result: f32| {
+            if result > cosine { Ok(()) } else { Err("no".to_owned()) }
+        },
+    );
+    assert_eq!(broken(wrong).len(), 1);
+    // And one of them true.
+    assert!(broken(finite(FUNCTION, "finite", |draws| (draws.between(0.1, 0.5),))).is_empty());
+}
