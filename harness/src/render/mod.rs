@@ -27,7 +27,7 @@ mod variant;
 
 use crate::cookbook;
 use crate::gpu::Gpu;
-use crate::plan::{Decisions, Effect, Effects, Scattering};
+use crate::plan::{Decisions, Effect, Effects, Quality, Scattering};
 use crate::random_walk::mesh::{self, Rendering as Walked};
 use crate::reference::{self, Lost, Rendering};
 use crate::scene::Scene;
@@ -82,6 +82,8 @@ pub struct Settings {
     pub samples: u32,
     /// How much of the light's way is followed.
     pub rung: Rung,
+    /// Where that is each material's own: how much time it may take.
+    pub quality: Quality,
     /// The proxy's centre by the paper's eq. (4) instead of the stable form.
     pub paper_centre: bool,
     /// Factor of the paper's eq. (12); 1 as printed.
@@ -130,6 +132,7 @@ impl Settings {
             height,
             samples: SAMPLES,
             rung: Rung::PAPER,
+            quality: Quality::default(),
             paper_centre: false,
             dispersion_strength: 1.0,
             without: Effects::NONE,

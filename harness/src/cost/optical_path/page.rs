@@ -5,12 +5,15 @@ use super::table::{NONE, decimals, milliseconds, solved, stages};
 use super::views::BALL;
 use super::{CELLS, GROWING, LAMBERT, OpticalPathReport, REFERENCE, RUNGS, RungReport, USUAL, VIEWS};
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
+use crate::cost::quality;
+use crate::plan::Technique;
 use crate::render::Stage;
 use std::fmt::Write as _;
 
 impl Tables for OpticalPathReport {
     const TABLES: &'static [Table<Self>] = &[
         ("optical_path_ladder", ladder),
+        ("optical_path_quality", |report| quality::table(report, &[Technique::OpticalPath])),
         ("optical_path_stages", times),
         ("optical_path_growth", growth),
         ("optical_path_goals", goals),
