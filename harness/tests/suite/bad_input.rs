@@ -34,6 +34,12 @@ const RENDER: &[Row] = &[
     ("octahedron --exposure inf --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --exposure 0 --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --rung proxy1 --out {}/out.png", Usage, &["--rung", "did you mean `proxy-1`"]),
+    ("octahedron --quality better --out {}/out.png", Usage, &["--quality", "fast, good, best"]),
+    (
+        "octahedron --rung proxy-1 --quality best --out {}/out.png",
+        One,
+        &["--rung proxy-1", "--quality best", "leave one out"],
+    ),
     ("octahedron --samples 9 --out {}/out.png", Usage, &["--samples", "9"]),
     ("octahedron --wavelengths 7 --out {}/out.png", One, &["knows no --wavelengths"]),
     ("octahedron --rung surface --distance-limit 1 --out {}/out.png", One, &["knows no --distance-limit"]),
