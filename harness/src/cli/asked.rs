@@ -1,7 +1,8 @@
 //! What `cook render` and `cook plan` ask alike: a scene, and what of it is drawn how.
 
 use super::Failure;
-use lapidary_harness::plan::{Decisions, Effect, Effects, Scattering};
+use lapidary_harness::nearest::suggest;
+use lapidary_harness::plan::{Decisions, Effect, Effects, Quality, Scattering};
 use lapidary_harness::render::{Environment, GRAMMAR, Note, Rung, Settings};
 use lapidary_harness::scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_harness::scene::{self, Scene};
@@ -20,6 +21,10 @@ pub(super) struct Asked {
         help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
     rung: Option<Rung>,
+    /// How much time each object's technique may take: fast, good or best. The ladders' pages name the rungs; `cook plan` says which one
+    /// and how far off it is. Good where left out.
+    #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
+    quality: Option<Quality>,
     /// What is drawn though no material calls for it: shadow, which lights then cast on all that is drawn by its surface alone; and how
     /// what scatters light is drawn, whatever its thickness against the mean free path: cdrf or optical_path.
     #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, SHADOW])]
@@ -40,6 +45,12 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
     let parsed = text.split_once('x').and_then(|(width, height)| Some((digits(width)?, digits(height)?)));
     parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 512x512".to_owned())
+}
+
+fn parse_quality(text: &str) -> Result<Quality, String> {
+    let names = Quality::ALL.map(Quality::name);
+    let found = Quality::ALL.into_iter().find(|quality| quality.name() == text);
+    found.ok_or_else(|| format!("no such quality{}; there is {}", suggest(text, &names), names.join(", ")))
 }
 
 impl Asked {
@@ -75,8 +86,13 @@ impl Asked {
         };
         let shadows = self.is_with(SHADOW);
         let (width, height) = self.size;
-        let settings =
-            Settings { rung: self.rung(), scattering, shadows, environment, ..Settings::of_size(width, height) };
+        let (rung, quality) = (self.rung(), self.quality.unwrap_or_default());
+        if let (Some(quality), true) = (self.quality, rung != Rung::ByMaterial) {
+            return Err(Failure(format!(
+                "--rung {rung} names the rung of every object, so --quality {quality} has nothing to choose; leave one out"
+            )));
+        }
+        let settings = Settings { rung, quality, scattering, shadows, environment, ..Settings::of_size(width, height) };
         self.refuse_what_is_ignored(scene, &settings)?;
         Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
     }

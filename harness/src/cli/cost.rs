@@ -80,8 +80,9 @@ fn parse_rung(text: &str) -> Result<Rung, String> {
 }
 
 fn parse_view(text: &str) -> Result<views::View, String> {
-    let names: Vec<&str> = views::VIEWS.iter().map(|view| view.name).collect();
-    let found = views::VIEWS.iter().find(|view| view.name == text).copied();
+    let all = || views::VIEWS.into_iter().chain(views::CONCAVE);
+    let names: Vec<&str> = all().map(|view| view.name).collect();
+    let found = all().find(|view| view.name == text);
     found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
 }
 

@@ -108,7 +108,7 @@ fn plots() -> Vec<(String, Picture)> {
             "lavapipe/gem_flip.svg",
             gem,
             "What accuracy costs: FLIP",
-            "Time of a frame that the stone fills against the visible difference from the spectral reference. On the grey line lie the \
+            "Time of a picture against its visible difference from the spectral reference, means over seven views. On the grey line lie the \
                 rungs to choose from: nothing faster is better.",
         ),
         figure(

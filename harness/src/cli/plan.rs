@@ -3,6 +3,7 @@
 use super::asked::Asked;
 use super::{Failure, Outcome, output};
 use lapidary_harness::gpu::capture::{Kind, Pipeline, Resource, Step};
+use lapidary_harness::plan::quality::Chosen;
 use lapidary_harness::plan::{Decision, Plan, PlannedObject};
 use lapidary_harness::scene::Scene;
 use serde::Serialize;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 /// Which effects a scene calls for and why, and which passes, pipelines and resources follow. Needs no GPU.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook plan vitrine\n  ./cook plan wax --with cdrf\n  ./cook plan my_stone.glb --without dispersion --json"
+    after_help = "Examples:\n  ./cook plan vitrine\n  ./cook plan wax --with cdrf\n  ./cook plan ruby --quality best\n  ./cook plan my_stone.glb --without dispersion --json"
 )]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -39,6 +40,13 @@ struct ObjectRow<'a> {
     material: &'a str,
     rung: String,
     reason: &'a str,
+    /// None where the rung is named by the user or the material.
+    quality: Option<&'static str>,
+    /// By its committed ladder: the mean over the views, the worst view, and what is measured.
+    error: Option<f64>,
+    worst_error: Option<f64>,
+    error_measure: Option<&'static str>,
+    times_fast: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -79,11 +87,20 @@ struct ResourceRow<'a> {
 
 impl<'a> Document<'a> {
     fn of(plan: &'a Plan) -> Self {
-        let object = |planned: &'a PlannedObject| ObjectRow {
-            object: &planned.object,
-            material: &planned.material,
-            rung: planned.decisions.rung.to_string(),
-            reason: &planned.decisions.reason,
+        let object = |planned: &'a PlannedObject| {
+            let chosen = planned.decisions.chosen;
+            let measured = chosen.and_then(Chosen::measured);
+            ObjectRow {
+                object: &planned.object,
+                material: &planned.material,
+                rung: planned.decisions.rung.to_string(),
+                reason: &planned.decisions.reason,
+                quality: chosen.map(|chosen| chosen.quality.name()),
+                error: measured.map(|measured| measured.error),
+                worst_error: measured.map(|measured| measured.worst),
+                error_measure: measured.map(|measured| measured.measure),
+                times_fast: measured.map(|measured| measured.times_fast),
+            }
         };
         let effects = plan.objects.iter().flat_map(|planned| {
             planned.decisions.effects.iter().map(|Decision { effect, on, reason }| EffectRow {

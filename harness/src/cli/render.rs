@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook render brilliant\n  ./cook render ruby --rung convex-8+tracker --from 0,0\n  ./cook render quartz --rung reference --size 256x256 --out quartz.exr\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
+    after_help = "Examples:\n  ./cook render brilliant\n  ./cook render ruby --quality best --from 0,0\n  ./cook render brilliant --rung proxy-1+paper\n  ./cook render quartz --rung reference --size 256x256 --out quartz.exr\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
 )]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -1,10 +1,9 @@
 //! What the end of a ray costs: what is done with its rest, and where it ends.
 
-use super::views::View;
+use super::seen::{SAMPLES, Watched};
 use super::{CostError, Errors};
 use crate::gpu::Gpu;
-use crate::render::{self, Picture, Rung, Settings};
-use crate::scene::Scene;
+use crate::render::{self, Rung, Settings};
 use serde::{Deserialize, Serialize};
 
 /// One way to end a ray, and its errors.
@@ -44,17 +43,13 @@ impl Choice {
 const LIMITS: [f32; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// The ways on some rungs, in every view.
-pub(super) fn measure(
-    gpu: &Gpu,
-    views: &[View],
-    scenes: &[Scene],
-    references: &[Picture],
-) -> Result<Vec<Choice>, CostError> {
+pub(super) fn measure(gpu: &Gpu, watched: &[Watched]) -> Result<Vec<Choice>, CostError> {
     let mut found = Vec::new();
     for name in ["proxy-1+tracker", "convex-8+tracker"] {
         let Ok(rung) = name.parse::<Rung>() else { continue };
-        for ((view, scene), reference) in views.iter().zip(scenes).zip(references) {
-            let settings = Settings { rung, ..Settings::of_size(super::views::SIDE, super::views::SIDE) };
+        for Watched { view, scene, reference, .. } in watched {
+            let settings =
+                Settings { rung, samples: SAMPLES, ..Settings::of_size(super::views::SIDE, super::views::SIDE) };
             let mut ways = vec![
                 ("rest from the environment".to_owned(), settings.clone()),
                 ("rest dropped".to_owned(), Settings { rest_from_environment: false, ..settings.clone() }),

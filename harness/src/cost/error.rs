@@ -4,9 +4,6 @@ use crate::render::Picture;
 use crate::snapshot;
 use serde::{Deserialize, Serialize};
 
-/// What is measured, in the order of [`Errors`].
-pub const MEASURES: [&str; 3] = ["flip", "rmse", "energy"];
-
 /// The distance of a picture from its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
@@ -76,7 +73,7 @@ impl Errors {
         Self { flip: flip / count, rmse: (error / power).sqrt(), energy: sum / reference_sum - 1.0 }
     }
 
-    /// The size of the error by the measure of that number in [`MEASURES`].
+    /// The size of the error by the measure of that number in [`super::MEASURES`], of which it has the first three.
     pub fn of(&self, measure: usize) -> f64 {
         match measure {
             0 => self.flip,

@@ -1,17 +1,19 @@
 //! The gem ladder.
 
+use super::seen::{SAMPLES, Seen, Watched, steadiness};
 use super::timing::{self, Timed};
 use super::views::{self, View};
-use super::{Colours, CostError, Errors, Report, RungReport, choices, dispersion, reflection};
+use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_sizes, reflection};
 use crate::cookbook;
 use crate::gpu::Gpu;
-use crate::render::{self, Picture, Rung, Settings, Spectrum};
+use crate::render::{self, Geometry, Rung, Settings, Spectrum};
 use crate::scene::Scene;
 use crate::shader::Shader;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
-/// the loop over triangles give the planes' pictures, so a few rungs show what they take.
-pub const RUNGS: [&str; 42] = [
+/// the loop over triangles give the planes' pictures, so a few rungs show what they take; a hierarchy's have colours, which cost it a twentieth. Hits
+/// double from rung to rung.
+pub const RUNGS: [&str; 44] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -47,11 +49,13 @@ pub const RUNGS: [&str; 42] = [
     "convex-8+tracker",
     "convex-8+3",
     "convex-8+31",
+    "convex-16+tracker",
     "bvh-1",
+    "bvh-2+tracker",
     "bvh-4+tracker",
-    "bvh-8",
     "bvh-8+tracker",
     "bvh-8+3",
+    "bvh-16+tracker",
     "triangles-1",
     "triangles-8+tracker",
 ];
@@ -65,6 +69,10 @@ pub struct Options {
     pub frame: [u32; 2],
     /// The views to compare in.
     pub views: Vec<View>,
+    /// Those that rungs for bodies of any shape are compared in as well.
+    pub concave: Vec<View>,
+    /// Whether the proxy is measured at small sizes too, which takes a minute or two.
+    pub sizes: bool,
     /// Names of rungs.
     pub rungs: Vec<Rung>,
 }
@@ -72,27 +80,50 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
-        Self { rounds: 7, frame: [1920, 1080], views: views::VIEWS.to_vec(), rungs }
+        Self {
+            rounds: 7,
+            frame: [1920, 1080],
+            views: views::VIEWS.to_vec(),
+            concave: views::CONCAVE.to_vec(),
+            sizes: true,
+            rungs,
+        }
     }
 }
 
-/// A rung with its name in the report, its settings, and the strength of the paper's dispersion in each view.
+/// A rung with its name in the report, its settings, and the strength of the paper's dispersion in each view; where it has none of its own, 1.
 struct Entry {
     name: String,
     settings: Settings,
     strengths: Vec<f32>,
 }
 
+impl Entry {
+    /// In the ladder's view of that number; none is another view.
+    fn settings_in(&self, view: Option<usize>) -> Settings {
+        let dispersion_strength = view.and_then(|view| self.strengths.get(view)).copied().unwrap_or(1.0);
+        Settings { dispersion_strength, ..self.settings.clone() }
+    }
+
+    /// Whether it draws bodies of any shape, in no more steps than lavapipe follows.
+    fn draws_concave(&self) -> bool {
+        let drawn = !matches!(self.settings.rung.geometry(), Geometry::Convex | Geometry::Triangles);
+        drawn && !self.name.ends_with(FITTED)
+    }
+}
+
+/// What the name of a rung ends with whose paper's dispersion is at the strength that serves it best in each view.
+const FITTED: &str = "-fitted";
+
 fn entries(options: &Options, colours: &[Vec<Colours>]) -> Vec<Entry> {
-    let views = options.views.len();
     let mut entries = Vec::new();
     let mut fitted = papers(options).zip(colours);
     for &rung in &options.rungs {
-        let settings = Settings { rung, ..Settings::of_size(views::SIDE, views::SIDE) };
-        entries.push(Entry { name: rung.to_string(), settings: settings.clone(), strengths: vec![1.0; views] });
+        let settings = Settings { rung, samples: SAMPLES, ..Settings::of_size(views::SIDE, views::SIDE) };
+        entries.push(Entry { name: rung.to_string(), settings: settings.clone(), strengths: Vec::new() });
         if rung.spectrum() == Spectrum::Paper {
             let strengths = fitted.next().map(|(_, found)| found.iter().map(|c| c.strength).collect());
-            entries.extend(strengths.map(|strengths| Entry { name: format!("{rung}-fitted"), settings, strengths }));
+            entries.extend(strengths.map(|strengths| Entry { name: format!("{rung}{FITTED}"), settings, strengths }));
         }
     }
     entries
@@ -109,30 +140,37 @@ pub fn run(
     options: &Options,
     progress: &mut dyn FnMut(&'static str, u64, u64),
 ) -> Result<Report, CostError> {
-    let scenes: Vec<Scene> = options.views.iter().map(View::open).collect::<Result<_, _>>()?;
-    let references: Vec<Picture> = options.views.iter().map(|view| view.reference(gpu)).collect::<Result<_, _>>()?;
-    let fits = (papers(options).count() * scenes.len()) as u64;
+    let open = |views: &[View]| views.iter().map(|view| Watched::open(gpu, view)).collect::<Result<Vec<_>, _>>();
+    let (watched, concave) = (open(&options.views)?, open(&options.concave)?);
+    let fits = (papers(options).count() * watched.len()) as u64;
     let mut colours: Vec<Vec<Colours>> = Vec::new();
     for rung in papers(options) {
         let mut found = Vec::new();
-        for (view, scene) in options.views.iter().zip(&scenes) {
+        for Watched { view, scene, .. } in &watched {
             found.push(dispersion::colours(gpu, rung, view, scene)?);
-            progress("fitting the paper's dispersion", (colours.len() * scenes.len() + found.len()) as u64, fits);
+            progress("fitting the paper's dispersion", (colours.len() * watched.len() + found.len()) as u64, fits);
         }
         colours.push(found);
     }
     let entries = entries(options, &colours);
-    let total = (entries.len() * scenes.len()) as u64;
     let brilliant = Scene::named("brilliant")?;
-    let mut rungs = Vec::new();
-    for entry in &entries {
-        let mut errors = Vec::new();
-        for ((scene, reference), &dispersion_strength) in scenes.iter().zip(&references).zip(&entry.strengths) {
-            let settings = Settings { dispersion_strength, ..entry.settings.clone() };
-            errors.push(Some(Errors::between(&render::render_means(gpu, scene, &settings)?, reference)));
-            progress("comparing", (rungs.len() * scenes.len() + errors.len()) as u64, total);
+    let mut rungs = entries.iter().map(|entry| count(&brilliant, entry)).collect::<Result<Vec<_>, _>>()?;
+    let total = (watched.len() + concave.len()) as u64;
+    for (done, (view, watched)) in (0..).zip(watched.iter().enumerate()) {
+        progress("comparing and timing views", done, total);
+        for (rung, seen) in rungs.iter_mut().zip(see(gpu, options, watched, &entries, Some(view))?) {
+            rung.views.push(Some(seen));
         }
-        rungs.push(count(&brilliant, entry, errors)?);
+    }
+    for (done, watched) in (options.views.len() as u64..).zip(&concave) {
+        progress("comparing and timing views", done, total);
+        let (drawing, drawn): (Vec<_>, Vec<_>) =
+            entries.iter().zip(&mut rungs).partition(|(entry, _)| entry.draws_concave());
+        drawn.into_iter().for_each(|(_, rung)| rung.concave.push(None));
+        let (entries, rungs): (Vec<&Entry>, Vec<&mut RungReport>) = drawing.into_iter().unzip();
+        for (rung, seen) in rungs.into_iter().zip(see(gpu, options, watched, entries, None)?) {
+            rung.concave.push(Some(seen));
+        }
     }
     if options.rounds > 0 {
         let filled = views::filled(&brilliant);
@@ -140,7 +178,7 @@ pub fn run(
         let timed: Vec<Timed<'_>> = entries
             .iter()
             .map(|entry| Timed {
-                settings: Settings { width, height, samples: 1, ..entry.settings.clone() },
+                settings: Settings { width, height, ..entry.settings.clone() },
                 scene: &filled,
                 source: None,
                 displayed: false,
@@ -153,20 +191,56 @@ pub fn run(
         }
     }
     progress("comparing how rays end", 0, 1);
-    let choices = choices::measure(gpu, &options.views, &scenes, &references)?;
+    let choices = choices::measure(gpu, &watched)?;
+    let steadiness = steadiness(gpu, &watched)?;
+    let mut small = |done| progress("following small references", done, proxy_sizes::FOLLOWED);
+    let sizes = if options.sizes { proxy_sizes::measure(gpu, &mut small)? } else { Vec::new() };
+    let names = |watched: &[Watched]| watched.iter().map(|watched| watched.view.name.to_owned()).collect();
     Ok(Report {
         adapter: gpu.describe(),
-        views: options.views.iter().map(|view| view.name.to_owned()).collect(),
+        views: names(&watched),
+        concave: names(&concave),
+        side: views::SIDE,
+        samples: SAMPLES * SAMPLES,
         frame: options.frame,
         rungs,
         colours: colours.concat(),
         choices,
+        steadiness,
+        sizes,
         reflections: reflection::measure()?,
     })
 }
 
+/// Every rung in a view, compared, and timed on the same picture.
+fn see<'a>(
+    gpu: &Gpu,
+    options: &Options,
+    watched: &Watched,
+    entries: impl IntoIterator<Item = &'a Entry>,
+    view: Option<usize>,
+) -> Result<Vec<Seen>, CostError> {
+    let settings: Vec<Settings> = entries.into_iter().map(|entry| entry.settings_in(view)).collect();
+    let mut seen = settings.iter().map(|settings| watched.see(gpu, settings)).collect::<Result<Vec<_>, _>>()?;
+    if options.rounds > 0 {
+        let timed = |settings: Settings| Timed {
+            settings,
+            scene: &watched.scene,
+            source: None,
+            displayed: false,
+            scales: false,
+        };
+        let timed: Vec<Timed<'_>> = settings.into_iter().map(timed).collect();
+        let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;
+        for (seen, timing) in seen.iter_mut().zip(timings) {
+            seen.ms = Some(timing.ms);
+        }
+    }
+    Ok(seen)
+}
+
 /// The rung's shaders for the brilliant, specialised to what it uses, counted in SPIR-V.
-fn count(brilliant: &Scene, entry: &Entry, errors: Vec<Option<Errors>>) -> Result<RungReport, CostError> {
+fn count(brilliant: &Scene, entry: &Entry) -> Result<RungReport, CostError> {
     let rung = entry.settings.rung;
     let source = cookbook::recipe_source(rung.recipe());
     let constants = render::gem_constants(brilliant, &entry.settings);
@@ -174,7 +248,8 @@ fn count(brilliant: &Scene, entry: &Entry, errors: Vec<Option<Errors>>) -> Resul
     let counts = shader.map_err(render::RenderError::from)?.counts()?;
     Ok(RungReport {
         rung: entry.name.clone(),
-        errors,
+        views: Vec::new(),
+        concave: Vec::new(),
         timing: None,
         fragment_instructions: counts.fragment_instructions,
         vertex_instructions: counts.vertex_instructions,

@@ -1,13 +1,19 @@
 //! The gem ladder's tables for the pages of `docs/`.
 
 use super::page::{Table, Tables, header, row};
-use super::views::VIEWS;
-use super::{Choice, Colours, RUNGS, Report, RungReport};
+use super::proxy_sizes::{self as sizes, AtSize};
+use super::views::{CONCAVE, VIEWS};
+use super::{Choice, Colours, RUNGS, Report, RungReport, Seen, Steadiness, quality};
+use crate::plan::Technique;
 use std::fmt::Write as _;
 
 impl Tables for Report {
     const TABLES: &'static [Table<Self>] = &[
         ("ladder", ladder),
+        ("gem_quality", gem_quality),
+        ("concave", concave),
+        ("steadiness", steadiness),
+        ("proxy_sizes", proxy_sizes),
         ("goals", goals),
         ("paper", paper),
         ("colours", colours),
@@ -20,7 +26,7 @@ impl Tables for Report {
         if let Some(name) = missing {
             return Err(format!("the report has no time of `{name}`; only the whole ladder, timed, fills a page"));
         }
-        if self.views.len() < VIEWS.len() {
+        if self.views.len() < VIEWS.len() || self.concave.len() < CONCAVE.len() || self.sizes.is_empty() {
             return Err("the report does not hold all views; only the whole ladder fills a page".to_owned());
         }
         Ok(())
@@ -28,17 +34,35 @@ impl Tables for Report {
 }
 
 fn ladder(report: &Report) -> String {
-    let [width, height] = report.frame;
-    let columns = ["rung", "ms", "× proxy-1", "FLIP", "RMSE", "energy", "SPIR-V vertex + fragment", "bytes", ""];
+    let Report { frame: [width, height], side, samples, adapter, .. } = report;
+    let columns = [
+        "rung",
+        "ms",
+        "× proxy-1",
+        "FLIP",
+        "worst FLIP",
+        "RMSE",
+        "energy",
+        "change at 0.05°",
+        "ms, filled",
+        "SPIR-V vertex + fragment",
+        "bytes",
+        "",
+    ];
     let mut table = header(&columns);
+    let proxy = report.rung("proxy-1").and_then(RungReport::view_ms);
     for rung in &report.rungs {
+        let ms = rung.view_ms();
         let cells = [
             rung.rung.clone(),
-            rung.milliseconds(),
-            report.ratio(&rung.rung, "proxy-1").map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
+            ms.map_or("-".to_owned(), |ms| format!("{ms:.1}")),
+            ms.zip(proxy).map_or("-".to_owned(), |(ms, proxy)| format!("{:.2}", ms / proxy)),
             format!("{:.3}", rung.mean(0)),
+            format!("{:.3}", rung.worst(0)),
             format!("{:.3}", rung.mean(1)),
             format!("{:.3}", rung.mean(2)),
+            format!("{:.3}", rung.mean(3)),
+            rung.milliseconds(),
             format!("{} + {}", rung.vertex_instructions, rung.fragment_instructions),
             rung.geometry_bytes.to_string(),
             if rung.dominated { "dominated" } else { "" }.to_owned(),
@@ -47,10 +71,64 @@ fn ladder(report: &Report) -> String {
     }
     let _ = writeln!(
         table,
-        "\nMilliseconds for {width} × {height} pixels that the brilliant fills, the least of interleaved rounds, on {}. * timed on 1/16 of \
-         the pixels and scaled.",
-        report.adapter
+        "\nErrors, change and ms are of the same pictures: {side} × {side} pixels, samples a pixel: {samples}, means over the views, times the \
+         least of interleaved rounds. `ms, filled` is of {width} × {height} pixels that the brilliant fills, as the paper has it; * timed on \
+         1/16 of them and scaled. On {adapter}."
     );
+    table
+}
+
+fn gem_quality(report: &Report) -> String {
+    quality::table(report, &[Technique::Convex, Technique::Concave])
+}
+
+/// The views of bodies that are not convex, by every rung that draws them.
+fn concave(report: &Report) -> String {
+    let mut columns = vec!["rung".to_owned()];
+    columns.extend(report.concave.iter().map(|view| format!("{view}: ms, FLIP, RMSE, change")));
+    let mut table = header(&columns.iter().map(String::as_str).collect::<Vec<_>>());
+    for rung in report.rungs.iter().filter(|rung| rung.concave.iter().any(Option::is_some)) {
+        let cell = |seen: &Option<Seen>| {
+            let Some(Seen { errors, change, ms }) = seen else { return "-".to_owned() };
+            let ms = ms.map_or("-".to_owned(), |ms| format!("{ms:.1}"));
+            format!("{ms}, {:.3}, {:.3}, {change:.3}", errors.flip, errors.rmse)
+        };
+        let cells: Vec<String> = std::iter::once(rung.rung.clone()).chain(rung.concave.iter().map(cell)).collect();
+        row(&mut table, &cells);
+    }
+    table
+}
+
+fn steadiness(report: &Report) -> String {
+    let mut table = header(&["rung", "samples a pixel", "change, mean over the views", "change, `brilliant`"]);
+    for Steadiness { rung, samples, change, brilliant } in &report.steadiness {
+        let brilliant = brilliant.map_or("-".to_owned(), |change| format!("{change:.3}"));
+        row(&mut table, &[rung.clone(), samples.to_string(), format!("{change:.3}"), brilliant]);
+    }
+    table
+}
+
+fn proxy_sizes(report: &Report) -> String {
+    let mut columns = vec!["stone", "environment", "pixels", sizes::BLACK];
+    columns.extend(sizes::RUNGS);
+    let mut table = header(&columns);
+    let mut pictures: Vec<(&str, &str, u32)> = Vec::new();
+    for AtSize { stone, environment, size, .. } in &report.sizes {
+        if !pictures.contains(&(stone, environment, *size)) {
+            pictures.push((stone, environment, *size));
+        }
+    }
+    for (stone, environment, size) in pictures {
+        let cell = |rung: &str| {
+            let found = report.sizes.iter().find(|sized| {
+                (&*sized.stone, &*sized.environment, sized.size, &*sized.rung) == (stone, environment, size, rung)
+            });
+            found.map_or("-".to_owned(), |sized| format!("{:.2}, {:.2}", sized.mean, sized.rmse))
+        };
+        let mut cells = vec![stone.to_owned(), environment.to_owned(), format!("{size} × {size}"), cell(sizes::BLACK)];
+        cells.extend(sizes::RUNGS.map(cell));
+        row(&mut table, &cells);
+    }
     table
 }
 

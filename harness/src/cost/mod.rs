@@ -12,8 +12,11 @@ pub mod optical_path;
 pub mod page;
 pub mod plot;
 mod profile;
+pub mod proxy_sizes;
+mod quality;
 mod reflection;
 pub mod restraint;
+mod seen;
 pub mod sphere;
 mod table;
 mod timing;
@@ -21,15 +24,19 @@ pub mod views;
 
 pub use choices::Choice;
 pub use dispersion::Colours;
-pub use error::{Errors, MEASURES, best_exposure, exposed_distance};
+pub use error::{Errors, best_exposure, exposed_distance};
 pub use gem::{Options, RUNGS, run};
 pub use profile::profile;
 pub use reflection::Reflection;
+pub use seen::{Seen, Steadiness};
 pub use timing::{Timed, Timing};
 
 use crate::specialise::SpecialiseError;
 use crate::spirv_counts::SpirvCountsError;
 use serde::{Deserialize, Serialize};
+
+/// What is measured of a gem's rung in a view, as [`Seen::of`] numbers it.
+pub const MEASURES: [&str; 4] = ["flip", "rmse", "energy", "change"];
 
 /// One rung, one view, one measure.
 #[derive(Clone, Debug, Serialize)]
@@ -42,7 +49,7 @@ pub struct Row {
     pub view: String,
     /// The error, in the unit of its measure; none where the rung has none by this measure.
     pub error: Option<f64>,
-    /// `flip`, `rmse` or `energy` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks; of ways
+    /// `flip`, `rmse`, `energy` or `change` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks; of ways
     /// through stone `nats`, `luminance` or `walks`.
     pub error_measure: &'static str,
     /// Milliseconds for a frame; none where times were not asked for.
@@ -58,9 +65,11 @@ pub struct Row {
 pub struct RungReport {
     /// The rung's name.
     pub rung: String,
-    /// Errors by view, in the order of [`Report::views`]; none where the rung cannot draw the view's stone.
-    pub errors: Vec<Option<Errors>>,
-    /// The frame's time.
+    /// By view, in the order of [`Report::views`].
+    pub views: Vec<Option<Seen>>,
+    /// By view, in the order of [`Report::concave`]; none where the rung draws convex bodies alone.
+    pub concave: Vec<Option<Seen>>,
+    /// The time of the paper's frame, which the stone fills.
     pub timing: Option<Timing>,
     /// Instructions of the specialised fragment shader in SPIR-V.
     pub fragment_instructions: u32,
@@ -77,9 +86,15 @@ pub struct RungReport {
 pub struct Report {
     /// The device and its driver.
     pub adapter: String,
-    /// The views' names.
+    /// The names of the views of convex bodies.
     pub views: Vec<String>,
-    /// The size of the timed frame.
+    /// Of those of other bodies.
+    pub concave: Vec<String>,
+    /// Pixels along a side of a view's picture, which is compared and timed.
+    pub side: u32,
+    /// Of each of its pixels, and of the paper's frame's.
+    pub samples: u32,
+    /// The size of the paper's frame.
     pub frame: [u32; 2],
     /// From cheap to exact.
     pub rungs: Vec<RungReport>,
@@ -87,6 +102,10 @@ pub struct Report {
     pub colours: Vec<Colours>,
     /// What is done with the rest of a ray, and where it ends.
     pub choices: Vec<Choice>,
+    /// What of the change from frame to frame is left with more samples.
+    pub steadiness: Vec<Steadiness>,
+    /// The proxy at small sizes; none where only a part of the ladder was asked for.
+    pub sizes: Vec<proxy_sizes::AtSize>,
     /// Total internal reflection at the first hit, exact and by proxy.
     pub reflections: Vec<Reflection>,
 }
@@ -100,8 +119,19 @@ impl RungReport {
 
     /// The mean over the views of the error by the measure of that number in [`MEASURES`].
     pub fn mean(&self, measure: usize) -> f64 {
-        let errors: Vec<f64> = self.errors.iter().flatten().map(|errors| errors.of(measure)).collect();
+        let errors: Vec<f64> = self.views.iter().flatten().map(|seen| seen.of(measure)).collect();
         errors.iter().sum::<f64>() / errors.len() as f64
+    }
+
+    /// The largest of the same.
+    pub fn worst(&self, measure: usize) -> f64 {
+        self.views.iter().flatten().map(|seen| seen.of(measure)).fold(0.0, f64::max)
+    }
+
+    /// Milliseconds for a view's picture, the mean over the views: the pictures whose errors [`Self::mean`] has.
+    pub fn view_ms(&self) -> Option<f64> {
+        let sum = self.views.iter().flatten().map(|seen| seen.ms).sum::<Option<f64>>()?;
+        (sum > 0.0).then(|| sum / self.views.iter().flatten().count() as f64)
     }
 }
 
@@ -123,16 +153,16 @@ impl Report {
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for rung in &self.rungs {
-            for (view, name) in self.views.iter().enumerate() {
-                let Some(errors) = rung.errors[view] else { continue };
+            let views = self.views.iter().zip(&rung.views).chain(self.concave.iter().zip(&rung.concave));
+            for (view, seen) in views.filter_map(|(view, seen)| Some((view, seen.as_ref()?))) {
                 for (measure, error_measure) in MEASURES.into_iter().enumerate() {
                     rows.push(Row {
                         technique: "gem",
                         rung: rung.rung.clone(),
-                        view: name.clone(),
-                        error: Some(errors.of(measure)),
+                        view: view.clone(),
+                        error: Some(seen.of(measure)),
                         error_measure,
-                        ms: rung.timing.map(|timing| timing.ms),
+                        ms: seen.ms,
                         dominated: false,
                         adapter: self.adapter.clone(),
                     });
@@ -147,7 +177,7 @@ impl Report {
     /// rounding tells.
     pub fn mark_dominated(&mut self) {
         let beats = |other: &RungReport, rung: &RungReport| {
-            let faster = matches!((other.timing, rung.timing), (Some(other), Some(rung)) if other.ms < rung.ms);
+            let faster = matches!((other.view_ms(), rung.view_ms()), (Some(other), Some(rung)) if other < rung);
             faster && (0..2).all(|measure| other.mean(measure) <= ALIKE * rung.mean(measure))
         };
         mark(&mut self.rungs, beats, |rung| &mut rung.dominated);
@@ -230,7 +260,8 @@ mod tests {
     fn rung(name: &str, ms: f64, flip: f64, rmse: f64) -> RungReport {
         RungReport {
             rung: name.to_owned(),
-            errors: vec![Some(Errors { flip, rmse, energy: 0.0 })],
+            views: vec![Some(Seen { errors: Errors { flip, rmse, energy: 0.0 }, change: 0.0, ms: Some(ms) })],
+            concave: Vec::new(),
             timing: Some(Timing { ms, median_ms: ms, share: 1.0, encode_us: 1.0, draw_calls: 1 }),
             fragment_instructions: 1,
             vertex_instructions: 1,
@@ -239,14 +270,25 @@ mod tests {
         }
     }
 
+    fn untimed(mut rung: RungReport) -> RungReport {
+        rung.timing = None;
+        rung.views.iter_mut().flatten().for_each(|seen| seen.ms = None);
+        rung
+    }
+
     fn report(rungs: Vec<RungReport>) -> Report {
         let mut report = Report {
             adapter: String::new(),
             views: vec!["view".to_owned()],
+            concave: Vec::new(),
+            side: 256,
+            samples: 1,
             frame: [1920, 1080],
             rungs,
             colours: Vec::new(),
             choices: Vec::new(),
+            steadiness: Vec::new(),
+            sizes: Vec::new(),
             reflections: Vec::new(),
         };
         report.mark_dominated();
@@ -269,7 +311,7 @@ mod tests {
 
     #[test]
     fn nothing_untimed_is_dominated() {
-        let untimed = RungReport { timing: None, ..rung("untimed", 0.0, 0.9, 0.9) };
+        let untimed = untimed(rung("untimed", 0.0, 0.9, 0.9));
         assert!(marked(&report(vec![rung("cheap", 1.0, 0.1, 0.1), untimed])).is_empty());
     }
 
@@ -291,7 +333,7 @@ mod tests {
             let svg = plot::svg(&report, measure).expect("drawn");
             assert!(svg.contains("surface") && svg.contains("convex-4+tracker") && svg.ends_with("</svg>\n"), "{svg}");
         }
-        let untimed = RungReport { timing: None, ..rung("surface", 0.0, 0.9, 0.9) };
+        let untimed = untimed(rung("surface", 0.0, 0.9, 0.9));
         assert!(plot::svg(&Report { rungs: vec![untimed], ..report }, "flip").is_err());
     }
 }

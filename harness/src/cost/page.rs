@@ -113,8 +113,8 @@ mod tests {
 
     fn report() -> Report {
         serde_json::from_str(
-            r#"{"adapter": "a device", "views": [], "frame": [2, 1], "rungs": [], "colours": [], "choices": [],
-            "reflections": [{"mesh": "exact", "table": 1.0, "crown": 0.5}]}"#,
+            r#"{"adapter": "a device", "views": [], "concave": [], "side": 4, "samples": 1, "frame": [2, 1], "rungs": [],
+            "colours": [], "choices": [], "steadiness": [], "sizes": [], "reflections": [{"mesh": "exact", "table": 1.0, "crown": 0.5}]}"#,
         )
         .expect("a report")
     }

@@ -18,7 +18,7 @@ struct Point<'a> {
 
 fn points(report: &Report, measure: usize) -> Vec<Point<'_>> {
     let all: Vec<(&RungReport, f64, f64)> =
-        report.rungs.iter().filter_map(|rung| Some((rung, rung.timing?.ms, rung.mean(measure)))).collect();
+        report.rungs.iter().filter_map(|rung| Some((rung, rung.view_ms()?, rung.mean(measure)))).collect();
     all.iter()
         .map(|&(rung, ms, error)| Point {
             name: &rung.rung,
@@ -53,15 +53,16 @@ pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
 }
 
 fn draw(root: &Root<'_>, report: &Report, measure: &str, points: &[Point<'_>]) -> Drawn {
-    let [width, height] = report.frame;
-    let caption = format!("Gem ladder: error ({measure}) against time, {width}x{height}, {}", report.adapter);
+    let Report { side, samples, adapter, .. } = report;
+    let caption =
+        format!("Gem ladder: error ({measure}) against time, {side}x{side}, samples a pixel: {samples}, {adapter}");
     let mut chart = captioned(root, caption).build_cartesian_2d(
         span(points.iter().map(|point| point.ms), 1.5).log_scale(),
         span(points.iter().map(|point| point.error), 1.3).log_scale(),
     )?;
     chart
         .configure_mesh()
-        .x_desc("milliseconds a frame filled by the stone (least of interleaved rounds)")
+        .x_desc("milliseconds a view (least of interleaved rounds, mean over the views)")
         .y_desc(format!("mean {measure} against the spectral reference"))
         .x_label_formatter(&|ms| if *ms >= 1.0 { format!("{ms:.0}") } else { format!("{ms:.2}") })
         .y_label_formatter(&|error| format!("{error:.3}"))

@@ -1,10 +1,10 @@
 //! What a material calls for: its technique, and for each effect whether it is on, with the property that decides.
 
 use super::effect::{Effect, Effects};
+use super::quality::{Chosen, Technique};
 use super::thickness::Thickness;
-use crate::optical_path::Method;
-use crate::render::{Environment, Geometry, Paths, Reflectance, Rung, Settings, Spectrum};
-use crate::scene::{Density, Dispersion, Light, Material, Medium, Object, Scene};
+use crate::render::{Environment, Geometry, Reflectance, Rung, Settings, Spectrum};
+use crate::scene::{Density, Dispersion, Light, Material, Medium, Object, Scene, Shape};
 use glam::Vec3;
 
 /// Whether an effect is on, and why.
@@ -23,8 +23,10 @@ pub struct Decision {
 pub struct Decisions {
     /// The technique and its rung.
     pub rung: Rung,
-    /// Why this one.
+    /// Why this technique.
     pub reason: String,
+    /// What the rung follows from, where none is named.
+    pub chosen: Option<Chosen>,
     /// Of every effect, in the order of [`Effect::ALL`].
     pub effects: Vec<Decision>,
 }
@@ -42,7 +44,14 @@ impl Decisions {
     /// For an object of `scene`.
     #[must_use]
     pub fn of(object: &Object, scene: &Scene, settings: &Settings) -> Self {
-        let (rung, reason) = technique(object, scene, settings);
+        let (choice, reason) = technique(object, scene, settings);
+        let (rung, chosen) = match choice {
+            Choice::Named(rung) => (rung, None),
+            Choice::By(technique) => {
+                let chosen = Chosen { technique, quality: settings.quality };
+                (chosen.rung(), Some(chosen))
+            }
+        };
         let case = Case { object, material: &object.material, lights: &scene.lights, settings, rung };
         let decide = |effect: Effect| {
             let (on, reason) = case.decide(effect);
@@ -51,7 +60,7 @@ impl Decisions {
             }
             Decision { effect, on, reason }
         };
-        Self { rung, reason, effects: Effect::ALL.map(decide).into() }
+        Self { rung, reason, chosen, effects: Effect::ALL.map(decide).into() }
     }
 
     /// Whether an effect is on.
@@ -74,65 +83,85 @@ impl Decisions {
     }
 }
 
-/// How a body that is drawn by its material's call alone is drawn.
-const CLEAR: Rung = Rung::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker };
-const THIN: Rung = Rung::Surface;
-const OPAQUE: Rung = Rung::Diffuse(Reflectance::Lambert);
-const CURVED: Rung = Rung::Diffuse(Reflectance::Accurate);
-const THROUGH: Rung = Rung::OpticalPath(Paths { cells: 64, method: Method::Godunov });
+/// What an object is drawn by: a rung that a user or the material names, or a technique's.
+enum Choice {
+    Named(Rung),
+    By(Technique),
+}
 
-/// The rung for an object, and why.
-fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+/// The rung or technique for an object, and why.
+fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
     let material = &object.material;
     if settings.rung.is_for_clear_stones() && !material.is_clear() {
-        let (rung, reason) = by_material(object, scene, settings);
-        return (rung, format!("{} was asked for, which is for clear stones, but {reason}", settings.rung));
+        let (choice, reason) = by_material(object, scene, settings);
+        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", settings.rung));
     }
     if settings.rung != Rung::ByMaterial {
-        return (settings.rung, "asked for".to_owned());
+        return (Choice::Named(settings.rung), "asked for".to_owned());
     }
     by_material(object, scene, settings)
 }
 
-/// The rung that an object's material calls for, and why.
-fn by_material(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
+/// The rung or technique that an object's material calls for, and why.
+fn by_material(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
     let material = &object.material;
     if material.scatters() {
         return scattering(object, scene, settings);
     }
-    if material.transmission == 0.0 {
-        return (OPAQUE, "opaque: transmission 0, and nothing inside scatters".to_owned());
-    }
-    let share = format!("clear: transmission {}", material.transmission);
-    if material.thickness == 0.0 {
-        return (THIN, format!("{share}, and a thin wall: thickness 0"));
-    }
-    (CLEAR, format!("{share}, thickness {}", material.thickness))
+    let (technique, reason) = if material.transmission == 0.0 {
+        (Technique::Opaque, "opaque: transmission 0, and nothing inside scatters".to_owned())
+    } else if material.thickness == 0.0 {
+        let reason = format!("clear: transmission {}, and a thin wall: thickness 0", material.transmission);
+        (Technique::ThinWall, reason)
+    } else {
+        let (technique, shape) = clear(Shape::of(&object.mesh));
+        (technique, format!("clear: transmission {}, thickness {}; {shape}", material.transmission, material.thickness))
+    };
+    (Choice::By(technique), reason)
 }
 
-/// The rung for a body that scatters light, and why.
-fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, String) {
-    if let (Some(rung), None) = (object.material.solver, settings.scattering) {
-        return (rung, "extras.lapidary.solver names it".to_owned());
+/// The technique for a clear body with an inside, and why. The proxy is none of them: no ladder has it near the stone that is there.
+fn clear(shape: Shape) -> (Technique, &'static str) {
+    match shape {
+        Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets' planes"),
+        Shape::Concave => (Technique::Concave, "closed, not convex: rays inside meet its triangles"),
+        Shape::Open => (
+            Technique::Concave,
+            "not closed: rays inside meet its triangles, and go straight on into the environment where there are none",
+        ),
     }
+}
+
+/// The rung or technique for a body that scatters light, and why.
+fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
+    if let (Some(rung), None) = (object.material.solver, settings.scattering) {
+        return (Choice::Named(rung), "extras.lapidary.solver names it".to_owned());
+    }
+    let (technique, reason) = by_thickness(object, scene, settings);
+    (Choice::By(technique), reason)
+}
+
+/// Whether light comes through a body that scatters it, and why.
+fn by_thickness(object: &Object, scene: &Scene, settings: &Settings) -> (Technique, String) {
     let Some(medium) = &object.material.medium else {
-        return (CURVED, "sigma0 alone: no scattering and absorption to follow light through it by".to_owned());
+        let reason = "sigma0 alone: no scattering and absorption to follow light through it by";
+        return (Technique::Cdrf, reason.to_owned());
     };
     if let Some(asked) = settings.scattering {
-        let rung = if asked == Scattering::Cdrf { CURVED } else { THROUGH };
-        return (rung, "asked for, whatever its thickness".to_owned());
+        let technique = if asked == Scattering::Cdrf { Technique::Cdrf } else { Technique::OpticalPath };
+        return (technique, "asked for, whatever its thickness".to_owned());
     }
     if scene.lights.is_empty() {
-        return (CURVED, "no light but the environment, which goes no way through bodies".to_owned());
+        return (Technique::Cdrf, "no light but the environment, which goes no way through bodies".to_owned());
     }
     let thickness = Thickness::of(object, medium);
     if thickness.thickness == 0.0 {
-        return (CURVED, "its mesh has no inside whose thickness could be measured".to_owned());
+        return (Technique::Cdrf, "its mesh has no inside whose thickness could be measured".to_owned());
     }
     let free = thickness.mean_free_path;
     if free.is_infinite() {
         let reason = "somewhere a colour is neither scattered nor absorbed: light comes through the body";
-        return (THROUGH, reason.to_owned());
+        return (Technique::OpticalPath, reason.to_owned());
     }
     let paths = thickness.mean_free_paths();
     let most = super::thickness::MOST_MEAN_FREE_PATHS;
@@ -144,15 +173,16 @@ fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Rung, Str
         short(free)
     );
     if thickness.shows_through() {
-        return (THROUGH, format!("{compared}, at most {most}: light comes through the body"));
+        return (Technique::OpticalPath, format!("{compared}, at most {most}: light comes through the body"));
     }
-    (CURVED, format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads"))
+    let reason = format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads");
+    (Technique::Cdrf, reason)
 }
 
 /// How a rung finds the facets that rays inside meet.
 fn way_of(geometry: Geometry) -> &'static str {
     match geometry {
-        Geometry::Proxy => "the proxy; exact are rungs such as convex-8, for convex stones, and bvh-8",
+        Geometry::Proxy => "the proxy",
         Geometry::Convex => "a convex stone's planes",
         Geometry::Bvh => "a hierarchy of all triangles",
         Geometry::Triangles => "a loop over all triangles",

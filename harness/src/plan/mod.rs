@@ -6,12 +6,15 @@
 
 mod decision;
 mod effect;
+pub mod ladder;
 mod notes;
+pub mod quality;
 mod text;
 pub mod thickness;
 
 pub use decision::{Decision, Decisions, Scattering};
 pub use effect::{Effect, Effects, UnknownEffect};
+pub use quality::{Quality, Technique};
 
 use crate::gpu::Gpu;
 use crate::gpu::capture::{Capture, capture};

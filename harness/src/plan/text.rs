@@ -64,7 +64,7 @@ impl Plan {
         let first = group[0];
         let names: Vec<&str> = group.iter().map(|object| object.object.as_str()).collect();
         writeln!(f, "{} (material `{}`)", names.join(", "), first.material)?;
-        let Decisions { rung, reason, effects } = &first.decisions;
+        let Decisions { rung, reason, chosen, effects } = &first.decisions;
         if group.iter().all(|object| object.decisions.reason == *reason) {
             writeln!(f, "  {reason}")?;
         } else {
@@ -74,6 +74,9 @@ impl Plan {
         }
         if *rung == Rung::Reference {
             return writeln!(f, "  by the reference, on the CPU: no recipe, pass or resource");
+        }
+        if let Some(chosen) = chosen {
+            writeln!(f, "  {chosen}")?;
         }
         writeln!(f, "  so drawn by rung {rung} of recipe {}", rung.recipe())?;
         let (on, off): (Vec<&Decision>, Vec<&Decision>) = effects.iter().partition(|decision| decision.on);

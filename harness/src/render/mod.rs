@@ -28,7 +28,7 @@ mod variant;
 
 use crate::cookbook;
 use crate::gpu::Gpu;
-use crate::plan::{Decisions, Effect, Effects, Scattering};
+use crate::plan::{Decisions, Effect, Effects, Quality, Scattering};
 use crate::random_walk::mesh::{self, Rendering as Walked};
 use crate::reference::{self, Lost, Rendering, Window};
 use crate::scene::Scene;
@@ -88,6 +88,8 @@ pub struct Settings {
     pub samples: u32,
     /// How much of the light's way is followed.
     pub rung: Rung,
+    /// Where that is each material's own: how much time it may take.
+    pub quality: Quality,
     /// The proxy's centre by the paper's eq. (4) instead of the stable form.
     pub paper_centre: bool,
     /// Factor of the paper's eq. (12); 1 as printed.
@@ -138,6 +140,7 @@ impl Settings {
             height,
             samples: SAMPLES,
             rung: Rung::PAPER,
+            quality: Quality::default(),
             paper_centre: false,
             dispersion_strength: 1.0,
             without: Effects::NONE,

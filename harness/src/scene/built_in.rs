@@ -67,14 +67,14 @@ pub const BUILT_IN: [BuiltIn; 28] = [
     BuiltIn {
         name: "prism_chain",
         description: "The scene of the paper's Fig. 6: closed pentagonal prisms, here seven of quartz, hang from one \
-            another by their tips, each turned and tilted by another angle. They are one mesh and one draw call: \
-            each prism's inside is made up from its own triangles, so that no data is bound for each.",
+            another by their tips, each turned and tilted by another angle. They are one mesh and one draw call. The \
+            paper makes each prism's inside up from its own triangles (`--rung proxy-1`); the default traces it.",
     },
     BuiltIn {
         name: "chandelier",
         description: "A chandelier of 384 pentagonal prisms of flint glass: six rings of pendants, wide and high to \
             narrow and low, and one in the middle, each a bead with a long drop below it. One mesh, one draw call, \
-            7680 triangles: what games show as opaque mirrors, with its inside.",
+            7680 triangles: what games show as opaque mirrors, here with its inside, found through a hierarchy.",
     },
     BuiltIn {
         name: "bunny_stone",
@@ -84,8 +84,8 @@ pub const BUILT_IN: [BuiltIn; 28] = [
     BuiltIn {
         name: "brilliant_fan",
         description: "The diamond with its table cut into six triangles that fan out from one corner, instead of \
-            eight about its middle. The surface and the shared normals are the same: all that changes in the picture \
-            is what the proxy geometry takes from the triangulation.",
+            eight about its middle. The surface and the shared normals are the same, and so is the picture by exact facets: \
+            only the proxy geometry (`--rung proxy-1`) draws another stone.",
     },
     BuiltIn {
         name: "brilliant_strip",
@@ -95,13 +95,13 @@ pub const BUILT_IN: [BuiltIn; 28] = [
     BuiltIn {
         name: "brilliant_sliver",
         description: "The diamond with its table cut into 150 needles, most with an angle of a few degrees, on the \
-            same surface with the same shared normals. The paper names the defect: an acute triangle makes the inside \
-            acute too.",
+            same surface with the same shared normals. The paper names the defect of proxy geometry: an acute triangle makes the \
+            inside acute too.",
     },
     BuiltIn {
         name: "brilliant_area",
         description: "The diamond with its shared normals averaged by the facets' areas instead of their angles. The surface is the \
-            same; the proxy's depth is not.",
+            same, and so is the stone by exact facets; the proxy's depth is not.",
     },
     BuiltIn {
         name: "brilliant_plain",

@@ -33,6 +33,31 @@ impl Convex {
     }
 }
 
+/// What a mesh encloses, as far as finding its facets from inside goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Closed, and no facet sees another: at most [`MAX_PLANES`] planes bound it.
+    Convex,
+    /// Closed, but not so.
+    Concave,
+    /// An edge has no triangle on its other side.
+    Open,
+}
+
+impl Shape {
+    /// Of `mesh`.
+    #[must_use]
+    pub fn of(mesh: &Mesh) -> Self {
+        if !is_closed(mesh) {
+            Self::Open
+        } else if Facets::of_closed(mesh).is_some() {
+            Self::Convex
+        } else {
+            Self::Concave
+        }
+    }
+}
+
 /// The facet planes of a closed convex mesh, in the order of their first triangles.
 ///
 /// `None` where a vertex lies outside a plane by more than [`TOLERANCE`], where an edge has no triangle on its other
@@ -103,9 +128,10 @@ impl Triangle {
 
 impl Facets {
     fn of(mesh: &Mesh) -> Option<Self> {
-        if !is_closed(mesh) {
-            return None;
-        }
+        is_closed(mesh).then(|| Self::of_closed(mesh)).flatten()
+    }
+
+    fn of_closed(mesh: &Mesh) -> Option<Self> {
         let triangles: Vec<Triangle> = mesh.triangles().map(Triangle::new).collect();
         let corners = || triangles.iter().flat_map(|triangle| triangle.corners);
         let tolerance = TOLERANCE * corners().fold(0.0, |largest: f64, corner| largest.max(corner.abs().max_element()));

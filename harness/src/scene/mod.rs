@@ -38,7 +38,7 @@ pub mod surfaces;
 pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use bvh::Bvh;
 pub use camera::Camera;
-pub use convex::Convex;
+pub use convex::{Convex, Shape};
 pub use error::SceneError;
 pub use light::Light;
 pub use material::{Dispersion, Material, Mineral};

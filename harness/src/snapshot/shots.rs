@@ -38,6 +38,9 @@ pub struct Shot {
 /// The exposure of pictures by a scene's lights alone.
 pub(super) const LIGHTS_ALONE: f32 = 1.5;
 
+/// Each body by its material and shape, as a command without `--rung` draws it.
+const BY_MATERIAL: &str = "by-material";
+
 /// Every committed picture.
 pub const SHOTS: [Shot; 40] = [
     Shot {
@@ -45,26 +48,30 @@ pub const SHOTS: [Shot; 40] = [
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
             `./cook plan vitrine` says why, and what follows: nothing is compiled, bound or run that no body calls for.",
         exposure: 0.5,
-        ..fine(shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", "by-material"))
+        ..fine(shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", BY_MATERIAL))
     },
     Shot {
-        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. Compare it with the proxy's \
-            picture, which takes a small part of the time and never looks at another facet than the one that the ray entered by.",
-        ..fine(shot("brilliant_exact", "Round brilliant, diamond", "brilliant", "convex-8+tracker"))
+        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. The default for closed, convex \
+            bodies.",
+        ..fine(shot("brilliant_exact", "Round brilliant, diamond", "brilliant", BY_MATERIAL))
     },
-    shot("brilliant", "Round brilliant by proxy, diamond", "brilliant", "proxy-4+tracker"),
-    shot("sapphire", "Round brilliant, sapphire", "sapphire", "convex-8+tracker"),
-    shot("ruby", "Round brilliant, ruby", "ruby", "convex-8+tracker"),
-    shot("quartz", "Round brilliant, quartz", "quartz", "proxy-4+tracker"),
-    shot("step_cut", "Step cut, emerald", "step_cut", "convex-8+tracker"),
-    shot("octahedron", "Octahedron, diamond", "octahedron", "proxy-4+tracker"),
-    shot("prism", "Pentagonal prism, quartz", "prism", "proxy-2+tracker"),
-    fine(shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", "proxy-2+tracker")),
-    fine(shot("chandelier", "A chandelier, one draw call", "chandelier", "proxy-2+tracker")),
-    shot("bunny_stone", "Bunny, glass", "bunny_stone", "bvh-8+tracker"),
     Shot {
-        paragraph: "As the paper has it: one internal hit, no dispersion. What is reflected inside comes from the environment along \
-            the reflected ray.",
+        paragraph: "The same stone by proxy geometry, four hits: facets behind are guessed from the one in front, and never looked for. It is \
+            cheap, and it is another stone: darker by half, with its lights elsewhere.",
+        ..shot("brilliant", "Round brilliant by proxy, diamond", "brilliant", "proxy-4+tracker")
+    },
+    shot("sapphire", "Round brilliant, sapphire", "sapphire", BY_MATERIAL),
+    shot("ruby", "Round brilliant, ruby", "ruby", BY_MATERIAL),
+    shot("quartz", "Round brilliant, quartz", "quartz", BY_MATERIAL),
+    shot("step_cut", "Step cut, emerald", "step_cut", BY_MATERIAL),
+    shot("octahedron", "Octahedron, diamond", "octahedron", BY_MATERIAL),
+    shot("prism", "Pentagonal prism, quartz", "prism", BY_MATERIAL),
+    fine(shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", BY_MATERIAL)),
+    fine(shot("chandelier", "A chandelier, one draw call", "chandelier", BY_MATERIAL)),
+    shot("bunny_stone", "Bunny, glass", "bunny_stone", BY_MATERIAL),
+    Shot {
+        paragraph: "As the paper has it: proxy geometry, one internal hit, no dispersion. What is reflected inside comes from the environment \
+            along the reflected ray.",
         ..shot("brilliant_paper", "Round brilliant, one internal hit", "brilliant", "proxy-1")
     },
     Shot {
@@ -74,7 +81,7 @@ pub const SHOTS: [Shot; 40] = [
     },
     Shot {
         paragraph: "The cheapest rung, and what many games ship: exact Fresnel reflection at the surface, and nothing of \
-            what goes on inside. Compare it with the full stone to see what one internal hit buys.",
+            what goes on inside. Compare it with the exact stone to see what is missing.",
         ..shot("brilliant_surface", "Round brilliant, surface reflection alone", "brilliant", "surface")
     },
     Shot {
@@ -246,7 +253,8 @@ impl Shot {
         };
         let exposure = if self.exposure == 1.0 { String::new() } else { format!(" --exposure {}", self.exposure) };
         let samples = if self.samples == SAMPLES { String::new() } else { format!(" --samples {}", self.samples) };
-        let choices = format!("{from} --rung {}{centre}{light}{curvature}{exposure}{samples}", self.rung);
+        let rung = if self.rung == BY_MATERIAL { String::new() } else { format!(" --rung {}", self.rung) };
+        let choices = format!("{from}{rung}{centre}{light}{curvature}{exposure}{samples}");
         format!("./cook render {}{choices} --out {}.png", self.scene, self.name)
     }
 }

@@ -34,6 +34,12 @@ const RENDER: &[Row] = &[
     ("octahedron --exposure inf --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --exposure 0 --out {}/out.png", Usage, &["--exposure", "above 0"]),
     ("octahedron --rung proxy1 --out {}/out.png", Usage, &["--rung", "did you mean `proxy-1`"]),
+    ("octahedron --quality better --out {}/out.png", Usage, &["--quality", "fast, good, best"]),
+    (
+        "octahedron --rung proxy-1 --quality best --out {}/out.png",
+        One,
+        &["--rung proxy-1", "--quality best", "leave one out"],
+    ),
     ("octahedron --samples 9 --out {}/out.png", Usage, &["--samples", "9", "from 1 to"]),
     ("octahedron --samples -1 --out {}/out.png", Usage, &["--samples", "-1", "from 1 to"]),
     ("jade --rung reference --seed -1 --out {}/out.png", Usage, &["--seed", "-1", "from 0 to 18446744073709551615"]),

@@ -48,9 +48,16 @@ fn plan_prints_one_json_document() {
         let of = effects.iter().filter(|row| row["material"] == material && row["on"] == true);
         of.map(|row| text(row, "effect")).collect::<Vec<_>>()
     };
-    assert_eq!(on("diamond"), ["proxy_geometry", "dispersion"]);
-    assert_eq!(on("ruby"), ["proxy_geometry", "absorption"]);
-    assert_eq!(on("clear glass"), ["proxy_geometry"]);
+    assert_eq!(on("diamond"), ["convex_trace", "dispersion"]);
+    assert_eq!(on("ruby"), ["convex_trace", "absorption"]);
+    assert_eq!(on("clear glass"), ["bvh_trace"]);
+    for row in rows("objects") {
+        // Slate has one rung, and no ladder.
+        let measured = text(&row, "material") != "slate";
+        let number = |key: &str| row[key].as_f64().is_some_and(|value| value > 0.0);
+        assert!(row["quality"] == "good" && number("error") == measured && number("worst_error") == measured, "{row}");
+        assert!(number("times_fast") == measured && row["error_measure"].is_string() == measured, "{row}");
+    }
     assert_eq!(on("slate"), ["environment", "microfacet"]);
     assert_eq!(on("wax"), ["cdrf", "environment", "microfacet"]);
     assert_eq!(on("marble"), ["optical_path", "surface", "color", "environment", "microfacet"]);
@@ -66,7 +73,7 @@ fn plan_prints_one_json_document() {
     // The same without effects that are left out, and with a technique that is asked for.
     let plan = |arguments: &[&str]| succeeds(folder().path(), &[&["plan"], arguments].concat()).stdout;
     assert!(plan(&["brilliant", "--without", "dispersion"]).contains("left out on request"));
-    assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung accurate of recipe cdrf_shading"));
+    assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung cheap of recipe cdrf_shading"));
     assert!(plan(&["wax", "--with", "optical_path"]).contains("asked for, whatever its thickness"));
     let shadowed = plan(&["wax", "--with", "cdrf,shadow"]);
     assert!(
@@ -391,7 +398,10 @@ fn rungs_and_exposure_change_the_picture() {
         std::fs::read(folder.path().join("out.png")).expect("the output")
     };
     let usual = picture(&[]);
-    assert!(usual == picture(&["--rung", "proxy-4+tracker", "--exposure", "1", "--centre", "stable"]));
+    assert!(usual == picture(&["--rung", "convex-8+tracker", "--exposure", "1", "--centre", "stable"]));
+    assert!(usual == picture(&["--quality", "good"]));
+    assert!(picture(&["--quality", "fast"]) == picture(&["--rung", "convex-4"]));
+    assert!(usual != picture(&["--quality", "fast"]) && usual != picture(&["--quality", "best"]));
     assert!(usual != picture(&["--rung", "surface"]));
     assert!(usual != picture(&["--exposure", "2"]));
     assert!(usual != picture(&["--from", "20,11"]));

@@ -7,7 +7,7 @@ use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::restraint::RestraintReport;
 use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
-use lapidary_harness::cost::{MEASURES, Report, views};
+use lapidary_harness::cost::{Errors, MEASURES, Report, views};
 use lapidary_harness::random_walk::{self, Form};
 use lapidary_harness::render::{Frame, Settings};
 use lapidary_harness::scene::Scene;
@@ -59,11 +59,57 @@ fn a_report_is_written_with_plots_when_timed() {
     }
 }
 
+/// What is compared is what is timed: the record's errors are those of a picture of its size and samples, of which it has the time.
+#[test]
+fn errors_and_times_are_of_the_same_pictures() {
+    let folder = folder();
+    let views = ["octahedron", "bunny_stone"];
+    let asked = views.join(",");
+    let arguments = ["cost", "gem", "--rounds", "1", "--rungs", "bvh-2", "--views", &asked, "--out", "."];
+    succeeds(folder.path(), &arguments);
+    let text = std::fs::read_to_string(folder.path().join("gem.json")).expect("a report");
+    let report: Report = serde_json::from_str(&text).expect("a report");
+    let samples = report.samples.isqrt();
+    assert_eq!(
+        (samples * samples, &*report.views, &*report.concave),
+        (report.samples, &[views[0].to_owned()][..], &[views[1].to_owned()][..])
+    );
+    let rung = &report.rungs[0];
+    for (name, seen) in views.into_iter().zip([rung.views[0], rung.concave[0]]) {
+        let (view, seen) = (views::View::named(name).expect(name), seen.expect("drawn"));
+        let settings =
+            Settings { rung: "bvh-2".parse().expect("a rung"), samples, ..Settings::of_size(report.side, report.side) };
+        let scene = view.open().expect("built in");
+        let picture =
+            |scene: &Scene| lapidary_harness::render::render(super::gpu(), scene, &settings).expect("rendered");
+        let (now, next) = (picture(&scene), picture(&views::turned(&scene)));
+        let reference = view.reference(super::gpu()).expect("committed");
+        let errors = Errors::between(&now, &reference);
+        // A number's last digit may be lost on its way through JSON.
+        let same = |recorded: f64, found: f64| (recorded / found - 1.0).abs() < 1e-12;
+        assert!(
+            same(seen.errors.flip, errors.flip) && same(seen.errors.rmse, errors.rmse),
+            "{name}: {seen:?} {errors:?}"
+        );
+        let sum = |of: &dyn Fn(usize, usize) -> f32| -> f64 {
+            (0..now.linear.len())
+                .flat_map(|k| (0..3).map(move |c| (k, c)))
+                .map(|(k, c)| f64::from(of(k, c)).powi(2))
+                .sum()
+        };
+        let apart = sum(&|k, c| now.linear[k][c] - next.linear[k][c]);
+        let change = (apart / sum(&|k, c| reference.linear[k][c])).sqrt();
+        // The two sum in another order, and one rounds the difference to f32.
+        assert!((seen.change / change - 1.0).abs() < 1e-6 && change > 0.0, "{name}: {} {change}", seen.change);
+        assert!(seen.ms.is_some_and(|ms| ms > 0.0), "{name}");
+    }
+}
+
 #[test]
 fn every_view_has_its_committed_reference() {
     let page = views::VIEWS[0].reference_file().with_file_name("README.md");
     let page = std::fs::read_to_string(page).expect("the references' page");
-    for view in views::VIEWS.into_iter().chain(views::SHOWN) {
+    for view in views::VIEWS.into_iter().chain(views::CONCAVE).chain(views::SHOWN) {
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.5).count();
         assert!(covered > 1000, "{}: {covered}", view.name);

@@ -3,7 +3,7 @@
 use crate::gpu;
 use glam::Vec3;
 use lapidary_harness::gpu::capture::{Capture, Resource, capture};
-use lapidary_harness::plan::{Effect, Effects, Plan};
+use lapidary_harness::plan::{Effect, Effects, Plan, Quality, Technique};
 use lapidary_harness::render::{self, Curvature, Environment, Settings};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
 use lapidary_harness::scene::light::Light;
@@ -284,8 +284,8 @@ fn a_materials_variant_runs_on_its_own_draw_alone() {
         let on = pipeline.overrides.iter().filter(|(name, value)| name.starts_with("EFFECT_") && *value == 1.0);
         on.map(|(name, _)| name.clone()).collect::<Vec<_>>()
     };
-    assert_eq!(effects("brilliant"), ["EFFECT_PROXY_GEOMETRY", "EFFECT_DISPERSION"]);
-    assert_eq!(effects("ruby"), ["EFFECT_PROXY_GEOMETRY", "EFFECT_ABSORPTION", "EFFECT_DISPERSION"]);
+    assert_eq!(effects("brilliant"), ["EFFECT_CONVEX_TRACE", "EFFECT_DISPERSION"]);
+    assert_eq!(effects("ruby"), ["EFFECT_CONVEX_TRACE", "EFFECT_ABSORPTION", "EFFECT_DISPERSION"]);
 }
 
 /// The reason for which an effect is off.
@@ -314,7 +314,7 @@ fn what_is_off_says_why() {
     });
     assert_eq!(off(&plain, &settings, Effect::Dispersion), "dispersion 0");
     let thin = with_material("ruby", |material| Material { thickness: 0.0, ..material.clone() });
-    for effect in [Effect::ProxyGeometry, Effect::Absorption, Effect::Dispersion] {
+    for effect in [Effect::ConvexTrace, Effect::Absorption, Effect::Dispersion] {
         assert_eq!(off(&thin, &settings, effect), "thickness 0");
     }
     let endless = with_material("ruby", |m| Material { attenuation_distance: f32::INFINITY, ..m.clone() });
@@ -438,4 +438,51 @@ fn ways_that_are_left_out_take_nothing_along() {
     let maps: Vec<&Resource> = capture.resources.iter().filter(|of| of.name.contains("maps")).collect();
     assert!(!maps.is_empty() && maps.iter().all(|map| map.bytes <= 16), "{maps:?}");
     assert!(passes(&capture).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
+}
+
+/// The proxy is drawn where it is asked for and nowhere else; quality chooses within a technique, and a named rung stands above it.
+#[test]
+fn shape_and_quality_choose_the_rung() {
+    let rung = |scene: &Scene, quality| {
+        let plan = Plan::of(scene, &Settings { quality, ..settings() }).expect("a plan");
+        plan.objects[0].decisions.rung.to_string()
+    };
+    let all = |scene: &Scene| Quality::ALL.map(|quality| rung(scene, quality));
+    for (name, technique) in [
+        ("brilliant", Technique::Convex),
+        ("step_cut", Technique::Convex),
+        ("bunny_stone", Technique::Concave),
+        ("prism_chain", Technique::Concave),
+        ("wax", Technique::Cdrf),
+        ("bunny", Technique::OpticalPath),
+    ] {
+        let wanted = Quality::ALL.map(|quality| technique.rung(quality).to_string());
+        assert_eq!(all(&one(name)), wanted, "{name}");
+        assert!(wanted[0] != wanted[1] && !wanted.iter().any(|rung| rung.contains("proxy")));
+    }
+    // A mesh with a hole is drawn by its triangles, and says so.
+    let mut open = one("octahedron");
+    open.objects[0].mesh.indices.truncate(21);
+    let plan = Plan::of(&open, &settings()).expect("a plan");
+    assert_eq!(plan.objects[0].decisions.rung.to_string(), Technique::Concave.rung(Quality::Good).to_string());
+    assert!(plan.to_string().contains("not closed"), "{plan}");
+    let picture = render::render(gpu(), &open, &settings()).expect("drawn");
+    assert!(picture.linear.iter().flatten().all(|value| value.is_finite()));
+    let opaque = with_material("ruby", |material| Material { transmission: 0.0, ..material.clone() });
+    assert_eq!(all(&opaque), ["lambert"; 3]);
+    let mut named = one("octahedron");
+    named.objects[0].material.solver = Some("proxy-1".parse().expect("a rung"));
+    named.objects[0].material.sigma0 = Some(Vec3::ONE);
+    assert_eq!(all(&named), ["proxy-1"; 3]);
+}
+
+/// A plan says what the chosen rung costs and how far off it is, by the committed ladder.
+#[test]
+fn a_plan_says_what_quality_stands_for() {
+    let of = |quality| Plan::of(&one("ruby"), &Settings { quality, ..settings() }).expect("a plan").to_string();
+    let (fast, best) = (of(Quality::Fast), of(Quality::Best));
+    assert!(fast.contains("quality fast: FLIP 0.") && !fast.contains("times the time"), "{fast}");
+    assert!(best.contains("quality best: FLIP 0.") && best.contains("times the time of fast"), "{best}");
+    let named = Plan::of(&one("ruby"), &of_rung("convex-2")).expect("a plan").to_string();
+    assert!(!named.contains("quality"), "{named}");
 }

@@ -1,7 +1,7 @@
 //! The reference against the GPU, where both follow the same light: what a stone's surface reflects. That holds camera,
 //! sample places, environment and reflectance of one to those of the other.
 
-use lapidary_harness::cost::views::{SHOWN, VIEWS};
+use lapidary_harness::cost::views::{CONCAVE, SHOWN, VIEWS};
 use lapidary_harness::extremum::larger;
 use lapidary_harness::reference;
 use lapidary_harness::render::{self, Environment, Picture, Rung, Settings};
@@ -92,7 +92,7 @@ fn covered(picture: &Picture, width: u32, height: u32) -> reference::Window {
 /// The committed pictures are what the reference sees: a crop of each, as near to the middle as the stone is, rendered again.
 #[test]
 fn the_committed_references_are_remade() {
-    for view in VIEWS.into_iter().chain(SHOWN) {
+    for view in VIEWS.into_iter().chain(CONCAVE).chain(SHOWN) {
         let scene = view.open().expect("built in");
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let window = covered(&picture, 8, 4);

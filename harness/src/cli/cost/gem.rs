@@ -1,6 +1,6 @@
 //! The gem ladder.
 
-use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output};
+use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output, views};
 use lapidary_harness::cost::{self, CostError, plot};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -15,11 +15,13 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     if let Some(rounds) = arguments.rounds {
         options.rounds = rounds;
     }
+    // What a page needs beside the ladder goes with the whole of it.
+    options.sizes = arguments.rungs.is_empty() && arguments.views.is_empty();
     if !arguments.rungs.is_empty() {
         options.rungs.clone_from(&arguments.rungs);
     }
     if !arguments.views.is_empty() {
-        options.views.clone_from(&arguments.views);
+        (options.concave, options.views) = arguments.views.iter().partition(|view| views::CONCAVE.contains(view));
     }
     let places = Places::new("gem", arguments)?;
     if arguments.profile {

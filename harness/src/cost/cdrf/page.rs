@@ -6,12 +6,15 @@ use super::{
     ANALYTIC, BLUR, CdrfReport, CurvatureSource, Distance, PAPER, Part, RUNGS, RungReport, SCENES, SceneReport, frames,
 };
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
+use crate::cost::quality;
+use crate::plan::Technique;
 use std::fmt::Write as _;
 
 impl Tables for CdrfReport {
     const TABLES: &'static [Table<Self>] = &[
         ("cdrf_errors", errors),
         ("cdrf_ladder", ladder),
+        ("cdrf_quality", |report| quality::table(report, &[Technique::Cdrf])),
         ("cdrf_lit", |report| times(report, Part::Lit)),
         ("cdrf_whole", |report| times(report, Part::Whole)),
         ("cdrf_scenes", scenes),

@@ -8,6 +8,8 @@ use super::{
     WALKED,
 };
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
+use crate::cost::quality;
+use crate::plan::Technique;
 use crate::render::Stage;
 use std::fmt::Write as _;
 
@@ -15,6 +17,7 @@ impl Tables for OpticalPathReport {
     const TABLES: &'static [Table<Self>] = &[
         ("optical_path_ladder", ladder),
         ("optical_path_walks", walks),
+        ("optical_path_quality", |report| quality::table(report, &[Technique::OpticalPath])),
         ("optical_path_stages", times),
         ("optical_path_growth", growth),
         ("optical_path_goals", goals),

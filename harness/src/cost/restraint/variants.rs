@@ -5,12 +5,14 @@ use crate::cost::timing::{self, Timed, Timing};
 use crate::extremum::larger;
 use crate::gpu::Gpu;
 use crate::plan::Plan;
-use crate::render::{self, Rung, Settings};
+use crate::render::{self, Geometry, Rung, Settings, Spectrum};
 use crate::scene::{Dispersion, Material, Object, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Three clear stones: one disperses, one absorbs, one does neither.
 const SCENE: &str = "vitrine";
+/// The rung that draws all of them.
+const VARIED: Rung = Rung::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker };
 /// A dispersion and a distance that call for the effects and change nothing to be seen.
 const FAINT: (f32, f32) = (1e-6, 1e12);
 
@@ -66,7 +68,8 @@ pub(super) fn measure(
     let own = stones()?;
     let every = |object: &Object| Object { material: with_every_effect(&object.material), ..object.clone() };
     let shared = Scene { objects: own.objects.iter().map(every).collect(), ..own.clone() };
-    let settings = Settings { rung: Rung::ByMaterial, samples: 1, ..Settings::of_size(width, height) };
+    // One recipe draws them all by this rung, so that variants alone differ.
+    let settings = Settings { rung: VARIED, samples: 1, ..Settings::of_size(width, height) };
     let scenes = [("its own for each material", &own), ("one with every effect for all", &shared)];
     let timed: Vec<Timed<'_>> = scenes
         .iter()

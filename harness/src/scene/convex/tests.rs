@@ -105,3 +105,23 @@ fn what_is_not_a_closed_convex_body_has_no_planes() {
     assert_eq!((open, inside_out, dented, twice), (None, None, None, None));
     assert_eq!(planes_of_convex(&Mesh::default()), None);
 }
+
+#[test]
+fn a_shape_is_convex_concave_or_open() {
+    let mesh = |name: &str| Scene::named(name).unwrap().objects.remove(0).mesh;
+    for (name, shape) in [
+        ("brilliant", Shape::Convex),
+        ("octahedron", Shape::Convex),
+        ("bunny_stone", Shape::Concave),
+        ("prism_chain", Shape::Concave),
+    ] {
+        assert_eq!(Shape::of(&mesh(name)), shape, "{name}");
+    }
+    let mut open = mesh("octahedron");
+    open.indices.truncate(open.indices.len() - 3);
+    assert_eq!(Shape::of(&open), Shape::Open);
+    // Inside out, no plane has the others below it.
+    let mut turned = mesh("octahedron");
+    turned.indices.chunks_exact_mut(3).for_each(|corners| corners.swap(1, 2));
+    assert_eq!(Shape::of(&turned), Shape::Concave);
+}

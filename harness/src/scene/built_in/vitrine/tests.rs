@@ -56,8 +56,8 @@ fn each_body_calls_for_a_technique_of_its_own() {
     let settings = Settings { rung: Rung::ByMaterial, ..Settings::of_size(4, 3) };
     let rung = |object: &Object| Decisions::of(object, &scene, &settings).rung.to_string();
     let rungs: Vec<String> = scene.objects.iter().map(rung).collect();
-    let clear = "proxy-4+tracker";
-    assert_eq!(rungs, ["lambert", clear, clear, "accurate", "godunov-64", clear]);
+    let stone = "convex-8+tracker";
+    assert_eq!(rungs, ["lambert", stone, stone, "cheap", "godunov-64", "bvh-8+tracker"]);
     for (body, spreads) in [(candle, true), (figure, false)] {
         assert_eq!(body.material.sigma0.is_some(), spreads);
         assert_eq!(body.mesh.uvs.is_empty(), !spreads);

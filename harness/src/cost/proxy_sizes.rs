@@ -1,0 +1,140 @@
+//! How near the proxy comes to the stone at a small size, where it has been taken to be good enough: beside exact facets and a black stone, by
+//! size, cut and environment.
+
+use super::views::{self, View};
+use super::{CostError, Errors};
+use crate::gpu::Gpu;
+use crate::render::{self, Environment, Picture, Rung, Settings};
+use crate::scene::Scene;
+use crate::scene::environment_map::EnvironmentMap;
+use glam::{UVec2, Vec3};
+use lapidary_environment::direction_from_uv;
+use serde::{Deserialize, Serialize};
+
+/// A stone of that size under one rung.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AtSize {
+    /// The built-in scene.
+    pub stone: String,
+    /// What lights it.
+    pub environment: String,
+    /// Pixels along a side of the picture.
+    pub size: u32,
+    /// The rung, or [`BLACK`].
+    pub rung: String,
+    /// Mean radiance over the reference's.
+    pub mean: f64,
+    /// RMSE of linear radiance over the reference's root mean square.
+    pub rmse: f64,
+}
+
+/// The baseline: a stone that shows nothing at all.
+pub const BLACK: &str = "black";
+/// The rungs beside it.
+pub const RUNGS: [&str; 3] = ["proxy-1+tracker", "convex-3+tracker", "convex-8+tracker"];
+const STONES: [&str; 4] = ["brilliant", "ruby", "step_cut", "quartz"];
+/// References of these sizes are followed on the spot, in seconds; larger ones are the committed ones, which are of the studio.
+const SIZES: [u32; 2] = [16, 64];
+
+/// What a ray of each direction brings.
+fn map(radiance: impl Fn(Vec3) -> Vec3) -> Environment {
+    let (width, height) = (128, 64);
+    let pixel = |index: u32| {
+        let middle = UVec2::new(index % width, index / width).as_vec2() + 0.5;
+        let direction = direction_from_uv(middle / UVec2::new(width, height).as_vec2());
+        radiance(direction).extend(1.0).to_array()
+    };
+    Environment::Map(EnvironmentMap { width, height, pixels: (0..width * height).map(pixel).collect() })
+}
+
+/// Blue sky, paler to the horizon, over brown ground; a sun of 5° at half height, with as much light as all of the sky.
+fn sun_and_sky() -> Environment {
+    let sun = Vec3::new(0.5, 0.7, 0.5).normalize();
+    map(|direction| {
+        if direction.dot(sun) > 2.5f32.to_radians().cos() {
+            return Vec3::new(560.0, 520.0, 450.0);
+        }
+        if direction.y < 0.0 {
+            return Vec3::new(0.18, 0.15, 0.12);
+        }
+        Vec3::new(0.9, 0.95, 1.0).lerp(Vec3::new(0.2, 0.4, 0.9), direction.y.sqrt())
+    })
+}
+
+/// A dim room with a warm lamp and a cool window.
+fn two_lights() -> Environment {
+    let near =
+        |direction: Vec3, towards: Vec3, degrees: f32| direction.dot(towards.normalize()) > degrees.to_radians().cos();
+    map(|direction| {
+        if near(direction, Vec3::new(-0.6, 0.6, 0.5), 14.0) {
+            Vec3::new(14.0, 11.0, 8.0)
+        } else if near(direction, Vec3::new(0.9, 0.3, -0.3), 20.0) {
+            Vec3::new(4.0, 5.0, 6.5)
+        } else {
+            Vec3::splat(0.06)
+        }
+    })
+}
+
+/// How many references are followed.
+pub(super) const FOLLOWED: u64 = (STONES.len() * SIZES.len() * 3) as u64;
+
+/// Every stone, size and environment under every rung, by 16 samples a pixel. `progress` is told how many references are followed.
+pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<AtSize>, CostError> {
+    let environments = [("studio", Environment::Studio), ("sun and sky", sun_and_sky()), ("two lights", two_lights())];
+    let mut found = Vec::new();
+    let mut done = 0;
+    for stone in STONES {
+        let scene = Scene::named(stone)?;
+        for (environment_name, environment) in &environments {
+            let of_size = |size| Settings { environment: environment.clone(), ..Settings::of_size(size, size) };
+            let mut compare = |settings: &Settings, reference: &Picture| -> Result<(), CostError> {
+                for rung in std::iter::once(BLACK).chain(RUNGS) {
+                    let picture = match rung.parse() {
+                        Ok(rung) => render::render(gpu, &scene, &Settings { rung, ..settings.clone() })?,
+                        Err(_) => Picture { linear: vec![[0.0; 4]; reference.linear.len()], ..reference.clone() },
+                    };
+                    let Errors { rmse, energy, .. } = Errors::between(&picture, reference);
+                    found.push(AtSize {
+                        stone: stone.to_owned(),
+                        environment: (*environment_name).to_owned(),
+                        size: settings.width,
+                        rung: rung.to_owned(),
+                        mean: 1.0 + energy,
+                        rmse,
+                    });
+                }
+                Ok(())
+            };
+            for size in SIZES {
+                let settings = of_size(size);
+                let reference = Settings { rung: Rung::Reference, ..settings.clone() };
+                compare(&settings, &render::render(gpu, &scene, &reference)?)?;
+                done += 1;
+                progress(done);
+            }
+            if let (Environment::Studio, Some(view)) = (environment, View::named(stone)) {
+                compare(&of_size(views::SIDE), &view.reference(gpu)?)?;
+            }
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hand-sized sum: what the sky and the sun bring to a level plane are alike, and nothing is negative or dark all around.
+    #[test]
+    fn the_sun_brings_about_as_much_as_the_sky() {
+        let Environment::Map(EnvironmentMap { width, height, pixels }) = sun_and_sky() else { panic!("a map") };
+        let (mut sun, mut sky) = (0.0, 0.0);
+        for (index, pixel) in pixels.iter().enumerate() {
+            let polar = std::f32::consts::PI * ((index as u32 / width) as f32 + 0.5) / height as f32;
+            let sum = (polar.cos() * polar.sin()).max(0.0) * pixel[1];
+            if pixel[1] > 100.0 { sun += sum } else { sky += sum }
+        }
+        assert!((0.5..2.0).contains(&(sun / sky)), "{}", sun / sky);
+    }
+}

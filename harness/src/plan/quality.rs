@@ -1,0 +1,194 @@
+//! `--quality`: a rung for each technique, from its ladder.
+
+use super::ladder::Ladder;
+use crate::optical_path::{Method, Stencil};
+use crate::render::{Geometry, Paths, Reflectance, Rung, Spectrum};
+use std::fmt;
+
+/// How much time a body's technique may take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// The cheapest rung that shows the body itself.
+    Fast,
+    /// Dearer, where that shows.
+    #[default]
+    Good,
+    /// For a still picture.
+    Best,
+}
+
+impl Quality {
+    /// From cheap to dear.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Good, Self::Best];
+
+    /// As `--quality` has it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Good => "good",
+            Self::Best => "best",
+        }
+    }
+}
+
+impl fmt::Display for Quality {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A way to draw a body, chosen by its material and shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Technique {
+    /// A clear body, closed and convex, by its facets' planes.
+    Convex,
+    /// Any other clear body, by a hierarchy of its triangles.
+    Concave,
+    /// Scattering near the surface, by curvature.
+    Cdrf,
+    /// Light through a scattering body.
+    OpticalPath,
+    /// No light inside.
+    Opaque,
+    /// Clear, and without an inside.
+    ThinWall,
+}
+
+/// The rungs of a technique by quality, in the order of [`Quality::ALL`]. A better quality may have the same rung as the one before, where
+/// nothing dearer cuts its error by a tenth.
+const RUNGS: [(Technique, [Rung; 3]); 6] = [
+    (
+        Technique::Convex,
+        [
+            inside(Geometry::Convex, 4, Spectrum::One),
+            inside(Geometry::Convex, 8, Spectrum::Tracker),
+            inside(Geometry::Convex, 16, Spectrum::Tracker),
+        ],
+    ),
+    (
+        Technique::Concave,
+        [
+            inside(Geometry::Bvh, 4, Spectrum::Tracker),
+            inside(Geometry::Bvh, 8, Spectrum::Tracker),
+            inside(Geometry::Bvh, 8, Spectrum::Tracker),
+        ],
+    ),
+    (
+        Technique::Cdrf,
+        [Rung::Diffuse(Reflectance::Wrap), Rung::Diffuse(Reflectance::Cheap), Rung::Diffuse(Reflectance::Accurate)],
+    ),
+    (
+        Technique::OpticalPath,
+        [paths(32, Method::Tiled(Stencil::Corners)), paths(64, Method::Godunov), paths(128, Method::Godunov)],
+    ),
+    (Technique::Opaque, [Rung::Diffuse(Reflectance::Lambert); 3]),
+    (Technique::ThinWall, [Rung::Surface; 3]),
+];
+
+const fn inside(geometry: Geometry, hits: u32, spectrum: Spectrum) -> Rung {
+    Rung::Inside { geometry, hits, spectrum }
+}
+
+const fn paths(cells: u32, method: Method) -> Rung {
+    Rung::OpticalPath(Paths { cells, method })
+}
+
+impl Technique {
+    /// Those with a ladder first.
+    pub const ALL: [Self; 6] =
+        [Self::Convex, Self::Concave, Self::Cdrf, Self::OpticalPath, Self::Opaque, Self::ThinWall];
+
+    /// The rung of that quality.
+    #[must_use]
+    pub fn rung(self, quality: Quality) -> Rung {
+        RUNGS[self as usize].1[quality as usize]
+    }
+
+    /// Its committed ladder; none of a technique with one rung.
+    #[must_use]
+    pub fn ladder(self) -> Option<&'static Ladder> {
+        Ladder::committed(self)
+    }
+}
+
+/// A rung that a quality stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chosen {
+    /// Of the body.
+    pub technique: Technique,
+    /// Asked for.
+    pub quality: Quality,
+}
+
+impl Chosen {
+    /// The rung.
+    #[must_use]
+    pub fn rung(self) -> Rung {
+        self.technique.rung(self.quality)
+    }
+
+    /// The rung's error in its committed ladder, and its time as a multiple of [`Quality::Fast`]'s.
+    #[must_use]
+    pub fn measured(self) -> Option<Measured> {
+        let ladder = self.technique.ladder()?;
+        let step = |quality| ladder.step(&self.technique.rung(quality).to_string());
+        let (own, fast) = (step(self.quality)?, step(Quality::Fast)?);
+        Some(Measured { error: own.error, worst: own.worst, measure: ladder.measure, times_fast: own.ms / fast.ms })
+    }
+}
+
+/// What a chosen rung costs, and how far off it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The mean over the ladder's views.
+    pub error: f64,
+    /// The largest of the views.
+    pub worst: f64,
+    /// The error's.
+    pub measure: &'static str,
+    /// Its time over that of [`Quality::Fast`].
+    pub times_fast: f64,
+}
+
+impl fmt::Display for Chosen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quality, .. } = self;
+        let Some(Measured { error, worst, measure, times_fast }) = self.measured() else {
+            return write!(f, "quality {quality}: the technique's only rung");
+        };
+        write!(f, "quality {quality}: {measure} {}", figure(error))?;
+        if worst != error {
+            write!(f, " in the mean over the ladder's views, {} in the worst", figure(worst))?;
+        }
+        if *quality == Quality::Fast { Ok(()) } else { write!(f, "; {times_fast:.1} times the time of fast") }
+    }
+}
+
+/// Two digits.
+pub(crate) fn figure(error: f64) -> String {
+    if error == 0.0 || error >= 0.0095 { format!("{error:.2}") } else { format!("{error:.0e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_has_each_technique_in_its_place() {
+        assert_eq!(RUNGS.map(|(technique, _)| technique), Technique::ALL);
+        for (place, technique) in Technique::ALL.into_iter().enumerate() {
+            assert_eq!(technique as usize, place);
+        }
+    }
+
+    #[test]
+    fn a_choice_says_its_error_and_its_time() {
+        let chosen = |technique, quality| Chosen { technique, quality }.to_string();
+        let good = chosen(Technique::Convex, Quality::Good);
+        assert!(good.starts_with("quality good: FLIP 0.") && good.contains(" times the time of fast"), "{good}");
+        let fast = chosen(Technique::OpticalPath, Quality::Fast);
+        assert!(fast.contains("nats") && !fast.contains("time"), "{fast}");
+        assert_eq!(chosen(Technique::Opaque, Quality::Best), "quality best: the technique's only rung");
+    }
+}
