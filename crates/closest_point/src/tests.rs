@@ -53,7 +53,7 @@ fn excess<const N: usize>(value: DVec3, truth: impl Fn([DVec3; N]) -> DVec3, inp
                 for sign in [-1.0, 1.0] {
                     let mut near = inputs;
                     near[i] += axis * sign * backward * ulp(largest(inputs[i]));
-                    reach = larger(reach, (truth(near) - exact).abs());
+                    reach = reach.max((truth(near) - exact).abs());
                 }
                 allowed += reach;
             }
