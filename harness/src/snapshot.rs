@@ -1,7 +1,7 @@
 //! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
 
 pub mod beside_walks;
-pub(crate) mod frames;
+pub mod frames;
 mod shots;
 pub mod strip;
 mod walked;
