@@ -2,7 +2,7 @@
 
 pub mod beside_walks;
 mod comparison;
-pub(crate) mod frames;
+pub mod frames;
 mod shots;
 pub mod strip;
 mod walked;

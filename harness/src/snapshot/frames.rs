@@ -23,7 +23,8 @@ pub(super) fn side_by_side(frames: &[Picture], columns: u32) -> Picture {
 }
 
 /// The mean of each two by two pixels, linear alone.
-pub(crate) fn halved(picture: &Picture) -> Picture {
+#[must_use]
+pub fn halved(picture: &Picture) -> Picture {
     let [width, height] = [picture.width / 2, picture.height / 2];
     let mean = |index: u32| {
         let first = (index / width * 2 * picture.width + index % width * 2) as usize;

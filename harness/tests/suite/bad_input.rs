@@ -342,10 +342,11 @@ fn write_bad_files(folder: &Path) {
         b"fn refraction_reflect(incident: f32, normal: vec3f) -> vec3f {\n    return incident * normal;\n}\n",
     );
     write("other.wgsl", b"fn mine(incident: vec3f) -> vec3f {\n    return incident;\n}\n");
-    let empty = json!({"walks": 1, "seed": 1, "profiles": [], "rows": [], "limits": [], "laws": [], "choices": []});
+    let empty = json!({"walks": 1, "seed": 1, "profiles": [], "rows": [], "rows_with_unscattered": [], "limits": [], "laws": [],
+        "laws_with_unscattered": [], "choices": []});
     write("empty.json", empty.to_string().as_bytes());
     let none = json!({"largest": 0.0, "rms": 0.0});
-    let untimed = json!({"adapter": "", "frame": [1, 1], "rounds": 0, "vertices": 0, "spheres": 0, "rungs": [], "tables": [],
+    let untimed = json!({"adapter": "", "frame": [1, 1], "rounds": 0, "vertices": 0, "spheres": 0, "rungs": [], "tables": [], "scenes": [],
         "spherical_from_circular": none});
     write("untimed.json", untimed.to_string().as_bytes());
     write("ladder.md", b"<!-- generated: cdrf_lit --><!-- end -->\n");

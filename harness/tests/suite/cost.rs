@@ -6,7 +6,7 @@ use lapidary_harness::cost::effects::EffectsReport;
 use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
 use lapidary_harness::cost::page::{self, Tables};
 use lapidary_harness::cost::restraint::RestraintReport;
-use lapidary_harness::cost::sphere::{ALBEDOS, RADII, Row, SphereReport};
+use lapidary_harness::cost::sphere::{ALBEDOS, Law, RADII, Row, SphereReport};
 use lapidary_harness::cost::{Errors, MEASURES, Report, views};
 use lapidary_harness::random_walk::{self, Form};
 use lapidary_harness::render::{Frame, Settings};

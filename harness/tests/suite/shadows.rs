@@ -49,7 +49,9 @@ impl Triangles {
             let first = mesh.positions.len() as u32;
             mesh.positions.extend(&object.mesh.positions);
             mesh.normals.extend(&object.mesh.normals);
-            mesh.indices.extend(object.mesh.indices.iter().map(|index| first + index));
+            // The hierarchy's rays leave a solid through its triangles. Turned over, they are what a ray from outside meets.
+            let turned = object.mesh.indices.chunks_exact(3).flat_map(|corners| [corners[0], corners[2], corners[1]]);
+            mesh.indices.extend(turned.map(|index| first + index));
         }
         let bvh = Bvh::build(&mesh);
         Self { mesh, bvh }
