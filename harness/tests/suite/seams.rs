@@ -12,6 +12,7 @@ use lapidary_harness::property::seams::{self, Seam};
 use lapidary_harness::property::tolerance::number;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::OnceLock;
 
 fn program(formula: &Formula) -> Program {
     let module = cookbook::module(formula.module).expect("a formula's module");
@@ -20,6 +21,14 @@ fn program(formula: &Formula) -> Program {
 
 fn promised() -> impl Iterator<Item = &'static Formula> {
     formulas::all().iter().filter(|formula| formula.benign.is_none())
+}
+
+/// The seams of a promised function of the cookbook, found once for all tests.
+fn seams_of(function: &str) -> &'static [Seam] {
+    static SEAMS: OnceLock<BTreeMap<&'static str, Vec<Seam>>> = OnceLock::new();
+    let all =
+        SEAMS.get_or_init(|| promised().map(|formula| (formula.function, seams(&program(formula), formula))).collect());
+    &all[function]
 }
 
 /// From enough seeds that no branch is missed by chance.
@@ -62,8 +71,8 @@ fn both_sides_of_every_branch_are_within_their_bounds_of_each_other() {
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
         let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
-        let seams = seams(&program, formula);
-        let found = seams::faults(&program, formula, &mut kernel, &tolerance, &seams).expect("runs");
+        let seams = seams_of(formula.function);
+        let found = seams::faults(&program, formula, &mut kernel, &tolerance, seams).expect("runs");
         faults.extend(found.iter().take(3).map(|fault| format!("{}: {fault}", formula.function)));
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
@@ -94,7 +103,7 @@ fn every_branch_is_straddled_and_continuous_or_says_why_not() {
     let (mut used, mut faults) = (BTreeSet::new(), BTreeSet::new());
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
-        let seams = seams(&program, formula);
+        let seams = seams_of(formula.function);
         let mut expect = |condition: &str, is_exception: bool, what: &str| {
             let key = (formula.function.to_owned(), condition.to_owned());
             if is_exception && !exceptions.contains_key(&key) {
