@@ -137,11 +137,11 @@ mod tests {
     #[test]
     fn work_is_done_and_what_breaks_is_said() {
         assert_eq!(watched(|_| 7).expect("done"), 7);
-        let error = watched(|stage| {
+        let error: Result<(), GuardError> = watched(|stage| {
             stage.compiling("compiling `f`");
             panic!("no such type\nat all")
         });
-        let error = error.map(|()| ()).expect_err("a panic").to_string();
+        let error = error.expect_err("a panic").to_string();
         assert_eq!(error, "compiling `f` breaks the compiler (no such type); change the lines that it cannot take");
         // Far more than a thread usually has.
         fn deep(depth: u64) -> u64 {

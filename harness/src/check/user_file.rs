@@ -93,8 +93,7 @@ impl UserFile {
             .map(|formula| format!("`{}`", formula.function))
             .collect();
         let lacks = lacking.join(", ");
-        (!lacking.is_empty())
-            .then(|| format!("{}: lacks {lacks} of module `{}`, which is not checked", self.path, module.name))
+        (!lacking.is_empty()).then(|| format!("{}: lacks {lacks} of module `{}`; not checked", self.path, module.name))
     }
 
     /// Functions with a module's prefix that the module does not have.

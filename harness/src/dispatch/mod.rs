@@ -163,7 +163,7 @@ struct Compiled {
 struct Turns {
     /// Most that an invocation may take.
     limit: u32,
-    /// On lavapipe: the kernel with one invocation a workgroup, for rows that may have been cut short by their neighbours.
+    /// On lavapipe: the kernel with one row a workgroup, for rows that may have been cut short by their neighbours.
     alone: Option<wgpu::ComputePipeline>,
 }
 
@@ -296,7 +296,7 @@ fn compile(gpu: &Gpu, kernel: KernelModule, constants: &[(&str, f64)]) -> Result
     let counts = turns::count(&mut module, limit);
     let alone = if counts && gpu.is_lavapipe() {
         let mut alone = module.clone();
-        alone.entry_points.iter_mut().for_each(|point| point.workgroup_size = [1, 1, 1]);
+        alone.entry_points.iter_mut().for_each(turns::one_row_a_workgroup);
         Some(pipeline(gpu, &signature, alone, constants)?)
     } else {
         None

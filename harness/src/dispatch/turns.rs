@@ -14,6 +14,8 @@ pub(super) const LAVAPIPE_LIMIT: u32 = 65_000;
 pub(super) const LAVAPIPE_ENDS_AT: u64 = 65_535;
 /// The same elsewhere: a fraction of a second on a GPU, long before its watchdog resets the device.
 pub(super) const LIMIT: u32 = 1 << 20;
+/// The most lanes that lavapipe runs together; fewer divide it.
+const LANES: u32 = 16;
 /// The binding of the counts, in group 0, after the kernel's inputs and outputs.
 pub(super) const BINDING: u32 = 2;
 
@@ -47,6 +49,15 @@ pub(super) fn count(module: &mut naga::Module, limit: u32) -> bool {
         write_count(&mut point.function, counter, counts);
     }
     true
+}
+
+/// Makes a kernel work on one row with the whole workgroup, so that no other row's turns are counted with it. lavapipe runs
+/// the lanes that a smaller workgroup leaves over as well, on a row of zeros.
+pub(super) fn one_row_a_workgroup(kernel: &mut naga::EntryPoint) {
+    kernel.workgroup_size = [LANES, 1, 1];
+    for argument in &mut kernel.function.arguments {
+        argument.binding = Some(naga::Binding::BuiltIn(naga::BuiltIn::WorkGroupId));
+    }
 }
 
 fn has_loop(block: &Block) -> bool {
