@@ -50,7 +50,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
 fn parse_quality(text: &str) -> Result<Quality, String> {
     let names = Quality::ALL.map(Quality::name);
     let found = Quality::ALL.into_iter().find(|quality| quality.name() == text);
-    found.ok_or_else(|| format!("no such quality{}; there is {}", suggest(text, &names), names.join(", ")))
+    found.ok_or_else(|| format!("no such quality{}", suggest(text, &names)))
 }
 
 impl Asked {

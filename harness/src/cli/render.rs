@@ -86,13 +86,13 @@ fn parse_from(text: &str) -> Result<(f32, f32), String> {
 fn parse_curvature(text: &str) -> Result<Curvature, String> {
     let names = Curvature::ALL.map(Curvature::name);
     let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
-    found.ok_or_else(|| format!("no such curvature{}; there is {}", suggest(text, &names), names.join(", ")))
+    found.ok_or_else(|| format!("no such curvature{}", suggest(text, &names)))
 }
 
 fn parse_origin(text: &str) -> Result<Origin, String> {
     let names = Origin::ALL.map(Origin::name);
     let found = Origin::ALL.into_iter().find(|origin| origin.name() == text);
-    found.ok_or_else(|| format!("no such end of a walk{}; there is {}", suggest(text, &names), names.join(" and ")))
+    found.ok_or_else(|| format!("no such end of a walk{}", suggest(text, &names)))
 }
 
 fn parse_positive(text: &str) -> Result<f32, String> {
