@@ -42,7 +42,7 @@ const DISPERSION_CUBIC_ZIRCONIA = DispersionSellmeier(
     vec3f(0.00391162685f, 0.0278018941f, 591.490125f),
 );
 // DeVore's n^2 = 5.913 + 0.2441 / (w^2 - 0.0803), brought into this form: the strength is 0.2441 / 0.0803, and the constant takes the rest.
-const DISPERSION_RUTILE = DispersionSellmeier(1.8731494f, vec3f(3.0398506f, 0.0f, 0.0f), vec3f(0.0803f, 0.0f, 0.0f));
+const DISPERSION_RUTILE = DispersionSellmeier(1.87314944f, vec3f(3.03985056f, 0.0f, 0.0f), vec3f(0.0803f, 0.0f, 0.0f));
 const DISPERSION_STRONTIUM_TITANATE = DispersionSellmeier(
     0.0f,
     vec3f(3.042143f, 1.170065f, 30.83326f),

@@ -50,8 +50,8 @@ pub const DISPERSION_CUBIC_ZIRCONIA: DispersionSellmeier = DispersionSellmeier {
 };
 /// Rutile, the ordinary ray, DeVore 1951.
 pub const DISPERSION_RUTILE: DispersionSellmeier = DispersionSellmeier {
-    constant: 1.8731494,
-    strengths: vec3(3.0398506, 0.0, 0.0),
+    constant: 1.87314944,
+    strengths: vec3(3.03985056, 0.0, 0.0),
     resonances: vec3(0.0803, 0.0, 0.0),
 };
 /// Strontium titanate, Dodge 1986.

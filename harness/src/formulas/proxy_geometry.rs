@@ -273,7 +273,9 @@ fn normal_formulas() -> Vec<Formula> {
         .pair(
             "the other winding turns it round",
             |(a, b, c)| (a, c, b),
-            |_, normal: Vec3, other: Vec3| near("sum", (normal + other).as_dvec3().length(), 0.0, UNIT),
+            // Of two longest edges that are as long as each other either may be left out: each normal then has roundings of its own, 5 ulp of
+            // each component by the accuracy line, and the sum has both.
+            |_, normal: Vec3, other: Vec3| near("sum", (normal + other).as_dvec3().length(), 0.0, 2.0 * UNIT),
         )
         .hard_case(
             "edges of 1e-20",

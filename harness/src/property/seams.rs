@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 /// Pairs of inputs that are tried, and fewer for a function that takes long: what that comes to in statements.
 const MOST_ATTEMPTS: u64 = 800;
-const MOST_STATEMENTS: u64 = 1_500_000;
+const MOST_STATEMENTS: u64 = 400_000;
 
 /// Runs of the function that finding one seam takes, about.
 const RUNS: u64 = 40;
