@@ -11,6 +11,9 @@ use lapidary_harness::scene::environment_map::EnvironmentMap;
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;
 const SIDE: u32 = 192;
+/// Share of pixels whose rays rounding may send to other facets. A facet of a fiftieth of the stone's size has an edge within the drift of 1e-6 of it for 2e-4 of
+/// all rays; 64 hits make that a hundredth.
+const MOST_PARTING: f64 = 0.01;
 
 /// Where a recipe's fragment begins, ...
 const FRAGMENT: &str = "fn gem_fragment(input: GemVertex) -> @location(0) vec4f {\n";
@@ -36,7 +39,7 @@ fn of_rung(rung: &str) -> Settings {
     Settings { rung: rung.parse().expect(rung), limit_throughput: Some(false), ..Settings::of_size(SIDE, SIDE) }
 }
 
-fn check(scene: &str, what: &str, parity: &Parity, most_parting: f64) {
+fn check(scene: &str, what: &str, parity: &Parity) {
     let of_compared = |count: usize| count as f64 / parity.compared as f64;
     let expected = parity.edge_share * parity.compared as f64;
     println!(
@@ -55,68 +58,66 @@ fn check(scene: &str, what: &str, parity: &Parity, most_parting: f64) {
     // The pixels are drawn by chance: four standard deviations of a count, and one for a count of none.
     let most_at_an_edge = expected + 4.0 * expected.sqrt() + 1.0;
     assert!(parity.at_an_edge as f64 <= most_at_an_edge, "{scene} {what}: {} at an edge", parity.at_an_edge);
-    // At an edge the GPU may show either side; what it shows must lie in the span of the sides, but for a few where more than two meet.
-    assert!(parity.differing_at_an_edge <= parity.compared / 50, "{scene} {what}: {}", parity.differing_at_an_edge);
-    assert!(of_compared(parity.parting) <= most_parting, "{scene} {what}: {}", parity.parting);
+    // Either side may be shown; what is shown must lie in the span of the sides, but for one where more than two meet.
+    assert!(parity.differing_at_an_edge <= 1, "{scene} {what}: {}", parity.differing_at_an_edge);
+    assert!(of_compared(parity.parting) <= MOST_PARTING, "{scene} {what}: {}", parity.parting);
     assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
     assert!(parity.misplaced <= parity::SNAP, "{scene} {what}: {} pixels", parity.misplaced);
 }
 
 #[test]
 fn the_picture_is_the_mirrors() {
-    // A ray's edges grow with its hits, and with the number of facets that it may meet; most in the bunny, whose are small. In a
-    // proxy of many hits nearly every ray is turned along the planes at last, where the tile that it meets lies far away.
-    for (scene, rung, most_parting) in [
-        ("brilliant", "surface", 0.01),
-        ("brilliant", "proxy-0", 0.01),
-        ("brilliant", "proxy-1", 0.01),
-        ("brilliant", "proxy-1+paper", 0.01),
-        ("brilliant", "proxy-4+tracker", 0.20),
-        ("brilliant", "proxy-2+31", 0.15),
-        ("brilliant", "convex-1", 0.01),
-        ("brilliant", "convex-8+tracker", 0.02),
-        ("brilliant", "convex-64", 0.30),
-        ("brilliant", "triangles-1+3", 0.01),
-        ("brilliant", "bvh-4+paper", 0.02),
-        ("sapphire", "proxy-8", 0.90),
-        ("sapphire", "convex-4+tracker", 0.01),
-        ("step_cut", "convex-8", 0.02),
-        ("octahedron", "bvh-8+tracker", 0.02),
-        ("bunny_stone", "proxy-1+tracker", 0.05),
-        ("bunny_stone", "bvh-2", 0.08),
+    for (scene, rung) in [
+        ("brilliant", "surface"),
+        ("brilliant", "proxy-0"),
+        ("brilliant", "proxy-1"),
+        ("brilliant", "proxy-1+paper"),
+        ("brilliant", "proxy-4+tracker"),
+        ("brilliant", "proxy-2+31"),
+        ("brilliant", "convex-1"),
+        ("brilliant", "convex-8+tracker"),
+        ("brilliant", "convex-64"),
+        ("brilliant", "triangles-1+3"),
+        ("brilliant", "bvh-4+paper"),
+        ("sapphire", "proxy-8"),
+        ("sapphire", "convex-4+tracker"),
+        ("step_cut", "convex-8"),
+        ("octahedron", "bvh-8+tracker"),
+        ("bunny_stone", "proxy-1+tracker"),
+        ("bunny_stone", "bvh-2"),
     ] {
-        check(scene, rung, &compare(scene, of_rung(rung)), most_parting);
+        check(scene, rung, &compare(scene, of_rung(rung)));
     }
 }
 
 #[test]
 fn so_it_is_with_every_choice() {
     let limited = Settings { distance_limit: Some(2.5), ..of_rung("convex-8") };
-    check("brilliant", "limited", &compare("brilliant", limited), 0.01);
+    check("brilliant", "limited", &compare("brilliant", limited));
     for rung in ["proxy-8+paper", "convex-8+paper", "convex-8+tracker"] {
         let limited = Settings { distance_limit: Some(1.2), dispersion_strength: 0.02, ..of_rung(rung) };
-        check("brilliant", "limited, colours", &compare("brilliant", limited), 0.20);
+        check("brilliant", "limited, colours", &compare("brilliant", limited));
     }
-    for (scene, rung, most_parting) in [
-        ("brilliant", "proxy-8+tracker", 0.50),
-        ("brilliant", "convex-16+tracker", 0.10),
-        ("brilliant", "convex-8+3", 0.10),
-        ("ruby", "bvh-16", 0.20),
-        ("brilliant", "convex-8+paper", 0.10),
+    for (scene, rung) in [
+        ("brilliant", "proxy-8+tracker"),
+        ("brilliant", "convex-16+tracker"),
+        ("brilliant", "convex-8+3"),
+        ("ruby", "bvh-16"),
+        ("brilliant", "convex-8+paper"),
     ] {
         let limited = Settings { limit_throughput: Some(true), ..of_rung(rung) };
-        check(scene, "limited by throughput", &compare(scene, limited), most_parting);
+        check(scene, "limited by throughput", &compare(scene, limited));
     }
     let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
-    check("brilliant", "rest dropped", &compare("brilliant", dropped), 0.20);
+    check("brilliant", "rest dropped", &compare("brilliant", dropped));
     let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
-    check("brilliant", "paper's centre", &compare("brilliant", paper), 0.01);
+    check("brilliant", "paper's centre", &compare("brilliant", paper));
     let clear = Settings { without: Effects::of(&[Effect::Absorption]), ..of_rung("convex-4") };
-    check("sapphire", "no absorption", &compare("sapphire", clear), 0.01);
+    check("sapphire", "no absorption", &compare("sapphire", clear));
     let pixel = |k: usize| [(k % 7) as f32 / 3.0, (k % 5) as f32 / 2.0, (k % 3) as f32, 1.0];
     let map = EnvironmentMap { width: 16, height: 8, pixels: (0..128).map(pixel).collect() };
     let mapped = Settings { environment: Environment::Map(map), ..of_rung("convex-2+tracker") };
-    check("brilliant", "a map", &compare("brilliant", mapped), 0.01);
+    check("brilliant", "a map", &compare("brilliant", mapped));
 }
 
 /// A fault that is planted in a recipe's text.
