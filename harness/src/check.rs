@@ -8,7 +8,7 @@ pub mod user_file;
 
 use crate::cookbook::{self, header::FunctionDoc};
 use crate::dispatch::shape::{Scalar, Shape};
-use crate::dispatch::{DispatchError, Kernel};
+use crate::dispatch::{self, DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
@@ -171,6 +171,9 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
         Source::Copy(path, text) => (path, text),
     };
     let in_path = |error| CheckError::Dispatch { path: path.to_owned(), error };
+    if let Source::Copy(..) = source {
+        dispatch::examine(text, path, formula.function).map_err(in_path)?;
+    }
     let kernel = Kernel::of_function(gpu, text, path, formula.function).map_err(in_path)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
     Ok(kernel)
