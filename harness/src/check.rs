@@ -8,7 +8,7 @@ pub mod user_file;
 
 use crate::cookbook::{self, header::FunctionDoc};
 use crate::dispatch::shape::{Scalar, Shape};
-use crate::dispatch::{DispatchError, Kernel};
+use crate::dispatch::{self, DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
@@ -176,6 +176,9 @@ pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
 pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Result<Kernel<'gpu>, CheckError> {
     let (path, text) = located(formula, source);
     let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
+    if let Source::Copy(..) = source {
+        dispatch::examine(text, &path, formula.function).map_err(in_path)?;
+    }
     let kernel = Kernel::of_function(gpu, text, &path, formula.function).map_err(in_path)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
     Ok(kernel)

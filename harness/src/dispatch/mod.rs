@@ -105,10 +105,6 @@ impl KernelModule {
     /// Reflects `function` in `source` (`path` is for messages) and appends its entry point.
     pub fn reflect(source: &str, path: &str, function: &str) -> Result<KernelModule, DispatchError> {
         let (module, _) = parse(source, path)?;
-        reach::check(&module, function).map_err(|fault| DispatchError::Fault {
-            line: fault.span.is_defined().then(|| fault.span.location(source).line_number),
-            message: fault.message,
-        })?;
         let signature = Signature::reflect(&module, function)?;
         let words: usize = signature.arguments.iter().map(|(_, shape)| shape.words()).sum();
         if words.max(signature.result.words()) > MOST_WORDS {
@@ -123,6 +119,15 @@ impl KernelModule {
         let output = Layout::of_struct(&module, kernel::OUTPUT);
         Ok(KernelModule { signature, module, input, output })
     }
+}
+
+/// Refuses a function of a source that is not the cookbook's where it is not pure, or too large for a compiler.
+pub fn examine(source: &str, path: &str, function: &str) -> Result<(), DispatchError> {
+    let (module, _) = parse(source, path)?;
+    reach::check(&module, function).map_err(|fault| DispatchError::Fault {
+        line: fault.span.is_defined().then(|| fault.span.location(source).line_number),
+        message: fault.message,
+    })
 }
 
 /// Refuses a source that declares a name that the kernel's text needs for something else, such as a built-in's.
