@@ -4,16 +4,17 @@ use super::{SnapshotError, read};
 use crate::render::{Picture, file};
 use std::path::Path;
 
-// Between what another driver may do and what a planted error does, nearer to the first. Another driver's samples lie 1/256 of their distance beside ours: of the
-// noisiest stones that is a mean FLIP of 0.0009, 0.05 for a thousandth of the pixels, and an RMSE of 0.003; at four times that, 0.0022, 0.05 and 0.006. A turn of
-// 1 degree is 0.10, 0.9 and 0.33 at least, two channels swapped an RMSE of 0.1, a black square of 32 by 32 pixels 0.004 in the mean and most of 1 for the thousandth.
+// Between what another driver may do and what a planted error does, two or more times the first. Another driver's samples lie 1/256 of their distance beside
+// ours: of the bunny of glass, whose facets are small, that is a mean FLIP of 0.0015, 0.055 for a thousandth of the pixels and an RMSE of 0.014; of cut stones at
+// most 0.0012, 0.040 and 0.004. A turn of 1 degree is 0.10, 0.9 and 0.33 at least, two channels swapped 0.13, 0.3 and 0.087. A black square of 32 by 32
+// pixels is 0.001 to 0.005 in the mean and 0.46 or more for the thousandth.
 
 /// Largest mean FLIP of all pixels.
 pub const MOST_FLIP: f32 = 0.005;
 /// Largest FLIP of all but a thousandth of the pixels.
 pub const MOST_HIGH_FLIP: f32 = 0.15;
 /// Largest RMSE in linear radiance, relative to the reference's root mean square.
-pub const MOST_RMSE: f32 = 0.02;
+pub const MOST_RMSE: f32 = 0.03;
 
 /// Of every thousand pixels this many may differ by more than [`MOST_HIGH_FLIP`].
 const PER_MILLE: usize = 1;

@@ -39,7 +39,7 @@ fn share(name: &str, picture: &Picture) -> f64 {
     let (strong, steps) = edges(picture);
     let share = steps as f64 / strong as f64;
     println!("{name}: {steps} of {strong} strong edges are steps, {share:.3}");
-    assert!(strong > 1000, "{name}: {strong}");
+    assert!(strong > 500, "{name}: {strong}");
     share
 }
 

@@ -164,10 +164,10 @@ fn dim_light_is_compared_by_itself() {
     for picture in Committed::all() {
         let (name, folder) = (picture.name(), picture.folder());
         let comparison = spoilt(name, &folder, |[_, linear]| {
-            linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.97);
+            linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.95);
         });
         let comparison = comparison.expect(name);
-        assert!(!comparison.holds() && (comparison.rmse - 0.03).abs() < 1e-3, "{name}: {comparison:?}");
+        assert!(!comparison.holds() && (comparison.rmse - 0.05).abs() < 1e-3, "{name}: {comparison:?}");
     }
 }
 
