@@ -6,10 +6,9 @@ use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
-use crate::interpreter::Program;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
-use crate::property::{Check, DEFAULT_CASES, Report, Settings, seams};
+use crate::property::{Check, DEFAULT_CASES, Report, Settings};
 use serde::Serialize;
 
 /// Why a check could not run; a check that ran and failed is a report.
@@ -60,8 +59,6 @@ pub struct Row {
     pub reason: Option<String>,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
-    /// Inputs next to a branch that do not hold, each as a sentence.
-    pub broken_seams: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// Wall-clock time.
@@ -72,7 +69,7 @@ impl Row {
     /// Whether the formula holds. Edges count from the default number of cases on: a shorter run may well miss some.
     pub fn passed(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        self.failed == 0 && edges && self.broken_hard_cases.is_empty() && self.broken_seams.is_empty()
+        self.failed == 0 && edges && self.broken_hard_cases.is_empty()
     }
 }
 
@@ -130,9 +127,13 @@ pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
 
 /// Reflects, checks the signature against the mirror's, and compiles.
 pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Result<Kernel<'gpu>, CheckError> {
-    let (path, text) = located(formula, source);
-    let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
-    let kernel = Kernel::of_function(gpu, text, &path, formula.function).map_err(in_path)?;
+    let own_path = format!("wgsl/{}.wgsl", formula.module);
+    let (path, text) = match source {
+        Source::Cookbook => (own_path.as_str(), cookbook::module(formula.module).map_or("", |module| module.source)),
+        Source::Copy(path, text) => (path, text),
+    };
+    let in_path = |error| CheckError::Dispatch { path: path.to_owned(), error };
+    let kernel = Kernel::of_function(gpu, text, path, formula.function).map_err(in_path)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
     Ok(kernel)
 }
@@ -157,37 +158,10 @@ pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings)
             broken.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
         }
     }
-    let broken_seams = broken_seams(formula, source, &mut kernel, &tolerance, settings.seed)?;
     if let (Source::Cookbook, Some(shrunk)) = (source, &report.shrunk) {
         regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
     }
-    Ok(Row { broken_seams, ..row(formula, &report, broken) })
-}
-
-/// What does not hold next to the branches of a function; nothing of one that the interpreter cannot run.
-fn broken_seams(
-    formula: &Formula,
-    source: Source<'_>,
-    kernel: &mut Kernel<'_>,
-    tolerance: &Tolerance,
-    seed: u64,
-) -> Result<Vec<String>, CheckError> {
-    let in_path = |error| CheckError::Dispatch { path: formula.function.to_owned(), error };
-    let (path, text) = located(formula, source);
-    let program = Program::new(text, &path, formula.function).map_err(in_path)?;
-    let Ok(seams) = seams::find(&program, formula, seed) else { return Ok(Vec::new()) };
-    seams::faults(&program, formula, kernel, tolerance, &seams).map_err(in_path)
-}
-
-/// A source's path, for messages, and its text.
-fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
-    match source {
-        Source::Cookbook => {
-            let text = cookbook::module(formula.module).map_or("", |module| module.source);
-            (format!("wgsl/{}.wgsl", formula.module), text)
-        }
-        Source::Copy(path, text) => (path.to_owned(), text),
-    }
+    Ok(row(formula, &report, broken))
 }
 
 /// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
@@ -227,7 +201,6 @@ fn row(formula: &Formula, report: &Report, broken_hard_cases: Vec<String>) -> Ro
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
         reason: report.reason.clone(),
         broken_hard_cases,
-        broken_seams: Vec::new(),
         missed_edges: report.missed_edges().collect(),
         seconds: report.seconds,
     }

@@ -118,9 +118,6 @@ fn table(rows: &[Row], adapter: &str) -> String {
         for case in &row.broken_hard_cases {
             let _ = writeln!(text, "  hard case {case}");
         }
-        for seam in &row.broken_seams {
-            let _ = writeln!(text, "  {seam}");
-        }
         for edge in &row.missed_edges {
             let _ = writeln!(text, "  the inputs never reached: {edge}; run more --cases");
         }
