@@ -12,11 +12,10 @@ use crate::dispatch::{self, DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
-use crate::interpreter::Program;
 use crate::outside;
 use crate::property::persistence::{PersistenceError, Regressions};
 use crate::property::tolerance::{Tolerance, number};
-use crate::property::{Check, DEFAULT_CASES, Report, Settings, seams};
+use crate::property::{Check, DEFAULT_CASES, Report, Settings};
 use failure::Failure;
 use serde::Serialize;
 
@@ -89,8 +88,6 @@ pub struct Row {
     pub held_hard_cases: usize,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
-    /// Inputs next to a branch that do not hold, each as a sentence.
-    pub broken_seams: Vec<String>,
     /// Promises of the `Outside:` line that do not hold, with the input at which they do not.
     pub broken_promises: Vec<String>,
     /// Edges of the domain that the run did not reach.
@@ -115,7 +112,7 @@ impl Row {
 
     fn judge(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        let beside = [&self.broken_hard_cases, &self.broken_seams, &self.broken_promises];
+        let beside = [&self.broken_hard_cases, &self.broken_promises];
         self.failed == 0 && edges && beside.into_iter().all(Vec::is_empty)
     }
 }
@@ -230,29 +227,13 @@ pub fn run_keeping(
     };
     let promises = outside::broken(&mut kernel, formula, &tolerance, formulas::outside::all(), settings.seed)
         .map_err(in_function)?;
-    let seams = broken_seams(formula, source, &mut kernel, &tolerance, settings.seed)?;
     let reproduce = reproduce(formula, source, settings);
-    let mut row = row(formula, &report, Broken { hard_cases, seams, promises }, failure, reproduce);
+    let mut row = row(formula, &report, Broken { hard_cases, promises }, failure, reproduce);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
     }
     Ok(row)
-}
-
-/// What does not hold next to the branches of a function; nothing of one that the interpreter cannot run.
-fn broken_seams(
-    formula: &Formula,
-    source: Source<'_>,
-    kernel: &mut Kernel<'_>,
-    tolerance: &Tolerance,
-    seed: u64,
-) -> Result<Vec<String>, CheckError> {
-    let in_path = |error| CheckError::Dispatch { path: formula.function.to_owned(), error };
-    let (path, text) = located(formula, source);
-    let program = Program::new(text, &path, formula.function).map_err(in_path)?;
-    let Ok(seams) = seams::find(&program, formula, seed) else { return Ok(Vec::new()) };
-    seams::faults(&program, formula, kernel, tolerance, &seams).map_err(in_path)
 }
 
 /// A source's path, for messages, and its text.
@@ -300,7 +281,6 @@ fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> Strin
 /// What does not hold besides the random inputs.
 struct Broken {
     hard_cases: Vec<String>,
-    seams: Vec<String>,
     promises: Vec<String>,
 }
 
@@ -325,7 +305,6 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         hard_cases: formula.hard_cases.len(),
         held_hard_cases: formula.hard_cases.len() - broken.hard_cases.len(),
         broken_hard_cases: broken.hard_cases,
-        broken_seams: broken.seams,
         broken_promises: broken.promises,
         missed_edges: report.missed_edges().collect(),
         release: None,

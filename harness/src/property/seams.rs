@@ -49,7 +49,7 @@ pub struct Seam {
 pub fn find(program: &Program, formula: &Formula, seed: u64) -> Result<Vec<Seam>, Stopped> {
     let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
     let statements = program.run(&formula.domain.row(seed, 0), &mut Traced::default(), &mut Vec::new())?;
-    let attempts = (MOST_STATEMENTS / (RUNS * statements.max(1))).clamp(100, MOST_ATTEMPTS);
+    let attempts = (MOST_STATEMENTS / (RUNS * statements.max(1))).clamp(8, MOST_ATTEMPTS);
     let search = Finder { program, formula, scalars };
     let found: Vec<Option<Seam>> = (0..attempts)
         .into_par_iter()

@@ -8,15 +8,13 @@ use lapidary_harness::property::slack;
 use lapidary_harness::property::tolerance::Tolerance;
 
 /// Functions whose portable bounds are derived from what WGSL guarantees.
-const DERIVED: [&str; 8] = [
+const DERIVED: [&str; 6] = [
     "absorption_transmittance",
     "proxy_geometry_face_normal",
     "random_walk_ratio",
     "refraction_reflect",
     "texture_diffusion_stretch",
     "veins_fold",
-    "voxelization_overlaps",
-    "voxelization_span",
 ];
 
 #[test]

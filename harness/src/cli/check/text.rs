@@ -111,9 +111,6 @@ fn details(row: &Row, style: Style, text: &mut String) {
     for case in &row.broken_hard_cases {
         let _ = writeln!(text, "  hard case {case}");
     }
-    for seam in &row.broken_seams {
-        let _ = writeln!(text, "  {seam}");
-    }
     for promise in &row.broken_promises {
         let _ = writeln!(text, "  {promise}");
     }
