@@ -1,6 +1,6 @@
 // absorption: the share of light that a coloured medium lets through along a path inside, by the law of Beer and Lambert.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a433d4e372eaf9d7
+// Version: 0.2.0, hash 38f9edd70a701b6b
 // Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles of Optics", 7th ed., section 14.1.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.1.27, for the logarithm.
 

@@ -240,6 +240,11 @@ impl CdrfRung {
 struct PathRung {
     rung: String,
     distances: Vec<PathDistance>,
+    times: Vec<PathTimes>,
+}
+
+#[derive(Deserialize)]
+struct PathTimes {
     grey: Option<CdrfTiming>,
 }
 
@@ -253,10 +258,13 @@ impl PathRung {
         self.distances.iter().filter_map(|distance| distance.nats)
     }
 
-    /// None where a view has no error: the finest grid, which is what others are compared with, and the walks.
+    /// The mean time of the views that have an error. None where one has none: the finest grid, which is what others are compared with, and
+    /// the walks.
     fn step(&self, views: usize) -> Option<Step> {
-        let whole = self.nats().count() == views;
-        whole.then(|| step(&self.rung, self.nats(), self.grey.as_ref().map(|timing| timing.ms))).flatten()
+        let compared = self.distances.iter().zip(&self.times).filter(|(distance, _)| distance.nats.is_some());
+        let times: Option<Vec<f64>> = compared.map(|(_, times)| times.grey.as_ref().map(|timing| timing.ms)).collect();
+        let times = times.filter(|times| times.len() == views)?;
+        step(&self.rung, self.nats(), Some(times.iter().sum::<f64>() / views as f64))
     }
 }
 

@@ -310,8 +310,8 @@ fn patterns() -> Vec<Promise> {
         ),
         holds(
             "veins_fold",
-            "0 where the square of the quotient overflows",
-            |draws| (draws.signed(64, 110), draws.magnitude(-20, -1)),
+            "0 where the value's square overflows",
+            |draws| (draws.signed(65, 120), draws.magnitude(-20, 20)),
             |_: (f32, f32), share: f32| that(share == 0.0, || format!("the share is {share}")),
         ),
         holds(

@@ -3,7 +3,7 @@
 use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
 use crate::outside::{Promise, accurate, finite, holds, like, nothing};
 use crate::property::draws::Draws;
-use glam::{DVec3, IVec2, Vec2, Vec3, Vec4};
+use glam::{DVec3, IVec2, Mat3, Quat, Vec2, Vec3, Vec4};
 use lapidary_bvh_trace::{self as bvh, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceRay};
 use lapidary_closest_point::oracle as closest_point;
 use lapidary_convex_trace::{self as convex, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit};
@@ -40,6 +40,13 @@ fn trees() -> Vec<Promise> {
             (vector_up_to(draws, huge), of_length(draws, -19, 19), one.min(other), one.max(other))
         }),
         nothing("bvh_trace_ray", "a zero direction divides by 0"),
+        // Rows no shorter than 1e-3 and square to each other turn no direction into 0.
+        finite("bvh_trace_to_object", "finite while the direction is not turned into 0", move |draws| {
+            let turn = Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, draws.unit_vector()));
+            let rows = turn.transpose() * Mat3::from_diagonal(Vec3::splat(draws.magnitude(-9, 40)));
+            let place = vector_up_to(draws, 50);
+            (vector_up_to(draws, 50), of_length(draws, -10, 30), place, rows.x_axis, rows.y_axis, rows.z_axis)
+        }),
         finite("bvh_trace_box", HUGE, move |draws| {
             let (ray, lower, upper) = ray(draws, huge);
             (ray, lower, upper, draws.magnitude(-20, 120))
