@@ -77,7 +77,7 @@ fn plan_prints_one_json_document() {
     assert!(plan(&["wax", "--with", "optical_path"]).contains("asked for, whatever its thickness"));
     let shadowed = plan(&["wax", "--with", "cdrf,shadow"]);
     assert!(
-        shadowed.contains("by rung accurate") && shadowed.contains("reflective shadow maps for shadows"),
+        shadowed.contains("by rung cheap") && shadowed.contains("reflective shadow maps for shadows"),
         "{shadowed}"
     );
     assert!(plan(&["bunny", "--rung", "lambert-shadowed"]).contains("the rung casts shadows"));
