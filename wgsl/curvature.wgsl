@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 866decd21f975160
+// Version: 0.2.0, hash 9cc9c357dc843dee
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
 //   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
 //
@@ -82,6 +82,44 @@ fn curvature_pixel(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal
     return CurvaturePixel(scale_x * position_x, scale_y * position_y, scale_x * normal_x, scale_y * normal_y);
 }
 
+// A pixel's position derivatives in an orthonormal frame of the tangent plane: p_x = width first, p_y = lean first + rise second.
+struct CurvatureFrame {
+    // Unit vector along p_x; 0 where that is 0.
+    first: vec3f,
+    // Unit vector at right angles to it, on the side of p_y; shorter where `rise` is below 2^-50, and 0 where it is 0.
+    second: vec3f,
+    // Length of p_x.
+    width: f32,
+    // Of p_y along the first.
+    lean: f32,
+    // Of p_y along the second, at least 0.
+    rise: f32,
+    // Square of the area between them, width rise, held at what counts as edge-on.
+    bounded: f32,
+}
+
+// The frame by Gram-Schmidt. Where p_x and p_y are nearly parallel, rounding moves `second` and `rise` as it would if p_y were off by a few ulp. What
+// is computed from one frame belongs to one such p_y, where sums and products of p_x and p_y would each belong to another.
+// Returns: CurvatureFrame.
+// Units: none for the vectors; otherwise the derivatives'.
+// Domain: p_x and p_y of curvature_pixel: with a largest component in [1, 2), or degenerate in [1e-7, 1), or 0.
+// Outside: `first` and `second` shrink for shorter ones.
+// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, width 3 ulp, lean 4 ulp + 2 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward; portable first 17 ulp, second 42 ulp + 8 backward, width 12 ulp, lean 18 ulp + 4 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
+fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
+    let squared_x = dot(p_x, p_x);
+    let width = sqrt(squared_x);
+    // 2^-50 stands for 0, here and below.
+    let first = p_x / max(width, CURVATURE_SMALLEST);
+    let crossed = cross(first, p_y);
+    // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
+    let raised = crossed - dot(crossed, first) * first;
+    let rise = length(raised);
+    let second = cross(raised, first) / max(rise, CURVATURE_SMALLEST);
+    let area = width * rise;
+    let least = CURVATURE_EDGE_ON * max(squared_x, 1.0f) * max(dot(p_y, p_y), 1.0f);
+    return CurvatureFrame(first, second, width, dot(p_y, first), rise, max(area * area, least));
+}
+
 // Mean curvature, half the sum of the principal ones: with first form E, F, G and second e, f, g it is (eG - 2fF + gE) / (2 (EG - F^2)). Here
 // both are written with a = p_x x p_y: EG - F^2 = |a|^2 and eG - 2fF + gE = a . (n_x x p_y + p_x x n_y), the rate at which a patch grows on
 // the parallel surface p + t n. Neither cancels where the pixel is seen edge-on, and a part of n_x along the normal drops out.
@@ -113,8 +151,8 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
     return 0.5f * (second.x * first.z - 2.0f * second.y * first.y + second.z * first.x) / determinant;
 }
 
-// Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y the numerator is
-// a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
+// Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y, which is curvature_frame's area along its normal,
+// the numerator is a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
 // asymmetry. With it the result is never above the square of curvature_mean, so that principal curvatures H +- sqrt(H^2 - K) exist.
 // Returns: the Gaussian curvature, 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below CURVATURE_EDGE_ON it fades to 0 as the square of
 //   curvature_mean does; 0 where a position derivative is 0.
@@ -124,11 +162,12 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
 // Accuracy: lavapipe 5 ulp + 1e-31 abs + 4 backward; portable 12 ulp + 1e-31 abs + 8 backward
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
     let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
-    let area = cross(pixel.p_x, pixel.p_y);
+    let frame = curvature_frame(pixel.p_x, pixel.p_y);
+    let area = frame.width * frame.rise;
+    let normal = cross(frame.first, frame.second);
     let twist = 0.5f * (dot(pixel.p_x, pixel.n_y) - dot(pixel.p_y, pixel.n_x));
-    let squared = dot(area, area);
-    let bounded = max(squared, CURVATURE_EDGE_ON * max(dot(pixel.p_x, pixel.p_x), 1.0f) * max(dot(pixel.p_y, pixel.p_y), 1.0f));
-    return (dot(area, cross(pixel.n_x, pixel.n_y)) - twist * twist) / bounded * (squared / bounded);
+    let determinant = area * dot(normal, cross(pixel.n_x, pixel.n_y)) - twist * twist;
+    return determinant / frame.bounded * (area * area / frame.bounded);
 }
 
 // The Gaussian curvature as the textbook writes it. Kept to show where it fails.
@@ -145,10 +184,10 @@ fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: v
 }
 
 // Normal curvature along the light: that of the curve on the surface which runs towards the light's foot, II(t, t) / I(t, t) with t the
-// part of `light` along the surface. With a = p_x x p_y and c = a x light, |a|^2 t = (p_y . c) p_x - (p_x . c) p_y, and the normal changes
-// along it by (p_y . c) n_x - (p_x . c) n_y. As the light rises to the zenith, t loses its direction and the result goes to the
-// mean over all directions, which is the mean curvature.
-// Returns: between the principal curvatures; curvature_mean for a light along the normal. Fades to 0 edge-on as curvature_mean does.
+// part of `light` along the surface. In curvature_frame t = x first + y second = alpha p_x + beta p_y, with area alpha = rise x - lean y and
+// area beta = width y, and the normal changes along it by alpha n_x + beta n_y. As the light rises to the zenith, t loses its direction and the
+// result goes to the mean over all directions, which is the mean curvature.
+// Returns: between the principal curvatures; the mean curvature for a light along the normal. Fades to 0 edge-on as curvature_mean does.
 // Units: one over the position's.
 // Domain: as curvature_gaussian; |light| = 1.
 // Outside: finite for |normal_x|, |normal_y| <= 2 and |light| <= 2.
@@ -161,31 +200,18 @@ fn curvature_towards(
     light: vec3f,
 ) -> f32 {
     let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
-    let squared_x = max(dot(pixel.p_x, pixel.p_x), 1.0f);
-    let crossed = cross(pixel.p_x, pixel.p_y);
-    // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
-    let area = crossed - dot(crossed, pixel.p_x) / squared_x * pixel.p_x;
-    let growth = cross(pixel.n_x, pixel.p_y) + cross(pixel.p_x, pixel.n_y);
-    let squared = dot(area, area);
-    let bounded = max(squared, CURVATURE_EDGE_ON * squared_x * max(dot(pixel.p_y, pixel.p_y), 1.0f));
-
-    let aside = cross(area, light);
-    let zenith = CURVATURE_ZENITH * bounded;
-    let total = dot(aside, aside) + zenith;
-    let across = aside / sqrt(total);
-    // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of the area. As
-    // a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
-    let direction = cross(across, area);
-    let alpha = dot(pixel.p_y, across);
-    let beta = -dot(pixel.p_x, across);
-    let tangent = alpha * pixel.p_x + beta * pixel.p_y;
-    let change = alpha * pixel.n_x + beta * pixel.n_y;
-    // Half the cross product's own square bounds the quotient where the sum is all rounding. 2^-100 stands for 0: the square is that small at
-    // sines below 2^-50 only, where the weight below is as small.
-    let least = max(0.5f * dot(direction, direction), 7.888609052210118e-31f);
-    let along = dot(direction, change) / max(dot(direction, tangent), least);
-    let mean = 0.5f * dot(area, growth) / bounded;
-    return squared / bounded * dot(across, across) * along + zenith / total * mean;
+    let frame = curvature_frame(pixel.p_x, pixel.p_y);
+    let x = dot(light, frame.first);
+    let y = dot(light, frame.second);
+    let tangent = x * frame.first + y * frame.second;
+    let change = (frame.rise * x - frame.lean * y) * pixel.n_x + (frame.width * y) * pixel.n_y;
+    let across = frame.rise * frame.first - frame.lean * frame.second;
+    let mean = 0.5f * (dot(across, pixel.n_x) + frame.width * dot(frame.second, pixel.n_y));
+    let area = frame.width * frame.rise;
+    let share = area / frame.bounded;
+    let fade = area * share;
+    let total = fade * (x * x + y * y) + CURVATURE_ZENITH;
+    return share * ((fade * dot(tangent, change) + CURVATURE_ZENITH * mean) / total);
 }
 
 // The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept

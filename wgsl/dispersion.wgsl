@@ -1,6 +1,6 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 69cd7cb26f90a4f8
+// Version: 0.2.0, hash 6188af4d18c06ad4
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
 //   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
 //   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile),
@@ -173,7 +173,9 @@ fn dispersion_refract(
     }
     let tangent = direction + cosine * normal;
     let bending = relative_index_slope / relative_index;
-    let along = gradient + cosine_slope * normal - bending * tangent;
+    let leaning = gradient + cosine_slope * normal - bending * tangent;
+    // Where the gradient lies along the normal, what its rounding leaves there is more than what is left along the surface: taken off once more.
+    let along = leaning - dot(normal, leaning) * normal;
     let across = (bending * dot(tangent, tangent) + cosine * cosine_slope) / max(sqrt(radicand), DISPERSION_CRITICAL);
     return (along - across * normal) / relative_index;
 }

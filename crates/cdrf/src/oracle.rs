@@ -301,7 +301,7 @@ pub fn table_coordinates(cosine: f64, sigma: f64) -> DVec2 {
 pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
     let last = (size.max(UVec2::splat(2)) - 1).as_dvec2();
     let at = texel.as_dvec2().min(last) / last;
-    let sigma = if at.y < 1.0 { (1.0 - at.y).recip() - 1.0 } else { 1e9 };
+    let sigma = if at.y < 1.0 { (1.0 - at.y).recip() - 1.0 } else { 1e40 };
     DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * at.x - 1.0, tint * sigma)))
 }
 

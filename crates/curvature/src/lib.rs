@@ -64,6 +64,39 @@ pub fn pixel(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3)
     }
 }
 
+/// A pixel's position derivatives in an orthonormal frame of the tangent plane: p_x = width first, p_y = lean first + rise second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureFrame {
+    /// Unit vector along p_x; 0 where that is 0.
+    pub first: Vec3,
+    /// Unit vector at right angles to it, on the side of p_y; shorter where `rise` is below 2⁻⁵⁰, and 0 where it is 0.
+    pub second: Vec3,
+    /// Length of p_x.
+    pub width: f32,
+    /// Of p_y along the first.
+    pub lean: f32,
+    /// Of p_y along the second, at least 0.
+    pub rise: f32,
+    /// Square of the area between them, width rise, held at what counts as edge-on.
+    pub bounded: f32,
+}
+
+/// The frame by Gram-Schmidt, for the derivatives of [`pixel`].
+pub fn frame(p_x: Vec3, p_y: Vec3) -> CurvatureFrame {
+    let squared_x = p_x.dot(p_x);
+    let width = squared_x.sqrt();
+    // 2⁻⁵⁰ stands for 0, here and below.
+    let first = p_x / width.max(CURVATURE_SMALLEST);
+    let crossed = first.cross(p_y);
+    // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
+    let raised = crossed - crossed.dot(first) * first;
+    let rise = raised.length();
+    let second = raised.cross(first) / rise.max(CURVATURE_SMALLEST);
+    let area = width * rise;
+    let least = CURVATURE_EDGE_ON * squared_x.max(1.0) * p_y.dot(p_y).max(1.0);
+    CurvatureFrame { first, second, width, lean: p_y.dot(first), rise, bounded: (area * area).max(least) }
+}
+
 /// Mean curvature, half the sum of the principal ones.
 pub fn mean(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
     let pixel = pixel(position_x, position_y, normal_x, normal_y);
@@ -85,12 +118,12 @@ pub fn mean_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_
 /// Gaussian curvature, the product of the principal ones.
 pub fn gaussian(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3) -> f32 {
     let pixel = pixel(position_x, position_y, normal_x, normal_y);
-    let area = pixel.p_x.cross(pixel.p_y);
+    let frame = frame(pixel.p_x, pixel.p_y);
+    let area = frame.width * frame.rise;
+    let normal = frame.first.cross(frame.second);
     let twist = 0.5 * (pixel.p_x.dot(pixel.n_y) - pixel.p_y.dot(pixel.n_x));
-    let squared = area.dot(area);
-    let bounded =
-        squared.max(CURVATURE_EDGE_ON * pixel.p_x.dot(pixel.p_x).max(1.0) * pixel.p_y.dot(pixel.p_y).max(1.0));
-    (area.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist) / bounded * (squared / bounded)
+    let determinant = area * normal.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist;
+    determinant / frame.bounded * (area * area / frame.bounded)
 }
 
 /// The Gaussian curvature as the textbook writes it.
@@ -104,31 +137,18 @@ pub fn gaussian_textbook(position_x: Vec3, position_y: Vec3, normal_x: Vec3, nor
 /// Normal curvature along the part of `light` that runs along the surface; the mean curvature for a light at the zenith.
 pub fn towards(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec3, light: Vec3) -> f32 {
     let pixel = pixel(position_x, position_y, normal_x, normal_y);
-    let squared_x = pixel.p_x.dot(pixel.p_x).max(1.0);
-    let crossed = pixel.p_x.cross(pixel.p_y);
-    // Rounding tilts the product of nearly parallel vectors along them, which would turn t: made perpendicular once more.
-    let area = crossed - crossed.dot(pixel.p_x) / squared_x * pixel.p_x;
-    let growth = pixel.n_x.cross(pixel.p_y) + pixel.p_x.cross(pixel.n_y);
-    let squared = area.dot(area);
-    let bounded = squared.max(CURVATURE_EDGE_ON * squared_x * pixel.p_y.dot(pixel.p_y).max(1.0));
-
-    let aside = area.cross(light);
-    let zenith = CURVATURE_ZENITH * bounded;
-    let total = aside.dot(aside) + zenith;
-    let across = aside / total.sqrt();
-    // t as a cross product keeps its direction when p_x and p_y are nearly parallel, but not its length, which has the error of
-    // the area. As a sum, with the factors of the normal's change, it keeps what the quotient needs of the length.
-    let direction = across.cross(area);
-    let alpha = pixel.p_y.dot(across);
-    let beta = -pixel.p_x.dot(across);
-    let tangent = alpha * pixel.p_x + beta * pixel.p_y;
-    let change = alpha * pixel.n_x + beta * pixel.n_y;
-    // Half the cross product's own square bounds the quotient where the sum is all rounding. 2⁻¹⁰⁰ stands for 0: the square is
-    // that small at sines below 2⁻⁵⁰ only, where the weight below is as small.
-    let least = (0.5 * direction.dot(direction)).max(7.888609052210118e-31);
-    let along = direction.dot(change) / direction.dot(tangent).max(least);
-    let mean = 0.5 * area.dot(growth) / bounded;
-    squared / bounded * across.dot(across) * along + zenith / total * mean
+    let frame = frame(pixel.p_x, pixel.p_y);
+    let x = light.dot(frame.first);
+    let y = light.dot(frame.second);
+    let tangent = x * frame.first + y * frame.second;
+    let change = (frame.rise * x - frame.lean * y) * pixel.n_x + (frame.width * y) * pixel.n_y;
+    let across = frame.rise * frame.first - frame.lean * frame.second;
+    let mean = 0.5 * (across.dot(pixel.n_x) + frame.width * frame.second.dot(pixel.n_y));
+    let area = frame.width * frame.rise;
+    let share = area / frame.bounded;
+    let fade = area * share;
+    let total = fade * (x * x + y * y) + CURVATURE_ZENITH;
+    share * ((fade * tangent.dot(change) + CURVATURE_ZENITH * mean) / total)
 }
 
 /// The normal curvature along the light by the normal equations of its part along the surface.

@@ -1,5 +1,5 @@
 //! The truth in f64: the shape operator in an orthonormal frame of the tangent plane, its eigenvalues by a Jacobi rotation, and
-//! Euler's formula for the curvature in a direction. The mirror forms neither a frame nor an eigenvalue.
+//! Euler's formula for the curvature in a direction. The mirror takes no eigenvalue.
 
 use glam::{DVec2, DVec3};
 
@@ -54,13 +54,41 @@ pub fn normal_derivative_naive(normal: DVec3, derivative: DVec3) -> DVec3 {
     2.0 * (0.5 * angle).sin() * direction
 }
 
+/// Position derivatives in an orthonormal frame of the tangent plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureFrame {
+    /// Along that by x.
+    pub first: DVec3,
+    /// At right angles to it, on the side of that by y.
+    pub second: DVec3,
+    /// Length of that by x.
+    pub width: f64,
+    /// Of that by y along the first.
+    pub lean: f64,
+    /// Along the second.
+    pub rise: f64,
+    /// Square of the area, held from below.
+    pub bounded: f64,
+}
+
+/// By the angle between the two.
+pub fn frame(p_x: DVec3, p_y: DVec3) -> CurvatureFrame {
+    let (width, height) = (p_x.length(), p_y.length());
+    let across = p_x.cross(p_y);
+    let angle = across.length().atan2(p_x.dot(p_y));
+    let (lean, rise) = if p_x == DVec3::ZERO { (0.0, 0.0) } else { (height * angle.cos(), height * angle.sin()) };
+    let second = if across == DVec3::ZERO { DVec3::ZERO } else { across.cross(p_x).normalize() };
+    let rise = if across == DVec3::ZERO { 0.0 } else { rise };
+    let bounded = (width * rise).max(SINE * width.max(1.0) * height.max(1.0)).powi(2);
+    CurvatureFrame { first: p_x.normalize_or_zero(), second, width, lean, rise, bounded }
+}
+
 /// A surface at a pixel: principal curvatures, frame of the tangent plane, and how much of the result is left edge-on.
 struct Surface {
     principal: [f64; 2],
-    /// Of the first principal curvature, from `first` towards `second`.
+    /// Of the first principal curvature, from the frame's first vector towards its second.
     angle: f64,
-    first: DVec3,
-    second: DVec3,
+    frame: [DVec3; 2],
     fade: f64,
 }
 
@@ -90,7 +118,12 @@ fn surface(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec
     let tiny = |length: f64| (SMALLEST / length).max(1.0).powi(2);
     let squared_sine = (area.length() / (width * height)).powi(2);
     let fade = squared_sine / squared_sine.max(SINE * SINE * tiny(width) * tiny(height));
-    Some(Surface { principal: [aa - tangent * ab, bb + tangent * ab], angle: -tangent.atan(), first, second, fade })
+    Some(Surface {
+        principal: [aa - tangent * ab, bb + tangent * ab],
+        angle: -tangent.atan(),
+        frame: [first, second],
+        fade,
+    })
 }
 
 /// Half the sum of the eigenvalues.
@@ -118,7 +151,7 @@ pub fn gaussian_textbook(position_x: DVec3, position_y: DVec3, normal_x: DVec3, 
 /// Euler's formula κ₁ cos² φ + κ₂ sin² φ, with φ the light's azimuth from the first principal direction; near the zenith mixed with the mean.
 pub fn towards(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3, light: DVec3) -> f64 {
     let Some(surface) = surface(position_x, position_y, normal_x, normal_y) else { return 0.0 };
-    let flat = DVec2::new(light.dot(surface.first), light.dot(surface.second));
+    let flat = DVec2::new(light.dot(surface.frame[0]), light.dot(surface.frame[1]));
     let azimuth = flat.y.atan2(flat.x) - surface.angle;
     let [one, two] = surface.principal;
     let normal_curvature = one * azimuth.cos().powi(2) + two * azimuth.sin().powi(2);
@@ -129,7 +162,7 @@ pub fn towards(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: 
 /// Euler's formula alone: it differs from [`towards`] near the zenith and edge-on.
 pub fn towards_textbook(position_x: DVec3, position_y: DVec3, normal_x: DVec3, normal_y: DVec3, light: DVec3) -> f64 {
     let Some(surface) = surface(position_x, position_y, normal_x, normal_y) else { return 0.0 };
-    let azimuth = light.dot(surface.second).atan2(light.dot(surface.first)) - surface.angle;
+    let azimuth = light.dot(surface.frame[1]).atan2(light.dot(surface.frame[0])) - surface.angle;
     surface.principal[0] * azimuth.cos().powi(2) + surface.principal[1] * azimuth.sin().powi(2)
 }
 

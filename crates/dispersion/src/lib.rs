@@ -136,7 +136,10 @@ pub fn refract(direction: Vec3, gradient: Vec3, normal: Vec3, relative_index: f3
     }
     let tangent = direction + cosine * normal;
     let bending = relative_index_slope / relative_index;
-    let along = gradient + cosine_slope * normal - bending * tangent;
+    let leaning = gradient + cosine_slope * normal - bending * tangent;
+    // Where the gradient lies along the normal, what its rounding leaves there is more than what is left along the surface: taken
+    // off once more.
+    let along = leaning - normal.dot(leaning) * normal;
     let across = (bending * tangent.dot(tangent) + cosine * cosine_slope) / radicand.sqrt().max(DISPERSION_CRITICAL);
     (along - across * normal) / relative_index
 }

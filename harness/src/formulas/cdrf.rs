@@ -12,6 +12,9 @@ mirror_struct!(lapidary_cdrf, CdrfTexels { lower, upper, weight });
 
 const M: &str = "cdrf";
 
+/// The least share of the largest sigma that a channel of a table may have, besides none.
+const LEAST_TINT: f32 = 1e-20;
+
 /// The smallest positive f32, a subnormal.
 const SUBNORMAL: f32 = f32::from_bits(1);
 
@@ -448,11 +451,14 @@ fn tables() -> Vec<Formula> {
                 _ => draws.below(side),
             };
             let texel = UVec2::new(pick(draws, size.x), pick(draws, size.y));
-            let tint = Vec3::new(1.0, draws.between(0.0, 1.0), draws.pick(&[0.0, 0.25, 1.0]));
+            let tint = Vec3::new(1.0, draws.between(0.0, 1.0), draws.pick(&[0.0, 0.25, 1.0, LEAST_TINT]));
             (texel, size, tint)
         })
         .edge("the first row", |(texel, ..)| texel.y == 0)
         .edge("the last row", |(texel, size, _)| texel.y == size.y - 1)
+        .edge("the last row of the faintest channel", |(texel, size, tint)| {
+            texel.y == size.y - 1 && tint.z == LEAST_TINT
+        })
         .edge("the terminator of an odd width", |(texel, size, _)| size.x % 2 == 1 && texel.x == size.x / 2)
         .build(),
         formula(M, "cdrf_texture_coordinates", mirror::texture_coordinates, oracle::texture_coordinates, |draws| {

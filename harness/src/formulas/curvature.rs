@@ -6,9 +6,12 @@ use crate::formula::{Builder, Formula, formula};
 use crate::mirror_struct;
 use crate::property::draws::Draws;
 use glam::{DVec3, Vec3};
-use lapidary_curvature::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvaturePixel, oracle};
+use lapidary_curvature::{
+    self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle,
+};
 
 mirror_struct!(lapidary_curvature, CurvaturePixel { p_x, p_y, n_x, n_y });
+mirror_struct!(lapidary_curvature, CurvatureFrame { first, second, width, lean, rise, bounded });
 
 const M: &str = "curvature";
 
@@ -235,6 +238,33 @@ fn input_formulas() -> Vec<Formula> {
                 if sizes == [true; 2] { Ok(()) } else { Err(format!("{pixel:?}")) }
             })
             .build(),
+        formula(M, "curvature_frame", mirror::frame, oracle::frame, |draws| {
+            let (x, y, n, m) = derivatives(draws).0;
+            let pixel = mirror::pixel(x, y, n, m);
+            (pixel.p_x, pixel.p_y)
+        })
+        .edge("edge-on", |(x, y)| (1e-9..9e-4).contains(&sine_between(x, y)))
+        .edge("parallel", |(x, y)| x != Vec3::ZERO && y != Vec3::ZERO && x.cross(y) == Vec3::ZERO)
+        .edge("no width", |(x, _)| x == Vec3::ZERO)
+        .edge("no height", |(_, y)| y == Vec3::ZERO)
+        .edge("degenerate", |(x, _)| x != Vec3::ZERO && x.length() < 0.5)
+        .invariant("an orthonormal frame, or none", |_, frame: CurvatureFrame| {
+            let [first, second] = [frame.first, frame.second].map(|vector| vector.as_dvec3());
+            // The lengths' rounding, 4 ulp of each component.
+            let bound = 16.0 * 2f64.powi(-24);
+            let whole = [(first, frame.width > 0.0), (second, frame.rise >= CURVATURE_SMALLEST)];
+            for (vector, _) in whole.into_iter().filter(|(_, is_whole)| *is_whole) {
+                near("length", vector.length(), 1.0, bound)?;
+            }
+            near("cosine between them", first.dot(second), 0.0, bound)
+        })
+        .pair("a swapped sign of y turns the second round", |(x, y)| (x, -y), {
+            |_, frame: CurvatureFrame, turned: CurvatureFrame| {
+                let same = frame.second == -turned.second && frame.lean == -turned.lean && frame.rise == turned.rise;
+                if same { Ok(()) } else { Err(format!("{turned:?}")) }
+            }
+        })
+        .build(),
         formula(
             M,
             "curvature_normal_derivative",

@@ -4,6 +4,7 @@ pub mod draws;
 pub mod histogram;
 pub mod persistence;
 pub mod seams;
+mod search;
 pub mod seed;
 pub mod slack;
 pub mod tolerance;
@@ -19,6 +20,8 @@ use tolerance::{Tolerance, Verdict, number};
 
 /// Cases a formula by default.
 pub const DEFAULT_CASES: u64 = 65_536;
+/// Rows of a batch that are judged thoroughly where the usual search finds them wrong.
+const MOST_RECONSIDERED: usize = 64;
 /// Dispatches spent on shrinking one row at most.
 const MOST_SHRINKS: usize = 4_000;
 /// Rows of the first dispatch of a function with a loop, which may have no end.
@@ -227,33 +230,41 @@ impl Check<'_, '_> {
         }
         let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::dispatch::shape::Shape::scalars).collect();
         let tolerance = self.tolerance;
-        Ok((0..rows)
+        let judge_row = |row: usize, thoroughly: bool, scratch: &mut (Words, Vec<f64>, Vec<f64>)| {
+            let (mirrored, numbers, exact) = scratch;
+            let arguments = &arguments[row * width..(row + 1) * width];
+            let result = &results[row * result_width..(row + 1) * result_width];
+            mirrored.clear();
+            (formula.mirror)(arguments, mirrored);
+            numbers.clear();
+            numbers.extend(arguments.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)));
+            exact.clear();
+            (formula.oracle)(numbers, exact);
+            let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
+            let verdict = judge(tolerance, arguments, result, mirrored, exact, &*formula.oracle);
+            let invariants = formula.invariants.iter().map(|invariant| {
+                (invariant.holds)(arguments, result).map_err(|why| format!("{}: {why}", invariant.name))
+            });
+            let pairs = formula.pairs.iter().zip(&others).map(|(pair, other)| {
+                let other = &other[row * result_width..(row + 1) * result_width];
+                (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
+            });
+            let broken = invariants.chain(pairs).find_map(Result::err);
+            Judged { verdict, broken, stopped: stopped[row] }
+        };
+        let mut judged: Vec<Judged> = (0..rows)
             .into_par_iter()
             .with_min_len(ROWS_PER_TASK)
-            .map_init(
-                || (Words::new(), Vec::new(), Vec::new()),
-                |(mirrored, numbers, exact), row| {
-                    let arguments = &arguments[row * width..(row + 1) * width];
-                    let result = &results[row * result_width..(row + 1) * result_width];
-                    mirrored.clear();
-                    (formula.mirror)(arguments, mirrored);
-                    numbers.clear();
-                    numbers.extend(arguments.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)));
-                    exact.clear();
-                    (formula.oracle)(numbers, exact);
-                    let verdict = tolerance.judge(arguments, result, mirrored, exact, &*formula.oracle);
-                    let invariants = formula.invariants.iter().map(|invariant| {
-                        (invariant.holds)(arguments, result).map_err(|why| format!("{}: {why}", invariant.name))
-                    });
-                    let pairs = formula.pairs.iter().zip(&others).map(|(pair, other)| {
-                        let other = &other[row * result_width..(row + 1) * result_width];
-                        (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
-                    });
-                    let broken = invariants.chain(pairs).find_map(Result::err);
-                    Judged { verdict, broken, stopped: stopped[row] }
-                },
-            )
-            .collect())
+            .map_init(Default::default, |scratch, row| judge_row(row, false, scratch))
+            .collect();
+        let wrong: Vec<usize> = (0..rows).filter(|row| !judged[*row].verdict.holds()).collect();
+        // Of a function that is wrong everywhere it would take long and say nothing new.
+        if wrong.len() <= MOST_RECONSIDERED {
+            let again = wrong.par_iter().map_init(Default::default, |scratch, row| judge_row(*row, true, scratch));
+            let again: Vec<Judged> = again.collect();
+            wrong.into_iter().zip(again).for_each(|(row, again)| judged[row] = again);
+        }
+        Ok(judged)
     }
 
     /// The simplest input near row `row` that still fails at least half as badly.

@@ -1,29 +1,12 @@
 //! Whether a result is right: the comparison of a shader's row with the mirror's and with the oracle's, under the
 //! bounds of the function's `Accuracy:` line.
 
-use super::draws::mix;
+use super::search::{Effort, InputBox, Search, Spread};
 use crate::cookbook::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
-use crate::golden_section::golden_section;
-use std::convert::Infallible;
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
-const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
-
-/// Corners of the input box that are tried where it has too many to try all, at first and once more in earnest.
-const MOST_CORNERS: [u64; 2] = [256, 1024];
-
-/// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
-const BISECTIONS: usize = 30;
-
-/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁴ of the box's width, an extremum to the square of that.
-const SECTIONS: usize = 20;
-
-/// Rounds over all inputs on the way to an extremum inside the box.
-const ROUNDS: usize = 6;
-
-/// Places along an input, its ends included, that tell where an extremum may lie: a function may have several, and the least may be at an end.
-const PLACES: usize = 9;
+pub(super) const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
 
 /// An oracle on numbers.
 pub type OracleFn<'a> = &'a dyn Fn(&[f64], &mut Vec<f64>);
@@ -105,6 +88,30 @@ impl Tolerance {
         exact: &[f64],
         oracle: OracleFn<'_>,
     ) -> Verdict {
+        self.judge_by(&[Effort::Corners, Effort::Boundaries], arguments, [gpu, mirror], exact, oracle)
+    }
+
+    /// [`Tolerance::judge`] with a search that costs some thousand calls of `oracle` more, for rows that it finds wrong.
+    pub fn judge_thoroughly(
+        &self,
+        arguments: &[u32],
+        gpu: &[u32],
+        mirror: &[u32],
+        exact: &[f64],
+        oracle: OracleFn<'_>,
+    ) -> Verdict {
+        let efforts = [Effort::Corners, Effort::Boundaries, Effort::Starts];
+        self.judge_by(&efforts, arguments, [gpu, mirror], exact, oracle)
+    }
+
+    fn judge_by(
+        &self,
+        efforts: &[Effort],
+        arguments: &[u32],
+        [gpu, mirror]: [&[u32]; 2],
+        exact: &[f64],
+        oracle: OracleFn<'_>,
+    ) -> Verdict {
         let is_finite = |word: &u32| f32::from_bits(*word).is_finite();
         let nonfinite = self.floats().any(|(leaf, _)| !gpu[leaf.start..leaf.start + leaf.length].iter().all(is_finite));
         if nonfinite {
@@ -123,20 +130,15 @@ impl Tolerance {
             0.0
         };
         let plain = self.ratio(gpu, mirror, exact, None);
-        let wants_backward = plain > 1.0 && self.results.iter().any(|(_, bound)| bound.backward > 0.0);
         let mut ratio = plain;
-        for effort in [Effort::Corners, Effort::Boundaries] {
-            if wants_backward && ratio > 1.0 {
-                let (centre, steps) = input_box(&self.arguments, arguments, self.backward());
-                let mut search = Search::new(self, gpu, mirror, oracle);
-                search.ends = (effort == Effort::Boundaries).then(|| vec![Default::default(); exact.len()]);
-                let judge = |spread: &Spread| self.ratio(gpu, mirror, exact, Some(spread));
-                search.run(effort, &centre, &steps, |spread| judge(spread) <= 1.0);
-                if effort == Effort::Boundaries && judge(&search.spread) > 1.0 {
-                    search.extrema(&centre, &steps, [gpu, mirror], |spread| judge(spread) <= 1.0);
-                }
-                if search.met == [true; 2] {
-                    ratio = ratio.min(judge(&search.spread));
+        if plain > 1.0 && self.backward() > 0.0 {
+            let inputs = InputBox::new(&self.arguments, arguments, self.backward());
+            let judge = |spread: &Spread| self.ratio(gpu, mirror, exact, Some(spread));
+            let mut search = Search::new(self.backward_places(), gpu, mirror, oracle);
+            for effort in efforts {
+                if ratio > 1.0 {
+                    search.look(*effort, &inputs, [gpu, mirror], |spread| judge(spread) <= 1.0);
+                    ratio = search.spread().map_or(ratio, |spread| ratio.min(judge(spread)));
                 }
             }
         }
@@ -189,6 +191,14 @@ impl Tolerance {
         self.results.iter().filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && concerns(bound)).all(|(leaf, _)| {
             (leaf.start..leaf.start + leaf.length).all(|index| number(leaf.scalar, words[index]) == exact[index])
         })
+    }
+
+    /// Where the discrete results with a backward bound are.
+    fn backward_places(&self) -> Vec<(usize, Scalar)> {
+        let discrete = self.results.iter().filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && bound.backward > 0.0);
+        discrete
+            .flat_map(|(leaf, _)| (leaf.start..leaf.start + leaf.length).map(|index| (index, leaf.scalar)))
+            .collect()
     }
 
     /// The largest backward bound of any field.
@@ -247,229 +257,6 @@ fn ratio_of(error: f64, allowed: f64) -> f64 {
     }
 }
 
-/// How hard to look for the oracle's range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Effort {
-    /// The corners of the box and the middles of its faces.
-    Corners,
-    /// More corners, and on the way from each to the next every place where a discrete result changes: the rounded result may well lie
-    /// right there. Then the extrema inside the box.
-    Boundaries,
-}
-
-/// The range of the oracle over inputs that are off by up to `backward` ulp, among those with the same discrete results.
-struct Spread {
-    low: Vec<f64>,
-    high: Vec<f64>,
-    gpu_and_mirror_agree: bool,
-}
-
-/// The oracle's discrete results at a point; none where the point is outside of its domain.
-type Case = Option<Vec<f64>>;
-
-/// A search for the oracle's range in the box about an input.
-struct Search<'a> {
-    oracle: OracleFn<'a>,
-    /// Where the discrete results are.
-    places: Vec<(usize, Scalar)>,
-    /// The shader's discrete results and the mirror's.
-    wanted: [Vec<f64>; 2],
-    /// Whether the oracle has given them.
-    met: [bool; 2],
-    /// The range over the points where it gave either.
-    spread: Spread,
-    /// Where each result was least and where it was greatest, once a search for extrema may start from there.
-    ends: Option<Vec<[Vec<f64>; 2]>>,
-    result: Vec<f64>,
-}
-
-impl<'a> Search<'a> {
-    fn new(tolerance: &Tolerance, gpu: &[u32], mirror: &[u32], oracle: OracleFn<'a>) -> Self {
-        let places: Vec<(usize, Scalar)> = tolerance
-            .results
-            .iter()
-            .filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && bound.backward > 0.0)
-            .flat_map(|(leaf, _)| (leaf.start..leaf.start + leaf.length).map(|index| (index, leaf.scalar)))
-            .collect();
-        let discrete = |words: &[u32]| -> Vec<f64> {
-            places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
-        };
-        let wanted = [discrete(gpu), discrete(mirror)];
-        let spread = Spread {
-            low: vec![f64::INFINITY; gpu.len()],
-            high: vec![f64::NEG_INFINITY; gpu.len()],
-            gpu_and_mirror_agree: wanted[0] == wanted[1],
-        };
-        Self { oracle, places, wanted, met: [false; 2], spread, ends: None, result: Vec::with_capacity(gpu.len()) }
-    }
-
-    /// Asks the oracle at a point.
-    fn visit(&mut self, point: &[f64]) -> Case {
-        self.result.clear();
-        (self.oracle)(point, &mut self.result);
-        if self.result.iter().any(|value| !value.is_finite()) {
-            return None;
-        }
-        let found: Vec<f64> = self.places.iter().map(|(index, _)| self.result[*index]).collect();
-        let agrees = [found == self.wanted[0], found == self.wanted[1]];
-        self.met = [self.met[0] | agrees[0], self.met[1] | agrees[1]];
-        if agrees[0] || agrees[1] {
-            for (index, value) in self.result.iter().enumerate() {
-                let below = *value < self.spread.low[index];
-                let above = *value > self.spread.high[index];
-                self.spread.low[index] = self.spread.low[index].min(*value);
-                self.spread.high[index] = self.spread.high[index].max(*value);
-                if let Some(ends) = &mut self.ends {
-                    for end in [below, above].iter().zip(&mut ends[index]).filter_map(|(is, end)| is.then_some(end)) {
-                        point.clone_into(end);
-                    }
-                }
-            }
-        }
-        Some(found)
-    }
-
-    /// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far
-    /// as `halvings` tell them apart.
-    fn boundaries(&mut self, from: &[f64], to: &[f64], near: (f64, &Case), far: (f64, &Case), halvings: usize) {
-        if near.1 == far.1 || halvings == 0 {
-            return;
-        }
-        let middle = 0.5 * (near.0 + far.0);
-        let point: Vec<f64> = from.iter().zip(to).map(|(from, to)| from + middle * (to - from)).collect();
-        let found = self.visit(&point);
-        self.boundaries(from, to, near, (middle, &found), halvings - 1);
-        self.boundaries(from, to, (middle, &found), far, halvings - 1);
-    }
-
-    /// Extends the range towards each result that lies beside it, by less than its width: a function that does not go on rising, such
-    /// as a square, has its extremum inside the box and not at a corner.
-    fn extrema(&mut self, centre: &[f64], steps: &[f64], results: [&[u32]; 2], enough: impl Fn(&Spread) -> bool) {
-        for words in results {
-            for (index, word) in words.iter().enumerate() {
-                // Of a discrete result the bits are no number to approach; as one they lie far from the range.
-                let value = f64::from(f32::from_bits(*word));
-                let (low, high) = (self.spread.low[index], self.spread.high[index]);
-                if value < low && low - value < high - low {
-                    self.descend(centre, steps, (index, 1.0), &enough);
-                } else if value > high && value - high < high - low {
-                    self.descend(centre, steps, (index, -1.0), &enough);
-                }
-            }
-        }
-    }
-
-    /// Lowers `sign` times result `index` along one input after another, from where it is lowest so far: at the best of places from end to end, then
-    /// by golden-section search between that one's neighbours.
-    fn descend(
-        &mut self,
-        centre: &[f64],
-        steps: &[f64],
-        (index, sign): (usize, f64),
-        enough: &impl Fn(&Spread) -> bool,
-    ) {
-        let known = self.ends.as_ref().map(|ends| ends[index][usize::from(sign < 0.0)].clone());
-        let mut point = known.filter(|point| point.len() == centre.len()).unwrap_or_else(|| centre.to_vec());
-        let mut lowest = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let before = lowest;
-            for moving in (0..steps.len()).filter(|moving| steps[*moving] > 0.0) {
-                let start = point[moving];
-                let mut at = |search: &mut Self, place: f64| {
-                    point[moving] = place;
-                    // Where the discrete results are others, it is another function's value.
-                    let found = search.visit(&point);
-                    let wanted = found.is_some_and(|found| search.wanted.contains(&found));
-                    if wanted { sign * search.result[index] } else { f64::INFINITY }
-                };
-                let mut best = (at(self, start), start);
-                let mut consider = |value: f64, place: f64| {
-                    if value < best.0 {
-                        best = (value, place);
-                    }
-                };
-                let place =
-                    |number: usize| centre[moving] + steps[moving] * (2.0 * number as f64 / (PLACES - 1) as f64 - 1.0);
-                let values: Vec<f64> = (0..PLACES).map(|number| at(self, place(number))).collect();
-                let least = (0..PLACES).min_by(|one, other| values[*one].total_cmp(&values[*other])).unwrap_or(0);
-                consider(values[least], place(least));
-                let across = [place(least.saturating_sub(1)), place((least + 1).min(PLACES - 1))];
-                let Ok(nearest) = golden_section::<Infallible>(across, SECTIONS, |place| Ok(at(self, place)));
-                consider(at(self, nearest), nearest);
-                (lowest, point[moving]) = best;
-                if enough(&self.spread) {
-                    return;
-                }
-            }
-            // Nothing moves any more.
-            if lowest >= before {
-                return;
-            }
-        }
-    }
-
-    /// Searches the corners of the box of `steps` about `centre` and the middles of its faces, until `enough`.
-    fn run(&mut self, effort: Effort, centre: &[f64], steps: &[f64], enough: impl Fn(&Spread) -> bool) {
-        // From corner to corner, not out from the centre: all lines through one point cross a boundary near that point.
-        let mut previous = centre.to_vec();
-        let mut at_previous = self.visit(centre);
-        let mut walk = |search: &mut Self, point: &[f64]| -> bool {
-            let at_point = search.visit(point);
-            if effort == Effort::Boundaries {
-                search.boundaries(&previous, point, (0.0, &at_previous), (1.0, &at_point), BISECTIONS);
-                previous.copy_from_slice(point);
-                at_previous = at_point;
-            }
-            search.met[0] && search.met[1] && enough(&search.spread)
-        };
-        let moving: Vec<usize> = (0..steps.len()).filter(|index| steps[*index] > 0.0).collect();
-        let mut point = centre.to_vec();
-        for index in &moving {
-            for sign in [-1.0, 1.0] {
-                point[*index] = centre[*index] + sign * steps[*index];
-                if walk(self, &point) {
-                    return;
-                }
-            }
-            point[*index] = centre[*index];
-        }
-        let most = MOST_CORNERS[effort as usize];
-        let all = 1u64.checked_shl(moving.len() as u32).is_some_and(|corners| corners <= most);
-        let corners = if all { 1u64 << moving.len() } else { most };
-        for corner in 0..corners {
-            // Where there are too many corners, a fixed pseudo-random selection.
-            let signs = if all { corner } else { mix(corner) };
-            for (bit, index) in moving.iter().enumerate() {
-                let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
-                point[*index] = centre[*index] + sign * steps[*index];
-            }
-            if walk(self, &point) {
-                return;
-            }
-        }
-    }
-}
-
-/// The inputs as numbers, and how far each may be off.
-fn input_box(leaves: &[Leaf], words: &[u32], backward: f64) -> (Vec<f64>, Vec<f64>) {
-    let mut centre = Vec::with_capacity(words.len());
-    let mut steps = Vec::with_capacity(words.len());
-    for leaf in leaves {
-        let values: Vec<f64> =
-            words[leaf.start..leaf.start + leaf.length].iter().map(|word| number(leaf.scalar, *word)).collect();
-        let scale = largest(&values);
-        // Zero is exact; a subnormal may be read as zero.
-        let step = match leaf.scalar {
-            Scalar::F32 if scale >= FLUSHED => backward * ulp_of(scale),
-            Scalar::F32 => scale,
-            _ => 0.0,
-        };
-        steps.extend(std::iter::repeat_n(step, values.len()));
-        centre.extend(values);
-    }
-    (centre, steps)
-}
-
 /// A word as the number that it stands for.
 pub fn number(scalar: Scalar, word: u32) -> f64 {
     match scalar {
@@ -494,7 +281,7 @@ pub fn ulp_of(magnitude: f64) -> f64 {
     f64::from_bits(magnitude.min(f64::from(f32::MAX)).to_bits() & 0x7ff0_0000_0000_0000) * 2f64.powi(-23)
 }
 
-fn largest(values: &[f64]) -> f64 {
+pub(super) fn largest(values: &[f64]) -> f64 {
     values
         .iter()
         .fold(0.0, |largest, value| if value.abs() > largest || value.is_nan() { value.abs() } else { largest })

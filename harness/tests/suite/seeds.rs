@@ -4,9 +4,11 @@ use crate::program::{cook, succeeds};
 use lapidary_harness::check::{self, Source};
 use lapidary_harness::cookbook;
 use lapidary_harness::formulas;
-use lapidary_harness::property::Settings;
+use lapidary_harness::property::persistence::Regressions;
+use lapidary_harness::property::{Check, Settings};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 fn json(text: &str) -> Vec<Value> {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
@@ -48,4 +50,30 @@ fn shards_share_the_functions_between_them() {
         let answer = cook(folder.path(), &["check", "refraction", "--shard", wrong]);
         assert_eq!(answer.code, Some(2), "{wrong}: {answer:?}");
     }
+}
+
+#[test]
+fn inputs_that_were_once_wrong_are_right() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/once_wrong");
+    let once_wrong = Regressions::in_folder(&folder);
+    let mut wrong = Vec::new();
+    let mut inputs = 0;
+    for formula in formulas::all() {
+        let mut kernel = check::kernel(crate::gpu(), formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+        let tolerance = check::tolerance(crate::gpu(), formula);
+        let rows = once_wrong.load(formula.function, kernel.argument_words()).expect("a file of inputs");
+        inputs += rows.len();
+        let mut check = Check { formula, kernel: &mut kernel, tolerance: &tolerance };
+        for row in rows {
+            let report = check.run(Settings { cases: 0, seed: 0 }, &[row]).expect("the check runs");
+            if report.failed > 0 {
+                let words: Vec<String> = report.worst.iter().map(|word| format!("{word:08x}")).collect();
+                let why = report.reason.unwrap_or_default();
+                wrong.push(format!("{} {}: {why}", formula.function, words.join(" ")));
+            }
+        }
+    }
+    let files = folder.read_dir().expect("a folder").count();
+    assert!(inputs >= files && files > 0, "{inputs} inputs of {files} files: a file whose function is gone?");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -5,7 +5,7 @@ use crate::outside::{Promise, accurate, any_bits, any_finite, finite, holds, lik
 use crate::property::draws::Draws;
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use lapidary_cdrf::oracle as cdrf;
-use lapidary_curvature::CurvaturePixel;
+use lapidary_curvature::{CurvatureFrame, CurvaturePixel};
 use lapidary_microfacet as microfacet;
 
 pub(super) fn promises() -> Vec<Promise> {
@@ -199,6 +199,15 @@ fn curvatures() -> Vec<Promise> {
             |_: (Vec3, Vec3, Vec3, Vec3), pixel: CurvaturePixel| {
                 let gone = [pixel.p_x, pixel.p_y, pixel.n_x, pixel.n_y].into_iter().all(|vector| vector == Vec3::ZERO);
                 that(gone, || format!("{pixel:?}"))
+            },
+        ),
+        holds(
+            "curvature_frame",
+            "`first` and `second` shrink for shorter ones",
+            |draws| (of_length(draws, -126, -24), of_length(draws, -126, 0)),
+            |_: (Vec3, Vec3), frame: CurvatureFrame| {
+                let longest = frame.first.length().max(frame.second.length());
+                that(longest <= 1.000_01, || format!("a vector of length {longest}"))
             },
         ),
         finite("curvature_mean", STEEPEST, pixel),

@@ -1,0 +1,355 @@
+//! The range of an oracle over inputs that are off by what `backward` allows: corners of the box about the input, places where a discrete
+//! result changes, and extrema.
+
+use super::draws::mix;
+use super::tolerance::{FLUSHED, OracleFn, largest, number, ulp_of};
+use crate::dispatch::shape::{Leaf, Scalar};
+use crate::golden_section::golden_section;
+use std::convert::Infallible;
+
+/// Corners of the input box that are tried where it has too many to try all, at first and once more in earnest.
+const MOST_CORNERS: [u64; 2] = [256, 1024];
+
+/// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
+const BISECTIONS: usize = 30;
+
+/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁴ of the box's width, an extremum to the square of that.
+const SECTIONS: usize = 20;
+
+/// Rounds over all inputs on the way to an extremum.
+const ROUNDS: usize = 6;
+
+/// Places along an input, its ends included, that tell where an extremum may lie: a function may have several, and the least may be at an end.
+const PLACES: usize = 9;
+
+/// Places that [`Effort::Starts`] starts from: from one alone a search ends in the nearest of several extrema.
+const STARTS: u64 = 24;
+
+/// Places for each of them that are visited first, for a case that few of them are in.
+const PLACES_PER_START: u64 = 512;
+
+/// By which share of the box's width the inputs are moved to see where a result falls.
+const SLOPE: f64 = 1.0 / 64.0;
+
+/// How hard to look for the oracle's range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// The corners of the box and the middles of its faces.
+    Corners,
+    /// More corners, and on the way from each to the next every place where a discrete result changes: the rounded result may well lie
+    /// right there. Then the extrema, from the best place so far.
+    Boundaries,
+    /// The extrema again, from many places: for the few rows that are still not within their bounds.
+    Starts,
+}
+
+/// The range of the oracle over inputs that are off by up to `backward` ulp, among those with the same discrete results.
+pub struct Spread {
+    /// The least of each result.
+    pub low: Vec<f64>,
+    /// The greatest.
+    pub high: Vec<f64>,
+    /// Whether shader and mirror found the same case.
+    pub gpu_and_mirror_agree: bool,
+}
+
+/// The oracle's discrete results at a point; none where the point is outside of its domain.
+type Case = Option<Vec<f64>>;
+
+/// A search for the oracle's range in the box about an input.
+pub struct Search<'a> {
+    oracle: OracleFn<'a>,
+    /// Where the discrete results are.
+    places: Vec<(usize, Scalar)>,
+    /// The shader's discrete results and the mirror's.
+    wanted: [Vec<f64>; 2],
+    /// Whether the oracle has given them.
+    met: [bool; 2],
+    /// The range over the points where it gave either.
+    spread: Spread,
+    /// Where each result was least and where it was greatest, once a search for extrema may start from there.
+    ends: Option<Vec<[Vec<f64>; 2]>>,
+    result: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    /// For the cases that shader and mirror found: the results at `places`.
+    pub fn new(places: Vec<(usize, Scalar)>, gpu: &[u32], mirror: &[u32], oracle: OracleFn<'a>) -> Self {
+        let discrete = |words: &[u32]| -> Vec<f64> {
+            places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
+        };
+        let wanted = [discrete(gpu), discrete(mirror)];
+        let spread = Spread {
+            low: vec![f64::INFINITY; gpu.len()],
+            high: vec![f64::NEG_INFINITY; gpu.len()],
+            gpu_and_mirror_agree: wanted[0] == wanted[1],
+        };
+        Self { oracle, places, wanted, met: [false; 2], spread, ends: None, result: Vec::with_capacity(gpu.len()) }
+    }
+
+    /// The range, as far as it was found; none where the oracle did not give both cases.
+    pub fn spread(&self) -> Option<&Spread> {
+        (self.met == [true; 2]).then_some(&self.spread)
+    }
+
+    /// Looks for the range until `enough`. `results` are the shader's and the mirror's.
+    pub fn look(&mut self, effort: Effort, inputs: &InputBox, results: [&[u32]; 2], enough: impl Fn(&Spread) -> bool) {
+        let starts = match effort {
+            Effort::Corners => return self.corners(effort, inputs, enough),
+            Effort::Boundaries => 0,
+            Effort::Starts => STARTS,
+        };
+        if self.ends.is_none() {
+            self.ends = Some(vec![Default::default(); results[0].len()]);
+            self.corners(effort, inputs, &enough);
+        }
+        // A case may be so thin that hardly a way between corners ends in it.
+        for number in 0..starts * PLACES_PER_START {
+            if self.met == [true; 2] && enough(&self.spread) {
+                return;
+            }
+            self.visit(&inputs.place(number));
+        }
+        if self.met == [true; 2] && !enough(&self.spread) {
+            self.extrema(inputs, results, starts, enough);
+        }
+    }
+
+    /// Asks the oracle at a point.
+    fn visit(&mut self, point: &[f64]) -> Case {
+        self.result.clear();
+        (self.oracle)(point, &mut self.result);
+        if self.result.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let found: Vec<f64> = self.places.iter().map(|(index, _)| self.result[*index]).collect();
+        let agrees = [found == self.wanted[0], found == self.wanted[1]];
+        self.met = [self.met[0] | agrees[0], self.met[1] | agrees[1]];
+        if agrees[0] || agrees[1] {
+            for (index, value) in self.result.iter().enumerate() {
+                let below = *value < self.spread.low[index];
+                let above = *value > self.spread.high[index];
+                self.spread.low[index] = self.spread.low[index].min(*value);
+                self.spread.high[index] = self.spread.high[index].max(*value);
+                if let Some(ends) = &mut self.ends {
+                    for end in [below, above].iter().zip(&mut ends[index]).filter_map(|(is, end)| is.then_some(end)) {
+                        point.clone_into(end);
+                    }
+                }
+            }
+        }
+        Some(found)
+    }
+
+    /// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far
+    /// as `halvings` tell them apart.
+    fn boundaries(&mut self, from: &[f64], to: &[f64], near: (f64, &Case), far: (f64, &Case), halvings: usize) {
+        if near.1 == far.1 || halvings == 0 {
+            return;
+        }
+        let middle = 0.5 * (near.0 + far.0);
+        let point: Vec<f64> = from.iter().zip(to).map(|(from, to)| from + middle * (to - from)).collect();
+        let found = self.visit(&point);
+        self.boundaries(from, to, near, (middle, &found), halvings - 1);
+        self.boundaries(from, to, (middle, &found), far, halvings - 1);
+    }
+
+    /// Extends the range towards each result that lies beside it, by less than its width: a function that does not go on rising, such
+    /// as a square, has its extremum inside the box and not at a corner. From the best place so far, and from `starts` others.
+    fn extrema(&mut self, inputs: &InputBox, results: [&[u32]; 2], starts: u64, enough: impl Fn(&Spread) -> bool) {
+        for words in results {
+            for (index, word) in words.iter().enumerate() {
+                // Of a discrete result the bits are no number to approach; as one they lie far from the range.
+                let value = f64::from(f32::from_bits(*word));
+                let (low, high) = (self.spread.low[index], self.spread.high[index]);
+                let sign = if value < low && low - value < high - low {
+                    1.0
+                } else if value > high && value - high < high - low {
+                    -1.0
+                } else {
+                    continue;
+                };
+                let best = self.ends.as_ref().map(|ends| ends[index][usize::from(sign < 0.0)].clone());
+                let best = best.filter(|point| !point.is_empty()).unwrap_or_else(|| inputs.centre.clone());
+                for start in std::iter::once(best).chain((0..starts).map(|start| inputs.place(start))) {
+                    self.descend(inputs, start, (index, sign), &enough);
+                    if enough(&self.spread) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// `sign` times result `index` at a point; infinite where the discrete results are others, as it is another function's value there.
+    fn at(&mut self, point: &[f64], (index, sign): (usize, f64)) -> f64 {
+        let found = self.visit(point);
+        let wanted = found.is_some_and(|found| self.wanted.contains(&found));
+        if wanted { sign * self.result[index] } else { f64::INFINITY }
+    }
+
+    /// Lowers a result from `point`: all inputs at once, then one after another, until neither lowers it any more.
+    fn descend(
+        &mut self,
+        inputs: &InputBox,
+        mut point: Vec<f64>,
+        what: (usize, f64),
+        enough: &impl Fn(&Spread) -> bool,
+    ) {
+        let mut lowest = self.at(&point, what);
+        for _ in 0..ROUNDS {
+            let before = lowest;
+            let corner = self.downhill(inputs, &point, what);
+            let lines = std::iter::once(None).chain(inputs.moving.iter().map(Some));
+            for line in lines {
+                let [mut from, mut to] = [point.clone(), corner.clone()];
+                if let Some(&moving) = line {
+                    to.clone_from(&point);
+                    from[moving] = inputs.centre[moving] - inputs.steps[moving];
+                    to[moving] = inputs.centre[moving] + inputs.steps[moving];
+                }
+                let (least, place) = self.lowest_between(&from, &to, what);
+                if least < lowest {
+                    (lowest, point) = (least, place);
+                }
+                if enough(&self.spread) {
+                    return;
+                }
+            }
+            // Nothing moves any more.
+            if lowest >= before {
+                return;
+            }
+        }
+    }
+
+    /// The corner that each input moves to where the result falls with it: of a linear function, the lowest.
+    fn downhill(&mut self, inputs: &InputBox, point: &[f64], what: (usize, f64)) -> Vec<f64> {
+        let mut corner = point.to_vec();
+        let mut beside = point.to_vec();
+        for &moving in &inputs.moving {
+            let (centre, step) = (inputs.centre[moving], inputs.steps[moving]);
+            let [below, above] = [-1.0, 1.0].map(|side| {
+                beside[moving] = (point[moving] + side * SLOPE * step).clamp(centre - step, centre + step);
+                self.at(&beside, what)
+            });
+            beside[moving] = point[moving];
+            if below != above {
+                corner[moving] = if below < above { centre - step } else { centre + step };
+            }
+        }
+        corner
+    }
+
+    /// The least value on the way from `from` to `to`, and where: at the best of places, by golden-section search between that one's neighbours,
+    /// and where the case ends.
+    fn lowest_between(&mut self, from: &[f64], to: &[f64], what: (usize, f64)) -> (f64, Vec<f64>) {
+        let on_the_way = |share: f64| -> Vec<f64> {
+            from.iter().zip(to).map(|(from, to)| (1.0 - share) * from + share * to).collect()
+        };
+        let share = |number: usize| number as f64 / (PLACES - 1) as f64;
+        let values: Vec<f64> = (0..PLACES).map(|number| self.at(&on_the_way(share(number)), what)).collect();
+        let least = (0..PLACES).min_by(|one, other| values[*one].total_cmp(&values[*other])).unwrap_or(0);
+        let across = [least.saturating_sub(1), (least + 1).min(PLACES - 1)];
+        let Ok(nearest) =
+            golden_section::<Infallible>(across.map(share), SECTIONS, |place| Ok(self.at(&on_the_way(place), what)));
+        let value = self.at(&on_the_way(nearest), what);
+        let mut best = if value < values[least] { (value, nearest) } else { (values[least], share(least)) };
+        let is_met = best.0 < f64::INFINITY;
+        for end in across.into_iter().filter(|end| is_met && values[*end] == f64::INFINITY) {
+            let (mut inside, mut outside) = (best.1, share(end));
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (inside + outside);
+                let value = self.at(&on_the_way(middle), what);
+                *(if value < f64::INFINITY { &mut inside } else { &mut outside }) = middle;
+                if value < best.0 {
+                    best = (value, middle);
+                }
+            }
+        }
+        (best.0, on_the_way(best.1))
+    }
+
+    /// Searches the corners of the box and the middles of its faces, until `enough`.
+    fn corners(&mut self, effort: Effort, inputs: &InputBox, enough: impl Fn(&Spread) -> bool) {
+        let InputBox { centre, steps, moving } = inputs;
+        // From corner to corner, not out from the centre: all lines through one point cross a boundary near that point.
+        let mut previous = centre.clone();
+        let mut at_previous = self.visit(centre);
+        let mut walk = |search: &mut Self, point: &[f64]| -> bool {
+            let at_point = search.visit(point);
+            if effort == Effort::Boundaries {
+                search.boundaries(&previous, point, (0.0, &at_previous), (1.0, &at_point), BISECTIONS);
+                previous.copy_from_slice(point);
+                at_previous = at_point;
+            }
+            search.met[0] && search.met[1] && enough(&search.spread)
+        };
+        let mut point = centre.clone();
+        for index in moving {
+            for sign in [-1.0, 1.0] {
+                point[*index] = centre[*index] + sign * steps[*index];
+                if walk(self, &point) {
+                    return;
+                }
+            }
+            point[*index] = centre[*index];
+        }
+        let most = MOST_CORNERS[usize::from(effort == Effort::Boundaries)];
+        let all = 1u64.checked_shl(moving.len() as u32).is_some_and(|corners| corners <= most);
+        let corners = if all { 1u64 << moving.len() } else { most };
+        for corner in 0..corners {
+            // Where there are too many corners, a fixed pseudo-random selection.
+            let signs = if all { corner } else { mix(corner) };
+            for (bit, index) in moving.iter().enumerate() {
+                let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
+                point[*index] = centre[*index] + sign * steps[*index];
+            }
+            if walk(self, &point) {
+                return;
+            }
+        }
+    }
+}
+
+/// The inputs that may stand for given ones: a box about them.
+pub struct InputBox {
+    centre: Vec<f64>,
+    /// How far each may be off.
+    steps: Vec<f64>,
+    /// Those that may be off at all.
+    moving: Vec<usize>,
+}
+
+impl InputBox {
+    /// Up to `backward` ulp about the inputs, of a vector's largest component.
+    pub fn new(leaves: &[Leaf], words: &[u32], backward: f64) -> Self {
+        let mut centre = Vec::with_capacity(words.len());
+        let mut steps = Vec::with_capacity(words.len());
+        for leaf in leaves {
+            let values: Vec<f64> =
+                words[leaf.start..leaf.start + leaf.length].iter().map(|word| number(leaf.scalar, *word)).collect();
+            let scale = largest(&values);
+            // Zero is exact; a subnormal may be read as zero.
+            let step = match leaf.scalar {
+                Scalar::F32 if scale >= FLUSHED => backward * ulp_of(scale),
+                Scalar::F32 => scale,
+                _ => 0.0,
+            };
+            steps.extend(std::iter::repeat_n(step, values.len()));
+            centre.extend(values);
+        }
+        let moving = (0..steps.len()).filter(|index| steps[*index] > 0.0).collect();
+        Self { centre, steps, moving }
+    }
+
+    /// A fixed pseudo-random place in it.
+    fn place(&self, number: u64) -> Vec<f64> {
+        let mut chance = mix(number);
+        let mut offset = || {
+            chance = mix(chance);
+            chance as f64 / u64::MAX as f64 * 2.0 - 1.0
+        };
+        self.centre.iter().zip(&self.steps).map(|(centre, step)| centre + offset() * step).collect()
+    }
+}
