@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 9cc9c357dc843dee
+// Version: 0.2.0, hash adda897700d73e0a
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
 //   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
 //
@@ -88,6 +88,8 @@ struct CurvatureFrame {
     first: vec3f,
     // Unit vector at right angles to it, on the side of p_y; shorter where `rise` is below 2^-50, and 0 where it is 0.
     second: vec3f,
+    // At right angles to both, `rise` long: width times it is p_x x p_y.
+    normal: vec3f,
     // Length of p_x.
     width: f32,
     // Of p_y along the first.
@@ -104,7 +106,7 @@ struct CurvatureFrame {
 // Units: none for the vectors; otherwise the derivatives'.
 // Domain: p_x and p_y of curvature_pixel: with a largest component in [1, 2), or degenerate in [1e-7, 1), or 0.
 // Outside: `first` and `second` shrink for shorter ones.
-// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, width 3 ulp, lean 4 ulp + 2 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward; portable first 17 ulp, second 42 ulp + 8 backward, width 12 ulp, lean 18 ulp + 4 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
+// Accuracy: lavapipe first 4 ulp, second 10 ulp + 4 backward, normal 7 ulp + 1e-9 abs + 4 backward, width 3 ulp, lean 4 ulp + 4 backward, rise 7 ulp + 1e-9 abs + 4 backward, bounded 20 ulp + 4 backward; portable first 17 ulp, second 42 ulp + 8 backward, normal 31 ulp + 1e-9 abs + 8 backward, width 12 ulp, lean 18 ulp + 8 backward, rise 31 ulp + 1e-9 abs + 8 backward, bounded 90 ulp + 8 backward
 fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     let squared_x = dot(p_x, p_x);
     let width = sqrt(squared_x);
@@ -112,12 +114,12 @@ fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     let first = p_x / max(width, CURVATURE_SMALLEST);
     let crossed = cross(first, p_y);
     // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
-    let raised = crossed - dot(crossed, first) * first;
-    let rise = length(raised);
-    let second = cross(raised, first) / max(rise, CURVATURE_SMALLEST);
+    let normal = crossed - dot(crossed, first) * first;
+    let rise = length(normal);
+    let second = cross(normal, first) / max(rise, CURVATURE_SMALLEST);
     let area = width * rise;
     let least = CURVATURE_EDGE_ON * max(squared_x, 1.0f) * max(dot(p_y, p_y), 1.0f);
-    return CurvatureFrame(first, second, width, dot(p_y, first), rise, max(area * area, least));
+    return CurvatureFrame(first, second, normal, width, dot(p_y, first), rise, max(area * area, least));
 }
 
 // Mean curvature, half the sum of the principal ones: with first form E, F, G and second e, f, g it is (eG - 2fF + gE) / (2 (EG - F^2)). Here
@@ -151,22 +153,21 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
     return 0.5f * (second.x * first.z - 2.0f * second.y * first.y + second.z * first.x) / determinant;
 }
 
-// Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y, which is curvature_frame's area along its normal,
-// the numerator is a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
+// Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y, which is width times the normal of
+// curvature_frame, the numerator is a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
 // asymmetry. With it the result is never above the square of curvature_mean, so that principal curvatures H +- sqrt(H^2 - K) exist.
 // Returns: the Gaussian curvature, 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below CURVATURE_EDGE_ON it fades to 0 as the square of
 //   curvature_mean does; 0 where a position derivative is 0.
 // Units: one over the position's, squared.
 // Domain: as curvature_mean, and normal derivatives at right angles to the surface's normal up to 0.4 of their length.
 // Outside: finite for |normal_x|, |normal_y| <= 2.
-// Accuracy: lavapipe 5 ulp + 1e-31 abs + 4 backward; portable 12 ulp + 1e-31 abs + 8 backward
+// Accuracy: lavapipe 5 ulp + 1e-31 abs + 6 backward; portable 12 ulp + 1e-31 abs + 12 backward
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
     let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
     let frame = curvature_frame(pixel.p_x, pixel.p_y);
     let area = frame.width * frame.rise;
-    let normal = cross(frame.first, frame.second);
     let twist = 0.5f * (dot(pixel.p_x, pixel.n_y) - dot(pixel.p_y, pixel.n_x));
-    let determinant = area * dot(normal, cross(pixel.n_x, pixel.n_y)) - twist * twist;
+    let determinant = frame.width * dot(frame.normal, cross(pixel.n_x, pixel.n_y)) - twist * twist;
     return determinant / frame.bounded * (area * area / frame.bounded);
 }
 

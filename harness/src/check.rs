@@ -14,6 +14,7 @@ use crate::formulas;
 use crate::gpu::Gpu;
 use crate::outside;
 use crate::property::persistence::{PersistenceError, Regressions};
+use crate::property::seams;
 use crate::property::tolerance::{Tolerance, number};
 use crate::property::{Check, DEFAULT_CASES, Report, Settings};
 use failure::Failure;
@@ -90,6 +91,8 @@ pub struct Row {
     pub broken_hard_cases: Vec<String>,
     /// Promises of the `Outside:` line that do not hold, with the input at which they do not.
     pub broken_promises: Vec<String>,
+    /// Branches beside which a result is wrong, one float to either side, with the input at which it is.
+    pub broken_branches: Vec<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
@@ -112,7 +115,7 @@ impl Row {
 
     fn judge(&self) -> bool {
         let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        let beside = [&self.broken_hard_cases, &self.broken_promises];
+        let beside = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
         self.failed == 0 && edges && beside.into_iter().all(Vec::is_empty)
     }
 }
@@ -227,8 +230,16 @@ pub fn run_keeping(
     };
     let promises = outside::broken(&mut kernel, formula, &tolerance, formulas::outside::all(), settings.seed)
         .map_err(in_function)?;
+    // A function whose loops do not end takes as long on the CPU, and has failed.
+    let branches = if report.stopped > 0 {
+        Vec::new()
+    } else {
+        seams::of_source(located(formula, source).1, formula, &mut kernel, &tolerance, settings.seed)
+            .map_err(in_function)?
+    };
+    let branches = branches.iter().map(ToString::to_string).collect();
     let reproduce = reproduce(formula, source, settings);
-    let mut row = row(formula, &report, Broken { hard_cases, promises }, failure, reproduce);
+    let mut row = row(formula, &report, Broken { hard_cases, promises, branches }, failure, reproduce);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
@@ -282,6 +293,7 @@ fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> Strin
 struct Broken {
     hard_cases: Vec<String>,
     promises: Vec<String>,
+    branches: Vec<String>,
 }
 
 fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failure>, reproduce: String) -> Row {
@@ -306,6 +318,7 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         held_hard_cases: formula.hard_cases.len() - broken.hard_cases.len(),
         broken_hard_cases: broken.hard_cases,
         broken_promises: broken.promises,
+        broken_branches: broken.branches,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),

@@ -71,6 +71,8 @@ pub struct CurvatureFrame {
     pub first: Vec3,
     /// Unit vector at right angles to it, on the side of p_y; shorter where `rise` is below 2⁻⁵⁰, and 0 where it is 0.
     pub second: Vec3,
+    /// At right angles to both, `rise` long: width times it is p_x × p_y.
+    pub normal: Vec3,
     /// Length of p_x.
     pub width: f32,
     /// Of p_y along the first.
@@ -89,12 +91,12 @@ pub fn frame(p_x: Vec3, p_y: Vec3) -> CurvatureFrame {
     let first = p_x / width.max(CURVATURE_SMALLEST);
     let crossed = first.cross(p_y);
     // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
-    let raised = crossed - crossed.dot(first) * first;
-    let rise = raised.length();
-    let second = raised.cross(first) / rise.max(CURVATURE_SMALLEST);
+    let normal = crossed - crossed.dot(first) * first;
+    let rise = normal.length();
+    let second = normal.cross(first) / rise.max(CURVATURE_SMALLEST);
     let area = width * rise;
     let least = CURVATURE_EDGE_ON * squared_x.max(1.0) * p_y.dot(p_y).max(1.0);
-    CurvatureFrame { first, second, width, lean: p_y.dot(first), rise, bounded: (area * area).max(least) }
+    CurvatureFrame { first, second, normal, width, lean: p_y.dot(first), rise, bounded: (area * area).max(least) }
 }
 
 /// Mean curvature, half the sum of the principal ones.
@@ -120,9 +122,8 @@ pub fn gaussian(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Ve
     let pixel = pixel(position_x, position_y, normal_x, normal_y);
     let frame = frame(pixel.p_x, pixel.p_y);
     let area = frame.width * frame.rise;
-    let normal = frame.first.cross(frame.second);
     let twist = 0.5 * (pixel.p_x.dot(pixel.n_y) - pixel.p_y.dot(pixel.n_x));
-    let determinant = area * normal.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist;
+    let determinant = frame.width * frame.normal.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist;
     determinant / frame.bounded * (area * area / frame.bounded)
 }
 

@@ -61,6 +61,8 @@ pub struct CurvatureFrame {
     pub first: DVec3,
     /// At right angles to it, on the side of that by y.
     pub second: DVec3,
+    /// At right angles to both, `rise` long.
+    pub normal: DVec3,
     /// Length of that by x.
     pub width: f64,
     /// Of that by y along the first.
@@ -80,7 +82,8 @@ pub fn frame(p_x: DVec3, p_y: DVec3) -> CurvatureFrame {
     let second = if across == DVec3::ZERO { DVec3::ZERO } else { across.cross(p_x).normalize() };
     let rise = if across == DVec3::ZERO { 0.0 } else { rise };
     let bounded = (width * rise).max(SINE * width.max(1.0) * height.max(1.0)).powi(2);
-    CurvatureFrame { first: p_x.normalize_or_zero(), second, width, lean, rise, bounded }
+    let normal = rise * across.normalize_or_zero();
+    CurvatureFrame { first: p_x.normalize_or_zero(), second, normal, width, lean, rise, bounded }
 }
 
 /// A surface at a pixel: principal curvatures, frame of the tangent plane, and how much of the result is left edge-on.

@@ -11,7 +11,7 @@ use lapidary_curvature::{
 };
 
 mirror_struct!(lapidary_curvature, CurvaturePixel { p_x, p_y, n_x, n_y });
-mirror_struct!(lapidary_curvature, CurvatureFrame { first, second, width, lean, rise, bounded });
+mirror_struct!(lapidary_curvature, CurvatureFrame { first, second, normal, width, lean, rise, bounded });
 
 const M: &str = "curvature";
 

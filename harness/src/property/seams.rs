@@ -6,7 +6,7 @@
 //! each other as well, provided that the mathematics does not jump there ([`jump`]); and that is asked of the oracle, in the f64 between the two.
 
 use super::draws::mix;
-use super::tolerance::{Tolerance, number, ulp_of};
+use super::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
 use crate::check::spell;
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
@@ -16,8 +16,8 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Pairs of inputs that are tried, and fewer for a function that takes long: what that comes to in statements.
-const MOST_ATTEMPTS: u64 = 800;
-const MOST_STATEMENTS: u64 = 400_000;
+const MOST_ATTEMPTS: u64 = 4_000;
+const MOST_STATEMENTS: u64 = 2_000_000;
 
 /// Runs of the function that finding one seam takes, about.
 const RUNS: u64 = 40;
@@ -28,6 +28,12 @@ const MOST_OF_A_BRANCH: usize = 16;
 /// How far apart the inputs of two neighbouring draws may be, in ulp of a vector's largest component: of a unit vector that is still one.
 const NEIGHBOURS: f64 = 2.0;
 
+/// Faults that are searched for thoroughly before the rest are taken as they are.
+const ENOUGH_FAULTS: usize = 16;
+
+/// Halvings of the way between two neighbouring floats: far fewer than f64 resolves there.
+const HALVINGS: usize = 20;
+
 /// Floats beyond either side that are tested as well: where a device rounds otherwise, the way may change there.
 const BESIDE: usize = 2;
 
@@ -37,12 +43,16 @@ type Way = Vec<Decision>;
 /// Two neighbouring inputs on either side of a branch.
 #[derive(Clone, Debug)]
 pub struct Seam {
-    /// Which branch.
+    /// Which branch: the first that goes another way.
     pub site: Site,
+    /// All that go another way, as far as both sides run the same statements.
+    pub parted: Vec<Site>,
     /// The inputs: they differ in one word.
     pub sides: [Words; 2],
     /// Which word that is.
     pub word: usize,
+    /// The inputs that were drawn on the way to it: they lie in the domain, where a float moved alone may have left it.
+    pub drawn: Vec<Words>,
 }
 
 /// Finds inputs on either side of as many branches as random inputs lead to.
@@ -99,7 +109,8 @@ impl Finder<'_> {
             let middle = near.midpoint(far);
             if self.way(&at(middle))? == way_near { near = middle } else { far = middle }
         }
-        self.between(&at(near), &at(far))
+        let drawn = [at(near), at(far)];
+        Ok(self.between(&drawn[0], &drawn[1])?.map(|seam| Seam { drawn: drawn.to_vec(), ..seam }))
     }
 
     /// From a row to the same with one float moved by an ulp: this is how a branch is met that only one number takes.
@@ -108,13 +119,13 @@ impl Finder<'_> {
         let chance = mix(seed ^ mix(!attempt));
         let word = (chance % row.len() as u64) as usize;
         let value = f32::from_bits(row[word]);
-        // Zero is exact, and has no last place.
-        if self.scalars[word] != Scalar::F32 || !value.is_normal() {
+        if self.scalars[word] != Scalar::F32 || !value.is_normal() && value != 0.0 {
             return Ok(None);
         }
         let mut moved = row.clone();
-        moved[word] = if chance >> 63 == 0 { value.next_up() } else { value.next_down() }.to_bits();
-        self.seam(row, moved, word)
+        moved[word] = step(value, chance >> 63 == 0).to_bits();
+        let drawn = vec![row.clone()];
+        Ok(self.seam(row, moved, word)?.map(|seam| Seam { drawn, ..seam }))
     }
 
     /// The seam between two rows that are all but equal, float by float.
@@ -134,25 +145,30 @@ impl Finder<'_> {
                 row = moved;
                 continue;
             }
-            // Here the way changes: down to neighbouring floats.
-            loop {
-                let (one, other) = (f32::from_bits(row[word]), f32::from_bits(moved[word]));
-                let next = if one < other { one.next_up() } else { one.next_down() };
-                if next == other {
-                    return self.seam(row, moved, word);
-                }
-                let mut between = row.clone();
-                between[word] = next.to_bits();
-                if self.way(&between)? == way { row = between } else { moved = between }
+            // Here the way changes: down to neighbouring floats. Beside a large component there are billions of them about 0.
+            let [mut one, mut other] = [row[word], moved[word]].map(ordered);
+            while one.abs_diff(other) > 1 {
+                let middle = one.midpoint(other);
+                row[word] = unordered(middle);
+                if self.way(&row)? == way { one = middle } else { other = middle }
             }
+            (row[word], moved[word]) = (unordered(one), unordered(other));
+            return self.seam(row, moved, word);
         }
         Ok(None)
     }
 
     fn seam(&self, one: Words, other: Words, word: usize) -> Result<Option<Seam>, Stopped> {
         let (way, other_way) = (self.way(&one)?, self.way(&other)?);
-        let parting = way.iter().zip(&other_way).find(|(one, other)| one != other);
-        Ok(parting.map(|(decision, _)| Seam { site: decision.site, sides: [one, other], word }))
+        let together = way.iter().zip(&other_way).take_while(|(one, other)| one.site == other.site);
+        let parted: Vec<Site> = together.filter(|(one, other)| one != other).map(|(one, _)| one.site).collect();
+        Ok(parted.first().map(|site| Seam {
+            site: *site,
+            parted: parted.clone(),
+            sides: [one, other],
+            word,
+            drawn: Vec::new(),
+        }))
     }
 
     fn are_neighbours(&self, near: &Words, far: &Words) -> bool {
@@ -171,29 +187,65 @@ impl Finder<'_> {
     }
 }
 
-/// What the shader breaks at seams, in a sentence each: a side that is off by more than its tolerance or breaks an invariant.
+/// The next float; beside 0 the least that no device flushes.
+fn step(value: f32, up: bool) -> f32 {
+    let next = if up { value.next_up() } else { value.next_down() };
+    if next.is_subnormal() && value == 0.0 { next.signum() * f32::MIN_POSITIVE } else { next }
+}
+
+/// A float's bits as a number that grows with it, both zeros apart.
+fn ordered(bits: u32) -> u32 {
+    if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
+}
+
+/// The float's bits again.
+fn unordered(number: u32) -> u32 {
+    if number >> 31 == 1 { number & 0x7fff_ffff } else { !number }
+}
+
+/// What the shader breaks beside a branch: a side that is off by more than its tolerance or breaks an invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The line that the branch is on.
+    pub line: String,
+    /// What, and at which input.
+    pub what: String,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "beside the branch `{}`: {}", self.line, self.what)
+    }
+}
+
+/// What the shader breaks at seams, at inputs beside each that `rows` gives: [`Seam::drawn`] or [`beside`].
 pub fn faults(
     program: &Program,
     formula: &Formula,
     kernel: &mut Kernel<'_>,
     tolerance: &Tolerance,
     seams: &[Seam],
-) -> Result<Vec<String>, DispatchError> {
+    rows: impl Fn(&Seam) -> Vec<Words>,
+) -> Result<Vec<Fault>, DispatchError> {
     let mut faults = Vec::new();
-    let rows: Vec<Words> = seams.iter().flat_map(beside).collect();
+    let (rows, sites): (Vec<Words>, Vec<Site>) =
+        seams.iter().flat_map(|seam| rows(seam).into_iter().map(|row| (row, seam.site))).unzip();
     if rows.is_empty() {
         return Ok(faults);
     }
     let mut results = Words::new();
     kernel.run(&rows.concat(), &mut results)?;
     let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-    let rows_of_a_seam = rows.len() / seams.len();
-    for (index, (row, result)) in rows.iter().zip(results.chunks_exact(formula.result.words())).enumerate() {
+    for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
         let numbers: Vec<f64> = row.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
         let (mut mirrored, mut exact) = (Words::new(), Vec::new());
         (formula.mirror)(row, &mut mirrored);
         (formula.oracle)(&numbers, &mut exact);
-        let verdict = tolerance.judge(row, result, &mirrored, &exact, &*formula.oracle);
+        let judge = |by: Judge| by(tolerance, row, result, &mirrored, &exact, &*formula.oracle);
+        // Of a function that is wrong everywhere a few faults are enough, and need no long search.
+        let quick = judge(Tolerance::judge);
+        let verdict =
+            if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(Tolerance::judge_thoroughly) };
         let broken = formula.invariants.iter().find_map(|invariant| (invariant.holds)(row, result).err());
         let fault = match broken {
             Some(broken) => broken,
@@ -201,16 +253,35 @@ pub fn faults(
             None if !verdict.holds() => format!("off by {:.1} times the allowed error", verdict.ratio),
             None => continue,
         };
-        let line = program.line(seams[index / rows_of_a_seam].site);
-        faults.push(format!("beside the branch `{line}`: {fault} at {}", spell(formula, row)));
+        let line = program.line(site).to_owned();
+        faults.push(Fault { line, what: format!("{fault} at {}", spell(formula, row)) });
     }
     Ok(faults)
 }
 
+/// [`Tolerance::judge`] or [`Tolerance::judge_thoroughly`].
+type Judge = fn(&Tolerance, &[u32], &[u32], &[u32], &[f64], OracleFn<'_>) -> Verdict;
+
+/// What `cook check` says of the branches of a formula's function in `source`: up to three faults, at inputs of the domain. Nothing where the
+/// interpreter cannot run the function.
+pub fn of_source(
+    source: &str,
+    formula: &Formula,
+    kernel: &mut Kernel<'_>,
+    tolerance: &Tolerance,
+    seed: u64,
+) -> Result<Vec<Fault>, DispatchError> {
+    let program = Program::new(source, formula.module, formula.function)?;
+    let Ok(seams) = find(&program, formula, seed) else { return Ok(Vec::new()) };
+    let mut found = faults(&program, formula, kernel, tolerance, &seams, |seam| seam.drawn.clone())?;
+    found.dedup_by(|one, other| one.line == other.line);
+    found.truncate(3);
+    Ok(found)
+}
+
 /// A seam's sides and the next floats beyond each.
-fn beside(seam: &Seam) -> Vec<Words> {
+pub fn beside(seam: &Seam) -> Vec<Words> {
     let [one, other] = seam.sides.each_ref().map(|side| f32::from_bits(side[seam.word]));
-    let step = |value: f32, up: bool| if up { value.next_up() } else { value.next_down() };
     let up = other > one;
     let mut rows = seam.sides.to_vec();
     for (side, start, up) in [(0, one, !up), (1, other, up)] {
@@ -227,7 +298,7 @@ fn beside(seam: &Seam) -> Vec<Words> {
 }
 
 /// By how much the oracle jumps between a seam's sides, if by more than the tolerances of both allow: halving towards the greater change leaves
-/// of a continuous function nothing. None where a discrete result changes, which says so itself.
+/// less and less of a continuous function, and all of a jump. None where a discrete result changes, which says so itself.
 pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64> {
     let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
     let numbers = |side: &Words| -> Vec<f64> { side.iter().zip(&scalars).map(|(w, s)| number(*s, *w)).collect() };
@@ -241,21 +312,22 @@ pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64
     };
     let (mut low, mut high) = (start[seam.word], end[seam.word]);
     let (mut at_low, mut at_high) = (at(low), at(high));
-    loop {
+    let all = tolerance.apart(&at_low, &at_high)?;
+    let mut left = all;
+    for _ in 0..HALVINGS {
         if tolerance.discrete_differ(&at_low, &at_high) {
             return None;
         }
-        let excess = tolerance.apart(&at_low, &at_high)?;
         let middle = 0.5 * (low + high);
-        if middle == low || middle == high {
-            return Some(excess);
-        }
         let at_middle = at(middle);
         let below = tolerance.apart(&at_low, &at_middle).unwrap_or(0.0);
-        if below >= tolerance.apart(&at_middle, &at_high).unwrap_or(0.0) {
+        let above = tolerance.apart(&at_middle, &at_high).unwrap_or(0.0);
+        left = below.max(above);
+        if below >= above {
             (high, at_high) = (middle, at_middle);
         } else {
             (low, at_low) = (middle, at_middle);
         }
     }
+    (left >= all / 16.0).then_some(all)
 }

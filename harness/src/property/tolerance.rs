@@ -170,12 +170,12 @@ impl Tolerance {
     }
 
     /// By how much two of the oracle's results are apart, where that is more than a result that is right for one may be off and one that is
-    /// right for the other, without what `backward` allows; the largest over fields.
+    /// right for the other, an ulp each at least, without what `backward` allows; the largest over fields.
     pub fn apart(&self, one: &[f64], other: &[f64]) -> Option<f64> {
         let excess = self.floats().filter_map(|(leaf, bound)| {
             let range = leaf.start..leaf.start + leaf.length;
             let scale = largest(&one[range.clone()]).max(largest(&other[range.clone()]));
-            let allowed = forward(bound, scale);
+            let allowed = forward(bound, scale).max(ulp_of(scale));
             let apart = range.map(|index| (one[index] - other[index]).abs()).fold(0.0, f64::max);
             (apart > 2.0 * allowed).then_some(apart)
         });

@@ -23,7 +23,7 @@ fn faults(seed: u64) -> Vec<String> {
         assert!(row.cases >= DEFAULT_CASES);
         if !row.passed() {
             faults.push(format!(
-                "{}: {} failed, {:?}, worst {}, shrunk {:?}, missed {:?}, {:?}, {:?}; again with: {}",
+                "{}: {} failed, {:?}, worst {}, shrunk {:?}, missed {:?}, {:?}, {:?}, {:?}; again with: {}",
                 row.function,
                 row.failed,
                 row.reason,
@@ -32,6 +32,7 @@ fn faults(seed: u64) -> Vec<String> {
                 row.missed_edges,
                 row.broken_hard_cases,
                 row.broken_promises,
+                row.broken_branches,
                 row.reproduce
             ));
         }

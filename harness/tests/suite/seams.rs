@@ -8,10 +8,10 @@ use lapidary_harness::formula::Formula;
 use lapidary_harness::formulas;
 use lapidary_harness::interpreter::{Nearest, Program};
 use lapidary_harness::property::Settings;
-use lapidary_harness::property::seams::{self, Seam};
+use lapidary_harness::property::branches::{self, Exception, Line};
+use lapidary_harness::property::seams::{self, Fault, Seam};
 use lapidary_harness::property::tolerance::number;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 use std::sync::OnceLock;
 
 fn program(formula: &Formula) -> Program {
@@ -38,7 +38,6 @@ fn seams(program: &Program, formula: &Formula) -> Vec<Seam> {
 
 /// The interpreter is a device: it is held to the bounds of the reference device.
 #[test]
-#[ignore = "not yet run to its end over all functions"]
 fn the_interpreter_computes_what_the_shaders_do() {
     let gpu = super::gpu();
     let mut faults = Vec::new();
@@ -65,74 +64,48 @@ fn the_interpreter_computes_what_the_shaders_do() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
+/// A branch that compares floats is straddled, and the mathematics goes on there, or the list of exceptions says why not. A line of it that is no
+/// longer true is a fault too.
 #[test]
-#[ignore = "not yet run to its end over all functions: see tests/branches.txt"]
-fn both_sides_of_every_branch_are_within_their_bounds_of_each_other() {
+fn every_branch_is_straddled_and_continuous_or_says_why_not() {
     let gpu = super::gpu();
-    let mut faults = Vec::new();
+    let (mut used, mut faults) = (BTreeSet::new(), BTreeMap::new());
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
         let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
         let seams = seams_of(formula.function);
-        let found = seams::faults(&program, formula, &mut kernel, &tolerance, seams).expect("runs");
-        faults.extend(found.iter().take(3).map(|fault| format!("{}: {fault}", formula.function)));
-    }
-    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
-}
-
-/// What stands in the place of a condition where it is the mathematics that jumps.
-const JUMPS: &str = "jumps";
-
-/// The lines of `tests/branches.txt`: function and condition, each with a reason.
-fn exceptions() -> BTreeMap<(String, String), String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/branches.txt");
-    let text = std::fs::read_to_string(&path).expect("tests/branches.txt");
-    let lines = text.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
-    let parts = |line: &str| -> Option<((String, String), String)> {
-        let (function, rest) = line.split_once(": ")?;
-        let (condition, why) = rest.rsplit_once(" # ")?;
-        Some(((function.to_owned(), condition.to_owned()), why.to_owned()))
-    };
-    lines.map(|line| parts(line).unwrap_or_else(|| panic!("no `function: condition # reason`: {line}"))).collect()
-}
-
-/// A branch that compares floats is straddled, and the mathematics goes on there, or `tests/branches.txt` says why not. A line that is no longer true is
-/// a fault too.
-#[test]
-#[ignore = "tests/branches.txt is not filled yet; this test prints its lines"]
-fn every_branch_is_straddled_and_continuous_or_says_why_not() {
-    let gpu = super::gpu();
-    let exceptions = exceptions();
-    let (mut used, mut faults) = (BTreeSet::new(), BTreeSet::new());
-    for formula in promised() {
-        let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
-        let seams = seams_of(formula.function);
-        let mut expect = |condition: &str, is_exception: bool, what: &str| {
-            let key = (formula.function.to_owned(), condition.to_owned());
-            if is_exception && !exceptions.contains_key(&key) {
-                faults.insert(format!("{}: {condition} # {what}", formula.function));
-            }
-            if is_exception {
-                used.insert(key);
+        let mut found = |exception: Exception, place: &str, what: &str| {
+            used.insert((formula.function, exception, place.to_owned()));
+            if !branches::excepts(formula.function, exception, place) {
+                let line = format!("{} | {} | {place}", formula.function, exception.name());
+                faults.entry(line).or_insert_with(|| what.to_owned());
             }
         };
         for branch in program.branches().iter().filter(|branch| branch.compares_floats) {
-            let straddled = seams.iter().any(|seam| seam.site == branch.site);
-            expect(&branch.condition, !straddled, "no inputs on both sides were found");
+            if !seams.iter().any(|seam| seam.parted.contains(&branch.site)) {
+                found(Exception::NotStraddled, &branch.condition, "");
+            }
         }
-        let jump = seams.iter().find_map(|seam| Some((seam, seams::jump(formula, &tolerance, seam)?)));
-        let what = jump.as_ref().map_or(String::new(), |(seam, jump)| {
-            format!("by {jump:e} at `{}`, {}", program.line(seam.site), check::spell(formula, &seam.sides[0]))
-        });
-        expect(JUMPS, jump.is_some(), &what);
+        for seam in seams {
+            if let Some(jump) = seams::jump(formula, &tolerance, seam) {
+                let what = format!("by {jump:e} at {}", check::spell(formula, &seam.sides[0]));
+                found(Exception::Jumps, program.line(seam.site), &what);
+            }
+        }
+        for fault in seams::faults(&program, formula, &mut kernel, &tolerance, seams, seams::beside).expect("runs") {
+            found(Exception::LeavesTheDomain, &fault.line, &fault.what);
+        }
     }
-    let stale = exceptions.keys().filter(|key| !used.contains(*key));
-    faults.extend(stale.map(|(function, condition)| format!("{function}: {condition}: no exception any more")));
-    assert!(faults.is_empty(), "\n{}", faults.into_iter().collect::<Vec<_>>().join("\n"));
+    let is_used = |line: &Line| used.contains(&(line.function, line.exception, line.place.to_owned()));
+    let stale = branches::all().iter().filter(|line| !is_used(line));
+    faults
+        .extend(stale.map(|line| (format!("{} | {}", line.function, line.place), "no exception any more".to_owned())));
+    let lines: Vec<String> = faults.iter().map(|(line, what)| format!("{line} | {what}")).collect();
+    assert!(lines.is_empty(), "\n{}", lines.join("\n"));
 }
 
 /// What seams find in `function` of a source in which `from` has become `to`.
-fn planted(function: &str, from: &str, to: &str) -> Vec<String> {
+fn planted(function: &str, from: &str, to: &str) -> Vec<Fault> {
     let gpu = super::gpu();
     let formula = formulas::of_function(function).expect("a formula");
     let source = cookbook::module(formula.module).expect("its module").source;
@@ -141,7 +114,7 @@ fn planted(function: &str, from: &str, to: &str) -> Vec<String> {
     let program = Program::new(&source, "planted.wgsl", function).expect("valid");
     let mut kernel = Kernel::of_function(gpu, &source, "planted.wgsl", function).expect("compiles");
     let seams = seams(&program, formula);
-    seams::faults(&program, formula, &mut kernel, &check::tolerance(gpu, formula), &seams).expect("runs")
+    seams::faults(&program, formula, &mut kernel, &check::tolerance(gpu, formula), &seams, seams::beside).expect("runs")
 }
 
 #[test]
@@ -154,6 +127,6 @@ fn a_planted_jump_is_found_at_its_branch() {
     ];
     for (function, from, to, at) in plants {
         let faults = planted(function, from, to);
-        assert!(faults.iter().any(|fault| fault.contains(at)), "{function}, {at}: {faults:?}");
+        assert!(faults.iter().any(|fault| fault.line.contains(at)), "{function}, {at}: {faults:?}");
     }
 }

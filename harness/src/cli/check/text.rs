@@ -111,8 +111,8 @@ fn details(row: &Row, style: Style, text: &mut String) {
     for case in &row.broken_hard_cases {
         let _ = writeln!(text, "  hard case {case}");
     }
-    for promise in &row.broken_promises {
-        let _ = writeln!(text, "  {promise}");
+    for broken in row.broken_promises.iter().chain(&row.broken_branches) {
+        let _ = writeln!(text, "  {broken}");
     }
     for edge in &row.missed_edges {
         let advice = if row.passed() { "" } else { ", which fails the check" };
