@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash adda897700d73e0a
+// Version: 0.2.0, hash 061cc04f4c2790b6
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
 //   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
 //
@@ -112,7 +112,7 @@ fn curvature_frame(p_x: vec3f, p_y: vec3f) -> CurvatureFrame {
     let width = sqrt(squared_x);
     // 2^-50 stands for 0, here and below.
     let first = p_x / max(width, CURVATURE_SMALLEST);
-    let crossed = cross(first, p_y);
+    let crossed = cross(p_x, p_y) / max(width, CURVATURE_SMALLEST);
     // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
     let normal = crossed - dot(crossed, first) * first;
     let rise = length(normal);

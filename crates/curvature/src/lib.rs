@@ -89,7 +89,7 @@ pub fn frame(p_x: Vec3, p_y: Vec3) -> CurvatureFrame {
     let width = squared_x.sqrt();
     // 2⁻⁵⁰ stands for 0, here and below.
     let first = p_x / width.max(CURVATURE_SMALLEST);
-    let crossed = first.cross(p_y);
+    let crossed = p_x.cross(p_y) / width.max(CURVATURE_SMALLEST);
     // Rounding tilts the product of nearly parallel vectors along them: made perpendicular once more.
     let normal = crossed - crossed.dot(first) * first;
     let rise = normal.length();

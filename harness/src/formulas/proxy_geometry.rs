@@ -265,6 +265,7 @@ fn normal_formulas() -> Vec<Formula> {
                 1 => (a, b, a),
                 2 => (a, a, a),
                 3 => (Vec3::ZERO, b - a, b - a),
+                4 => (Vec3::ZERO, b - a, 2.0 * (b - a)),
                 _ => (a, b, c),
             }
         })
@@ -277,6 +278,7 @@ fn normal_formulas() -> Vec<Formula> {
             (1e-9..1e-6).contains(&closeness([a, b, c])) && c.distance(a) < 1e-3 * b.distance(a)
         })
         .edge("three equal corners", |(a, b, c)| a == b && b == c)
+        .edge("three corners in a line", |(a, b, c)| a == Vec3::ZERO && b != a && c == 2.0 * b)
         .edge("size below 1e-20", |(a, b, c)| a.distance(b).max(a.distance(c)) < 1e-20 && thinness([a, b, c]) > 1e-3)
         .edge("size above 1e19", |(a, b, c)| (b - a).abs().max_element() > 1e19 && thinness([a, b, c]) > 1e-3)
         .invariant("unit length, or zero", |_, normal: Vec3| {
@@ -307,6 +309,12 @@ fn normal_formulas() -> Vec<Formula> {
         .hard_case(
             "two equal corners",
             (Vec3::X, Vec3::X, Vec3::Y),
+            (&[0.0, 0.0, 0.0], 0.0),
+            ("proxy_geometry_face_normal_naive", f64::INFINITY),
+        )
+        .hard_case(
+            "three corners in a line",
+            (Vec3::ZERO, Vec3::new(1.0, 2.0, 4.0), Vec3::new(2.0, 4.0, 8.0)),
             (&[0.0, 0.0, 0.0], 0.0),
             ("proxy_geometry_face_normal_naive", f64::INFINITY),
         )

@@ -206,6 +206,49 @@ fn floats_beside_a_flag_are_those_of_the_same_case() {
     assert!(!accepts(50.0, 1) && !accepts(0.0, 1) && !accepts(100.0, 0));
 }
 
+/// Verdicts on a value of a struct with a flag, of two inputs of 1: `oracle` is of how many ulp each is off.
+fn beside_a_flag(value: f32, oracle: impl Fn(f64, f64) -> Option<f64>) -> [Verdict; 2] {
+    let shape = Shape::Struct("Hit".to_owned(), vec![("value".to_owned(), FLOAT), ("hit".to_owned(), FLAG)]);
+    let of_inputs = |numbers: &[f64], result: &mut Vec<f64>| {
+        let off = |index: usize| (numbers[index] - 1.0) / f64::from(ULP);
+        result.extend(oracle(off(0), off(1)).map_or([0.0, 0.0], |value| [value, 1.0]));
+    };
+    let tolerance = tolerance(&[FLOAT, FLOAT], &shape, Bound { ulp: 2.0, backward: 8.0, ..NONE });
+    let (arguments, words) = ([1.0f32.to_bits(); 2], [value.to_bits(), 1]);
+    let mut exact = Vec::new();
+    of_inputs(&[1.0, 1.0], &mut exact);
+    [Tolerance::judge, Tolerance::judge_thoroughly]
+        .map(|by| by(&tolerance, &arguments, &words, &words, &exact, &of_inputs))
+}
+
+#[test]
+fn an_extremum_where_a_case_ends_is_found() {
+    // A ray that comes ever nearer to a plane's direction, until it counts as parallel: at 18 / 0.37 there.
+    let oracle = |along: f64, height: f64| (along > 0.37).then(|| (10.0 + height) / along);
+    assert!(beside_a_flag(18.0 / 0.37, oracle)[0].holds());
+    assert!(!beside_a_flag(18.001 / 0.37, oracle)[1].holds());
+}
+
+#[test]
+fn the_highest_of_several_extrema_is_found_thoroughly() {
+    let hill = |x: f64, y: f64, steep: f64| (-steep * (x * x + y * y)).exp();
+    // The way up from nearly everywhere leads to the lower one.
+    let oracle = |x: f64, y: f64| Some(hill(x + 4.0, y + 4.0, 0.01) + 1.5 * hill(x - 3.3, y - 2.7, 8.0));
+    let top = (hill(7.3, 6.7, 0.01) + 1.5) as f32;
+    let [quick, thorough] = beside_a_flag(top - 2e-4, oracle);
+    assert!(!quick.holds() && thorough.holds(), "{quick:?}, {thorough:?}");
+    assert!(!beside_a_flag(top + 2e-3, oracle)[1].holds());
+}
+
+#[test]
+fn a_case_too_thin_for_corners_is_found_thoroughly() {
+    // A triangle seen all but edge-on.
+    let oracle = |x: f64, y: f64| (0.0..0.02).contains(&(x - 1.03 * y - 0.3)).then(|| 5.0 + x);
+    let [quick, thorough] = beside_a_flag(6.0, oracle);
+    assert!(!quick.holds() && thorough.holds(), "{quick:?}, {thorough:?}");
+    assert!(!beside_a_flag(14.0, oracle)[1].holds());
+}
+
 #[test]
 fn backward_error_accepts_what_the_input_explains_and_no_more() {
     // x - 1 near 1: an ulp of the input is 1024 of the result.
