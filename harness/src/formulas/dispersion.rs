@@ -311,6 +311,13 @@ fn refract() -> Formula {
     let gradient = oracle::enter(ray, DVec3::Z, DIAMOND.into());
     let slab = (entered.as_vec3(), gradient.as_vec3(), Vec3::Z, out, out_slope);
     let paper = (slab.0, gradient.normalize().as_vec3(), Vec3::Z, out, mirror::DISPERSION_PAPER_EPSILON);
+    // What is left of the gradient along the surface is a thousandth of it: 0.55 n_x n_z along z, and -0.55 n_z^2 along x.
+    let tilted = DVec3::new((1.0 - 2f64.powi(-20)).sqrt(), 0.0, 2f64.powi(-10)).as_vec3();
+    let upright = (Vec3::NEG_Y, Vec3::new(-0.55, 0.0, 0.0), tilted, 1.0625, 0.0);
+    let upright_limit = {
+        let (gradient, normal) = (upright.1.as_dvec3(), tilted.as_dvec3().normalize());
+        ((gradient - gradient.dot(normal) * normal) / 1.0625).to_array()
+    };
     formula(M, "dispersion_refract", mirror::refract, oracle::refract, refraction)
         .edge("total internal reflection", |(r, _, n, index, _)| radicand(r, n, index) < 0.0)
         .edge("just above the critical angle", |(r, _, n, index, _)| {
@@ -353,6 +360,7 @@ fn refract() -> Formula {
             (NAIVE, 1e-4),
         )
         .hard_case("an index one ulp above 1, grazing", denser, (&denser_limit, 1e-5), (NAIVE, 100.0))
+        .hard_case("a gradient nearly along the normal, grazing", upright, (&upright_limit, 5e-10), (NAIVE, 1.5e-8))
         .hard_case_with(
             "a parallel slab: eq. (11) leaves a spread of unit length",
             slab,
