@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 6237deadb614d167
+// Version: 0.2.0, hash c78f057683600125
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
@@ -445,7 +445,7 @@ fn cdrf_table_texel(texel: vec2u, size: vec2u, tint: vec3f) -> vec3f {
     let place = vec2f(min(texel, last));
     let end = vec2f(last);
     let cosine = (2.0f * place.x - end.x) / end.x;
-    // 1e-30 stands for 0: times the least tint the last row's sigma is 1e10, from where on the reflectance is that of infinity.
+    // 1e-30 stands for 0: times the least tint the last row's sigma is at least 1e10; from 8 on the reflectance is that of infinity.
     let sigma = place.y / max(end.y - place.y, 1e-30f);
     return vec3f(
         cdrf_accurate(cosine, tint.x * sigma),

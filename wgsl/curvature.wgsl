@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 061cc04f4c2790b6
+// Version: 0.2.0, hash 83f6c59e9403abd1
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
 //   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
 //
@@ -155,7 +155,7 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
 
 // Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y, which is width times the normal of
 // curvature_frame, the numerator is a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
-// asymmetry. With it the result is never above the square of curvature_mean, so that principal curvatures H +- sqrt(H^2 - K) exist.
+// asymmetry. With it K is at most H^2, but for rounding: principal curvatures are H +- sqrt(max(H^2 - K, 0)).
 // Returns: the Gaussian curvature, 1 / R^2 on a sphere, 0 on a cylinder, negative on a saddle. Below CURVATURE_EDGE_ON it fades to 0 as the square of
 //   curvature_mean does; 0 where a position derivative is 0.
 // Units: one over the position's, squared.

@@ -93,6 +93,8 @@ pub struct Row {
     pub broken_promises: Vec<String>,
     /// Branches beside which a result is wrong, one float to either side, with the input at which it is.
     pub broken_branches: Vec<String>,
+    /// Why inputs beside branches were not tested: what the interpreter cannot run; null where they were.
+    pub branches_untested: Option<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
@@ -232,14 +234,18 @@ pub fn run_keeping(
         .map_err(in_function)?;
     // A function whose loops do not end takes as long on the CPU, and has failed.
     let branches = if report.stopped > 0 {
-        Vec::new()
+        Ok(Vec::new())
     } else {
         seams::of_source(located(formula, source).1, formula, &mut kernel, &tolerance, settings.seed)
             .map_err(in_function)?
     };
-    let branches = branches.iter().map(ToString::to_string).collect();
+    let (branches, branches_untested) = match branches {
+        Ok(faults) => (faults.iter().map(ToString::to_string).collect(), None),
+        Err(stopped) => (Vec::new(), Some(stopped.to_string())),
+    };
     let reproduce = reproduce(formula, source, settings);
     let mut row = row(formula, &report, Broken { hard_cases, promises, branches }, failure, reproduce);
+    row.branches_untested = branches_untested;
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
@@ -319,6 +325,7 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         broken_hard_cases: broken.hard_cases,
         broken_promises: broken.promises,
         broken_branches: broken.branches,
+        branches_untested: None,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),

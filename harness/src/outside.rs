@@ -1,6 +1,7 @@
 //! What a function promises outside of its domain, as its `Outside:` line says it, tested: hostile inputs, and what must hold of
 //! the results there. The promises stand in `formulas/outside/`.
 
+use crate::check::literal::{self, Language};
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::value::{Arguments, Value};
 use crate::dispatch::{DispatchError, Kernel};
@@ -170,7 +171,7 @@ pub fn broken(
             faults.push(format!(
                 "outside of its domain it promises `{}`; at {}: {why}",
                 promise.says,
-                crate::check::spell(formula, row)
+                literal::call(Language::Wgsl, formula, row)
             ));
         }
     }

@@ -290,7 +290,8 @@ pub fn table_texel(texel: UVec2, size: UVec2, tint: Vec3) -> Vec3 {
     let place = texel.min(last).as_vec2();
     let end = last.as_vec2();
     let cosine = (2.0 * place.x - end.x) / end.x;
-    // 1e-30 stands for 0: times the least tint the last row's sigma is 1e10, from where on the reflectance is that of infinity.
+    // 1e-30 stands for 0: times the least tint the last row's sigma is at least 1e10; from 8 on the reflectance is that of
+    // infinity.
     let sigma = place.y / (end.y - place.y).max(1e-30);
     Vec3::new(accurate(cosine, tint.x * sigma), accurate(cosine, tint.y * sigma), accurate(cosine, tint.z * sigma))
 }

@@ -97,6 +97,8 @@ impl Machine for Slacking {
         }
         match slack {
             Slack::Rounded => rounded(exact, direction),
+            // The units in the last place of 0 are subnormal: WGSL would let 0 / x be one, but no device is that odd.
+            Slack::Ulps(_) if exact == 0.0 => nearest,
             Slack::Ulps(ulps) => within(exact, direction, ulps),
             Slack::Absolute(most) => (exact + direction * most) as f32,
             Slack::Root if exact == 0.0 => 0.0,

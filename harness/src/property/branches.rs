@@ -55,12 +55,10 @@ pub fn all() -> &'static [Line] {
 }
 
 fn read(line: &'static str) -> Option<Line> {
-    let mut parts = line.split(" | ").map(str::trim);
+    let mut parts = line.splitn(4, " | ").map(str::trim);
     let (function, what, place) = (parts.next()?, parts.next()?, parts.next()?);
-    // A condition may have the separator in it.
-    let mut rest: Vec<&str> = parts.collect();
-    let reason = rest.pop().filter(|reason| !reason.is_empty())?;
-    rest.is_empty().then_some(Line { function, exception: Exception::named(what)?, place, reason })
+    let reason = parts.next().filter(|reason| !reason.is_empty())?;
+    Some(Line { function, exception: Exception::named(what)?, place, reason })
 }
 
 /// Whether the list excepts this.

@@ -7,7 +7,7 @@
 
 use super::draws::mix;
 use super::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
-use crate::check::spell;
+use crate::check::literal::{self, Language};
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
@@ -116,6 +116,9 @@ impl Finder<'_> {
     /// From a row to the same with one float moved by an ulp: this is how a branch is met that only one number takes.
     fn nudge(&self, seed: u64, attempt: u64) -> Result<Option<Seam>, Stopped> {
         let row = self.formula.domain.row(seed, attempt);
+        if row.is_empty() {
+            return Ok(None);
+        }
         let chance = mix(seed ^ mix(!attempt));
         let word = (chance % row.len() as u64) as usize;
         let value = f32::from_bits(row[word]);
@@ -254,7 +257,7 @@ pub fn faults(
             None => continue,
         };
         let line = program.line(site).to_owned();
-        faults.push(Fault { line, what: format!("{fault} at {}", spell(formula, row)) });
+        faults.push(Fault { line, what: format!("{fault} at {}", literal::call(Language::Wgsl, formula, row)) });
     }
     Ok(faults)
 }
@@ -262,21 +265,25 @@ pub fn faults(
 /// [`Tolerance::judge`] or [`Tolerance::judge_thoroughly`].
 type Judge = fn(&Tolerance, &[u32], &[u32], &[u32], &[f64], OracleFn<'_>) -> Verdict;
 
-/// What `cook check` says of the branches of a formula's function in `source`: up to three faults, at inputs of the domain. Nothing where the
-/// interpreter cannot run the function.
+/// What `cook check` says of the branches of a formula's function in `source`: up to three faults, at inputs of the domain. Where the interpreter
+/// cannot run the function, why.
 pub fn of_source(
     source: &str,
     formula: &Formula,
     kernel: &mut Kernel<'_>,
     tolerance: &Tolerance,
     seed: u64,
-) -> Result<Vec<Fault>, DispatchError> {
+) -> Result<Result<Vec<Fault>, Stopped>, DispatchError> {
     let program = Program::new(source, formula.module, formula.function)?;
-    let Ok(seams) = find(&program, formula, seed) else { return Ok(Vec::new()) };
+    let seams = match find(&program, formula, seed) {
+        Ok(seams) => seams,
+        Err(stopped) => return Ok(Err(stopped)),
+    };
     let mut found = faults(&program, formula, kernel, tolerance, &seams, |seam| seam.drawn.clone())?;
+    found.sort_by(|one, other| one.line.cmp(&other.line));
     found.dedup_by(|one, other| one.line == other.line);
     found.truncate(3);
-    Ok(found)
+    Ok(Ok(found))
 }
 
 /// A seam's sides and the next floats beyond each.

@@ -13,7 +13,7 @@ const MOST_CORNERS: [u64; 2] = [256, 1024];
 /// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
 const BISECTIONS: usize = 30;
 
-/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁴ of the box's width, an extremum to the square of that.
+/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁶ of the box's width, an extremum to the square of that.
 const SECTIONS: usize = 20;
 
 /// Rounds over all inputs on the way to an extremum.
@@ -67,8 +67,10 @@ pub struct Search<'a> {
     met: [bool; 2],
     /// The range over the points where it gave either.
     spread: Spread,
-    /// Where each result was least and where it was greatest, once a search for extrema may start from there.
-    ends: Option<Vec<[Vec<f64>; 2]>>,
+    /// Where each result was least and where it was greatest: a search for extrema starts from there.
+    ends: Vec<[Vec<f64>; 2]>,
+    /// Whether boundaries have been looked for.
+    has_boundaries: bool,
     result: Vec<f64>,
 }
 
@@ -84,7 +86,9 @@ impl<'a> Search<'a> {
             high: vec![f64::NEG_INFINITY; gpu.len()],
             gpu_and_mirror_agree: wanted[0] == wanted[1],
         };
-        Self { oracle, places, wanted, met: [false; 2], spread, ends: None, result: Vec::with_capacity(gpu.len()) }
+        let ends = vec![Default::default(); gpu.len()];
+        let result = Vec::with_capacity(gpu.len());
+        Self { oracle, places, wanted, met: [false; 2], spread, ends, has_boundaries: false, result }
     }
 
     /// The range, as far as it was found; none where the oracle did not give both cases.
@@ -99,8 +103,8 @@ impl<'a> Search<'a> {
             Effort::Boundaries => 0,
             Effort::Starts => STARTS,
         };
-        if self.ends.is_none() {
-            self.ends = Some(vec![Default::default(); results[0].len()]);
+        if !self.has_boundaries {
+            self.has_boundaries = true;
             self.corners(effort, inputs, &enough);
         }
         // A case may be so thin that hardly a way between corners ends in it.
@@ -131,11 +135,8 @@ impl<'a> Search<'a> {
                 let above = *value > self.spread.high[index];
                 self.spread.low[index] = self.spread.low[index].min(*value);
                 self.spread.high[index] = self.spread.high[index].max(*value);
-                if let Some(ends) = &mut self.ends {
-                    for end in [below, above].iter().zip(&mut ends[index]).filter_map(|(is, end)| is.then_some(end)) {
-                        point.clone_into(end);
-                    }
-                }
+                let ends = [below, above].into_iter().zip(&mut self.ends[index]);
+                ends.filter(|(is_new, _)| *is_new).for_each(|(_, end)| point.clone_into(end));
             }
         }
         Some(found)
@@ -159,7 +160,7 @@ impl<'a> Search<'a> {
     fn extrema(&mut self, inputs: &InputBox, results: [&[u32]; 2], starts: u64, enough: impl Fn(&Spread) -> bool) {
         for words in results {
             for (index, word) in words.iter().enumerate() {
-                // Of a discrete result the bits are no number to approach; as one they lie far from the range.
+                // Of a discrete result the bits are no number to approach; its range has no width, and nothing lies beside it.
                 let value = f64::from(f32::from_bits(*word));
                 let (low, high) = (self.spread.low[index], self.spread.high[index]);
                 let sign = if value < low && low - value < high - low {
@@ -169,8 +170,7 @@ impl<'a> Search<'a> {
                 } else {
                     continue;
                 };
-                let best = self.ends.as_ref().map(|ends| ends[index][usize::from(sign < 0.0)].clone());
-                let best = best.filter(|point| !point.is_empty()).unwrap_or_else(|| inputs.centre.clone());
+                let best = self.ends[index][usize::from(sign < 0.0)].clone();
                 for start in std::iter::once(best).chain((0..starts).map(|start| inputs.place(start))) {
                     self.descend(inputs, start, (index, sign), &enough);
                     if enough(&self.spread) {

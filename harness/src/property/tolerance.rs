@@ -91,7 +91,7 @@ impl Tolerance {
         self.judge_by(&[Effort::Corners, Effort::Boundaries], arguments, [gpu, mirror], exact, oracle)
     }
 
-    /// [`Tolerance::judge`] with a search that costs some thousand calls of `oracle` more, for rows that it finds wrong.
+    /// [`Tolerance::judge`] with a search that costs some ten thousand calls of `oracle` more, for rows that it finds wrong.
     pub fn judge_thoroughly(
         &self,
         arguments: &[u32],
@@ -248,13 +248,7 @@ impl Tolerance {
 
 /// A NaN in either counts as failing.
 fn ratio_of(error: f64, allowed: f64) -> f64 {
-    if error <= allowed {
-        error / allowed
-    } else if error.is_nan() {
-        f64::INFINITY
-    } else {
-        error / allowed
-    }
+    if error <= allowed || error > allowed { error / allowed } else { f64::INFINITY }
 }
 
 /// A word as the number that it stands for.

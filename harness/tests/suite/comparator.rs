@@ -243,7 +243,7 @@ fn the_highest_of_several_extrema_is_found_thoroughly() {
 #[test]
 fn a_case_too_thin_for_corners_is_found_thoroughly() {
     // A triangle seen all but edge-on.
-    let oracle = |x: f64, y: f64| (0.0..0.02).contains(&(x - 1.03 * y - 0.3)).then(|| 5.0 + x);
+    let oracle = |x: f64, y: f64| (0.0..0.02).contains(&(x - 1.03 * y - 0.3)).then_some(5.0 + x);
     let [quick, thorough] = beside_a_flag(6.0, oracle);
     assert!(!quick.holds() && thorough.holds(), "{quick:?}, {thorough:?}");
     assert!(!beside_a_flag(14.0, oracle)[1].holds());

@@ -155,6 +155,41 @@ fn refraction_reflect(
 }
 ";
 
+/// `proxy_geometry_face_normal` as release 0.1.0 had it.
+const OLD_FACE_NORMAL: &str = "\
+fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
+    let edge_first = position_second - position_first;
+    let edge_second = position_third - position_first;
+    let size_first = max(max(abs(edge_first.x), abs(edge_first.y)), abs(edge_first.z));
+    let size_second = max(max(abs(edge_second.x), abs(edge_second.y)), abs(edge_second.z));
+    if (min(size_first, size_second) == 0.0f) {
+        return vec3f(0.0f);
+    }
+    let first = edge_first / size_first;
+    let second = edge_second / size_second;
+    let apart = select(second - first, second + first, dot(first, second) < 0.0f);
+    let perpendicular = cross(first, apart);
+    let squared = dot(perpendicular, perpendicular);
+    if (squared == 0.0f) {
+        return vec3f(0.0f);
+    }
+    return perpendicular / sqrt(squared);
+}
+";
+
+#[test]
+fn an_old_copy_is_told_what_was_mended_since_and_fails() {
+    let folder = folder();
+    std::fs::write(folder.path().join("engine.wgsl"), OLD_FACE_NORMAL).expect("a file");
+    let answer = cook(folder.path(), &["check", "proxy_geometry::face_normal", "--wgsl", "engine.wgsl"]);
+    assert_eq!(answer.code, Some(1), "{answer:?}");
+    for said in
+        ["of release 0.1.0", "mended since: `proxy_geometry_face_normal` (0.2.0", "crosses the two shortest edges"]
+    {
+        assert!(answer.stdout.contains(said), "{said}: {answer:?}");
+    }
+}
+
 #[test]
 fn an_old_copy_is_recognised_in_whatever_file_it_is() {
     let found = Hashes::of("refraction", OLD_REFLECTION);

@@ -98,7 +98,7 @@ pub(super) fn notes(notes: &[String], releases: &[Standing]) -> Vec<String> {
 
 /// What is wrong with a function, or missing in its test; nothing where all is well.
 fn details(row: &Row, style: Style, text: &mut String) {
-    if row.passed() && row.missed_edges.is_empty() {
+    if row.passed() && row.missed_edges.is_empty() && row.branches_untested.is_none() {
         return;
     }
     let _ = writeln!(text, "\n{} {}", style.verdict(row), row.function);
@@ -113,6 +113,9 @@ fn details(row: &Row, style: Style, text: &mut String) {
     }
     for broken in row.broken_promises.iter().chain(&row.broken_branches) {
         let _ = writeln!(text, "  {broken}");
+    }
+    if let Some(why) = &row.branches_untested {
+        let _ = writeln!(text, "  inputs beside its branches were not tested: {why}");
     }
     for edge in &row.missed_edges {
         let advice = if row.passed() { "" } else { ", which fails the check" };
