@@ -4,6 +4,7 @@
 use crate::dispatch::shape::Shape;
 use crate::dispatch::value::{Arguments, Exact, Function, Value};
 use crate::property::draws::{Domain, Draws};
+use crate::property::tolerance::number;
 
 /// A row's words.
 pub type Words = Vec<u32>;
@@ -95,6 +96,28 @@ pub struct Formula {
 impl std::fmt::Debug for Formula {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Formula").field("function", &self.function).finish_non_exhaustive()
+    }
+}
+
+impl Formula {
+    /// A row's words as the numbers that they stand for: what the oracle takes.
+    pub fn numbers(&self, row: &[u32]) -> Vec<f64> {
+        let scalars = self.arguments.iter().flat_map(Shape::scalars);
+        row.iter().zip(scalars).map(|(word, scalar)| number(scalar, *word)).collect()
+    }
+
+    /// The mirror's result at a row.
+    pub fn mirrored(&self, row: &[u32]) -> Words {
+        let mut result = Words::new();
+        (self.mirror)(row, &mut result);
+        result
+    }
+
+    /// The oracle's result at a row.
+    pub fn exact(&self, row: &[u32]) -> Vec<f64> {
+        let mut result = Vec::new();
+        (self.oracle)(&self.numbers(row), &mut result);
+        result
     }
 }
 

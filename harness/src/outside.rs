@@ -202,11 +202,6 @@ fn same_bits(formula: &Formula, result: &[u32], other: &[u32]) -> Result<(), Str
 }
 
 fn within_accuracy(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32]) -> Result<(), String> {
-    let (mut mirrored, mut exact) = (Words::new(), Vec::new());
-    (formula.mirror)(row, &mut mirrored);
-    let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-    let numbers: Vec<f64> = row.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
-    (formula.oracle)(&numbers, &mut exact);
-    let verdict = tolerance.judge(row, result, &mirrored, &exact, &*formula.oracle);
+    let verdict = tolerance.judge(row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle);
     if verdict.holds() { Ok(()) } else { Err(format!("off by {:.2} times the allowed error", verdict.ratio)) }
 }

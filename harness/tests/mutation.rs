@@ -10,7 +10,6 @@
 
 use lapidary_harness::check;
 use lapidary_harness::cookbook;
-use lapidary_harness::dispatch::shape::Shape;
 use lapidary_harness::dispatch::{Kernel, KernelModule};
 use lapidary_harness::formula::{Formula, Words};
 use lapidary_harness::formulas;
@@ -18,7 +17,7 @@ use lapidary_harness::gpu::{AdapterChoice, Gpu};
 use lapidary_harness::mutation::{self, Mutant};
 use lapidary_harness::outside;
 use lapidary_harness::property::seed::SuiteSeed;
-use lapidary_harness::property::tolerance::{Tolerance, number};
+use lapidary_harness::property::tolerance::Tolerance;
 use lapidary_harness::property::{Check, Settings};
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -385,18 +384,7 @@ impl<'gpu> Kept<'gpu> {
             KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
         let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(SEED, row));
         let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
-        let scalars: Vec<_> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-        let mut mirrored = Vec::new();
-        let mut exact = Vec::new();
-        for row in &rows {
-            let mut words = Words::new();
-            (formula.mirror)(row, &mut words);
-            mirrored.push(words);
-            let numbers: Vec<f64> = row.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
-            let mut result = Vec::new();
-            (formula.oracle)(&numbers, &mut result);
-            exact.push(result);
-        }
+        let (mirrored, exact) = rows.iter().map(|row| (formula.mirrored(row), formula.exact(row))).unzip();
         let tolerance = check::tolerance(gpu, formula);
         Kept {
             formula,

@@ -1,7 +1,7 @@
 //! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
 
 use super::literal::{Language, call, value};
-use crate::dispatch::shape::{Scalar, Shape};
+use crate::dispatch::shape::Scalar;
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::property::tolerance::{Allowed, Tolerance, number};
@@ -55,12 +55,9 @@ impl Failure {
         tolerance: &Tolerance,
         arguments: &Words,
     ) -> Result<Failure, DispatchError> {
-        let (mut got, mut mirrored, mut exact) = (Words::new(), Words::new(), Vec::new());
+        let mut got = Words::new();
         kernel.run(arguments, &mut got)?;
-        (formula.mirror)(arguments, &mut mirrored);
-        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-        let numbers: Vec<f64> = arguments.iter().zip(&scalars).map(|(word, kind)| number(*kind, *word)).collect();
-        (formula.oracle)(&numbers, &mut exact);
+        let (mirrored, exact) = (formula.mirrored(arguments), formula.exact(arguments));
         let rounded: Words =
             formula.result.scalars().iter().zip(&exact).map(|(kind, number)| to_word(*kind, *number)).collect();
         let fields = tolerance

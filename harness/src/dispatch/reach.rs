@@ -1,6 +1,7 @@
 //! What a function reaches: the functions that it calls, and the module-scope variables that those read. A function that
 //! a kernel calls must be pure, and small enough for a compiler to inline into one piece.
 
+use crate::specialise::operands::for_each_statement;
 use naga::{AddressSpace, Expression, Function, Handle, Module, Span, Statement, TypeInner};
 use std::collections::BTreeSet;
 
@@ -98,7 +99,7 @@ fn costs(module: &Module) -> Result<Vec<Cost>, Fault> {
                 cost.bytes = cost.bytes.saturating_add(size(ty));
             }
         }
-        each_statement(&function.body, &mut |statement| {
+        for_each_statement(&function.body, &mut |statement| {
             cost.inlined = cost.inlined.saturating_add(1);
             if let Statement::Call { function, .. } = statement {
                 let callee = costs[function.index()];
@@ -146,7 +147,7 @@ fn reached(module: &Module, root: Handle<Function>) -> BTreeSet<Handle<Function>
     let mut found = BTreeSet::from([root]);
     let mut ahead = vec![root];
     while let Some(handle) = ahead.pop() {
-        each_statement(&module.functions[handle].body, &mut |statement| {
+        for_each_statement(&module.functions[handle].body, &mut |statement| {
             if let Statement::Call { function, .. } = statement
                 && found.insert(*function)
             {
@@ -185,7 +186,7 @@ fn pure(module: &Module, function: &Function, root: &str) -> Result<(), Fault> {
         return Err(Fault { span, message });
     }
     let mut barrier = false;
-    each_statement(&function.body, &mut |statement| {
+    for_each_statement(&function.body, &mut |statement| {
         barrier |= matches!(statement, Statement::ControlBarrier(_) | Statement::MemoryBarrier(_));
     });
     if barrier {
@@ -193,24 +194,4 @@ fn pure(module: &Module, function: &Function, root: &str) -> Result<(), Fault> {
         return Err(Fault { span: Span::UNDEFINED, message });
     }
     Ok(())
-}
-
-/// Calls `visit` for every statement of a block, those inside others included.
-pub(super) fn each_statement(block: &naga::Block, visit: &mut impl FnMut(&Statement)) {
-    for statement in block.iter() {
-        visit(statement);
-        match statement {
-            Statement::Block(block) => each_statement(block, visit),
-            Statement::If { accept, reject, .. } => {
-                each_statement(accept, visit);
-                each_statement(reject, visit);
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|case| each_statement(&case.body, visit)),
-            Statement::Loop { body, continuing, .. } => {
-                each_statement(body, visit);
-                each_statement(continuing, visit);
-            }
-            _ => {}
-        }
-    }
 }

@@ -4,7 +4,7 @@
 //! little earlier, and writes the count of each row beside the result.
 
 use super::kernel::ENTRY_POINT;
-use super::reach::each_statement;
+use crate::specialise::operands::for_each_statement;
 use naga::{AddressSpace, BinaryOperator, Block, Expression, Handle, Literal, Span, Statement, Type, TypeInner};
 
 /// Most turns of all loops of an invocation together on lavapipe: below its own limit by more than what its compiler
@@ -62,7 +62,7 @@ pub(super) fn one_row_a_workgroup(kernel: &mut naga::EntryPoint) {
 
 fn has_loop(block: &Block) -> bool {
     let mut found = false;
-    each_statement(block, &mut |statement| found |= matches!(statement, Statement::Loop { .. }));
+    for_each_statement(block, &mut |statement| found |= matches!(statement, Statement::Loop { .. }));
     found
 }
 

@@ -1,6 +1,5 @@
 //! Property testing on a GPU: batches of inputs a dispatch, every row compared, the worst one shrunk alone.
 
-pub mod branches;
 pub mod draws;
 pub mod histogram;
 pub mod persistence;

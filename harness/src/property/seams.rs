@@ -238,12 +238,8 @@ pub fn faults(
     }
     let mut results = Words::new();
     kernel.run(&rows.concat(), &mut results)?;
-    let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
     for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
-        let numbers: Vec<f64> = row.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
-        let (mut mirrored, mut exact) = (Words::new(), Vec::new());
-        (formula.mirror)(row, &mut mirrored);
-        (formula.oracle)(&numbers, &mut exact);
+        let (mirrored, exact) = (formula.mirrored(row), formula.exact(row));
         let judge = |by: Judge| by(tolerance, row, result, &mirrored, &exact, &*formula.oracle);
         // Of a function that is wrong everywhere a few faults are enough, and need no long search.
         let quick = judge(Tolerance::judge);
@@ -307,9 +303,7 @@ pub fn beside(seam: &Seam) -> Vec<Words> {
 /// By how much the oracle jumps between a seam's sides, if by more than the tolerances of both allow: halving towards the greater change leaves
 /// less and less of a continuous function, and all of a jump. None where a discrete result changes, which says so itself.
 pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64> {
-    let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-    let numbers = |side: &Words| -> Vec<f64> { side.iter().zip(&scalars).map(|(w, s)| number(*s, *w)).collect() };
-    let [start, end] = seam.sides.each_ref().map(numbers);
+    let [start, end] = seam.sides.each_ref().map(|side| formula.numbers(side));
     let at = |place: f64| {
         let mut point = start.clone();
         point[seam.word] = place;

@@ -69,8 +69,6 @@ pub struct Search<'a> {
     spread: Spread,
     /// Where each result was least and where it was greatest: a search for extrema starts from there.
     ends: Vec<[Vec<f64>; 2]>,
-    /// Whether boundaries have been looked for.
-    has_boundaries: bool,
     result: Vec<f64>,
 }
 
@@ -88,7 +86,7 @@ impl<'a> Search<'a> {
         };
         let ends = vec![Default::default(); gpu.len()];
         let result = Vec::with_capacity(gpu.len());
-        Self { oracle, places, wanted, met: [false; 2], spread, ends, has_boundaries: false, result }
+        Self { oracle, places, wanted, met: [false; 2], spread, ends, result }
     }
 
     /// The range, as far as it was found; none where the oracle did not give both cases.
@@ -96,25 +94,26 @@ impl<'a> Search<'a> {
         (self.met == [true; 2]).then_some(&self.spread)
     }
 
-    /// Looks for the range until `enough`. `results` are the shader's and the mirror's.
+    /// Looks for the range until `enough`, after all lesser efforts. `results` are the shader's and the mirror's.
     pub fn look(&mut self, effort: Effort, inputs: &InputBox, results: [&[u32]; 2], enough: impl Fn(&Spread) -> bool) {
         let starts = match effort {
             Effort::Corners => return self.corners(effort, inputs, enough),
-            Effort::Boundaries => 0,
-            Effort::Starts => STARTS,
-        };
-        if !self.has_boundaries {
-            self.has_boundaries = true;
-            self.corners(effort, inputs, &enough);
-        }
-        // A case may be so thin that hardly a way between corners ends in it.
-        for number in 0..starts * PLACES_PER_START {
-            if self.met == [true; 2] && enough(&self.spread) {
-                return;
+            Effort::Boundaries => {
+                self.corners(effort, inputs, &enough);
+                0
             }
-            self.visit(&inputs.place(number));
-        }
-        if self.met == [true; 2] && !enough(&self.spread) {
+            Effort::Starts => {
+                // A case may be so thin that hardly a way between corners ends in it.
+                for number in 0..STARTS * PLACES_PER_START {
+                    if self.spread().is_some_and(&enough) {
+                        return;
+                    }
+                    self.visit(&inputs.place(number));
+                }
+                STARTS
+            }
+        };
+        if self.spread().is_some_and(|spread| !enough(spread)) {
             self.extrema(inputs, results, starts, enough);
         }
     }
@@ -283,7 +282,7 @@ impl<'a> Search<'a> {
                 previous.copy_from_slice(point);
                 at_previous = at_point;
             }
-            search.met[0] && search.met[1] && enough(&search.spread)
+            search.spread().is_some_and(&enough)
         };
         let mut point = centre.clone();
         for index in moving {

@@ -3,8 +3,7 @@
 //! What the reference device computes says little of other devices. The `portable` bounds are held to this instead.
 
 use super::draws::mix;
-use super::tolerance::{Tolerance, number};
-use crate::dispatch::shape::{Scalar, Shape};
+use super::tolerance::Tolerance;
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Program, Slacking, Stopped};
 use rayon::prelude::*;
@@ -32,15 +31,12 @@ pub fn worst(
     seed: u64,
     rows: u64,
 ) -> Result<Worst, Stopped> {
-    let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
     let random = (0..rows).into_par_iter().map(|row| formula.domain.row(seed, row));
     let hard = formula.hard_cases.par_iter().map(|case| case.arguments.clone());
     let found: Vec<Worst> = random
         .chain(hard)
         .map(|arguments| {
-            let numbers: Vec<f64> = arguments.iter().zip(&scalars).map(|(w, s)| number(*s, *w)).collect();
-            let mut exact = Vec::new();
-            (formula.oracle)(&numbers, &mut exact);
+            let exact = formula.exact(&arguments);
             let climb = Climb { program, formula, tolerance, arguments: &arguments, exact };
             let ratio = climb.run(seed)?;
             Ok(Worst { ratio, arguments })

@@ -1,16 +1,16 @@
 //! Continuity: both sides of every branch of every function, one ulp apart.
 
+mod branches;
+
+use branches::{Exception, Line};
 use lapidary_harness::check::{self, Source};
 use lapidary_harness::cookbook;
 use lapidary_harness::dispatch::Kernel;
-use lapidary_harness::dispatch::shape::{Scalar, Shape};
 use lapidary_harness::formula::Formula;
 use lapidary_harness::formulas;
 use lapidary_harness::interpreter::{Nearest, Program};
 use lapidary_harness::property::Settings;
-use lapidary_harness::property::branches::{self, Exception, Line};
 use lapidary_harness::property::seams::{self, Fault, Seam};
-use lapidary_harness::property::tolerance::number;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
@@ -43,17 +43,14 @@ fn the_interpreter_computes_what_the_shaders_do() {
     let mut faults = Vec::new();
     for formula in promised() {
         let (program, tolerance) = (program(formula), check::tolerance(gpu, formula));
-        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
         for row in 0..200 {
             let arguments = formula.domain.row(Settings::default().seed, row);
-            let (mut result, mut mirrored, mut exact) = (Vec::new(), Vec::new(), Vec::new());
+            let mut result = Vec::new();
             if let Err(stopped) = program.run(&arguments, &mut Nearest, &mut result) {
                 faults.push(format!("{}: {stopped}", formula.function));
                 break;
             }
-            (formula.mirror)(&arguments, &mut mirrored);
-            let numbers: Vec<f64> = arguments.iter().zip(&scalars).map(|(w, s)| number(*s, *w)).collect();
-            (formula.oracle)(&numbers, &mut exact);
+            let (mirrored, exact) = (formula.mirrored(&arguments), formula.exact(&arguments));
             let verdict = tolerance.judge(&arguments, &result, &mirrored, &exact, &*formula.oracle);
             if !verdict.holds() {
                 faults.push(format!("{}: {verdict:?} at {}", formula.function, check::spell(formula, &arguments)));

@@ -1,4 +1,4 @@
-//! Branches that continuity does not hold for, each with a reason: `branches.txt`.
+//! Branches that continuity does not hold for, each with a reason: `tests/branches.txt`.
 
 use std::sync::LazyLock;
 
@@ -47,7 +47,7 @@ pub struct Line {
 /// Where a line is not `function | what | where | why`, which a test forbids.
 pub fn all() -> &'static [Line] {
     static ALL: LazyLock<Vec<Line>> = LazyLock::new(|| {
-        let text = include_str!("branches.txt");
+        let text = include_str!("../../branches.txt");
         let lines = text.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
         lines.map(|line| read(line).unwrap_or_else(|| panic!("branches.txt: {line}"))).collect()
     });
