@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn the_specialised_gem_is_smaller() {
         let of = |constants: &[(&str, f64)]| {
-            let (module, _) = dispatch::parse(&cookbook::recipe_source("gem"), "gem").expect("a valid recipe");
+            let (module, _) = dispatch::parse(&lapidary_wgsl::recipe_source("gem"), "gem").expect("a valid recipe");
             let entry_points = ["gem_vertex", "gem_fragment"];
             let (module, info) = specialise::specialise(module, constants, &entry_points).expect("specialises");
             spirv_counts(&module, &info, entry_points[0], entry_points[1]).expect("counts")

@@ -1,7 +1,6 @@
 //! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
 
 use crate::compute::Kernel;
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
@@ -69,7 +68,7 @@ impl<'gpu> Voxelizer<'gpu> {
         effects: &[(&str, f64)],
     ) -> Result<Self, ShaderError> {
         assert!(most_triangles <= MOST_TRIANGLES, "{most_triangles} triangles");
-        let source = cookbook::recipe_source(RECIPE);
+        let source = lapidary_wgsl::recipe_source(RECIPE);
         let kernel = |entry| Kernel::new(gpu, RECIPE, &source, entry, effects);
         let kernels =
             [kernel("voxelization_triangles")?, kernel("voxelization_large")?, kernel("voxelization_finish")?];

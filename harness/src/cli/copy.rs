@@ -3,10 +3,11 @@
 use super::{Failure, Outcome, output};
 use lapidary_harness::cookbook::marks::{effect_of, effects, override_of};
 use lapidary_harness::cookbook::translate::{Target, translate};
-use lapidary_harness::cookbook::{self, Module, Recipe};
+use lapidary_harness::cookbook::{self, Module};
 use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_harness::nearest;
 use lapidary_harness::render::file;
+use lapidary_wgsl::Recipe;
 use std::path::PathBuf;
 
 /// One self-contained file to paste: modules, or a recipe with all that it requires.
@@ -65,7 +66,7 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
     for name in names {
         let (name, part) = name.split_once("::").map_or((name.as_str(), None), |(name, part)| (name, Some(part)));
         let alone = names.len() == 1;
-        if let Some(recipe) = cookbook::recipe(name) {
+        if let Some(recipe) = lapidary_wgsl::recipe(name) {
             if !alone {
                 return Err(Failure(format!("`{name}` is a recipe, which holds its modules already; copy it alone")));
             }
@@ -75,7 +76,7 @@ fn select(names: &[String]) -> Result<Selection, Failure> {
             let known: Vec<&str> = cookbook::modules()
                 .iter()
                 .map(|module| module.name)
-                .chain(cookbook::recipes().iter().map(|recipe| recipe.name))
+                .chain(lapidary_wgsl::RECIPES.iter().map(|recipe| recipe.name))
                 .collect();
             return Err(Failure(format!("no module or recipe `{name}`{}", nearest::suggest(name, &known))));
         };
@@ -109,7 +110,7 @@ fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
         );
         return Err(Failure(message));
     }
-    of_source(&cookbook::compose(&names, ""), &names.join("+"), to, None)
+    of_source(&lapidary_wgsl::compose(&names, ""), &names.join("+"), to, None)
 }
 
 fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {

@@ -47,8 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             output::line(&format!("  {}\n      {}", row.signature, row.accuracy))?;
         }
     }
-    for recipe in cookbook::recipes() {
-        output::line(&format!("recipe {}: requires {}", recipe.name, recipe.requires.join(", ")))?;
+    for recipe in lapidary_wgsl::RECIPES {
+        output::line(&format!("recipe {}: requires {}", recipe.name, recipe.requires().join(", ")))?;
     }
     Ok(Outcome::Passed)
 }

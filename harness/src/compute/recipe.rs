@@ -1,7 +1,6 @@
 //! A recipe's compute entry point, run once over buffers of its own.
 
 use super::Kernel;
-use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::shader::ShaderError;
 
@@ -39,7 +38,7 @@ pub struct RecipeRun<'a> {
 /// # Panics
 /// Where no binding is a result.
 pub fn run_recipe<T>(gpu: &Gpu, run: &RecipeRun<'_>, read: impl FnOnce(&[u8]) -> T) -> Result<T, ShaderError> {
-    let kernel = Kernel::new(gpu, run.recipe, &cookbook::recipe_source(run.recipe), run.entry, run.constants)?;
+    let kernel = Kernel::new(gpu, run.recipe, &lapidary_wgsl::recipe_source(run.recipe), run.entry, run.constants)?;
     let (readback, bytes) = gpu.guarded(&format!("running recipe `{}`", run.recipe), |device| {
         let label = |what: &str| format!("{} of {}", what, run.recipe);
         let filled = |what: &str, contents: &[u8], usage| {

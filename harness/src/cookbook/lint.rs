@@ -175,7 +175,7 @@ fn check_purity(source: &str, module: &naga::Module, report: &mut Report<'_>) {
 }
 
 fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Report<'_>) {
-    let prefixes = super::prefixes(name);
+    let prefixes = lapidary_wgsl::prefixes(name);
     let mut globals: Vec<(&str, &str)> = Vec::new();
     let functions = module.functions.iter().filter_map(|(_, function)| function.name.as_deref());
     globals.extend(functions.map(|found| (found, prefixes[0].as_str())));

@@ -1,5 +1,5 @@
-//! The cookbook as data: which modules and recipes there are, what their comments promise, how they are put together
-//! and written for other shading languages.
+//! The cookbook as data: what the modules' comments promise, the contract that modules and recipes keep, and how they are written for other
+//! shading languages.
 
 pub mod accuracy_line;
 pub mod header;
@@ -35,32 +35,6 @@ impl Module {
     }
 }
 
-/// A complete shader written with the modules' functions.
-#[derive(Clone, Debug)]
-pub struct Recipe {
-    /// Its name.
-    pub name: &'static str,
-    /// Its WGSL, without the modules that it requires and the parts that it shares.
-    pub source: &'static str,
-    /// The modules that its `// requires:` line names, in order.
-    pub requires: Vec<&'static str>,
-    /// The parts that its `// parts:` line names, in order.
-    pub parts: Vec<&'static lapidary_wgsl::Part>,
-}
-
-impl Recipe {
-    /// The whole shader: the required modules in the order of the `// requires:` line, the parts, then the recipe.
-    pub fn compose(&self) -> String {
-        let parts = self.parts.iter().map(|part| part.source);
-        compose(&self.requires, &parts.chain([self.source]).collect::<Vec<_>>().join("\n"))
-    }
-
-    /// The recipe's own text: the parts, then the recipe, without the modules.
-    pub fn own_text(&self) -> impl Iterator<Item = &'static str> + '_ {
-        self.parts.iter().map(|part| part.source).chain([self.source])
-    }
-}
-
 /// All modules, in the order of their names.
 ///
 /// # Panics
@@ -85,70 +59,7 @@ pub fn modules() -> &'static [Module] {
     })
 }
 
-/// What the names of a module's functions, structs and consts start with.
-pub fn prefixes(module: &str) -> [String; 3] {
-    let camel = module
-        .split('_')
-        .map(|part| part.chars().next().map_or(String::new(), |c| c.to_uppercase().collect::<String>() + &part[1..]))
-        .collect();
-    [format!("{module}_"), camel, format!("{}_", module.to_uppercase())]
-}
-
 /// The module of that name.
 pub fn module(name: &str) -> Option<&'static Module> {
     modules().iter().find(|module| module.name == name)
-}
-
-/// All recipes, in the order of their names.
-pub fn recipes() -> &'static [Recipe] {
-    static RECIPES: OnceLock<Vec<Recipe>> = OnceLock::new();
-    RECIPES.get_or_init(|| {
-        lapidary_wgsl::RECIPES
-            .iter()
-            .map(|recipe| Recipe {
-                name: recipe.name,
-                source: recipe.source,
-                requires: named(recipe.source, "// requires:").collect(),
-                parts: named(recipe.source, "// parts:").map(part).collect(),
-            })
-            .collect()
-    })
-}
-
-/// The recipe of that name.
-pub fn recipe(name: &str) -> Option<&'static Recipe> {
-    recipes().iter().find(|recipe| recipe.name == name)
-}
-
-/// The names on the line that starts with `tag`.
-fn named(source: &'static str, tag: &'static str) -> impl Iterator<Item = &'static str> {
-    let line = source.lines().find_map(move |line| line.strip_prefix(tag)).unwrap_or_default();
-    line.split(',').map(str::trim).filter(|name| !name.is_empty())
-}
-
-/// The part of that name, which a recipe's `// parts:` line holds.
-fn part(name: &str) -> &'static lapidary_wgsl::Part {
-    let found = lapidary_wgsl::PARTS.iter().find(|part| part.name == name);
-    found.unwrap_or_else(|| panic!("no part `{name}` in wgsl/recipes/parts"))
-}
-
-/// The whole shader of a recipe that is known to exist.
-///
-/// # Panics
-/// Where there is no such recipe: names in the harness are fixed, and a user's is looked up first.
-pub fn recipe_source(name: &str) -> String {
-    recipe(name).unwrap_or_else(|| panic!("no recipe `{name}`")).compose()
-}
-
-/// Modules one after another in the order of `names`, then `last`.
-///
-/// # Panics
-/// Where a module is unknown: recipes are compiled in, and a user's names are looked up first.
-pub fn compose(names: &[&str], last: &str) -> String {
-    let known = |name: &&str| module(name).unwrap_or_else(|| panic!("no module `{name}`")).source;
-    let mut parts: Vec<&str> = names.iter().map(known).collect();
-    if !last.is_empty() {
-        parts.push(last);
-    }
-    parts.join("\n")
 }

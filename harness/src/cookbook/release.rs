@@ -46,7 +46,7 @@ impl Hashes {
 
 /// Whether a name starts with the module's: in the way of functions, structs or consts.
 fn belongs(module: &str, name: &str) -> bool {
-    super::prefixes(module).iter().any(|prefix| name.starts_with(prefix))
+    lapidary_wgsl::prefixes(module).iter().any(|prefix| name.starts_with(prefix))
 }
 
 /// Of a function's tokens, then of those of the structs and consts that it uses in the order of their names.

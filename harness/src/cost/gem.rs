@@ -4,7 +4,6 @@ use super::seen::{SAMPLES, Seen, Watched, steadiness};
 use super::timing::{self, Timed};
 use super::views::{self, View};
 use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_sizes, reflection};
-use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::render::{self, Geometry, Rung, Settings, Spectrum};
 use crate::scene::Scene;
@@ -242,7 +241,7 @@ fn see<'a>(
 /// The rung's shaders for the brilliant, specialised to what it uses, counted in SPIR-V.
 fn count(brilliant: &Scene, entry: &Entry) -> Result<RungReport, CostError> {
     let rung = entry.settings.rung;
-    let source = cookbook::recipe_source(rung.recipe());
+    let source = lapidary_wgsl::recipe_source(rung.recipe());
     let constants = render::gem_constants(brilliant, &entry.settings);
     let shader = Shader::new(rung.recipe(), &source, &["gem_vertex", "gem_fragment"], &constants);
     let counts = shader.map_err(render::RenderError::from)?.counts()?;

@@ -2,7 +2,6 @@
 
 use super::timing::{self, Timed};
 use super::{CostError, views};
-use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::render::{Rung, Settings};
 use crate::scene::Scene;
@@ -41,7 +40,7 @@ pub fn profile(
     for (row, (_, right, cut)) in CUTS.iter().enumerate() {
         for (column, name) in RUNGS.iter().enumerate() {
             let Ok(rung) = name.parse::<Rung>() else { continue };
-            let source = cookbook::recipe_source(rung.recipe());
+            let source = lapidary_wgsl::recipe_source(rung.recipe());
             // The last cut is of what the proxy's vertices hand on.
             if !source.contains(right) || (row == 2 && *name != "proxy-1") {
                 continue;

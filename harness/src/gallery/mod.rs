@@ -140,7 +140,7 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
 
 /// Whether the cookbook has a module or a recipe of that name.
 fn is_known(name: &str) -> bool {
-    crate::cookbook::module(name).is_some() || crate::cookbook::recipe(name).is_some()
+    crate::cookbook::module(name).is_some() || lapidary_wgsl::recipe(name).is_some()
 }
 
 /// Gives each picture a file name of its own, after its title.

@@ -4,7 +4,8 @@ use super::{
     Placed, highlight, section,
     text::{escape, framed, prose},
 };
-use crate::cookbook::{self, Module, Recipe, header::LICENCE};
+use crate::cookbook::{self, Module, header::LICENCE};
+use lapidary_wgsl::Recipe;
 
 /// A brilliant cut from the side, as line art; the page's mark and icon.
 const MARK: &str = "M5 11 10 5H22L27 11 16 27ZM5 11H27M10 5 12 11 16 27 20 11 22 5M12 11 16 5 20 11";
@@ -14,7 +15,7 @@ pub fn page(adapter: &str, placed: &[Placed<'_>]) -> String {
     let pictures: Vec<&Placed<'_>> = placed.iter().filter(|placed| placed.module.is_none()).collect();
     let hero = pictures.iter().position(|placed| placed.picture.title.to_lowercase().contains("brilliant"));
     let hero = hero.or(if pictures.is_empty() { None } else { Some(0) });
-    let (modules, recipes) = (cookbook::modules(), cookbook::recipes());
+    let (modules, recipes) = (cookbook::modules(), lapidary_wgsl::RECIPES);
     let functions: usize = modules.iter().map(|module| module.functions.len()).sum();
     let grid: String =
         pictures.iter().enumerate().filter(|(at, _)| Some(*at) != hero).map(|(_, placed)| figure(placed, 3)).collect();

@@ -6,10 +6,11 @@ use super::{
     text::{escape, framed, prose},
 };
 use crate::cookbook::{
-    Module, Recipe,
+    Module,
     accuracy_line::{Accuracy, FieldBound},
     header::{FunctionDoc, parse_header},
 };
+use lapidary_wgsl::Recipe;
 
 /// The section of a module: what it is, its WGSL, its functions and the rest of its doc page.
 pub fn module(module: &Module, placed: &[Placed<'_>]) -> String {
@@ -145,10 +146,11 @@ pub fn recipe(recipe: &Recipe, placed: &[Placed<'_>]) -> String {
         Err(_) => (String::new(), String::new()),
     };
     let requires: Vec<String> =
-        recipe.requires.iter().map(|module| format!("<a href=\"#{module}\">{module}</a>")).collect();
+        recipe.requires().iter().map(|module| format!("<a href=\"#{module}\">{module}</a>")).collect();
     let requires = framed("<p>Requires ", &requires.join(", "), ".</p>\n");
     let overrides: String = recipe
         .own_text()
+        .into_iter()
         .flat_map(overrides)
         .map(|(name, comment)| format!("<dt><code>{}</code></dt><dd>{}</dd>\n", escape(name), prose(&comment)))
         .collect();

@@ -47,7 +47,7 @@ fn the_gallery_is_one_page_with_its_pictures_and_nothing_from_elsewhere() {
             assert!(html.contains(&format!("id=\"{}\"", function.name)), "{}", function.name);
         }
     }
-    for recipe in crate::cookbook::recipes() {
+    for recipe in lapidary_wgsl::RECIPES {
         assert!(html.contains(&highlight::wgsl(&recipe.compose())), "the WGSL of {}", recipe.name);
     }
     for fetched in ["src=\"http", "url(", "@import", "<link rel=\"stylesheet\"", "fetch("] {

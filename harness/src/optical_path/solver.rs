@@ -2,7 +2,6 @@
 
 use super::Method;
 use crate::compute::Kernel;
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
@@ -74,7 +73,7 @@ impl<'gpu> Solver<'gpu> {
         heterogeneous: bool,
         most_passes: Option<u32>,
     ) -> Result<Self, ShaderError> {
-        let source = cookbook::recipe_source(recipe(method));
+        let source = lapidary_wgsl::recipe_source(recipe(method));
         Self::of_source(gpu, grid, method, heterogeneous, most_passes, &source)
     }
 

@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn every_recipes_effects_are_known() {
         let mut seen = Effects::NONE;
-        for recipe in crate::cookbook::recipes() {
+        for recipe in lapidary_wgsl::RECIPES {
             let (module, _) = crate::dispatch::parse(&recipe.compose(), recipe.name).expect("a valid recipe");
             for (_, of) in module.overrides.iter() {
                 let name = of.name.clone().unwrap_or_default();

@@ -106,7 +106,6 @@ impl<'gpu> DeferredPass<'gpu> {
 #[cfg(test)]
 mod tests {
     use super::COMPOSITE;
-    use crate::cookbook;
     use crate::extremum::larger;
     use crate::gpu::{AdapterChoice, Gpu};
     use crate::pixel::Viewer;
@@ -120,7 +119,7 @@ mod tests {
     fn positions_come_back_from_the_depth_buffer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let shown = "return vec4f(textureLoad(reflectance, texel, 0).rgb * surroundings_radiance(reflected) + inside.rgb, 1.0f);";
-        let source = cookbook::recipe_source(COMPOSITE);
+        let source = lapidary_wgsl::recipe_source(COMPOSITE);
         assert!(source.contains(shown));
         // Every binding stays in use, and the position is what is seen.
         let planted =
@@ -129,7 +128,7 @@ mod tests {
             let scene = Scene::named(name).expect("built in");
             let rung = "proxy-1".parse().expect("a rung");
             let settings = Settings { rung, samples: 1, deferred: true, ..Settings::of_size(128, 128) };
-            let gem = cookbook::recipe_source(rung.recipe());
+            let gem = lapidary_wgsl::recipe_source(rung.recipe());
             let picture =
                 render_from(gpu, &scene, &settings, (Some(&gem), &planted), &mut |_, _| {}).expect("rendered");
             let viewer = Viewer::new(&scene, 128, 128);

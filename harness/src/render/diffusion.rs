@@ -4,7 +4,6 @@ use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use super::translucent::{self, Light};
-use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
 use crate::scene::Object;
@@ -48,7 +47,7 @@ impl<'gpu> Diffusion<'gpu> {
             gpu,
             &PipelineSource {
                 recipe: RECIPE,
-                source: &cookbook::recipe_source(RECIPE),
+                source: &lapidary_wgsl::recipe_source(RECIPE),
                 entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
                 constants,
                 formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],

@@ -3,7 +3,6 @@
 use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -28,7 +27,7 @@ impl<'gpu> DisplayPass<'gpu> {
             gpu,
             &PipelineSource {
                 recipe: "display",
-                source: &cookbook::recipe_source("display"),
+                source: &lapidary_wgsl::recipe_source("display"),
                 entries: ["display_vertex", "display_fragment"],
                 constants: &[("SAMPLES", f64::from(count))],
                 formats: &[SAMPLE_FORMAT, ENCODED_FORMAT],

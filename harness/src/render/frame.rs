@@ -4,7 +4,6 @@ use super::device::{Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
 use super::{RenderError, Settings, Stage, camera, device, scene_pass};
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu, GpuError};
 use crate::optical_path::Status;
 use crate::scene::Scene;
@@ -36,7 +35,7 @@ impl Display {
         let recipe = "display";
         let source = PipelineSource {
             recipe,
-            source: &cookbook::recipe_source(recipe),
+            source: &lapidary_wgsl::recipe_source(recipe),
             entries: ["display_vertex", "display_fragment"],
             constants: &[("SAMPLES", 1.0)],
             formats: &DISPLAY_FORMATS,

@@ -26,7 +26,6 @@ pub mod texture_diffusion;
 mod translucent;
 mod variant;
 
-use crate::cookbook;
 use crate::gpu::Gpu;
 use crate::plan::{Decisions, Effect, Effects, Quality, Scattering};
 use crate::random_walk::mesh::{self, Rendering as Walked};
@@ -207,7 +206,7 @@ pub fn render_reporting(
     settings: &Settings,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
-    render_from(gpu, scene, settings, (None, &cookbook::recipe_source(deferred::COMPOSITE)), progress)
+    render_from(gpu, scene, settings, (None, &lapidary_wgsl::recipe_source(deferred::COMPOSITE)), progress)
 }
 
 /// Renders `scene`, and shows its mean radiance in place of its samples': as a committed reference is shown, of which only means are kept. Pictures that
@@ -220,7 +219,7 @@ pub fn render_means(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Pic
 
 /// Renders `scene` with another text of the rung's recipe.
 pub fn render_with(gpu: &Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Picture, RenderError> {
-    let composite = cookbook::recipe_source(deferred::COMPOSITE);
+    let composite = lapidary_wgsl::recipe_source(deferred::COMPOSITE);
     render_from(gpu, scene, settings, (Some(source), &composite), &mut |_, _| {})
 }
 
@@ -300,7 +299,7 @@ fn scene_pass<'gpu>(
     let parts = Part::all(scene, settings);
     let shadows = Shadows::of(gpu, &scene.lights, &parts)?;
     for part in &parts {
-        let composed = || Cow::Owned(cookbook::recipe_source(part.rung.recipe()));
+        let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));
         let source = &*source.map_or_else(composed, Cow::Borrowed);
         let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
         let forward = &[SAMPLE_FORMAT][..];

@@ -4,7 +4,6 @@ use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
-use crate::cookbook;
 use crate::gpu::capture::OfObject;
 use crate::gpu::{Encoder, Gpu};
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
@@ -36,7 +35,7 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
             gpu,
             &PipelineSource {
                 recipe: RECIPE,
-                source: &cookbook::recipe_source(RECIPE),
+                source: &lapidary_wgsl::recipe_source(RECIPE),
                 entries: ["reflective_shadow_map_vertex", "reflective_shadow_map_fragment"],
                 constants: &[],
                 formats: &[FORMAT],

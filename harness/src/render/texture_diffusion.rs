@@ -2,7 +2,6 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 use glam::{Vec2, Vec3};
 use lapidary_texture_diffusion as mirror;
@@ -87,7 +86,7 @@ impl<'gpu> TextureDiffusion<'gpu> {
     /// # Errors
     /// Where the device refuses the recipe or the textures.
     pub fn new(gpu: &'gpu Gpu, size: [u32; 2], repeats: [bool; 2]) -> Result<Self, RenderError> {
-        let source = cookbook::recipe_source(RECIPE);
+        let source = lapidary_wgsl::recipe_source(RECIPE);
         let pipeline = |entry| {
             let entries = ["texture_diffusion_vertex", entry];
             let formats = &[IRRADIANCE_FORMAT];

@@ -238,7 +238,7 @@ impl Shot {
 
     /// The composed recipe that draws it.
     pub fn source(&self) -> String {
-        crate::cookbook::recipe_source(self.settings(1).rung.recipe())
+        lapidary_wgsl::recipe_source(self.settings(1).rung.recipe())
     }
 
     /// The command that renders it.

@@ -1,7 +1,6 @@
 //! What is left of small shaders, and of the gem's recipe.
 
 use super::{SpecialiseError, specialise};
-use crate::cookbook;
 use crate::dispatch;
 use naga::{Module, TypeInner, back};
 
@@ -383,7 +382,7 @@ fn an_override_as_an_arrays_length_is_refused() {
 
 #[test]
 fn the_gem_without_its_inside_is_a_mirror() {
-    let source = cookbook::recipe_source("gem");
+    let source = lapidary_wgsl::recipe_source("gem");
     let entry_points = ["gem_vertex", "gem_fragment"];
     let (whole, _) = special_module(&source, &[("EFFECT_ENVIRONMENT_MAP", 1.0)], &entry_points);
     assert!(functions(&whole).iter().any(|name| name.starts_with("closest_point_")));

@@ -184,7 +184,7 @@ fn copied_modules_compile_as_one_file() {
 
 #[test]
 fn a_copied_recipe_holds_its_modules() {
-    for recipe in cookbook::recipes() {
+    for recipe in lapidary_wgsl::RECIPES {
         let text = succeeds(folder().path(), &["copy", recipe.name]).stdout;
         let (ir, _) = dispatch::parse(&text, recipe.name).unwrap_or_else(|error| panic!("{error}"));
         assert!(!ir.entry_points.is_empty(), "{}", recipe.name);

@@ -4,12 +4,12 @@ use lapidary_harness::check;
 use lapidary_harness::cookbook::accuracy_line::Accuracy;
 use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
 use lapidary_harness::cookbook::marks;
+use lapidary_harness::cookbook::modules;
 use lapidary_harness::cookbook::translate::{Target, translate};
-use lapidary_harness::cookbook::{modules, recipes};
 use lapidary_harness::dispatch::shape::Signature;
 use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_harness::formulas;
-use std::collections::BTreeSet;
+use lapidary_wgsl::RECIPES;
 use std::path::Path;
 
 #[test]
@@ -26,19 +26,8 @@ fn all_modules_compile_as_one() {
 }
 
 #[test]
-fn every_file_is_registered_and_has_its_four_places() {
+fn every_module_has_its_four_places() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let in_folder = |folder: &str| -> BTreeSet<String> {
-        let files = std::fs::read_dir(root.join(folder)).expect("the cookbook's folder");
-        let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
-        names.filter_map(|name| name.strip_suffix(".wgsl").map(str::to_owned)).collect()
-    };
-    let names =
-        |names: &mut dyn Iterator<Item = &'static str>| -> BTreeSet<String> { names.map(str::to_owned).collect() };
-    assert_eq!(in_folder("wgsl"), names(&mut modules().iter().map(|module| module.name)));
-    assert_eq!(in_folder("wgsl/recipes"), names(&mut recipes().iter().map(|recipe| recipe.name)));
-    let parts: BTreeSet<String> = lapidary_wgsl::PARTS.iter().map(|part| part.name.to_owned()).collect();
-    assert_eq!(in_folder("wgsl/recipes/parts"), parts);
     for module in modules() {
         assert!(root.join("crates").join(module.name).join("src/oracle.rs").is_file(), "{}", module.name);
         assert!(root.join("docs").join(format!("{}.md", module.name)).is_file(), "{}", module.name);
@@ -77,14 +66,14 @@ fn naive_forms_and_no_others_have_a_benign_domain() {
 
 #[test]
 fn every_recipe_compiles_with_the_modules_that_it_requires() {
-    for recipe in recipes() {
-        assert!(!recipe.requires.is_empty(), "{}", recipe.name);
-        for name in &recipe.requires {
+    for recipe in RECIPES {
+        assert!(!recipe.requires().is_empty(), "{}", recipe.name);
+        for name in &recipe.requires() {
             assert!(modules().iter().any(|module| module.name == *name), "{} requires `{name}`", recipe.name);
         }
         let (ir, _) = dispatch::parse(&recipe.compose(), recipe.name).unwrap_or_else(|error| panic!("{error}"));
         assert!(!ir.entry_points.is_empty(), "{}", recipe.name);
-        let own: String = recipe.own_text().collect();
+        let own = recipe.own_text().concat();
         assert!(dispatch::parse(&own, recipe.name).is_err(), "{} uses no module's function", recipe.name);
     }
 }
@@ -336,10 +325,10 @@ fn operators_that_need_parentheses_are_found() {
 fn recipes_keep_the_contract() {
     let parts = lapidary_wgsl::PARTS.iter().map(|part| part.source);
     let effects: Vec<String> =
-        parts.chain(recipes().iter().map(|recipe| recipe.source)).flat_map(marks::effects).collect();
-    for recipe in recipes() {
+        parts.chain(RECIPES.iter().map(|recipe| recipe.source)).flat_map(marks::effects).collect();
+    for recipe in RECIPES {
         let lint = |text| lint_recipe(recipe.name, text, &effects);
-        let findings: Vec<Finding> = recipe.own_text().flat_map(lint).collect();
+        let findings: Vec<Finding> = recipe.own_text().into_iter().flat_map(lint).collect();
         assert!(findings.is_empty(), "{}", spell(&findings));
         assert_eq!(marks::idle_effects(&recipe.compose()), Ok(Vec::new()), "{}", recipe.name);
     }

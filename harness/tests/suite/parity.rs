@@ -22,7 +22,7 @@ const POSITION: &str = "    if (input.position.x < 1e30f) { return vec4f(input.p
 
 /// The recipe's picture, or that of a text with a fault in it, against the mirror.
 fn parity(scene: &Scene, settings: &Settings, faulty: Option<&str>) -> Parity {
-    let source = lapidary_harness::cookbook::recipe_source(settings.rung.recipe());
+    let source = lapidary_wgsl::recipe_source(settings.rung.recipe());
     assert_eq!(source.matches(FRAGMENT).count(), 1);
     let positions = source.replace(FRAGMENT, &format!("{FRAGMENT}{POSITION}"));
     let render = |source: &str| render::render_with(super::gpu(), scene, settings, source).expect("rendered");
@@ -207,7 +207,7 @@ fn a_wrong_picture_is_seen() {
         let distance_limit = what.contains("has ended").then_some(1.2);
         let limit_throughput = Some(what.contains("rays end by"));
         let settings = Settings { samples: 1, distance_limit, limit_throughput, ..of_rung(rung) };
-        let source = lapidary_harness::cookbook::recipe_source(settings.rung.recipe());
+        let source = lapidary_wgsl::recipe_source(settings.rung.recipe());
         assert!(source.contains(right), "{rung}: {what}");
         let planted = source.replace(right, wrong);
         let parity = parity(&scene, &settings, Some(&planted));

@@ -2,7 +2,6 @@
 
 use glam::{DVec3, Vec3};
 use lapidary_environment as environment;
-use lapidary_harness::cookbook;
 use lapidary_harness::cost::restraint::facets;
 use lapidary_harness::extremum::larger;
 use lapidary_harness::pixel::Shading;
@@ -26,7 +25,7 @@ fn settings(rung: &str, rest_from_environment: bool) -> Settings {
 }
 
 fn rendered(scene: &Scene, settings: &Settings, comparison: &str) -> Picture {
-    let source = cookbook::recipe_source(settings.rung.recipe());
+    let source = lapidary_wgsl::recipe_source(settings.rung.recipe());
     assert_eq!(source.matches(COMPARISON).count(), 1);
     let source = source.replace(COMPARISON, comparison);
     render::render_with(super::gpu(), scene, settings, &source).expect("rendered")

@@ -4,7 +4,6 @@ use crate::pixels::rays;
 use glam::{DVec3, Vec3};
 use lapidary_bvh_trace::BvhTraceHit;
 use lapidary_bvh_trace::traversal::{self, met};
-use lapidary_harness::cookbook;
 use lapidary_harness::plan::{Effect, Effects};
 use lapidary_harness::render::{self, Settings};
 use lapidary_harness::scene::surfaces::{sphere, torus};
@@ -194,7 +193,7 @@ fn lights() -> [(&'static str, Light); 4] {
 
 #[test]
 fn shadows_are_those_that_rays_find() {
-    let recipe = cookbook::recipe_source("cdrf_shading");
+    let recipe = lapidary_wgsl::recipe_source("cdrf_shading");
     let bias = "let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);";
     assert!(recipe.contains(bias));
     for (name, light) in lights() {

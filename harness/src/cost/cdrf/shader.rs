@@ -1,7 +1,6 @@
 //! A rung's shaders, specialised to what it uses and counted in SPIR-V.
 
 use super::CostError;
-use crate::cookbook;
 use crate::render::{self, Reflectance, Settings};
 use crate::scene::Scene;
 use crate::shader::Shader;
@@ -14,7 +13,7 @@ const ENTRIES: [&str; 2] = ["cdrf_vertex", "cdrf_fragment"];
 pub(super) fn counts(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Result<SpirvCounts, CostError> {
     let recipe = settings.rung.recipe();
     let constants = render::translucent_constants(scene, settings, reflectance);
-    let shader = Shader::new(recipe, &cookbook::recipe_source(recipe), &ENTRIES, &constants);
+    let shader = Shader::new(recipe, &lapidary_wgsl::recipe_source(recipe), &ENTRIES, &constants);
     Ok(shader.map_err(render::RenderError::from)?.counts()?)
 }
 
@@ -31,7 +30,7 @@ mod tests {
         let scene = Scene::named("skin").expect("built in");
         let settings = Settings { rung: Rung::Diffuse(Reflectance::Cheap), ..Settings::of_size(1, 1) };
         let recipe = settings.rung.recipe();
-        let (ir, _) = dispatch::parse(&cookbook::recipe_source(recipe), recipe).expect("the recipe");
+        let (ir, _) = dispatch::parse(&lapidary_wgsl::recipe_source(recipe), recipe).expect("the recipe");
         let mut declared: Vec<&str> = ir.overrides.iter().filter_map(|(_, over)| over.name.as_deref()).collect();
         let constants = render::translucent_constants(&scene, &settings, Reflectance::Cheap);
         let given: Vec<&str> = constants.iter().map(|(name, _)| *name).collect();

@@ -1,7 +1,6 @@
 //! Rays that end when what they carry can no longer be seen.
 
 use super::{Options, SCENES};
-use crate::cookbook;
 use crate::cost::timing::{self, Timed, Timing};
 use crate::cost::{CostError, views};
 use crate::extremum::larger;
@@ -120,7 +119,7 @@ pub(super) fn measure(
     let timed: Vec<Timed<'_>> = pairs
         .iter()
         .flat_map(|((_, filled, _), rung)| {
-            let source = cookbook::recipe_source(rung.recipe());
+            let source = lapidary_wgsl::recipe_source(rung.recipe());
             let through = source.replace(BREAK[0], BREAK[1]);
             [(false, source.clone()), (true, source), (true, through)].map(|(limited, source)| Timed {
                 settings: settings(*rung, limited, options.frame),
@@ -162,7 +161,7 @@ mod tests {
     fn every_recipe_has_the_break_that_is_taken_out() {
         for rung in super::super::RUNGS {
             let rung: Rung = rung.parse().expect(rung);
-            assert_eq!(cookbook::recipe_source(rung.recipe()).matches(BREAK[0]).count(), 3, "{rung}");
+            assert_eq!(lapidary_wgsl::recipe_source(rung.recipe()).matches(BREAK[0]).count(), 3, "{rung}");
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Ways through a body, sought only in tiles that hold matter and may change, beside solvers that take up more.
 
-use crate::cookbook;
 use crate::cost::CostError;
 use crate::gpu::{Encoder, Gpu};
 use crate::optical_path::{Method, Solver, Stencil};
@@ -168,7 +167,7 @@ fn solve(gpu: &Gpu, solver: &Solver<'_>, body: &Body, extinction: f32) -> Result
 pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Tiles>, CostError> {
     let scene = Scene::named(SCENE)?;
     let mesh = &scene.objects[0].mesh;
-    let plain = cookbook::recipe_source("optical_path_tiles");
+    let plain = lapidary_wgsl::recipe_source("optical_path_tiles");
     let mut found = Vec::new();
     for (done, cells) in (1..).zip(CELLS) {
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
@@ -212,7 +211,7 @@ mod tests {
 
     #[test]
     fn every_change_finds_its_text_once() {
-        let source = cookbook::recipe_source("optical_path_tiles");
+        let source = lapidary_wgsl::recipe_source("optical_path_tiles");
         for (way, changes) in ways() {
             for (right, _) in changes {
                 assert_eq!(source.matches(right).count(), 1, "{way}: {right}");

@@ -3,7 +3,6 @@
 use super::super::RenderError;
 use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
-use crate::cookbook;
 use crate::gpu::{Encoder, Gpu};
 use crate::scene::{Density, DensityGrid};
 use crate::voxel_grid::VoxelGrid;
@@ -34,7 +33,7 @@ impl Densities {
             Density::Veins(pattern) => Source::Veins(*pattern),
             Density::Grid(values) => Source::Texture(values),
         };
-        let kernel = Kernel::new(gpu, RECIPE, &cookbook::recipe_source(RECIPE), RECIPE, &constants)?;
+        let kernel = Kernel::new(gpu, RECIPE, &lapidary_wgsl::recipe_source(RECIPE), RECIPE, &constants)?;
         let (group, of_voxels) = gpu.guarded("allocating densities", |device| {
             let of_voxels = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("densities"),

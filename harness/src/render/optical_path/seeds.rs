@@ -1,7 +1,6 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
 use crate::compute::Kernel;
-use crate::cookbook;
 use crate::gpu::{Device, Encoder, Gpu};
 use crate::render::device::buffer;
 use crate::shader::ShaderError;
@@ -44,7 +43,7 @@ pub(super) type Groups = [[Option<wgpu::BindGroup>; 2]; 2];
 
 impl Seeds {
     pub(super) fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
-        let source = cookbook::recipe_source(RECIPE);
+        let source = lapidary_wgsl::recipe_source(RECIPE);
         let kernel = |entry: &str| Kernel::new(gpu, RECIPE, &source, entry, constants);
         Ok(Self { clear: kernel("optical_path_clear")?, seed: kernel("optical_path_seed_texel")? })
     }

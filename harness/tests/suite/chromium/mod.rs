@@ -8,8 +8,9 @@ mod browser;
 
 use crate::specialise::{specialised_program, specialised_texts};
 use browser::Message;
-use lapidary_harness::cookbook::{compose, modules, recipes};
+use lapidary_harness::cookbook::modules;
 use lapidary_harness::dispatch;
+use lapidary_wgsl::{RECIPES, compose};
 use std::io::Write as _;
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -76,7 +77,7 @@ fn texts() -> Vec<(String, String)> {
     let each = modules().iter().map(|module| (module.name.to_owned(), module.source.to_owned()));
     let names: Vec<&str> = modules().iter().map(|module| module.name).collect();
     let together = ("all modules".to_owned(), compose(&names, ""));
-    let whole = recipes().iter().map(|recipe| (recipe.name.to_owned(), recipe.compose()));
+    let whole = RECIPES.iter().map(|recipe| (recipe.name.to_owned(), recipe.compose()));
     let special = specialised_texts().iter().map(|special| (special.name.clone(), special.text.clone()));
     let programs = (0..PROGRAMS).map(|row| (format!("program {row}"), specialised_program(row)));
     planted.chain(each).chain([together]).chain(whole).chain(special).chain(programs).collect()

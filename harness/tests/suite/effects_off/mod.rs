@@ -9,10 +9,10 @@ mod pictures;
 
 use canonical::{Canonical, canonical};
 use lapidary_harness::cookbook::marks::{self, override_of};
-use lapidary_harness::cookbook::{self, Recipe, recipes};
 use lapidary_harness::dispatch;
 use lapidary_harness::specialise::specialise;
 use lapidary_harness::spirv_counts::spirv_counts;
+use lapidary_wgsl::{RECIPES, Recipe};
 use naga::back::pipeline_constants::process_overrides;
 use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
@@ -130,7 +130,7 @@ fn differences(whole: &str, without: &str, effect: &str) -> Vec<String> {
 
 /// A recipe with the effects that it declares.
 fn recipes_with_effects() -> impl Iterator<Item = (&'static Recipe, String, Vec<String>)> {
-    recipes().iter().filter_map(|recipe| {
+    RECIPES.iter().filter_map(|recipe| {
         let source = recipe.compose();
         let effects = marks::effects(&source);
         (!effects.is_empty()).then_some((recipe, source, effects))
@@ -202,7 +202,7 @@ fn with_all_effects_off_no_more_is_left_than_of_the_text_without_any() {
 /// A comparison that passes whatever is left checks nothing.
 #[test]
 fn what_is_left_of_an_effect_is_seen() {
-    let source = cookbook::recipe_source("texture_irradiance");
+    let source = lapidary_wgsl::recipe_source("texture_irradiance");
     let without = cut(&source, &["spot"]);
     assert_eq!(differences(&source, &without, "spot"), Vec::<String>::new());
     // A stretch of lines that is not marked.
@@ -229,7 +229,7 @@ fn what_is_left_of_an_effect_is_seen() {
 /// A binding that nothing reads is not in the SPIR-V, but in the layout that a renderer takes from the module.
 #[test]
 fn a_binding_that_is_kept_is_seen() {
-    let source = cookbook::recipe_source("gem");
+    let source = lapidary_wgsl::recipe_source("gem");
     let values = vec![("EFFECT_ENVIRONMENT_MAP".to_owned(), 0.0)];
     let pass = ["gem_vertex", "gem_fragment"].map(str::to_owned);
     let cut = Left::specialised(&cut(&source, &["environment_map"]), &values, &pass);

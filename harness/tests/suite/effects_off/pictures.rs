@@ -4,7 +4,6 @@
 use super::cut;
 use crate::gpu;
 use glam::Vec3;
-use lapidary_harness::cookbook;
 use lapidary_harness::plan::{Decisions, Effect, Effects};
 use lapidary_harness::render::{Environment, Settings, render_with};
 use lapidary_harness::scene::environment_map::EnvironmentMap;
@@ -74,7 +73,7 @@ fn a_picture_without_an_effect_is_the_one_by_the_text_without_it() {
         let Case { scene: name, rung, effects } = case;
         let scene = scene(name);
         let called = Decisions::of(&scene.objects[0], &scene, &settings(case));
-        let whole = cookbook::recipe_source(called.rung.recipe());
+        let whole = lapidary_wgsl::recipe_source(called.rung.recipe());
         let draw = |settings: &Settings, source: &str| {
             let picture = render_with(gpu(), &scene, settings, source);
             picture.unwrap_or_else(|error| panic!("{name} by {rung}: {error}")).linear
@@ -112,7 +111,7 @@ fn a_grey_bodys_picture_is_the_one_by_the_text_without_colour() {
     }
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(3.0) }];
     let settings = settings(&case("jade", "tiled-26-16", &[]));
-    let whole = cookbook::recipe_source(settings.rung.recipe());
+    let whole = lapidary_wgsl::recipe_source(settings.rung.recipe());
     let draw = |source: &str| render_with(gpu(), &scene, &settings, source).expect("drawn").linear;
     assert_eq!(draw(&whole), draw(&cut(&whole, &["color"])));
 }

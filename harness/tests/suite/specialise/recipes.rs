@@ -3,11 +3,12 @@
 //! (`effects_off`).
 
 use super::{ROWS, SEED, outcomes, specialised};
-use lapidary_harness::cookbook::{Recipe, recipes};
+
 use lapidary_harness::dispatch::shape::Signature;
 use lapidary_harness::dispatch::{self, KernelModule};
 use lapidary_harness::property::draws::Draws;
 use lapidary_harness::specialise::specialise;
+use lapidary_wgsl::{RECIPES, Recipe};
 use naga::{Expression, Function, Handle, Literal, Module, Statement, back};
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -79,7 +80,7 @@ fn values(module: &Module, name: &str) -> [f64; 2] {
 #[test]
 fn a_recipes_function_gives_the_same_bits_specialised() {
     let mut run = BTreeSet::new();
-    for recipe in recipes() {
+    for recipe in RECIPES {
         let source = recipe.compose();
         let (module, _) = dispatch::parse(&source, recipe.name).unwrap_or_else(|error| panic!("{error}"));
         for (handle, function) in module.functions.iter() {
@@ -127,7 +128,7 @@ pub(crate) struct SpecialisedText {
 /// with each effect alone.
 pub(crate) fn specialised_texts() -> &'static [SpecialisedText] {
     static TEXTS: OnceLock<Vec<SpecialisedText>> = OnceLock::new();
-    TEXTS.get_or_init(|| recipes().iter().flat_map(texts_of).collect())
+    TEXTS.get_or_init(|| RECIPES.iter().flat_map(texts_of).collect())
 }
 
 fn texts_of(recipe: &Recipe) -> Vec<SpecialisedText> {

@@ -1,0 +1,62 @@
+//! Lists the folder: a module, recipe, part or release is there once its file is.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+fn main() -> std::io::Result<()> {
+    let root = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets it"));
+    let mut text = String::new();
+    let page = |name: &str| format!(", page: {}", include(&root.join(format!("../docs/{name}.md"))));
+    list(&mut text, "Every module", "MODULES", "Module", &files(&root, "wgsl")?, page);
+    list(&mut text, "Every recipe", "RECIPES", "Recipe", &files(&root.join("recipes"), "wgsl")?, |_| String::new());
+    list(&mut text, "Every part", "PARTS", "Part", &files(&root.join("recipes/parts"), "wgsl")?, |_| String::new());
+    let releases: Vec<String> =
+        by_number(files(&root.join("releases"), "json")?).iter().map(|file| include(file)).collect();
+    let _ = writeln!(
+        text,
+        "/// The hashes of each release's functions, the oldest first, as JSON.\npub const RELEASES: &[&str] = &[{}];",
+        releases.join(", ")
+    );
+    for folder in ["", "recipes", "recipes/parts", "releases"] {
+        println!("cargo:rerun-if-changed={}", root.join(folder).display());
+    }
+    std::fs::write(out.join("folder.rs"), text)
+}
+
+/// The files of a folder that end so, in the order of their names.
+fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ends| ends == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Releases in their order: 0.10.0 comes after 0.9.0.
+fn by_number(mut files: Vec<PathBuf>) -> Vec<PathBuf> {
+    files.sort_by_key(|file| stem(file).split('.').map(|part| part.parse().unwrap_or(0)).collect::<Vec<u32>>());
+    files
+}
+
+fn stem(file: &Path) -> &str {
+    file.file_stem().and_then(|name| name.to_str()).expect("a name of letters")
+}
+
+/// The file's text, as Rust.
+fn include(file: &Path) -> String {
+    format!("include_str!({:?})", file.display().to_string())
+}
+
+fn list(text: &mut String, what: &str, constant: &str, kind: &str, files: &[PathBuf], more: impl Fn(&str) -> String) {
+    let _ = writeln!(text, "/// {what}, in the order of their names.\npub const {constant}: &[{kind}] = &[");
+    for file in files {
+        let name = stem(file);
+        let _ = writeln!(text, "    {kind} {{ name: {name:?}, source: {}{} }},", include(file), more(name));
+    }
+    let _ = writeln!(text, "];");
+}

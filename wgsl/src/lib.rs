@@ -1,0 +1,127 @@
+//! The cookbook's WGSL, and its composition: for the harness and for Rust engines. `recipe("gem")` has a whole shader in
+//! [`Recipe::compose`]; a module's `source` is pasted as it is.
+
+include!(concat!(env!("OUT_DIR"), "/folder.rs"));
+
+/// What changed from release to release, by function.
+pub const CHANGELOG: &str = include_str!("../../CHANGELOG.md");
+
+/// A technique: pure functions, no bindings, no entry points.
+#[derive(Clone, Copy, Debug)]
+pub struct Module {
+    /// The technique's name, which prefixes every name in `source`.
+    pub name: &'static str,
+    /// WGSL, valid by itself.
+    pub source: &'static str,
+    /// Its doc page in Markdown.
+    pub page: &'static str,
+}
+
+/// A complete shader, written with the functions of the modules that its `// requires:` line names, after the parts that its
+/// `// parts:` line names.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe {
+    /// The recipe's name.
+    pub name: &'static str,
+    /// WGSL with entry points and bindings, without the modules and the parts: not valid by itself.
+    pub source: &'static str,
+}
+
+/// WGSL that several recipes share: overrides, bindings and functions that belong to none of the modules. Not valid by itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The part's name.
+    pub name: &'static str,
+    /// WGSL without entry points.
+    pub source: &'static str,
+}
+
+/// The module of that name.
+#[must_use]
+pub fn module(name: &str) -> Option<&'static Module> {
+    MODULES.iter().find(|module| module.name == name)
+}
+
+/// The recipe of that name.
+#[must_use]
+pub fn recipe(name: &str) -> Option<&'static Recipe> {
+    RECIPES.iter().find(|recipe| recipe.name == name)
+}
+
+/// The whole shader of a recipe that is known to exist.
+///
+/// # Panics
+/// Where there is no such recipe.
+#[must_use]
+pub fn recipe_source(name: &str) -> String {
+    recipe(name).unwrap_or_else(|| panic!("no recipe `{name}`")).compose()
+}
+
+impl Recipe {
+    /// The modules that it requires, in order.
+    #[must_use]
+    pub fn requires(&self) -> Vec<&'static str> {
+        named(self.source, "// requires:")
+    }
+
+    /// The parts that it shares with others, in order.
+    ///
+    /// # Panics
+    /// Where there is no such part: a fault of the cookbook's own.
+    #[must_use]
+    pub fn parts(&self) -> Vec<&'static Part> {
+        let part = |name: &str| {
+            let found = PARTS.iter().find(|part| part.name == name);
+            found.unwrap_or_else(|| panic!("no part `{name}` in wgsl/recipes/parts"))
+        };
+        named(self.source, "// parts:").into_iter().map(part).collect()
+    }
+
+    /// The whole shader: the modules, the parts, then the recipe.
+    ///
+    /// # Panics
+    /// Where a module or part is unknown: a fault of the cookbook's own.
+    #[must_use]
+    pub fn compose(&self) -> String {
+        compose(&self.requires(), &self.own_text().join("\n"))
+    }
+
+    /// The recipe's own texts: the parts, then the recipe, without the modules.
+    ///
+    /// # Panics
+    /// Where a part is unknown: a fault of the cookbook's own.
+    #[must_use]
+    pub fn own_text(&self) -> Vec<&'static str> {
+        self.parts().iter().map(|part| part.source).chain([self.source]).collect()
+    }
+}
+
+/// Modules one after another in the order of `names`, then `last`.
+///
+/// # Panics
+/// Where a module is unknown.
+#[must_use]
+pub fn compose(names: &[&str], last: &str) -> String {
+    let known = |name: &&str| module(name).unwrap_or_else(|| panic!("no module `{name}`")).source;
+    let mut texts: Vec<&str> = names.iter().map(known).collect();
+    if !last.is_empty() {
+        texts.push(last);
+    }
+    texts.join("\n")
+}
+
+/// What the names of a module's functions, structs and consts start with.
+#[must_use]
+pub fn prefixes(module: &str) -> [String; 3] {
+    let camel = module
+        .split('_')
+        .map(|part| part.chars().next().map_or(String::new(), |c| c.to_uppercase().collect::<String>() + &part[1..]))
+        .collect();
+    [format!("{module}_"), camel, format!("{}_", module.to_uppercase())]
+}
+
+/// The names on the line that starts with `tag`.
+fn named(source: &'static str, tag: &str) -> Vec<&'static str> {
+    let line = source.lines().find_map(|line| line.strip_prefix(tag)).unwrap_or_default();
+    line.split(',').map(str::trim).filter(|name| !name.is_empty()).collect()
+}
