@@ -2,7 +2,8 @@
 //! lets a mutant pass does not test what was changed.
 
 use crate::cookbook;
-use crate::dispatch::{self, KernelModule};
+use crate::dispatch;
+use crate::dispatch::KernelModule;
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
 use std::fmt;
 

@@ -7,8 +7,9 @@
 mod bodies;
 
 use bodies::{Case, Uploaded};
-use lapidary_harness::gpu::{AdapterChoice, Gpu};
-use lapidary_harness::optical_path::{Method, Solver};
+use lapidary_gpu::{AdapterChoice, Gpu};
+use lapidary_scene::solver::Method;
+use lapidary_render::solver::Solver;
 use std::time::{Duration, Instant};
 
 /// Rounds over all solvers, of which the least time counts.

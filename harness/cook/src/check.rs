@@ -6,17 +6,19 @@ pub mod guard;
 pub mod literal;
 pub mod user_file;
 
-use crate::cookbook::{self, header::FunctionDoc};
-use crate::dispatch::shape::{Scalar, Shape};
-use crate::dispatch::{self, DispatchError, Kernel};
-use crate::formula::{Formula, Words};
+use crate::cookbook;
+use crate::cookbook::header::FunctionDoc;
+use lapidary_assay::dispatch::shape::{Scalar, Shape};
+use lapidary_assay::dispatch;
+use lapidary_assay::dispatch::{DispatchError, Kernel};
+use lapidary_assay::formula::{Formula, Words};
 use crate::formulas;
-use crate::gpu::Gpu;
-use crate::outside;
-use crate::property::persistence::{PersistenceError, Regressions};
-use crate::property::seams;
-use crate::property::tolerance::{Tolerance, number};
-use crate::property::{Check, DEFAULT_CASES, Report, Settings};
+use lapidary_gpu::Gpu;
+use lapidary_assay::outside;
+use lapidary_assay::property::persistence::{PersistenceError, Regressions};
+use lapidary_assay::property::seams;
+use lapidary_assay::property::tolerance::{Tolerance, number};
+use lapidary_assay::property::{Check, DEFAULT_CASES, Report, Settings};
 use failure::Failure;
 use serde::Serialize;
 
@@ -150,7 +152,7 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
         filter.split_once("::").map_or((filter, None), |(module, function)| (module, Some(function)));
     let Some(module) = cookbook::module(module) else {
         let names: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
-        return Err(CheckError::Unknown(format!("no module `{module}`{}", crate::nearest::suggest(module, &names))));
+        return Err(CheckError::Unknown(format!("no module `{module}`{}", lapidary_scene::nearest::suggest(module, &names))));
     };
     let Some(function) = function else {
         return Ok(formulas::all().iter().filter(|f| f.module == module.name).filter(promised).collect());
@@ -158,7 +160,7 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
     let found = module.function(function).and_then(|found| formulas::of_function(&found.name));
     found.map(|formula| vec![formula]).ok_or_else(|| {
         let names: Vec<&str> = module.functions.iter().map(|function| function.name.as_str()).collect();
-        let hint = crate::nearest::suggest_function(module.name, function, &names);
+        let hint = lapidary_scene::nearest::suggest_function(module.name, function, &names);
         CheckError::Unknown(format!("module `{}` has no function `{function}`{hint}", module.name))
     })
 }

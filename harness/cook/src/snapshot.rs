@@ -7,9 +7,10 @@ mod shots;
 pub mod strip;
 mod walked;
 
-use crate::gpu::Gpu;
-use crate::render::{self, Picture, RenderError, Settings, file};
-use crate::scene::{Scene, SceneError};
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_render::{Picture, RenderError, Settings, file};
+use lapidary_scene::{Scene, SceneError};
 pub(crate) use comparison::flip;
 pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare};
 pub use shots::{SHOTS, Shot};

@@ -3,8 +3,11 @@
 use super::effect::{Effect, Effects};
 use super::quality::{Chosen, Technique};
 use super::thickness::Thickness;
-use crate::render::{Environment, Geometry, Reflectance, Rung, Settings, Spectrum};
-use crate::scene::{Density, Dispersion, Light, Material, Medium, Object, Scene, Shape};
+use lapidary_scene::Environment;
+use crate::{Geometry, Rung, Spectrum};
+use lapidary_scene::solver::Reflectance;
+use lapidary_render::Settings;
+use lapidary_scene::{Density, Dispersion, Light, Material, Medium, Object, Scene, Shape};
 use glam::Vec3;
 
 /// Whether an effect is on, and why.

@@ -1,10 +1,12 @@
 //! What a user should know before a scene is drawn: bodies and lights that a technique cannot do justice to.
 
 use super::{Decisions, thickness};
-use crate::reference::surroundings;
-use crate::render::{Environment, Geometry, Note, Objects, Rung, Settings, clip_from_world};
-use crate::scene::normals::has_hard_edges;
-use crate::scene::{Dispersion, MeshDiagnosis, Object, Scene};
+use lapidary_scene::environment;
+use lapidary_scene::{Environment, clip_from_world};
+use crate::{Geometry, Note, Objects, Rung};
+use lapidary_render::Settings;
+use lapidary_scene::normals::has_hard_edges;
+use lapidary_scene::{Dispersion, MeshDiagnosis, Object, Scene};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use std::f64::consts::PI;
@@ -134,7 +136,7 @@ impl Case<'_> {
         let Object { material, mesh, .. } = self.object;
         let mut radiance = around;
         if !material.is_clear() {
-            let bounds = crate::scene::Bounds::of(mesh.positions.iter().copied());
+            let bounds = lapidary_scene::Bounds::of(mesh.positions.iter().copied());
             let (middle, radius) = (bounds.centre().as_dvec3(), f64::from(bounds.radius()));
             let arriving = self.scene.lights.iter().map(|light| {
                 let arrival = light.arrival(middle);

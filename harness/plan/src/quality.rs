@@ -1,8 +1,9 @@
 //! `--quality`: a rung for each technique, from its ladder.
 
 use super::ladder::Ladder;
-use crate::optical_path::{Method, Stencil};
-use crate::render::{Geometry, Paths, Reflectance, Rung, Spectrum};
+use lapidary_scene::solver::{Method, Stencil};
+use crate::{Geometry, Rung, Spectrum};
+use lapidary_scene::solver::{Paths, Reflectance};
 use std::fmt;
 
 /// How much time a body's technique may take.

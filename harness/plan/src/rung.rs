@@ -2,16 +2,16 @@
 
 use super::optical_path::Paths;
 use super::reflectance::{REFLECTANCES, Reflectance};
-use crate::nearest;
-use crate::optical_path::Method;
-use crate::voxel_grid::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
+use lapidary_scene::nearest;
+use lapidary_scene::solver::Method;
+use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 use std::fmt;
 use std::str::FromStr;
 
 /// A step of the ladder from cheap to exact: geometry, hits that are followed, and how colours are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rung {
-    /// Each object by what its material calls for: [`crate::plan`].
+    /// Each object by what its material calls for: [`crate`].
     ByMaterial,
     /// Reflection at the surface alone (the paper's Fig. 2).
     Surface,

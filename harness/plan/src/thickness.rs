@@ -1,6 +1,6 @@
 //! How thick a body is, and which technique follows from it for a body that scatters light.
 
-use crate::scene::{Bvh, Material, Medium, Mesh, Object};
+use lapidary_scene::{Bvh, Material, Medium, Mesh, Object};
 use glam::Vec3;
 use lapidary_bvh_trace::traversal;
 
@@ -112,7 +112,7 @@ pub fn sigma0(material: &Material) -> Option<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use lapidary_scene::Scene;
 
     fn object(scene: &str, number: usize) -> Object {
         Scene::named(scene).expect("built in").objects[number].clone()
@@ -127,7 +127,7 @@ mod tests {
         let corner = |k: u32| Vec3::select(glam::BVec3::new(k & 1 != 0, k & 2 != 0, k & 4 != 0), high, low);
         let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         let indices = faces.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect();
-        let slab = Mesh::with_shared_normals((0..8).map(corner).collect(), indices, crate::scene::Averaging::Angle);
+        let slab = Mesh::with_shared_normals((0..8).map(corner).collect(), indices, lapidary_scene::Averaging::Angle);
         assert_eq!(measured(&slab), 1.0);
         assert_eq!(measured(&Mesh::default()), 0.0);
     }

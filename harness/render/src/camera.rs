@@ -1,7 +1,7 @@
 //! The camera's matrix, for the whole picture or for one tile of it.
 
 use super::Tile;
-use crate::scene::{Bounds, Camera};
+use lapidary_scene::{Bounds, Camera};
 use glam::{Mat4, Vec3};
 
 /// Clip space of `tile` within a picture of `width` × `height` pixels. Depth runs from 0 near to 1 far.

@@ -4,7 +4,7 @@ mod recipe;
 
 pub use recipe::{Binding, RecipeRun, run_recipe};
 
-use crate::gpu::{Device, Gpu, capture};
+use lapidary_gpu::{Device, Gpu, capture};
 use crate::shader::{Bindings, Shader, ShaderError};
 
 /// A compiled entry point.

@@ -4,7 +4,7 @@ use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::{Encoder, Gpu};
 use glam::{Mat4, Vec3};
 
 /// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
@@ -106,11 +106,11 @@ impl<'gpu> DeferredPass<'gpu> {
 #[cfg(test)]
 mod tests {
     use super::COMPOSITE;
-    use crate::extremum::larger;
-    use crate::gpu::{AdapterChoice, Gpu};
+    use lapidary_assay::extremum::larger;
+    use lapidary_gpu::{AdapterChoice, Gpu};
     use crate::pixel::Viewer;
-    use crate::render::{Settings, render_from};
-    use crate::scene::Scene;
+    use crate::{Settings, render_from};
+    use lapidary_scene::Scene;
     use glam::Vec3;
 
     /// The paper's section 4.3.1 through a real depth buffer: its 32-bit values end 2^-24 of the range from near to far away from the

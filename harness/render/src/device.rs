@@ -1,8 +1,8 @@
 //! Pipelines and buffers, made in one way for every pass.
 
 use super::RenderError;
-use crate::gpu::{Device, Gpu, capture};
-use crate::scene::Object;
+use lapidary_gpu::{Device, Gpu, capture};
+use lapidary_scene::Object;
 use crate::shader::{Bindings, Shader};
 
 /// What a pass is compiled from.

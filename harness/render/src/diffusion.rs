@@ -4,10 +4,10 @@ use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use super::translucent::{self, Light};
-use crate::gpu::capture::OfObject;
-use crate::gpu::{Encoder, Gpu};
-use crate::scene::Object;
-use crate::scene::layout::Layout;
+use lapidary_gpu::capture::OfObject;
+use lapidary_gpu::{Encoder, Gpu};
+use lapidary_scene::Object;
+use lapidary_scene::layout::Layout;
 
 /// The recipe's name.
 const RECIPE: &str = "texture_irradiance";

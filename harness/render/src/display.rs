@@ -3,7 +3,7 @@
 use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::{Encoder, Gpu};
 
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 

@@ -2,7 +2,7 @@
 
 use super::device::{self, view};
 use super::{Environment, RenderError};
-use crate::gpu::Gpu;
+use lapidary_gpu::Gpu;
 
 /// The environment map as a texture; one black texel where the studio stands in, for a recipe's text that reads it all the same.
 pub(super) fn texture(gpu: &Gpu, environment: &Environment) -> Result<wgpu::TextureView, RenderError> {

@@ -1,9 +1,9 @@
 //! Why there is no picture.
 
 use super::{MOST_SAMPLES, Rung};
-use crate::gpu::GpuError;
-use crate::random_walk::mesh;
-use crate::reference;
+use lapidary_gpu::GpuError;
+use lapidary_reference::random_walk::mesh;
+use lapidary_reference::spectral;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]

@@ -4,9 +4,9 @@ use super::device::{Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
 use super::{RenderError, Settings, Stage, camera, device, scene_pass};
-use crate::gpu::{Encoder, Gpu, GpuError};
-use crate::optical_path::Status;
-use crate::scene::Scene;
+use lapidary_gpu::{Encoder, Gpu, GpuError};
+use crate::solver::Status;
+use lapidary_scene::Scene;
 use std::time::{Duration, Instant};
 
 /// A scene on the device and what it is drawn to, one sample a pixel.

@@ -5,8 +5,8 @@ use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
 use super::variant::{Drawn, Part};
 use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint, stone};
-use crate::gpu::Gpu;
-use crate::plan::Decisions;
+use lapidary_gpu::Gpu;
+use lapidary_plan::Decisions;
 
 /// The overrides of the gem recipes for an object.
 pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'static str, f64)> {

@@ -1,7 +1,7 @@
 //! The environment's spherical harmonics: its radiance projected on the degrees that a clamped cosine holds.
 
 use super::Environment;
-use crate::reference::surroundings::radiance;
+use lapidary_scene::environment::radiance;
 use glam::{DVec2, DVec3};
 use lapidary_environment::oracle;
 use rayon::prelude::*;

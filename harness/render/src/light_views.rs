@@ -1,6 +1,6 @@
 //! From where reflective shadow maps look: one view for a sun, a spot or a lamp that stands off, six for a lamp amid what it shines at.
 
-use crate::scene::{Bounds, Light};
+use lapidary_scene::{Bounds, Light};
 use glam::Vec3;
 use lapidary_reflective_shadow_map::ReflectiveShadowMapView;
 

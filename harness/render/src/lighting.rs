@@ -4,10 +4,10 @@
 use super::device::{Pipeline, buffer, uniform};
 use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
-use crate::gpu::Gpu;
-use crate::gpu::capture::OfObject;
-use crate::scene::light::Falloff;
-use crate::scene::{Light, Scene};
+use lapidary_gpu::Gpu;
+use lapidary_gpu::capture::OfObject;
+use lapidary_scene::light::Falloff;
+use lapidary_scene::{Light, Scene};
 use glam::Vec3;
 use std::cell::OnceCell;
 

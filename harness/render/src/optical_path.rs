@@ -12,11 +12,12 @@ use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, 
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::{Drawn, Part};
 use super::{Note, RenderError, Rung, Settings};
-use crate::gpu::capture::OfObject;
-use crate::gpu::{Encoder, Gpu};
-use crate::optical_path::{Method, Solver, Status};
-use crate::plan::Effect;
-use crate::scene::{Bounds, Density, Light, Material, Object};
+use lapidary_gpu::capture::OfObject;
+use lapidary_gpu::{Encoder, Gpu};
+use lapidary_scene::solver::Method;
+use crate::solver::{Solver, Status};
+use lapidary_plan::Effect;
+use lapidary_scene::{Bounds, Density, Light, Material, Object};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
 use density::Densities;

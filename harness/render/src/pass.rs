@@ -5,8 +5,8 @@ use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
 use super::{Note, RenderError};
-use crate::gpu::capture::OfObject;
-use crate::gpu::{Encoder, Gpu, RenderPass};
+use lapidary_gpu::capture::OfObject;
+use lapidary_gpu::{Encoder, Gpu, RenderPass};
 use glam::{Mat4, Vec3};
 
 /// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.

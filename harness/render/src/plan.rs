@@ -16,10 +16,12 @@ pub use decision::{Decision, Decisions, Scattering};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use quality::{Quality, Technique};
 
-use crate::gpu::Gpu;
-use crate::gpu::capture::{Capture, capture};
-use crate::render::{self, Note, RenderError, Rung, Settings};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_gpu::capture::{Capture, capture};
+use crate as render;
+use lapidary_plan::{Note, Rung};
+use crate::{RenderError, Settings};
+use lapidary_scene::Scene;
 
 /// What one object is drawn with.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +65,7 @@ impl Plan {
     /// # Errors
     /// Where the scene cannot be drawn so.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
-        let planned = |(object, name): (&crate::scene::Object, String)| PlannedObject {
+        let planned = |(object, name): (&lapidary_scene::Object, String)| PlannedObject {
             object: name,
             material: object.material.name.clone(),
             decisions: Decisions::of(object, scene, settings),

@@ -1,6 +1,6 @@
 //! How what scatters light sends it back: the rungs of the curvature-dependent reflectance function.
 
-use crate::cdrf::table::Format;
+use lapidary_scene::solver::Format;
 
 /// A step of the ladder from cheap to exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

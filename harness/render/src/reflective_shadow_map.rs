@@ -4,8 +4,8 @@ use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
-use crate::gpu::capture::OfObject;
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::capture::OfObject;
+use lapidary_gpu::{Encoder, Gpu};
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
 const RECIPE: &str = "reflective_shadow_map";

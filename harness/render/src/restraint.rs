@@ -7,7 +7,7 @@
 //! matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit` divides by all of these.
 
 use super::{Environment, Rung, Settings, Spectrum, stone};
-use crate::scene::Material;
+use lapidary_scene::Material;
 
 /// The least difference in radiance times exposure that counts: half a step of a display of 8 bits, taken linearly.
 pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;

@@ -1,10 +1,12 @@
 //! A recipe specialised: some of its entry points with override values, and the bindings that are left of it.
 
-use crate::dispatch::{self, DispatchError};
-use crate::gpu::capture::Pipeline;
-use crate::gpu::{Device, GpuError};
-use crate::specialise::{SpecialiseError, specialise};
-use crate::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
+use lapidary_assay::dispatch;
+use lapidary_assay::dispatch::DispatchError;
+use lapidary_gpu::capture::Pipeline;
+use lapidary_gpu::{Device, GpuError};
+use lapidary_specialise::{SpecialiseError, specialise};
+use lapidary_specialise::spirv_counts;
+use lapidary_specialise::spirv_counts::{SpirvCounts, SpirvCountsError, spirv_counts};
 use naga::valid::ModuleInfo;
 use std::borrow::Cow;
 

@@ -5,10 +5,10 @@ use super::pass::Shared;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::Part;
 use super::{RenderError, Rung, light_views};
-use crate::gpu::capture::OfObject;
-use crate::gpu::{Encoder, Gpu};
-use crate::plan::Effect;
-use crate::scene::{Bounds, Light};
+use lapidary_gpu::capture::OfObject;
+use lapidary_gpu::{Encoder, Gpu};
+use lapidary_plan::Effect;
+use lapidary_scene::{Bounds, Light};
 use std::collections::HashMap;
 
 /// Texels of a map along a side. A shadow's edge is that soft, and what stands out less than a texel casts none.

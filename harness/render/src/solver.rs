@@ -2,7 +2,7 @@
 
 use super::Method;
 use crate::compute::Kernel;
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};

@@ -2,7 +2,7 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::{Encoder, Gpu};
 use glam::{Vec2, Vec3};
 use lapidary_texture_diffusion as mirror;
 

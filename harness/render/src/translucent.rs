@@ -7,12 +7,13 @@ use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, 
 use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
 use super::{Reflectance, RenderError, Rung, Settings};
-use crate::cdrf::table::{self, Format};
-use crate::gpu::Gpu;
-use crate::gpu::capture::OfObject;
-use crate::plan::{Decisions, thickness};
-use crate::scene::curvatures::vertex_curvatures;
-use crate::scene::{Material, Object};
+use crate::cdrf::table;
+use lapidary_scene::solver::Format;
+use lapidary_gpu::Gpu;
+use lapidary_gpu::capture::OfObject;
+use lapidary_plan::{Decisions, thickness};
+use lapidary_scene::curvatures::vertex_curvatures;
+use lapidary_scene::{Material, Object};
 use glam::{UVec2, Vec2, Vec3};
 
 /// What shines on the objects, and what keeps it from them, where anything does.

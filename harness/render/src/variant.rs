@@ -1,8 +1,8 @@
 //! The objects of a scene, by the technique and by the variant of its recipe that their materials call for.
 
 use super::{Rung, Settings};
-use crate::plan::Decisions;
-use crate::scene::{Bounds, Light, Object, Scene};
+use lapidary_plan::Decisions;
+use lapidary_scene::{Bounds, Light, Object, Scene};
 use std::collections::{HashMap, HashSet};
 
 /// An object and what it calls for.

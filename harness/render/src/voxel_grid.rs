@@ -1,6 +1,6 @@
 //! A cube of cubic voxels about a body: what the passes over voxels agree on.
 
-use crate::scene::Bounds;
+use lapidary_scene::Bounds;
 use glam::{UVec3, Vec3};
 
 /// Voxels along an edge of the smallest grid.

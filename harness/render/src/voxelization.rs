@@ -1,7 +1,7 @@
 //! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
 
 use crate::compute::Kernel;
-use crate::gpu::{Encoder, Gpu};
+use lapidary_gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_voxelization::VoxelizationGrid;

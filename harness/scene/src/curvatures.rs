@@ -32,7 +32,7 @@ pub fn vertex_curvatures(mesh: &Mesh) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::surfaces::{sphere, torus};
+    use crate::surfaces::{sphere, torus};
     use glam::Vec3;
 
     #[test]

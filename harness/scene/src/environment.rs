@@ -1,7 +1,7 @@
 //! Light from far away, in f64.
 
-use crate::render::Environment;
-use crate::scene::environment_map::EnvironmentMap;
+use crate::Environment;
+use crate::environment_map::EnvironmentMap;
 use glam::{DVec3, UVec2};
 use lapidary_environment::oracle;
 

@@ -71,8 +71,8 @@ fn charts(mesh: &Mesh) -> Vec<[Vec2; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
-    use crate::scene::surfaces::{sphere, torus};
+    use crate::Scene;
+    use crate::surfaces::{sphere, torus};
 
     #[test]
     fn a_sphere_closes_around_and_a_torus_both_ways() {

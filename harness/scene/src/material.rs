@@ -1,7 +1,7 @@
 //! What a body is made of, as far as glTF says it, and a little further.
 
 use super::Medium;
-use crate::render::Rung;
+use lapidary_plan::Rung;
 use glam::Vec3;
 use lapidary_dispersion::oracle as dispersion;
 

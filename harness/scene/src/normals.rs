@@ -189,7 +189,7 @@ mod tests {
         assert!(matches!(soft_normals(&soft), Cow::Borrowed(_)));
         // The built-ins' own averages stay as they are, also those that are not by angle, and seams that differ by rounding.
         for name in ["brilliant_plain", "brilliant_area", "prism_chain", "skin"] {
-            assert!(!has_hard_edges(&crate::scene::Scene::named(name).unwrap().objects[0].mesh), "{name}");
+            assert!(!has_hard_edges(&crate::Scene::named(name).unwrap().objects[0].mesh), "{name}");
         }
     }
 

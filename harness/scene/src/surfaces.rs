@@ -127,7 +127,7 @@ mod tests {
     fn a_rounded_box_has_its_volume_its_area_and_flat_faces() {
         let (half, r) = (DVec3::new(7.0, 2.0, 4.0), 0.75);
         let mesh = rounded_box(half, r, 8);
-        assert!(crate::scene::convex::is_closed(&mesh));
+        assert!(crate::convex::is_closed(&mesh));
         let [a, b, c] = (2.0 * (half - r)).to_array();
         let (sides, edges) = (a * b + b * c + c * a, a + b + c);
         let (volume, area) = mesh.volume_and_area();

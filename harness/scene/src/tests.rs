@@ -1,4 +1,4 @@
-use crate::extremum::larger;
+use lapidary_assay::extremum::larger;
 use std::collections::{HashMap, HashSet};
 
 use glam::{DQuat, DVec3, Quat};

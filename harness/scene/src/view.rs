@@ -1,6 +1,6 @@
 //! From places on the picture to directions, as the rasteriser maps them.
 
-use crate::scene::Camera;
+use crate::Camera;
 use glam::DVec3;
 
 /// A camera over a picture of a given size.

@@ -32,7 +32,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
-use crate::dispatch;
+use lapidary_assay::dispatch;
 use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;

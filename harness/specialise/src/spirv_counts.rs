@@ -1,7 +1,7 @@
 //! What a shader is made of, counted in the SPIR-V that naga writes for each entry point alone: a figure that no driver
 //! changes, beside the measured times.
 
-use crate::specialise::operands;
+use crate::operands;
 use naga::back::spv;
 use naga::valid::ModuleInfo;
 use naga::{AddressSpace, Expression, Function, Handle, Module, ShaderStage, Statement, Type, TypeInner};
@@ -40,7 +40,7 @@ pub enum SpirvCountsError {
 }
 
 /// Counts what a vertex and a fragment entry point of a valid module are made of. Its overrides have been applied, as
-/// [`specialise`](crate::specialise::specialise) does.
+/// [`specialise`](crate::specialise) does.
 pub fn spirv_counts(
     ir: &Module,
     info: &ModuleInfo,
@@ -254,7 +254,9 @@ fn is_constant(function: &Function, expression: Handle<Expression>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{cookbook, dispatch, specialise};
+    use crate as specialise;
+    use crate::cookbook;
+    use lapidary_assay::dispatch;
 
     fn counts(source: &str) -> SpirvCounts {
         let (module, info) = dispatch::parse(source, "test").unwrap_or_else(|error| panic!("{error}"));

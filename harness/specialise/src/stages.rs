@@ -1,6 +1,6 @@
 //! What a vertex stage hands on and no fragment stage reads.
 
-use crate::dispatch;
+use lapidary_assay::dispatch;
 use naga::proc::{Alignment, Layouter};
 use naga::valid::{FunctionInfo, ModuleInfo, ValidationError};
 use naga::{Arena, Binding, EntryPoint, Expression, Function, Handle, Module, ShaderStage, StructMember, Type};

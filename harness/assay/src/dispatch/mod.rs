@@ -11,7 +11,7 @@ pub mod value;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
 
-use crate::gpu::{Gpu, GpuError};
+use lapidary_gpu::{Gpu, GpuError};
 use crate::tokens::{items, tokens};
 use batch::Buffers;
 use layout::Layout;

@@ -164,7 +164,7 @@ fn test(
 mod tests {
     use super::*;
     use crate::dispatch::Kernel;
-    use crate::gpu::{AdapterChoice, Gpu};
+    use lapidary_gpu::{AdapterChoice, Gpu};
 
     const SOURCE: &str = "fn subject(x: f32, y: vec2f) -> f32 {\n    var sum = 0.0f;\n    if x > 1.0f {\n        \
                           sum = clamp((y.x * y).x / x, 0.0f, 1.0f);\n    } else {\n        sum = clamp(1.0f / x, 0.0f, \

@@ -8,7 +8,8 @@ mod machine;
 
 pub use machine::{Decision, Machine, Nearest, Site, Slack, Slacking, Traced};
 
-use crate::dispatch::{self, DispatchError};
+use crate::dispatch;
+use crate::dispatch::DispatchError;
 use layout::{Frame, Layout};
 use naga::{Block, Function, Handle, Statement, SwitchValue};
 

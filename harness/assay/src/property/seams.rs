@@ -7,7 +7,8 @@
 
 use super::draws::mix;
 use super::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
-use crate::check::literal::{self, Language};
+use crate::literal;
+use crate::literal::Language;
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};

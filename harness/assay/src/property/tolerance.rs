@@ -2,7 +2,7 @@
 //! bounds of the function's `Accuracy:` line.
 
 use super::search::{Effort, InputBox, Search, Spread};
-use crate::cookbook::accuracy_line::{Bound, FieldBound};
+use crate::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.

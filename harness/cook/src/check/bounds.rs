@@ -2,7 +2,7 @@
 //! as it nests.
 
 use crate::text_file;
-use crate::tokens::tokens;
+use lapidary_assay::tokens::tokens;
 use std::path::Path;
 
 /// Bytes of a file; all modules of the cookbook together take a fifth of it.

@@ -1,10 +1,10 @@
 //! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
 
 use super::literal::{Language, call, value};
-use crate::dispatch::shape::Scalar;
-use crate::dispatch::{DispatchError, Kernel};
-use crate::formula::{Formula, Words};
-use crate::property::tolerance::{Allowed, Tolerance, number};
+use lapidary_assay::dispatch::shape::Scalar;
+use lapidary_assay::dispatch::{DispatchError, Kernel};
+use lapidary_assay::formula::{Formula, Words};
+use lapidary_assay::property::tolerance::{Allowed, Tolerance, number};
 use serde::Serialize;
 
 /// A failing input and its results, as literals and as numbers.

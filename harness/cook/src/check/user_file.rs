@@ -2,10 +2,11 @@
 
 use super::{CheckError, bounds, select};
 use crate::cookbook::release::{History, Standing};
-use crate::cookbook::{self, Module};
-use crate::dispatch;
-use crate::formula::Formula;
-use crate::nearest;
+use crate::cookbook;
+use crate::cookbook::Module;
+use lapidary_assay::dispatch;
+use lapidary_assay::formula::Formula;
+use lapidary_scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
 

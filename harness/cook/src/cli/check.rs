@@ -3,14 +3,16 @@
 mod text;
 
 use super::{Context, Failure, Outcome, number, output};
-use lapidary_harness::check::guard::{self, Stage};
-use lapidary_harness::check::user_file::{Contents, UserFile};
-use lapidary_harness::check::{self, CheckError, Row, Source};
-use lapidary_harness::cookbook::release::Standing;
-use lapidary_harness::formula::Formula;
-use lapidary_harness::gpu::Gpu;
-use lapidary_harness::property::persistence::Regressions;
-use lapidary_harness::property::{DEFAULT_CASES, Settings};
+use lapidary_cook::check::guard;
+use lapidary_cook::check::guard::Stage;
+use lapidary_cook::check::user_file::{Contents, UserFile};
+use lapidary_cook::check;
+use lapidary_cook::check::{CheckError, Row, Source};
+use lapidary_cook::cookbook::release::Standing;
+use lapidary_assay::formula::Formula;
+use lapidary_gpu::Gpu;
+use lapidary_assay::property::persistence::Regressions;
+use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use std::path::PathBuf;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.

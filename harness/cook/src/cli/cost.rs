@@ -8,11 +8,12 @@ mod restraint;
 mod sphere;
 
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_harness::cost::page::{self, Tables};
-use lapidary_harness::cost::{CostError, Options, views};
-use lapidary_harness::render::Rung;
-use lapidary_harness::render::file;
-use lapidary_harness::text_file;
+use lapidary_cook::cost::page;
+use lapidary_cook::cost::page::Tables;
+use lapidary_cook::cost::{CostError, Options, views};
+use lapidary_plan::Rung;
+use lapidary_render::file;
+use lapidary_cook::text_file;
 use serde::{Serialize, de::DeserializeOwned};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -83,7 +84,7 @@ fn parse_view(text: &str) -> Result<views::View, String> {
     let all = || views::VIEWS.into_iter().chain(views::CONCAVE);
     let names: Vec<&str> = all().map(|view| view.name).collect();
     let found = all().find(|view| view.name == text);
-    found.ok_or_else(|| format!("no such view{}", lapidary_harness::nearest::suggest(text, &names)))
+    found.ok_or_else(|| format!("no such view{}", lapidary_scene::nearest::suggest(text, &names)))
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {

@@ -1,11 +1,13 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::cost::drawing::SIZE as PLOT_SIZE;
-use lapidary_harness::gallery::{self, Picture, Site};
-use lapidary_harness::render::file;
-use lapidary_harness::scene::BUILT_IN;
-use lapidary_harness::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
+use lapidary_cook::cost::drawing::SIZE as PLOT_SIZE;
+use lapidary_cook::gallery;
+use lapidary_cook::gallery::{Picture, Site};
+use lapidary_render::file;
+use lapidary_scene::BUILT_IN;
+use lapidary_cook::snapshot;
+use lapidary_cook::snapshot::{Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.

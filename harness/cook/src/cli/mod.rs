@@ -17,7 +17,7 @@ mod snapshots;
 mod test;
 
 use clap::{Parser, Subcommand};
-use lapidary_harness::gpu::{AdapterChoice, Gpu};
+use lapidary_gpu::{AdapterChoice, Gpu};
 use std::process::ExitCode;
 
 /// Whether what was checked holds.

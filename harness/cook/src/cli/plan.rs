@@ -2,10 +2,11 @@
 
 use super::asked::Asked;
 use super::{Failure, Outcome, output};
-use lapidary_harness::gpu::capture::{Kind, Pipeline, Resource, Step};
-use lapidary_harness::plan::quality::Chosen;
-use lapidary_harness::plan::{Decision, Plan, PlannedObject};
-use lapidary_harness::scene::Scene;
+use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
+use lapidary_plan::quality::Chosen;
+use lapidary_plan::Decision;
+use lapidary_render::plan::{Plan, PlannedObject};
+use lapidary_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -2,13 +2,17 @@
 
 use super::asked::Asked;
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_harness::nearest::suggest;
-use lapidary_harness::plan::{self, Decisions};
-use lapidary_harness::random_walk::mesh::{Boundary, Origin};
-use lapidary_harness::reference::Lost;
-use lapidary_harness::render::file::{self, Format};
-use lapidary_harness::render::{self, Curvature, Geometry, Note, Rung, Settings, Spectrum, WalkedPicture};
-use lapidary_harness::scene::Scene;
+use lapidary_scene::nearest::suggest;
+use lapidary_plan as plan;
+use lapidary_plan::Decisions;
+use lapidary_reference::random_walk::mesh::{Boundary, Origin};
+use lapidary_reference::spectral::Lost;
+use lapidary_render::file;
+use lapidary_render::file::Format;
+use lapidary_render as render;
+use lapidary_render::{Curvature, Settings, WalkedPicture};
+use lapidary_plan::{Geometry, Note, Rung, Spectrum};
+use lapidary_scene::Scene;
 use std::path::PathBuf;
 
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.

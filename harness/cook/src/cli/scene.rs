@@ -1,8 +1,9 @@
 //! `cook scene`.
 
 use super::{Failure, Outcome, output};
-use lapidary_harness::render::file;
-use lapidary_harness::scene::{self, Scene, glb};
+use lapidary_render::file;
+use lapidary_scene as scene;
+use lapidary_scene::{Scene, glb};
 use std::path::PathBuf;
 
 /// Writes a built-in scene as a glTF 2.0 binary, meshes, materials, lights and camera, to be opened elsewhere.

@@ -1,8 +1,9 @@
 //! `cook snapshots`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_harness::nearest::suggest;
-use lapidary_harness::snapshot::{self, Committed};
+use lapidary_scene::nearest::suggest;
+use lapidary_cook::snapshot;
+use lapidary_cook::snapshot::Committed;
 
 /// Renders the committed pictures again and compares them, or accepts the new ones.
 #[derive(clap::Args)]

@@ -1,8 +1,8 @@
 //! `cook test`.
 
 use super::{Context, Failure, Outcome};
-use lapidary_harness::gpu::ADAPTER_VARIABLE;
-use lapidary_harness::property::seed::{SEED_VARIABLE, SuiteSeed};
+use lapidary_gpu::ADAPTER_VARIABLE;
+use lapidary_assay::property::seed::{SEED_VARIABLE, SuiteSeed};
 use std::path::Path;
 use std::process::Command;
 

@@ -3,7 +3,8 @@
 use super::header::{self, Header};
 use super::marks;
 use super::precedence::mixed_operators;
-use crate::dispatch::{self, shape::Shape};
+use lapidary_assay::dispatch;
+use lapidary_assay::dispatch::shape::Shape;
 use naga::{Expression, Function, Handle};
 use std::fmt;
 

@@ -3,7 +3,7 @@
 //! `wgsl/releases/<release>.json` holds a hash of each function with the structs and consts that it uses, and one of each
 //! module's text, which the module's own `// Version:` line repeats. `CHANGELOG.md` says what changed, by function.
 
-use crate::tokens::{Item, items, tokens};
+use lapidary_assay::tokens::{Item, items, tokens};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;

@@ -16,8 +16,9 @@ pub use scenes::{SCENES, SceneReport};
 pub use walks::Residuals;
 
 use super::{CostError, Row, mark, mark_rows};
-use crate::gpu::Gpu;
-use crate::render::{Reflectance, Rung};
+use lapidary_gpu::Gpu;
+use lapidary_scene::solver::Reflectance;
+use lapidary_plan::Rung;
 use error::Samples;
 use lapidary_cdrf::oracle;
 use serde::{Deserialize, Serialize};

@@ -2,8 +2,10 @@
 
 use super::seen::{SAMPLES, Watched};
 use super::{CostError, Errors};
-use crate::gpu::Gpu;
-use crate::render::{self, Rung, Settings};
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_plan::Rung;
+use lapidary_render::Settings;
 use serde::{Deserialize, Serialize};
 
 /// One way to end a ray, and its errors.

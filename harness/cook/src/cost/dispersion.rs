@@ -2,11 +2,13 @@
 
 use super::CostError;
 use super::views::View;
-use crate::golden_section::golden_section;
-use crate::gpu::Gpu;
-use crate::pixel::{Shading, Stone, Viewer};
-use crate::render::{self, Picture, Rung, Settings, Spectrum};
-use crate::scene::Scene;
+use lapidary_assay::golden_section::golden_section;
+use lapidary_gpu::Gpu;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::{Rung, Spectrum};
+use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Side of the pictures that are compared, one sample a pixel, so that a pixel is one ray.

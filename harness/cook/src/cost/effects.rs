@@ -4,11 +4,14 @@ mod tables;
 
 use super::timing::{self, Timed, Timing};
 use super::{CostError, Row};
-use crate::gpu::Gpu;
-use crate::plan::{Decisions, Effect, Effects, Plan};
-use crate::render::{Curvature, Environment, Rung, Settings};
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::{Light, Scene};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Decisions, Effect, Effects};
+use lapidary_render::plan::Plan;
+use lapidary_render::{Curvature, Settings};
+use lapidary_scene::Environment;
+use lapidary_plan::Rung;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Light, Scene};
 use serde::{Deserialize, Serialize};
 
 /// The ladder's name.

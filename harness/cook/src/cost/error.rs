@@ -1,6 +1,6 @@
 //! How far a rung's picture is from the reference.
 
-use crate::render::Picture;
+use lapidary_render::Picture;
 use crate::snapshot;
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ fn products(found: &[[f32; 4]], truth: &[[f32; 4]]) -> [f64; 3] {
 
 impl Errors {
     /// Of `picture` against `reference`, both of one size and both shown alike: of a committed reference there are means alone, so that its counterpart
-    /// is of [`render_means`](crate::render::render_means).
+    /// is of [`render_means`](lapidary_render::render_means).
     pub fn between(picture: &Picture, reference: &Picture) -> Self {
         let map = snapshot::flip(picture, reference);
         let covered = |index: usize| reference.linear[index][3] > 0.0;

@@ -4,10 +4,12 @@ use super::seen::{SAMPLES, Seen, Watched, steadiness};
 use super::timing::{self, Timed};
 use super::views::{self, View};
 use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_sizes, reflection};
-use crate::gpu::Gpu;
-use crate::render::{self, Geometry, Rung, Settings, Spectrum};
-use crate::scene::Scene;
-use crate::shader::Shader;
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_plan::{Geometry, Rung, Spectrum};
+use lapidary_render::Settings;
+use lapidary_scene::Scene;
+use lapidary_render::shader::Shader;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
 /// the loop over triangles give the planes' pictures, so a few rungs show what they take; a hierarchy's have colours, which cost it a twentieth. Hits

@@ -4,7 +4,7 @@ use super::page::{Table, Tables, header, row};
 use super::proxy_sizes::{self as sizes, AtSize};
 use super::views::{CONCAVE, VIEWS};
 use super::{Choice, Colours, RUNGS, Report, RungReport, Seen, Steadiness, quality};
-use crate::plan::Technique;
+use lapidary_plan::Technique;
 use std::fmt::Write as _;
 
 impl Tables for Report {

@@ -31,8 +31,8 @@ pub use reflection::Reflection;
 pub use seen::{Seen, Steadiness};
 pub use timing::{Timed, Timing};
 
-use crate::specialise::SpecialiseError;
-use crate::spirv_counts::SpirvCountsError;
+use lapidary_specialise::SpecialiseError;
+use lapidary_specialise::spirv_counts::SpirvCountsError;
 use serde::{Deserialize, Serialize};
 
 /// What is measured of a gem's rung in a view, as [`Seen::of`] numbers it.
@@ -227,10 +227,10 @@ pub enum CostError {
     },
     /// A picture or a frame could not be rendered.
     #[error(transparent)]
-    Render(#[from] crate::render::RenderError),
+    Render(#[from] lapidary_render::RenderError),
     /// A view's scene could not be made.
     #[error(transparent)]
-    Scene(#[from] crate::scene::SceneError),
+    Scene(#[from] lapidary_scene::SceneError),
     /// No reference to compare with: it is never made by itself.
     #[error("{}: missing; restore it from version control, or remake it: {command}", path.display())]
     NoReference {

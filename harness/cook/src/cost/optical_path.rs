@@ -12,9 +12,10 @@ pub use frames::{PathTiming, Solved};
 pub use views::{COMPARED, Distance, VIEWS, WALKED};
 
 use super::{CostError, Row, mark, mark_rows};
-use crate::gpu::Gpu;
-use crate::optical_path::Method;
-use crate::render::{Paths, Rung};
+use lapidary_gpu::Gpu;
+use lapidary_scene::solver::Method;
+use lapidary_scene::solver::Paths;
+use lapidary_plan::Rung;
 use serde::{Deserialize, Serialize};
 use walks::Walks;
 

@@ -4,7 +4,7 @@ use super::drawing::{
     self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, written,
 };
 use super::{ALIKE, CostError, MEASURES, Report, RungReport};
-use crate::render::{Geometry, Rung, Spectrum};
+use lapidary_plan::{Geometry, Rung, Spectrum};
 use plotters::prelude::*;
 
 struct Point<'a> {

@@ -2,9 +2,10 @@
 
 use super::timing::{self, Timed};
 use super::{CostError, views};
-use crate::gpu::Gpu;
-use crate::render::{Rung, Settings};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
+use lapidary_render::Settings;
+use lapidary_scene::Scene;
 use std::fmt::Write as _;
 
 /// What is taken away: the text that goes, and what stands in its place.

@@ -3,10 +3,13 @@
 
 use super::views::{self, View};
 use super::{CostError, Errors};
-use crate::gpu::Gpu;
-use crate::render::{self, Environment, Picture, Rung, Settings};
-use crate::scene::Scene;
-use crate::scene::environment_map::EnvironmentMap;
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_scene::Environment;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
+use lapidary_scene::environment_map::EnvironmentMap;
 use glam::{UVec2, Vec3};
 use lapidary_environment::direction_from_uv;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,9 @@
 //! What `--quality` stands for, as a ladder's page shows it.
 
 use super::page::{header, row};
-use crate::plan::ladder::{CUT, Ladder, SAME_TIME, Step};
-use crate::plan::quality::figure;
-use crate::plan::{Quality, Technique};
+use lapidary_plan::ladder::{CUT, Ladder, SAME_TIME, Step};
+use lapidary_plan::quality::figure;
+use lapidary_plan::{Quality, Technique};
 use serde::Serialize;
 use std::fmt::Write as _;
 

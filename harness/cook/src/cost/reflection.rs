@@ -2,11 +2,12 @@
 //! averaged and how the table was cut into triangles.
 
 use super::CostError;
-use crate::pixel::{Shading, Stone, Viewer};
-use crate::render::{Geometry, Rung, Settings, Spectrum};
-use crate::scene::cuts::{BrilliantParameters, round_brilliant};
-use crate::scene::polyhedron::Triangulation;
-use crate::scene::{Averaging, Scene};
+use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_plan::{Geometry, Rung, Spectrum};
+use lapidary_render::Settings;
+use lapidary_scene::cuts::{BrilliantParameters, round_brilliant};
+use lapidary_scene::polyhedron::Triangulation;
+use lapidary_scene::{Averaging, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Side of the grid of rays.
@@ -27,7 +28,7 @@ pub struct Reflection {
 pub(super) fn measure() -> Result<Vec<Reflection>, CostError> {
     let scene = Scene::named("brilliant")?.seen_from(0.0, 0.0);
     let mut found = vec![share(&scene, Geometry::Convex, "exact".to_owned())?];
-    let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY).map_err(crate::scene::SceneError::from)?;
+    let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY).map_err(lapidary_scene::SceneError::from)?;
     let averagings = [("angle", Averaging::Angle), ("area", Averaging::Area), ("plain", Averaging::Plain)];
     let triangulations = [
         ("from the centre", Triangulation::Centroid),

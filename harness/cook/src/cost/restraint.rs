@@ -10,8 +10,8 @@ pub use tiles::{TileWay, Tiles};
 pub use variants::{VariantWay, Variants};
 
 use super::{CostError, Row};
-use crate::gpu::Gpu;
-use crate::render::Rung;
+use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
 use serde::{Deserialize, Serialize};
 
 /// The ladder's name.

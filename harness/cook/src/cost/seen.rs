@@ -2,9 +2,10 @@
 
 use super::views::{self, View};
 use super::{CostError, Errors, MEASURES};
-use crate::gpu::Gpu;
-use crate::render::{self, Picture, Settings};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Samples along each side of a compared and timed pixel. A real-time frame has one; `cook render` takes 4.

@@ -7,7 +7,7 @@ mod table;
 
 pub use rule::{Choice, Law};
 
-use crate::random_walk::{Fit, Form, Profile, half_space, profile};
+use lapidary_reference::random_walk::{Fit, Form, Profile, half_space, profile};
 use serde::{Deserialize, Serialize};
 
 /// Albedos of one scattering.

@@ -1,8 +1,8 @@
 //! Times of frames in one run: interleaved, several rounds, the least of each.
 
-use crate::gpu::Gpu;
-use crate::render::{Frame, RenderError, Settings};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_render::{Frame, RenderError, Settings};
+use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -90,7 +90,7 @@ pub fn time(
             progress(done, total);
         }
     }
-    let timing = |((frame, share), times): (&(Frame<'_>, f64), &Vec<crate::render::FrameTime>)| {
+    let timing = |((frame, share), times): (&(Frame<'_>, f64), &Vec<lapidary_render::FrameTime>)| {
         let mut totals: Vec<f64> = times.iter().map(|time| time.total.as_secs_f64() * 1e3 / share).collect();
         totals.sort_by(f64::total_cmp);
         let encode = times.iter().map(|time| time.encode.as_secs_f64() * 1e6).fold(f64::INFINITY, f64::min);

@@ -1,9 +1,10 @@
 //! What the gem ladder is looked at with: several cuts, from several angles, each with its committed reference.
 
 use super::CostError;
-use crate::reference;
-use crate::render::{Picture, Rung, Settings};
-use crate::scene::{Camera, Scene, SceneError};
+use lapidary_reference::spectral;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::{Camera, Scene, SceneError};
 use crate::snapshot;
 use std::path::PathBuf;
 
@@ -86,7 +87,7 @@ impl View {
     }
 
     /// Its committed reference, linear and as it is seen.
-    pub fn reference(&self, gpu: &crate::gpu::Gpu) -> Result<Picture, CostError> {
+    pub fn reference(&self, gpu: &lapidary_gpu::Gpu) -> Result<Picture, CostError> {
         if !self.reference_file().exists() {
             return Err(CostError::NoReference { path: self.reference_file(), command: self.command() });
         }

@@ -1,8 +1,8 @@
 //! `wgsl/absorption.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::property::draws::Draws;
 use glam::Vec3;
 use lapidary_absorption::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
 

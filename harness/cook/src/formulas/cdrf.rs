@@ -1,9 +1,9 @@
 //! `wgsl/cdrf.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_cdrf::{self as mirror, CdrfTexels, oracle};
 use std::f64::consts::{FRAC_1_PI, PI};

@@ -1,8 +1,8 @@
 //! `wgsl/closest_point.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::property::draws::Draws;
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_closest_point::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 

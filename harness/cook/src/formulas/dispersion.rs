@@ -2,9 +2,9 @@
 
 use super::near;
 use super::refraction::{cosine_near_critical, incidence, relative_index};
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{DVec3, Vec3};
 use lapidary_dispersion::{self as mirror, DispersionSellmeier, oracle};
 

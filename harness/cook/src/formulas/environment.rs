@@ -1,9 +1,9 @@
 //! `wgsl/environment.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{DVec2, UVec2, Vec2, Vec3};
 use lapidary_environment::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use std::f64::consts::PI;

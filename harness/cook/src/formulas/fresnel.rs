@@ -1,8 +1,8 @@
 //! `wgsl/fresnel.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::property::draws::Draws;
 use lapidary_fresnel::{self as mirror, oracle};
 
 const M: &str = "fresnel";

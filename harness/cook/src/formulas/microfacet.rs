@@ -1,8 +1,8 @@
 //! `wgsl/microfacet.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::property::draws::Draws;
 use glam::{DVec3, Vec3};
 use lapidary_microfacet::{self as mirror, oracle};
 use std::f64::consts::PI;

@@ -22,7 +22,7 @@ mod texture_diffusion;
 mod veins;
 mod voxelization;
 
-use crate::formula::Formula;
+use lapidary_assay::formula::Formula;
 use std::sync::OnceLock;
 
 /// All formulas, in the order of their modules' names and of each file.

@@ -5,8 +5,8 @@ mod matter;
 mod rays;
 mod surfaces;
 
-use crate::outside::{Promise, any_finite};
-use crate::property::draws::Draws;
+use lapidary_assay::outside::{Promise, any_finite};
+use lapidary_assay::property::draws::Draws;
 use glam::Vec3;
 use std::sync::OnceLock;
 

@@ -1,9 +1,9 @@
 //! `wgsl/reflective_shadow_map.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{Vec3, Vec4};
 use lapidary_reflective_shadow_map::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 

@@ -1,9 +1,9 @@
 //! `wgsl/texture_diffusion.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 

@@ -1,9 +1,9 @@
 //! `wgsl/veins.wgsl`.
 
 use super::near;
-use crate::formula::{Formula, formula};
-use crate::mirror_struct;
-use crate::property::draws::Draws;
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 use glam::{IVec3, UVec3, Vec3};
 use lapidary_veins::{self as mirror, VeinsCell, VeinsPattern, oracle};
 

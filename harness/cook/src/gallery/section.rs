@@ -5,11 +5,9 @@ use super::{
     page::{command, figure, listing},
     text::{escape, framed, prose},
 };
-use crate::cookbook::{
-    Module,
-    accuracy_line::{Accuracy, FieldBound},
-    header::{FunctionDoc, parse_header},
-};
+use crate::cookbook::Module;
+use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
+use crate::cookbook::header::{FunctionDoc, parse_header};
 use lapidary_wgsl::Recipe;
 
 /// The section of a module: what it is, its WGSL, its functions and the rest of its doc page.

@@ -4,10 +4,12 @@ use super::frames::{halved, side_by_side};
 use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
 use crate::cost::best_exposure;
-use crate::gpu::Gpu;
-use crate::plan::{Effect, Effects};
-use crate::render::{self, Picture, Rung, Settings};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 
 /// Its file's name.
 pub const NAME: &str = "beside_walks";

@@ -1,7 +1,7 @@
 //! How near a new picture is to its reference.
 
 use super::{SnapshotError, read};
-use crate::render::{Picture, file};
+use lapidary_render::{Picture, file};
 use std::path::Path;
 
 // Between what another driver may do and what a planted error does, two or more times the first. Another driver's samples lie 1/256 of their distance beside

@@ -1,6 +1,6 @@
 //! Pictures of one size side by side.
 
-use crate::render::Picture;
+use lapidary_render::Picture;
 
 /// In rows of so many.
 pub(super) fn side_by_side(frames: &[Picture], columns: u32) -> Picture {

@@ -1,9 +1,11 @@
 //! Pictures of one scene each, and the commands that render them.
 
 use super::folder;
-use crate::plan::{Decisions, Effect, Effects};
-use crate::render::{Curvature, MOST_SAMPLES, Rung, SAMPLES, Settings};
-use crate::scene::{Scene, SceneError};
+use lapidary_plan::{Decisions, Effect, Effects};
+use lapidary_render::{Curvature, MOST_SAMPLES, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::SAMPLES;
+use lapidary_scene::{Scene, SceneError};
 use std::path::PathBuf;
 
 /// A picture of a recipe.

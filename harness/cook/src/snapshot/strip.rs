@@ -2,12 +2,15 @@
 
 use super::SnapshotError;
 use super::frames::{halved, side_by_side};
-use crate::gpu::Gpu;
-use crate::optical_path::Method;
-use crate::plan::{Effect, Effects};
-use crate::render::{self, Paths, Picture, Rung, Settings};
-use crate::scene::deform::{merging, twisting};
-use crate::scene::{Bounds, Light, Object, Scene, SceneError};
+use lapidary_gpu::Gpu;
+use lapidary_scene::solver::Method;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_scene::solver::Paths;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::deform::{merging, twisting};
+use lapidary_scene::{Bounds, Light, Object, Scene, SceneError};
 use glam::{DVec2, Vec3};
 use std::f32::consts::PI;
 

@@ -2,9 +2,9 @@
 
 use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, folder, reference_picture};
-use crate::gpu::Gpu;
-use crate::random_walk::mesh::Origin;
-use crate::render::{Picture, Settings};
+use lapidary_gpu::Gpu;
+use lapidary_reference::random_walk::mesh::Origin;
+use lapidary_render::{Picture, Settings};
 use std::path::PathBuf;
 
 /// A committed reference by random walks, of a scene by its lights alone.

@@ -1,7 +1,8 @@
 //! Edges of bright facets as they are seen: what lies between the two sides of one is between them in brightness too.
 
-use lapidary_harness::render::{self, Picture, Settings};
-use lapidary_harness::scene::Scene;
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::Scene;
 
 /// A strong edge: display light changes by so much of white within three pixels, in one direction.
 const STRONG: f32 = 0.5;

@@ -1,8 +1,8 @@
 //! Bad usage and bad input: exit code 2, one clear line that names what is wrong, nothing on stdout, no file left behind.
 
-use crate::program::cook;
+use lapidary_cook::program::cook;
 use base64::Engine as _;
-use lapidary_harness::scene::{Scene, glb};
+use lapidary_scene::{Scene, glb};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -488,7 +488,7 @@ fn triangle(corners: [f32; 9], indices: [u16; 3]) -> Value {
 #[test]
 fn the_triangle_that_the_bad_files_vary_is_good() {
     let good = triangle(CORNERS, [0, 1, 2]).to_string();
-    let scene = lapidary_harness::scene::gltf::parse(good.as_bytes(), None).expect("a triangle");
+    let scene = lapidary_scene::gltf::parse(good.as_bytes(), None).expect("a triangle");
     assert_eq!(scene.triangle_count(), 1);
 }
 

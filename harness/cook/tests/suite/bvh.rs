@@ -4,11 +4,12 @@
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
 use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
-use lapidary_harness::compute::{self, Binding, RecipeRun};
-use lapidary_harness::extremum::larger;
-use lapidary_harness::gpu::Gpu;
-use lapidary_harness::property::draws::{Domain, Draws};
-use lapidary_harness::scene::{Bvh, Mesh, Scene};
+use lapidary_render::compute;
+use lapidary_render::compute::{Binding, RecipeRun};
+use lapidary_assay::extremum::larger;
+use lapidary_gpu::Gpu;
+use lapidary_assay::property::draws::{Domain, Draws};
+use lapidary_scene::{Bvh, Mesh, Scene};
 
 /// Rays a body.
 const RAYS: usize = 16_384;
@@ -69,7 +70,7 @@ impl Body {
     fn queries(&self, seed: u64, count: usize) -> Vec<Query> {
         (0..count as u64)
             .map(|row| {
-                let draws = &mut Draws::of_row(seed ^ crate::seed(), row);
+                let draws = &mut Draws::of_row(seed ^ lapidary_cook::seed(), row);
                 let mut query = self.start(draws);
                 for _ in 0..draws.below(3) {
                     let hit = self.trace(&query);

@@ -3,10 +3,13 @@
 
 use glam::{UVec2, Vec3};
 use lapidary_cdrf as mirror;
-use lapidary_harness::cdrf::table::{self, Format, Table};
-use lapidary_harness::cost::cdrf::error::{self, Samples};
-use lapidary_harness::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
-use lapidary_harness::extremum::largest;
+use lapidary_render::cdrf::table;
+use lapidary_scene::solver::Format;
+use lapidary_render::cdrf::table::Table;
+use lapidary_cook::cost::cdrf::error;
+use lapidary_cook::cost::cdrf::error::Samples;
+use lapidary_cook::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
+use lapidary_assay::extremum::largest;
 use std::sync::OnceLock;
 
 fn convolution() -> &'static Samples {

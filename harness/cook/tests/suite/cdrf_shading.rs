@@ -1,17 +1,19 @@
 //! The recipe `cdrf_shading` against what its parts promise: spheres, whose curvature is known, by every rung; the environment by quadrature;
 //! what is off; and what nobody should draw.
 
-use crate::pixels::on_the_ball;
+use lapidary_cook::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
-use lapidary_harness::cost::exposed_distance;
-use lapidary_harness::extremum::{larger, largest};
-use lapidary_harness::plan::{Effect, Effects};
-use lapidary_harness::render::{self, Curvature, Environment, Picture, RenderError, Settings};
-use lapidary_harness::scene::environment_map::EnvironmentMap;
-use lapidary_harness::scene::light::Arrival;
-use lapidary_harness::scene::surfaces::sphere;
-use lapidary_harness::scene::{Light, Material, Object, Scene};
+use lapidary_cook::cost::exposed_distance;
+use lapidary_assay::extremum::{larger, largest};
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Curvature, Picture, RenderError, Settings};
+use lapidary_scene::Environment;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::light::Arrival;
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Light, Material, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 const SIDE: u32 = 160;
@@ -220,7 +222,7 @@ fn integral(normal: DVec3, sigma: DVec3) -> DVec3 {
 #[test]
 fn the_blur_agrees_with_the_reflectance_on_a_slender_ring() {
     let mut scene = Scene::named("wax_ring").expect("built in");
-    scene.objects[0].mesh = lapidary_harness::scene::surfaces::torus(40.0, 4.0, 320, 64);
+    scene.objects[0].mesh = lapidary_scene::surfaces::torus(40.0, 4.0, 320, 64);
     scene.objects[0].material.sigma0 = Some(Vec3::splat(2.0));
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE }];
     let scene = scene.seen_from(60.0, 0.0);
@@ -374,7 +376,7 @@ fn bad_input_is_refused() {
 /// After each side's best single exposure the reflectance is nearer to the random walks than Lambert's law.
 #[test]
 fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
-    use lapidary_harness::snapshot::{EXR_SIDE, WalkedReference};
+    use lapidary_cook::snapshot::{EXR_SIDE, WalkedReference};
     for reference in WalkedReference::of("cdrf") {
         let truth = reference.picture(super::gpu()).expect(reference.scene).linear;
         let scene = Scene::named(reference.scene).expect("built in");

@@ -1,9 +1,9 @@
 //! `cook` does what its help says.
 
-use crate::program::{cook, folder, succeeds};
-use lapidary_harness::cookbook;
-use lapidary_harness::dispatch;
-use lapidary_harness::scene::{Scene, glb, gltf};
+use lapidary_cook::program::{cook, folder, succeeds};
+use lapidary_cook::cookbook;
+use lapidary_assay::dispatch;
+use lapidary_scene::{Scene, glb, gltf};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -343,7 +343,7 @@ fn a_thousand_gems_take_little_memory() {
     let placed = |number: u32| {
         let place = glam::UVec3::new(number % 10, number / 10 % 10, number / 100).as_dvec3() * 3.0;
         let object = scene.objects[0].clone();
-        lapidary_harness::scene::Object { mesh: object.mesh.placed(glam::DQuat::IDENTITY, place), ..object }
+        lapidary_scene::Object { mesh: object.mesh.placed(glam::DQuat::IDENTITY, place), ..object }
     };
     let many = Scene { objects: (0..1000).map(placed).collect(), ..scene.clone() }.seen_from(60.0, 20.0);
     std::fs::write(folder.path().join("many.glb"), glb::write(&many).expect("written")).expect("a file");
@@ -424,8 +424,8 @@ fn absorption_can_be_left_out() {
 
 #[test]
 fn the_committed_brilliant_is_what_the_command_writes() {
-    let scene = lapidary_harness::scene::Scene::named("brilliant").expect("built in");
-    let written = lapidary_harness::scene::glb::write(&scene).expect("glTF can hold it");
+    let scene = lapidary_scene::Scene::named("brilliant").expect("built in");
+    let written = lapidary_scene::glb::write(&scene).expect("glTF can hold it");
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/brilliant.glb");
     assert!(std::fs::read(path).expect("the asset") == written, "`./cook scene brilliant --out {path}` remakes it");
 }

@@ -1,16 +1,17 @@
 //! The comparison and the search for counterexamples fail where they must: a suite whose comparator lets NaN pass, or whose
 //! generator misses its edges, checks nothing.
 
-use crate::gpu;
+use lapidary_gpu as gpu;
 use glam::{DVec3, Vec3};
-use lapidary_harness::check::{self, Source};
-use lapidary_harness::cookbook::accuracy_line::{Bound, FieldBound};
-use lapidary_harness::dispatch::shape::{Scalar, Shape};
-use lapidary_harness::formula::{Formula, Words, formula};
-use lapidary_harness::property::draws::Draws;
-use lapidary_harness::property::persistence::Regressions;
-use lapidary_harness::property::tolerance::{Tolerance, Verdict};
-use lapidary_harness::property::{Check, Report, Settings};
+use lapidary_cook::check;
+use lapidary_cook::check::Source;
+use lapidary_assay::accuracy_line::{Bound, FieldBound};
+use lapidary_assay::dispatch::shape::{Scalar, Shape};
+use lapidary_assay::formula::{Formula, Words, formula};
+use lapidary_assay::property::draws::Draws;
+use lapidary_assay::property::persistence::Regressions;
+use lapidary_assay::property::tolerance::{Tolerance, Verdict};
+use lapidary_assay::property::{Check, Report, Settings};
 
 const FLOAT: Shape = Shape::Scalar(Scalar::F32);
 const FLAG: Shape = Shape::Scalar(Scalar::Bool);

@@ -1,14 +1,15 @@
 //! The module contract: the cookbook keeps it, and each rule notices a module that does not.
 
-use lapidary_harness::check;
-use lapidary_harness::cookbook::accuracy_line::Accuracy;
-use lapidary_harness::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
-use lapidary_harness::cookbook::marks;
-use lapidary_harness::cookbook::modules;
-use lapidary_harness::cookbook::translate::{Target, translate};
-use lapidary_harness::dispatch::shape::Signature;
-use lapidary_harness::dispatch::{self, ENTRY_POINT, KernelModule};
-use lapidary_harness::formulas;
+use lapidary_cook::check;
+use lapidary_assay::accuracy_line::Accuracy;
+use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
+use lapidary_cook::cookbook::marks;
+use lapidary_cook::cookbook::modules;
+use lapidary_cook::cookbook::translate::{Target, translate};
+use lapidary_assay::dispatch::shape::Signature;
+use lapidary_assay::dispatch;
+use lapidary_assay::dispatch::{ENTRY_POINT, KernelModule};
+use lapidary_cook::formulas;
 use lapidary_wgsl::RECIPES;
 use std::path::Path;
 

@@ -1,16 +1,20 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
-use crate::program::{folder, succeeds};
-use lapidary_harness::cost::cdrf::{self, CdrfReport};
-use lapidary_harness::cost::effects::EffectsReport;
-use lapidary_harness::cost::optical_path::{self, OpticalPathReport};
-use lapidary_harness::cost::page::{self, Tables};
-use lapidary_harness::cost::restraint::RestraintReport;
-use lapidary_harness::cost::sphere::{ALBEDOS, Law, RADII, Row, SphereReport};
-use lapidary_harness::cost::{Errors, MEASURES, Report, views};
-use lapidary_harness::random_walk::{self, Form};
-use lapidary_harness::render::{Frame, Settings};
-use lapidary_harness::scene::Scene;
+use lapidary_cook::program::{folder, succeeds};
+use lapidary_cook::cost::cdrf;
+use lapidary_cook::cost::cdrf::CdrfReport;
+use lapidary_cook::cost::effects::EffectsReport;
+use lapidary_cook::cost::optical_path;
+use lapidary_cook::cost::optical_path::OpticalPathReport;
+use lapidary_cook::cost::page;
+use lapidary_cook::cost::page::Tables;
+use lapidary_cook::cost::restraint::RestraintReport;
+use lapidary_cook::cost::sphere::{ALBEDOS, Law, RADII, Row, SphereReport};
+use lapidary_cook::cost::{Errors, MEASURES, Report, views};
+use lapidary_reference::random_walk;
+use lapidary_reference::random_walk::Form;
+use lapidary_render::{Frame, Settings};
+use lapidary_scene::Scene;
 use serde_json::Value;
 
 #[test]
@@ -81,7 +85,7 @@ fn errors_and_times_are_of_the_same_pictures() {
             Settings { rung: "bvh-2".parse().expect("a rung"), samples, ..Settings::of_size(report.side, report.side) };
         let scene = view.open().expect("built in");
         let picture =
-            |scene: &Scene| lapidary_harness::render::render(super::gpu(), scene, &settings).expect("rendered");
+            |scene: &Scene| lapidary_render::render(super::gpu(), scene, &settings).expect("rendered");
         let (now, next) = (picture(&scene), picture(&views::turned(&scene)));
         let reference = view.reference(super::gpu()).expect("committed");
         let errors = Errors::between(&now, &reference);
@@ -170,7 +174,7 @@ fn what_effects_take_is_as_recorded() {
     assert_eq!(found.studies.len(), recorded.studies.len());
     for (found, recorded) in found.studies.iter().zip(&recorded.studies) {
         for (found_frame, recorded_frame) in found.frames.iter().zip(&recorded.frames) {
-            let untimed = lapidary_harness::cost::effects::Frame { timing: None, ..recorded_frame.clone() };
+            let untimed = lapidary_cook::cost::effects::Frame { timing: None, ..recorded_frame.clone() };
             assert_eq!(*found_frame, untimed, "{} by {}", recorded.scene, recorded.rung);
         }
         assert_eq!(found.frames.len(), recorded.frames.len());
@@ -327,7 +331,7 @@ fn ways_through_stone_are_compared_written_and_shown_again() {
             let share = if measure == "nats" { 0.2 } else { 1.0 };
             assert!(ways > 0.0 && ways < share * lambert, "{view} {measure}: {ways} {lambert}");
         }
-        let walked = lapidary_harness::snapshot::WALKED.iter().any(|reference| reference.scene == view);
+        let walked = lapidary_cook::snapshot::WALKED.iter().any(|reference| reference.scene == view);
         assert_eq!(error("godunov-16", view, "walks").is_some(), walked, "{view}");
     }
     let read = |name: &str| std::fs::read_to_string(folder.path().join("report").join(name)).expect(name);

@@ -2,8 +2,8 @@
 
 use glam::camera::rh;
 use glam::{DVec3, Vec3};
-use lapidary_harness::cookbook;
-use lapidary_harness::gpu::Gpu;
+use lapidary_cook::cookbook;
+use lapidary_gpu::Gpu;
 
 /// Pixels along an edge of the picture.
 const SIZE: u32 = 256;

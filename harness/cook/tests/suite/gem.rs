@@ -1,11 +1,13 @@
 //! The gem recipes as wholes: scale and place, dispersion's order, energy with more bounces.
 
 use glam::Vec3;
-use lapidary_harness::cost::Errors;
-use lapidary_harness::extremum::{larger, largest};
-use lapidary_harness::pixel::Viewer;
-use lapidary_harness::render::{self, Picture, Rung, Settings};
-use lapidary_harness::scene::Scene;
+use lapidary_cook::cost::Errors;
+use lapidary_assay::extremum::{larger, largest};
+use lapidary_render::pixel::Viewer;
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 
 fn picture(scene: &Scene, rung: &str) -> Picture {
     let settings = Settings { rung: rung.parse().expect(rung), ..Settings::of_size(192, 192) };

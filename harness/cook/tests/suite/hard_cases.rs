@@ -1,9 +1,10 @@
 //! The catalogue of hard cases, on both sides: the stable form holds its limit, and the naive form fails there by as much as is
 //! stated. Where nothing fails, it is no hard case.
 
-use lapidary_harness::check::{self, Source, distance_from_limit};
-use lapidary_harness::dispatch::shape::{Scalar, Shape};
-use lapidary_harness::formulas;
+use lapidary_cook::check;
+use lapidary_cook::check::{Source, distance_from_limit};
+use lapidary_assay::dispatch::shape::{Scalar, Shape};
+use lapidary_cook::formulas;
 
 #[test]
 fn each_stable_form_holds_and_each_naive_form_fails() {
@@ -43,7 +44,7 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
 
 #[test]
 fn each_module_has_hard_cases() {
-    for module in lapidary_harness::cookbook::modules() {
+    for module in lapidary_cook::cookbook::modules() {
         let count: usize = formulas::all().iter().filter(|f| f.module == module.name).map(|f| f.hard_cases.len()).sum();
         assert!(count > 0, "{} has none", module.name);
     }

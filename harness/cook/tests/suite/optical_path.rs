@@ -6,9 +6,10 @@ mod hard;
 mod properties;
 
 use bodies::Case;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::optical_path::{Method, Solver, Status, Stencil};
-use lapidary_harness::voxel_grid::VoxelGrid;
+use lapidary_assay::extremum::larger;
+use lapidary_scene::solver::{Method, Stencil};
+use lapidary_render::solver::{Solver, Status};
+use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle::{Number, dijkstra};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};

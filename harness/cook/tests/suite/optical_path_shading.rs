@@ -7,11 +7,12 @@ mod notes;
 mod shadows;
 
 use glam::Vec3;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::plan::{Effect, Effects};
-use lapidary_harness::render::{self, Picture, Settings};
-use lapidary_harness::scene::surfaces::sphere;
-use lapidary_harness::scene::{Light, Material, Medium, Mesh, Object, Scene};
+use lapidary_assay::extremum::larger;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Light, Material, Medium, Mesh, Object, Scene};
 
 /// Of pictures whose pixels are compared one by one.
 const SIDE: u32 = 160;

@@ -1,12 +1,15 @@
 //! The whole path of a pixel on the GPU against the same path in Rust from the mirrors, at random pixels.
 
-use lapidary_harness::extremum::largest;
-use lapidary_harness::pixel::parity::{self, Parity};
-use lapidary_harness::pixel::{Shading, Stone, Viewer};
-use lapidary_harness::plan::{Effect, Effects};
-use lapidary_harness::render::{self, Environment, Settings};
-use lapidary_harness::scene::Scene;
-use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_assay::extremum::largest;
+use lapidary_cook::parity_compare;
+use lapidary_cook::parity_compare::Parity;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_scene::Environment;
+use lapidary_render::Settings;
+use lapidary_scene::Scene;
+use lapidary_scene::environment_map::EnvironmentMap;
 
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;

@@ -1,8 +1,9 @@
 //! What a picture's pixels show, and where that lies.
 
 use glam::DVec3;
-use lapidary_harness::render::{self, Picture};
-use lapidary_harness::scene::Scene;
+use lapidary_render as render;
+use lapidary_render::Picture;
+use lapidary_scene::Scene;
 
 /// For each pixel the unit direction in which the camera looks through its middle, and what it found.
 pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {

@@ -1,13 +1,16 @@
 //! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is captured.
 
-use crate::gpu;
+use lapidary_gpu as gpu;
 use glam::Vec3;
-use lapidary_harness::gpu::capture::{Capture, Resource, capture};
-use lapidary_harness::plan::{Effect, Effects, Plan, Quality, Technique};
-use lapidary_harness::render::{self, Curvature, Environment, Settings};
-use lapidary_harness::scene::environment_map::EnvironmentMap;
-use lapidary_harness::scene::light::Light;
-use lapidary_harness::scene::{Density, Material, Object, Scene};
+use lapidary_gpu::capture::{Capture, Resource, capture};
+use lapidary_plan::{Effect, Effects, Quality, Technique};
+use lapidary_render::plan::Plan;
+use lapidary_render as render;
+use lapidary_render::{Curvature, Settings};
+use lapidary_scene::Environment;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::light::Light;
+use lapidary_scene::{Density, Material, Object, Scene};
 use std::collections::BTreeSet;
 
 fn settings() -> Settings {
@@ -309,7 +312,7 @@ fn what_is_off_says_why() {
     assert_eq!(off(&one("brilliant"), &settings, Effect::Absorption), "attenuation white");
     assert_eq!(off(&one("prism"), &settings, Effect::Cdrf), "nothing inside scatters");
     let plain = with_material("ruby", |material| Material {
-        dispersion: lapidary_harness::scene::Dispersion::None,
+        dispersion: lapidary_scene::Dispersion::None,
         ..material.clone()
     });
     assert_eq!(off(&plain, &settings, Effect::Dispersion), "dispersion 0");
@@ -342,7 +345,7 @@ fn what_is_off_says_why() {
     let positions = mesh.indices.iter().map(|index| mesh.positions[*index as usize]).collect::<Vec<_>>();
     let normals = positions.chunks_exact(3).flat_map(|t| [(t[1] - t[0]).cross(t[2] - t[0]).normalize(); 3]).collect();
     let indices = (0..positions.len() as u32).collect();
-    flat.objects[0].mesh = lapidary_harness::scene::Mesh { positions, normals, indices, ..Default::default() };
+    flat.objects[0].mesh = lapidary_scene::Mesh { positions, normals, indices, ..Default::default() };
     assert_eq!(off(&flat, &of_rung("accurate"), Effect::Cdrf), "curvature everywhere 0");
     let left_out = Settings { without: Effects::of(&[Effect::Dispersion]), ..settings.clone() };
     let reason = off(&one("brilliant"), &left_out, Effect::Dispersion);

@@ -3,10 +3,11 @@
 //!
 //! After a change to a module: `LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-harness --test suite -- releases`.
 
-use crate::program::{cook, folder, succeeds};
-use lapidary_harness::cookbook::release::{self, CURRENT, Change, Hashes, History, Release};
-use lapidary_harness::cookbook::{module, modules};
-use lapidary_harness::tokens::{items, tokens};
+use lapidary_cook::program::{cook, folder, succeeds};
+use lapidary_cook::cookbook::release;
+use lapidary_cook::cookbook::release::{CURRENT, Change, Hashes, History, Release};
+use lapidary_cook::cookbook::{module, modules};
+use lapidary_assay::tokens::{items, tokens};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

@@ -2,15 +2,18 @@
 
 use glam::{DVec3, Vec3};
 use lapidary_environment as environment;
-use lapidary_harness::cost::restraint::facets;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::pixel::Shading;
-use lapidary_harness::property::draws::Draws;
-use lapidary_harness::reference::spectrum;
-use lapidary_harness::render::restraint::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance, largest_weight};
-use lapidary_harness::render::{self, Environment, Picture, Rung, Settings, Spectrum};
-use lapidary_harness::scene::Scene;
-use lapidary_harness::scene::environment_map::EnvironmentMap;
+use lapidary_cook::cost::restraint::facets;
+use lapidary_assay::extremum::larger;
+use lapidary_render::pixel::Shading;
+use lapidary_assay::property::draws::Draws;
+use lapidary_scene::spectrum;
+use lapidary_render::restraint::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance, largest_weight};
+use lapidary_render as render;
+use lapidary_scene::Environment;
+use lapidary_render::{Picture, Settings};
+use lapidary_plan::{Rung, Spectrum};
+use lapidary_scene::Scene;
+use lapidary_scene::environment_map::EnvironmentMap;
 
 const SIDE: u32 = 96;
 /// Where the recipe compares, ...

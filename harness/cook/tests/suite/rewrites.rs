@@ -1,10 +1,11 @@
 //! Rewrites that are the same on paper and lose what a comment sells: a user's copy with one of them fails its check, where the
 //! tolerance of backward error alone would forgive most.
 
-use lapidary_harness::check::{self, Source};
-use lapidary_harness::cookbook;
-use lapidary_harness::formulas;
-use lapidary_harness::property::Settings;
+use lapidary_cook::check;
+use lapidary_cook::check::Source;
+use lapidary_cook::cookbook;
+use lapidary_cook::formulas;
+use lapidary_assay::property::Settings;
 
 /// Function, what stands there, what one might write instead.
 const REWRITES: &[(&str, &str, &str)] = &[
@@ -46,12 +47,12 @@ fn rewritten(function: &str, before: &str, after: &str) -> String {
 
 #[test]
 fn a_copy_with_a_naive_rewrite_fails_its_check() {
-    let gpu = crate::gpu();
+    let gpu = lapidary_gpu();
     let mut passed = Vec::new();
     for (function, before, after) in REWRITES {
         let formula = formulas::of_function(function).expect("a formula");
         let text = rewritten(function, before, after);
-        let settings = Settings { cases: 4_096, seed: crate::seed() };
+        let settings = Settings { cases: 4_096, seed: lapidary_cook::seed() };
         let row = check::run(gpu, formula, Source::Copy("mine.wgsl", &text), settings).expect("the check runs");
         println!("{function}: {after}: {} failed, {:?}", row.failed, row.broken_hard_cases);
         // Not a random input that happens to tell: the hard case that is there for it.

@@ -1,13 +1,14 @@
 //! Cast shadows of what is drawn by its surface: what the lights' maps let through, pixel by pixel, is what rays through a hierarchy of the triangles find.
 
-use crate::pixels::rays;
+use lapidary_cook::pixels::rays;
 use glam::{DVec3, Vec3};
 use lapidary_bvh_trace::BvhTraceHit;
 use lapidary_bvh_trace::traversal::{self, met};
-use lapidary_harness::plan::{Effect, Effects};
-use lapidary_harness::render::{self, Settings};
-use lapidary_harness::scene::surfaces::{sphere, torus};
-use lapidary_harness::scene::{Bvh, Light, Material, Mesh, Object, Scene};
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::Settings;
+use lapidary_scene::surfaces::{sphere, torus};
+use lapidary_scene::{Bvh, Light, Material, Mesh, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 const SIDE: u32 = 200;
@@ -253,7 +254,7 @@ fn a_reflectance_loses_what_fell_on_the_point_itself() {
 /// Without lights there is nothing to cast, and what lies behind clear stone is not in its shadow.
 #[test]
 fn shadows_are_made_only_where_something_is_in_them() {
-    use lapidary_harness::plan::Plan;
+    use lapidary_render::plan::Plan;
     let light = lights()[0].1;
     let maps = |scene: &Scene, settings: &Settings| {
         let capture = Plan::of(scene, settings).expect("a plan").capture;

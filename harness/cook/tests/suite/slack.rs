@@ -1,11 +1,11 @@
 //! The `portable` bounds, held to the worst that WGSL lets a device make of a function.
 
-use lapidary_harness::check;
-use lapidary_harness::cookbook;
-use lapidary_harness::formulas;
-use lapidary_harness::interpreter::Program;
-use lapidary_harness::property::slack;
-use lapidary_harness::property::tolerance::Tolerance;
+use lapidary_cook::check;
+use lapidary_cook::cookbook;
+use lapidary_cook::formulas;
+use lapidary_assay::interpreter::Program;
+use lapidary_assay::property::slack;
+use lapidary_assay::property::tolerance::Tolerance;
 
 /// Functions whose portable bounds are derived from what WGSL guarantees.
 const DERIVED: [&str; 12] = [

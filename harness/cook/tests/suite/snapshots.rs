@@ -1,8 +1,10 @@
 //! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
 
-use lapidary_harness::render::{self, Picture};
-use lapidary_harness::scene::Scene;
-use lapidary_harness::snapshot::{self, Committed, Comparison, SHOTS, Shot, SnapshotError};
+use lapidary_render as render;
+use lapidary_render::Picture;
+use lapidary_scene::Scene;
+use lapidary_cook::snapshot;
+use lapidary_cook::snapshot::{Committed, Comparison, SHOTS, Shot, SnapshotError};
 use std::path::Path;
 
 fn source() -> String {
@@ -152,7 +154,7 @@ fn what_is_no_number_is_refused() {
     let error = snapshot::accept(brilliant, &pictures, copy.path()).expect_err("not finite");
     assert!(matches!(error, SnapshotError::NotFinite { .. }), "{error}");
     assert!(std::fs::read(copy.path().join("brilliant.exr")).expect("a reference") == before);
-    lapidary_harness::render::file::write(&pictures[1], &copy.path().join("brilliant.exr")).expect("written");
+    lapidary_render::file::write(&pictures[1], &copy.path().join("brilliant.exr")).expect("written");
     let sound = committed(brilliant, &folder);
     let error = snapshot::compare(brilliant, &sound, copy.path()).expect_err("not finite");
     assert!(error.to_string().contains("brilliant.exr: pixel (210, 4)"), "{error}");
@@ -250,7 +252,7 @@ fn the_pictures_commands_are_taken() {
         let value = |flag: &str| words.iter().position(|word| *word == flag).map(|place| words[place + 1]);
         let (Some(rung), Some(without)) = (value("--rung"), value("--without")) else { continue };
         let arguments = ["plan", shot.scene, "--size", "8x8", "--rung", rung, "--without", without, "--json"];
-        crate::program::succeeds(crate::program::folder().path(), &arguments);
+        lapidary_cook::program::succeeds(lapidary_cook::program::folder().path(), &arguments);
         left_out += 1;
     }
     assert!(left_out > 5, "{left_out} commands leave anything out");

@@ -3,9 +3,9 @@
 
 use glam::Vec3;
 use lapidary_cdrf::oracle as exact;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::gpu::Gpu;
-use lapidary_harness::render::texture_diffusion::{Chart, Taps, TextureDiffusion};
+use lapidary_assay::extremum::larger;
+use lapidary_gpu::Gpu;
+use lapidary_render::texture_diffusion::{Chart, Taps, TextureDiffusion};
 use lapidary_texture_diffusion as mirror;
 use rayon::prelude::*;
 use std::collections::HashMap;

@@ -1,11 +1,11 @@
 //! `cook check --wgsl` on other people's files: what is in them is found and said, whatever they hold ends in an answer.
 
-use crate::program::{Answer, cook, cook_in, folder, succeeds};
-use lapidary_harness::check::literal::{Language, call};
-use lapidary_harness::cookbook;
-use lapidary_harness::dispatch;
-use lapidary_harness::formulas;
-use lapidary_harness::property::Settings;
+use lapidary_cook::program::{Answer, cook, cook_in, folder, succeeds};
+use lapidary_assay::literal::{Language, call};
+use lapidary_cook::cookbook;
+use lapidary_assay::dispatch;
+use lapidary_cook::formulas;
+use lapidary_assay::property::Settings;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,12 +1,13 @@
 //! The committed pictures by random walks.
 
-use lapidary_harness::cost::exposed_distance;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::random_walk::mesh;
-use lapidary_harness::render::{self, Settings};
-use lapidary_harness::scene::Scene;
-use lapidary_harness::snapshot::frames::halved;
-use lapidary_harness::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
+use lapidary_cook::cost::exposed_distance;
+use lapidary_assay::extremum::larger;
+use lapidary_reference::random_walk::mesh;
+use lapidary_render as render;
+use lapidary_render::Settings;
+use lapidary_scene::Scene;
+use lapidary_cook::snapshot::frames::halved;
+use lapidary_cook::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 
 /// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
 /// walks leave open.

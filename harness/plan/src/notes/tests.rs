@@ -1,10 +1,10 @@
 use super::*;
-use crate::plan;
-use crate::render::Environment;
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::light::Light;
-use crate::scene::surfaces::sphere;
-use crate::scene::{BUILT_IN, Camera, Material, Mesh};
+use crate as plan;
+use lapidary_scene::Environment;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::light::Light;
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{BUILT_IN, Camera, Material, Mesh};
 
 fn usual() -> Settings {
     Settings { rung: Rung::ByMaterial, ..Settings::of_size(64, 64) }

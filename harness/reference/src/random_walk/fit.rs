@@ -1,7 +1,7 @@
 //! Reflectance functions fitted to what a sphere really shows.
 
 use super::{BINS, Profile};
-use crate::golden_section::golden_section;
+use lapidary_assay::golden_section::golden_section;
 use lapidary_cdrf as cdrf;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;

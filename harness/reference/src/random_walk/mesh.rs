@@ -1,6 +1,6 @@
 //! What translucent bodies show, path-traced: the picture that the translucent techniques are compared with.
 //!
-//! Bodies are closed triangle meshes that do not overlap, each of one [`Medium`](crate::scene::Medium). Unless asked for, their surfaces do not bend
+//! Bodies are closed triangle meshes that do not overlap, each of one [`Medium`](lapidary_scene::Medium). Unless asked for, their surfaces do not bend
 //! or reflect light, so that a ray from the eye goes straight in. At each scattering every light is asked for what arrives from it through
 //! all matter on the way, also through other bodies, or the same again; light from the environment comes along the walk's last direction. What
 //! shows through without being scattered is the background's and is left out.
@@ -13,10 +13,10 @@ mod from_lights;
 mod walk;
 
 use super::generator;
-use crate::reference::view::View;
-use crate::render::{Environment, LARGEST_SIDE};
-use crate::scene::mesh_diagnosis::open_edges;
-use crate::scene::{Light, Scene};
+use lapidary_scene::view::View;
+use lapidary_scene::{Environment, LARGEST_SIDE};
+use lapidary_scene::mesh_diagnosis::open_edges;
+use lapidary_scene::{Light, Scene};
 use glam::{DVec2, DVec3};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;

@@ -152,7 +152,7 @@ fn in_disc(random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use lapidary_scene::Scene;
 
     /// The share of walks that leave a half space, and its standard error.
     fn reflectance(albedo: f64, count: u64, enter: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (f64, f64) {

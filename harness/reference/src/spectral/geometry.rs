@@ -2,9 +2,9 @@
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
-use crate::scene::convex::{TOLERANCE, planes_of_convex};
-use crate::scene::polyhedron::{MAX_PLANES, Plane};
-use crate::scene::{Mesh, Object};
+use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
+use lapidary_scene::polyhedron::{MAX_PLANES, Plane};
+use lapidary_scene::{Mesh, Object};
 use glam::{DVec3, Mat4, Vec4};
 use std::sync::OnceLock;
 

@@ -20,8 +20,8 @@ pub(crate) mod view;
 
 pub use geometry::Geometry;
 
-use crate::render::{Environment, LARGEST_SIDE, SAMPLES};
-use crate::scene::{Object, Scene};
+use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES};
+use lapidary_scene::{Object, Scene};
 use geometry::Bodies;
 use glam::DVec3;
 use lapidary_absorption::oracle as absorption;

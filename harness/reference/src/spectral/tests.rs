@@ -1,7 +1,7 @@
 use super::*;
-use crate::extremum::{larger, largest};
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::{Dispersion, Mineral};
+use lapidary_assay::extremum::{larger, largest};
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Dispersion, Mineral};
 use trace::Outcome;
 
 fn ones() -> Environment {
@@ -247,7 +247,7 @@ fn a_body_without_triangles_changes_nothing() {
     let mut scene = Scene::named("octahedron").unwrap();
     let settings = Settings { samples: 1, wavelengths: 3, ..Settings::of_size(8, 8) };
     let alone = rendered(&scene, &settings);
-    scene.objects.insert(0, Object { mesh: crate::scene::Mesh::default(), ..scene.objects[0].clone() });
+    scene.objects.insert(0, Object { mesh: lapidary_scene::Mesh::default(), ..scene.objects[0].clone() });
     assert_eq!(rendered(&scene, &settings).linear, alone.linear);
     scene.objects.truncate(1);
     assert!(rendered(&scene, &settings).linear.iter().all(|pixel| *pixel == [0.0; 4]));

@@ -2,7 +2,7 @@
 
 use super::geometry::{Bodies, Hit, Place};
 use super::surroundings;
-use crate::render::Environment;
+use lapidary_scene::Environment;
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;

@@ -1,7 +1,7 @@
 //! A recipe's compute entry point, run once over buffers of its own.
 
 use super::Kernel;
-use crate::gpu::Gpu;
+use lapidary_gpu::Gpu;
 use crate::shader::ShaderError;
 
 /// What stands at a binding; numbered from 0 in its group.

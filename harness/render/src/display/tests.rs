@@ -1,9 +1,9 @@
 use super::*;
-use crate::gpu::AdapterChoice;
+use lapidary_gpu::AdapterChoice;
 use crate::pixel::display::{backdrop, shown};
-use crate::property::draws::Draws;
-use crate::render::Rung;
-use crate::scene::Scene;
+use lapidary_assay::property::draws::Draws;
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 use glam::{Vec2, Vec3, Vec4};
 
 fn gpu() -> &'static Gpu {
@@ -107,7 +107,7 @@ fn tiles_meet() {
 #[test]
 fn the_reference_is_shown_alike() {
     let mut scene = Scene::named("brilliant").expect("built in");
-    scene.objects[0].material.dispersion = crate::scene::Dispersion::None;
+    scene.objects[0].material.dispersion = lapidary_scene::Dispersion::None;
     let surface = Settings { rung: Rung::Surface, ..Settings::of_size(64, 64) };
     let drawn = super::super::render(gpu(), &scene, &surface).expect("rendered");
     scene.objects[0].material.base_color = Vec3::ZERO;

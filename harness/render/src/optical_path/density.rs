@@ -3,8 +3,8 @@
 use super::super::RenderError;
 use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
-use crate::gpu::{Encoder, Gpu};
-use crate::scene::{Density, DensityGrid};
+use lapidary_gpu::{Encoder, Gpu};
+use lapidary_scene::{Density, DensityGrid};
 use crate::voxel_grid::VoxelGrid;
 use lapidary_veins::VeinsPattern;
 

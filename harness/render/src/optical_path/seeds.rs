@@ -1,8 +1,8 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
 use crate::compute::Kernel;
-use crate::gpu::{Device, Encoder, Gpu};
-use crate::render::device::buffer;
+use lapidary_gpu::{Device, Encoder, Gpu};
+use crate::device::buffer;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 

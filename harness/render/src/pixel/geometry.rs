@@ -1,9 +1,10 @@
 //! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the mirrors.
 
 use super::SurfacePoint;
-use crate::render::{Geometry, RenderError, Settings};
-use crate::scene::normals::soft_normals;
-use crate::scene::{Bvh, Convex, Mesh, Object, convex};
+use lapidary_plan::Geometry;
+use crate::{RenderError, Settings};
+use lapidary_scene::normals::soft_normals;
+use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
 use glam::Vec3;
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;

@@ -11,9 +11,12 @@ mod surface;
 pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
-use crate::plan::Effect;
-use crate::render::{self, Environment, Rung, Settings, Spectrum};
-use crate::scene::Material;
+use lapidary_plan::Effect;
+use crate as render;
+use lapidary_scene::Environment;
+use lapidary_plan::{Rung, Spectrum};
+use crate::Settings;
+use lapidary_scene::Material;
 use geometry::{Entry, Hit, Place};
 use glam::{Mat3, UVec2, Vec3};
 use lapidary_absorption as absorption;

@@ -1,7 +1,7 @@
 //! Which point of a mesh a pixel shows.
 
-use crate::render::clip_from_world;
-use crate::scene::{Mesh, Scene};
+use lapidary_scene::clip_from_world;
+use lapidary_scene::{Mesh, Scene};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 
 /// A point of a mesh's surface.

@@ -1,8 +1,8 @@
 //! A plan to be read.
 
 use super::{Decision, Decisions, Plan, PlannedObject};
-use crate::gpu::capture::{Kind, Pipeline, Resource, Step};
-use crate::render::Rung;
+use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
+use lapidary_plan::Rung;
 use std::collections::HashMap;
 use std::fmt;
 

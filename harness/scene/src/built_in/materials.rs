@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use crate::scene::{Dispersion, Material, Mineral};
+use crate::{Dispersion, Material, Mineral};
 
 /// The way inside after which a coloured stone shows its colour, in girdle radii (half lengths of the step cut).
 const COLOR_DEPTH: f32 = 2.0;

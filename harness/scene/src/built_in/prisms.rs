@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
 
-use crate::scene::cuts::{CutError, PrismParameters, prism};
-use crate::scene::{Averaging, Mesh};
+use crate::cuts::{CutError, PrismParameters, prism};
+use crate::{Averaging, Mesh};
 
 /// Links of the chain.
 pub(super) const LINKS: usize = 7;

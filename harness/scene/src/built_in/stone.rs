@@ -5,13 +5,13 @@ use std::f32::consts::PI;
 
 use super::translucent::{jade, scattering, sized};
 use super::{BUNNY, direction, framed};
-use crate::scene::{Averaging, Density, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
+use crate::{Averaging, Density, Light, Material, Medium, Mesh, Object, Scene, SceneError, gltf};
 use lapidary_veins::VeinsPattern;
 
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
 
-/// What [`crate::scene::figure::mesh`] makes, in a second or two.
+/// What [`crate::figure::mesh`] makes, in a second or two.
 const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 
 /// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble.
@@ -53,7 +53,7 @@ pub(super) fn figure(name: &str) -> Result<Scene, SceneError> {
 
 /// The same with its mesh made anew.
 pub(super) fn made_figure(name: &str) -> Scene {
-    figure_of(name, crate::scene::figure::mesh())
+    figure_of(name, crate::figure::mesh())
 }
 
 fn figure_of(name: &str, mesh: Mesh) -> Scene {

@@ -4,8 +4,8 @@ use glam::{DQuat, DVec3, Vec3};
 use std::f32::consts::PI;
 
 use super::{BUNNY, direction, framed};
-use crate::scene::surfaces::{sphere, torus};
-use crate::scene::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, atlas, gltf};
+use crate::surfaces::{sphere, torus};
+use crate::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, atlas, gltf};
 
 /// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): skin1.
 fn skin() -> Material {

@@ -3,10 +3,10 @@
 use glam::{DQuat, DVec3, Vec3};
 
 use super::{VERTICAL_FOV, materials, prisms, stone, translucent};
-use crate::scene::cuts::{BrilliantParameters, CutError, round_brilliant};
-use crate::scene::surfaces::rounded_box;
-use crate::scene::{Averaging, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure};
-use crate::scene::{Bounds, gltf};
+use crate::cuts::{BrilliantParameters, CutError, round_brilliant};
+use crate::surfaces::rounded_box;
+use crate::{Averaging, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure};
+use crate::{Bounds, gltf};
 
 /// What [`made`] makes, in a second or two.
 const VITRINE: &[u8] = include_bytes!("../../../assets/vitrine.glb");

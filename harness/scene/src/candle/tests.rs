@@ -1,7 +1,7 @@
 use super::*;
-use crate::extremum::larger;
-use crate::scene::Bounds;
-use crate::scene::convex::is_closed;
+use lapidary_assay::extremum::larger;
+use crate::Bounds;
+use crate::convex::is_closed;
 use glam::{Vec2, Vec3};
 
 #[test]

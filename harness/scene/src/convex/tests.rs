@@ -1,10 +1,8 @@
 use super::*;
-use crate::extremum::largest;
-use crate::scene::cuts::{
-    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
-};
-use crate::scene::polyhedron::Polyhedron;
-use crate::scene::{Averaging, Scene};
+use lapidary_assay::extremum::largest;
+use crate::cuts::{BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut};
+use crate::polyhedron::Polyhedron;
+use crate::{Averaging, Scene};
 
 fn all_cuts() -> [(&'static str, Polyhedron, usize); 4] {
     [
@@ -49,7 +47,7 @@ fn every_triangle_lies_in_its_facet() {
 
 #[test]
 fn built_in_stones_are_convex_but_for_the_bunny_and_many_prisms_in_one_mesh() {
-    for built_in in crate::scene::BUILT_IN {
+    for built_in in crate::BUILT_IN {
         let scene = Scene::named(built_in.name).unwrap();
         let convex = scene.objects.iter().all(|object| planes_of_convex(&object.mesh).is_some());
         // Translucent bodies are round.

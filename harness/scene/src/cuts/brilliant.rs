@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Checked, CutError, outward};
-use crate::scene::polyhedron::{Plane, Polyhedron};
+use crate::polyhedron::{Plane, Polyhedron};
 
 /// The proportions of a round brilliant with girdle radius 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

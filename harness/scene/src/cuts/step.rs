@@ -5,7 +5,7 @@ use std::f64::consts::SQRT_2;
 use glam::{DVec2, DVec3};
 
 use super::{Checked, CutError};
-use crate::scene::polyhedron::{Plane, Polyhedron};
+use crate::polyhedron::{Plane, Polyhedron};
 
 /// One step: a ring of eight facets.
 #[derive(Debug, Clone, Copy, PartialEq)]

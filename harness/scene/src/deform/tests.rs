@@ -1,8 +1,8 @@
 use super::*;
-use crate::extremum::larger;
-use crate::scene::implicit::tests::survey;
-use crate::scene::normals::{Averaging, shared_normals};
-use crate::scene::surfaces::torus;
+use lapidary_assay::extremum::larger;
+use crate::implicit::tests::survey;
+use crate::normals::{Averaging, shared_normals};
+use crate::surfaces::torus;
 use glam::{DQuat, dvec2};
 
 /// A ring that stands aslant, off the axis.

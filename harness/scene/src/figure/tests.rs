@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::implicit::tests::survey;
+use crate::implicit::tests::survey;
 
 #[test]
 fn the_figure_is_one_closed_body_without_slivers() {

@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::*;
-use crate::scene::Light;
+use crate::Light;
 
 #[test]
 fn the_hand_written_seed_reaches_what_it_says() {

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
-use crate::scene::Light;
+use crate::Light;
 
 /// The extension's name.
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";

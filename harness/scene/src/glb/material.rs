@@ -4,7 +4,7 @@ use glam::Vec3;
 use lapidary_veins::VeinsPattern;
 use serde_json::{Map, Value, json};
 
-use crate::scene::{Density, Dispersion, Material};
+use crate::{Density, Dispersion, Material};
 
 /// The material, with the extensions that it needs.
 pub(super) fn material(material: &Material) -> Value {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{BUILT_IN, Density, DensityGrid, Dispersion, Light, Medium, Mineral, gltf};
+use crate::{BUILT_IN, Density, DensityGrid, Dispersion, Light, Medium, Mineral, gltf};
 use lapidary_veins::VeinsPattern;
 
 fn chunk(bytes: &[u8], at: usize) -> (&[u8], &[u8]) {

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 use super::error::{GltfError, designation, item};
 use super::nodes::ShownNode;
 use super::{MAX_COORDINATE, vertices};
-use crate::scene::{Bounds, Camera, Object};
+use crate::{Bounds, Camera, Object};
 
 /// The first perspective camera among the shown nodes, if there is one.
 pub(super) fn first_perspective(

@@ -15,9 +15,9 @@ use serde_json::value::RawValue;
 
 use super::error::excerpt;
 use super::medium::medium;
-use crate::render::Rung;
-use crate::scene::material::draws_scattering;
-use crate::scene::{Dispersion, Material, Mineral};
+use lapidary_plan::Rung;
+use crate::material::draws_scattering;
+use crate::{Dispersion, Material, Mineral};
 
 /// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
 const INDEX_AGREES: f64 = 0.005;

@@ -14,8 +14,8 @@ use super::MAX_COORDINATE;
 use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::nodes::ShownNode;
-use crate::scene::Light;
-use crate::scene::light::are_cone_angles;
+use crate::Light;
+use crate::light::are_cone_angles;
 
 const NAME: &str = "KHR_lights_punctual";
 

@@ -14,7 +14,7 @@ use super::error::{GltfError, designation, excerpt, item};
 use super::extension::Extension;
 use super::extras;
 use super::medium;
-use crate::scene::{Dispersion, Material};
+use crate::{Dispersion, Material};
 
 /// What none of [`OF_PHYSICAL_SHADING`] may stand beside, as their specifications say.
 const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"];

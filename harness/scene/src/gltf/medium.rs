@@ -7,7 +7,7 @@ use serde_json::value::RawValue;
 
 use super::error::excerpt;
 use super::extras::{Lapidary, lengths};
-use crate::scene::{Density, Material, Medium};
+use crate::{Density, Material, Medium};
 
 /// `extras.lapidary.veins`; every member must be there, so that none is misspelt.
 #[derive(Deserialize)]

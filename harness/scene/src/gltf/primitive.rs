@@ -14,8 +14,8 @@ use super::error::{GltfError, designation, excerpt, item};
 use super::instances::Instances;
 use super::material::Materials;
 use super::nodes::ShownNode;
-use crate::scene::normals::{Averaging, shared_normals};
-use crate::scene::{Mesh, Object};
+use crate::normals::{Averaging, shared_normals};
+use crate::{Mesh, Object};
 
 /// The most vertices, and the most corners of triangles, of one mesh of instances. The longest list that is made of them has two nodes of a
 /// hierarchy, 32 bytes each, for a triangle: 85 MiB, which any device holds in a buffer (WebGPU's least is 128 MiB).

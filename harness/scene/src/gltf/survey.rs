@@ -14,7 +14,7 @@ use super::lacking::{Lacking, User};
 use super::material::{Materials, extensions};
 use super::nodes::ShownNode;
 use super::{KNOWN_EXTENSIONS, extras, instances, light_node};
-use crate::scene::Material;
+use crate::Material;
 
 /// All that the file asks for in vain. Its references are known to be good.
 pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Materials<'_>) -> Vec<String> {
@@ -193,7 +193,7 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
         note("attenuation", "`KHR_materials_volume`", "no light gets in without a transmission");
     }
     let has = |name: &str| extensions(json).is_some_and(|all| all.contains_key(name));
-    if material.dispersion != crate::scene::Dispersion::None
+    if material.dispersion != crate::Dispersion::None
         && has("KHR_materials_dispersion")
         && !has("KHR_materials_volume")
     {

@@ -4,8 +4,8 @@ use glam::Quat;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::scene::normals::FALLBACK_NORMAL;
-use crate::scene::{Dispersion, Material, Medium, Mineral, glb};
+use crate::normals::FALLBACK_NORMAL;
+use crate::{Dispersion, Material, Medium, Mineral, glb};
 
 mod example;
 mod instancing;
@@ -55,7 +55,7 @@ fn load_changed(change: impl FnOnce(&mut Value)) -> Result<Scene, SceneError> {
     parse(&file(&document, &binary()), None)
 }
 
-fn only_mesh(scene: &Scene) -> &crate::scene::Mesh {
+fn only_mesh(scene: &Scene) -> &crate::Mesh {
     assert_eq!(scene.objects.len(), 1);
     &scene.objects[0].mesh
 }

@@ -1,7 +1,7 @@
 //! Surface nets: a vertex in each cell that the surface passes, a quadrilateral about each edge of the grid that it crosses.
 
 use super::{Grid, gradient};
-use crate::scene::Mesh;
+use crate::Mesh;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;

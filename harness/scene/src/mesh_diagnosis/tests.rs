@@ -1,6 +1,6 @@
 use super::*;
-use crate::scene::surfaces::{sphere, torus};
-use crate::scene::{Averaging, BUILT_IN, Scene};
+use crate::surfaces::{sphere, torus};
+use crate::{Averaging, BUILT_IN, Scene};
 use glam::Vec3;
 
 #[test]

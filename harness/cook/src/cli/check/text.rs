@@ -2,9 +2,9 @@
 
 use super::Checked;
 use anstyle::AnsiColor;
-use lapidary_harness::check::Row;
-use lapidary_harness::check::failure::Failure;
-use lapidary_harness::cookbook::release::Standing;
+use lapidary_cook::check::Row;
+use lapidary_cook::check::failure::Failure;
+use lapidary_cook::cookbook::release::Standing;
 use std::fmt::Write as _;
 
 /// Whether to colour.

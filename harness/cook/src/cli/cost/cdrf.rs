@@ -1,8 +1,10 @@
 //! The curvature-dependent reflectance's ladder.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_harness::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
-use lapidary_harness::render::{Reflectance, Rung};
+use lapidary_cook::cost::cdrf;
+use lapidary_cook::cost::cdrf::{CurvatureSource, Options, Part, plot};
+use lapidary_scene::solver::Reflectance;
+use lapidary_plan::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(cdrf::TECHNIQUE, &["--rungs", "--rounds"])?;

@@ -1,7 +1,8 @@
 //! What each effect costs.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_harness::cost::effects::{self, Options};
+use lapidary_cook::cost::effects;
+use lapidary_cook::cost::effects::Options;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(effects::TECHNIQUE, &["--rounds"])?;

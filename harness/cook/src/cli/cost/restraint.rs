@@ -1,8 +1,9 @@
 //! What restraint saves.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_harness::cost::restraint::{self, Options};
-use lapidary_harness::render::Rung;
+use lapidary_cook::cost::restraint;
+use lapidary_cook::cost::restraint::Options;
+use lapidary_plan::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(restraint::TECHNIQUE, &["--rungs", "--rounds"])?;

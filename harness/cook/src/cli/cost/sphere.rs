@@ -1,7 +1,8 @@
 //! The translucent sphere.
 
 use super::{Arguments, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_harness::cost::sphere::{self, plot};
+use lapidary_cook::cost::sphere;
+use lapidary_cook::cost::sphere::plot;
 
 /// Walks through each sphere: half a minute on two cores.
 const WALKS: u64 = 1_000_000;

@@ -1,12 +1,15 @@
 //! The frames that a rung draws, to be timed, and the memory that they need beside mesh and material.
 
 use super::{CostError, Options, RungReport, shader};
-use crate::cost::timing::{self, Timed, Timing};
-use crate::gpu::Gpu;
-use crate::plan::{Effect, Effects};
-use crate::render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
-use crate::render::{Curvature, Frame, Reflectance, RenderError, Rung, Settings};
-use crate::scene::{Camera, Scene, SceneError};
+use crate::cost::timing;
+use crate::cost::timing::{Timed, Timing};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
+use lapidary_render::{Curvature, Frame, RenderError, Settings};
+use lapidary_scene::solver::Reflectance;
+use lapidary_plan::Rung;
+use lapidary_scene::{Camera, Scene, SceneError};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -224,10 +227,10 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cdrf::table::Format;
-    use crate::extremum::larger;
-    use crate::gpu::AdapterChoice;
-    use crate::render;
+    use lapidary_scene::solver::Format;
+    use lapidary_assay::extremum::larger;
+    use lapidary_gpu::AdapterChoice;
+    use lapidary_render as render;
 
     #[test]
     fn the_lit_part_fills_the_frame_and_the_whole_does_not() {

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
 use crate::cost::quality;
-use crate::plan::Technique;
+use lapidary_plan::Technique;
 use std::fmt::Write as _;
 
 impl Tables for CdrfReport {

@@ -2,11 +2,15 @@
 
 use super::CostError;
 use crate::cost::exposed_distance;
-use crate::cost::timing::{self, Timed, Timing};
-use crate::gpu::Gpu;
-use crate::plan::{Effect, Effects};
-use crate::render::{self, Curvature, Reflectance, Rung, Settings};
-use crate::scene::Scene;
+use crate::cost::timing;
+use crate::cost::timing::{Timed, Timing};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Curvature, Settings};
+use lapidary_scene::solver::Reflectance;
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WalkedReference};
 use serde::{Deserialize, Serialize};
@@ -92,7 +96,7 @@ pub(super) fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::AdapterChoice;
+    use lapidary_gpu::AdapterChoice;
 
     /// A body that is in the way of its own light: Lambert's law with shadows is the nearer baseline, and the reflectance is nearer still.
     #[test]

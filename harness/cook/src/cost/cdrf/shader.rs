@@ -1,10 +1,12 @@
 //! A rung's shaders, specialised to what it uses and counted in SPIR-V.
 
 use super::CostError;
-use crate::render::{self, Reflectance, Settings};
-use crate::scene::Scene;
-use crate::shader::Shader;
-use crate::spirv_counts::SpirvCounts;
+use lapidary_render as render;
+use lapidary_scene::solver::Reflectance;
+use lapidary_render::Settings;
+use lapidary_scene::Scene;
+use lapidary_render::shader::Shader;
+use lapidary_specialise::spirv_counts::SpirvCounts;
 
 /// The recipe's entry points.
 const ENTRIES: [&str; 2] = ["cdrf_vertex", "cdrf_fragment"];
@@ -21,9 +23,10 @@ pub(super) fn counts(scene: &Scene, settings: &Settings, reflectance: Reflectanc
 mod tests {
     use super::*;
     use crate::cost::cdrf::{Options, RUNGS};
-    use crate::dispatch;
-    use crate::plan::{Effect, Effects};
-    use crate::render::{Curvature, Rung};
+    use lapidary_assay::dispatch;
+    use lapidary_plan::{Effect, Effects};
+    use lapidary_render::Curvature;
+    use lapidary_plan::Rung;
 
     #[test]
     fn every_override_of_the_recipe_has_a_value() {

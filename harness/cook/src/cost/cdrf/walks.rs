@@ -2,7 +2,7 @@
 
 use crate::cost::CostError;
 use crate::cost::sphere::{ScaleKind, SphereReport};
-use crate::random_walk::Fit;
+use lapidary_reference::random_walk::Fit;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub fn residuals(spheres: &SphereReport, function: &(dyn Fn(f32, f32) -> f32 + S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random_walk::Form;
+    use lapidary_reference::random_walk::Form;
     use lapidary_cdrf as mirror;
 
     #[test]

@@ -2,8 +2,9 @@
 
 use super::views::{grey, scene, settings};
 use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
-use crate::gpu::Gpu;
-use crate::render::{Frame, Rung, Stage};
+use lapidary_gpu::Gpu;
+use lapidary_render::{Frame, Stage};
+use lapidary_plan::Rung;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -134,9 +135,9 @@ pub(super) fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::AdapterChoice;
-    use crate::plan::{Decisions, Effect};
-    use crate::scene::Scene;
+    use lapidary_gpu::AdapterChoice;
+    use lapidary_plan::{Decisions, Effect};
+    use lapidary_scene::Scene;
 
     fn of(rung: &str) -> Measured {
         Measured { rung: rung.parse().expect(rung), unscaled: false }

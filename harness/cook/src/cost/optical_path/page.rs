@@ -9,8 +9,8 @@ use super::{
 };
 use crate::cost::page::{Table, Tables, bytes, header, judged, row};
 use crate::cost::quality;
-use crate::plan::Technique;
-use crate::render::Stage;
+use lapidary_plan::Technique;
+use lapidary_render::Stage;
 use std::fmt::Write as _;
 
 impl Tables for OpticalPathReport {

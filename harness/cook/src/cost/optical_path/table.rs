@@ -3,7 +3,7 @@
 use super::frames::{SLOW, SLOW_ROUNDS};
 use super::views::{BLACK, DEEPEST};
 use super::{COMPARED, FINEST, OpticalPathReport, PathTiming, RungReport, UNSCALED, WALKED};
-use crate::render::Stage;
+use lapidary_render::Stage;
 use std::fmt::Write as _;
 
 /// Where there is no figure.

@@ -2,11 +2,13 @@
 
 use super::{FINEST, Measured};
 use crate::cost::CostError;
-use crate::gpu::Gpu;
-use crate::plan::{Effect, Effects};
-use crate::render::{self, Picture, RenderError, Rung, Settings};
-use crate::scene::surfaces::sphere;
-use crate::scene::{Light, Material, Medium, Object, Scene, SceneError};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects};
+use lapidary_render as render;
+use lapidary_render::{Picture, RenderError, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Light, Material, Medium, Object, Scene, SceneError};
 use glam::{DVec3, Vec3};
 use lapidary_optical_path::oracle;
 use rayon::prelude::*;
@@ -185,8 +187,8 @@ fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::extremum::larger;
-    use crate::gpu::AdapterChoice;
+    use lapidary_assay::extremum::larger;
+    use lapidary_gpu::AdapterChoice;
 
     #[test]
     fn black_and_the_unseen_count_as_they_should() {

@@ -3,10 +3,12 @@
 use super::Measured;
 use super::views::{SIDE, settings};
 use crate::cost::{CostError, exposed_distance};
-use crate::gpu::Gpu;
-use crate::random_walk::mesh;
-use crate::render::{self, RenderError, Rung};
-use crate::scene::Scene;
+use lapidary_gpu::Gpu;
+use lapidary_reference::random_walk::mesh;
+use lapidary_render as render;
+use lapidary_render::RenderError;
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WALKED};
 
@@ -65,7 +67,7 @@ impl Walks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::AdapterChoice;
+    use lapidary_gpu::AdapterChoice;
 
     #[test]
     fn a_committed_picture_is_found_by_its_scene_and_its_walks_are_surer_than_lamberts_law() {

@@ -1,14 +1,17 @@
 //! Rays that end when what they carry can no longer be seen.
 
 use super::{Options, SCENES};
-use crate::cost::timing::{self, Timed, Timing};
+use crate::cost::timing;
+use crate::cost::timing::{Timed, Timing};
 use crate::cost::{CostError, views};
-use crate::extremum::larger;
-use crate::gpu::Gpu;
-use crate::pixel::{Shading, Stone, Viewer};
-use crate::render::restraint::LEAST_DIFFERENCE;
-use crate::render::{self, RenderError, Rung, Settings};
-use crate::scene::Scene;
+use lapidary_assay::extremum::larger;
+use lapidary_gpu::Gpu;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_render::restraint::LEAST_DIFFERENCE;
+use lapidary_render as render;
+use lapidary_render::{RenderError, Settings};
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Side of the pictures that are compared.

@@ -1,12 +1,13 @@
 //! Ways through a body, sought only in tiles that hold matter and may change, beside solvers that take up more.
 
 use crate::cost::CostError;
-use crate::gpu::{Encoder, Gpu};
-use crate::optical_path::{Method, Solver, Stencil};
-use crate::render::RenderError;
-use crate::scene::{Bounds, Mesh, Scene};
-use crate::voxel_grid::VoxelGrid;
-use crate::voxelization::Voxelizer;
+use lapidary_gpu::{Encoder, Gpu};
+use lapidary_scene::solver::{Method, Stencil};
+use lapidary_render::solver::Solver;
+use lapidary_render::RenderError;
+use lapidary_scene::{Bounds, Mesh, Scene};
+use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_render::voxelization::Voxelizer;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;

@@ -2,7 +2,7 @@
 
 use super::{ALBEDOS, Choice, FORMS, Law, RADII, Row, ScaleKind, SphereReport, table};
 use crate::cost::page::{Table, Tables, header, row};
-use crate::random_walk::Form;
+use lapidary_reference::random_walk::Form;
 
 /// The radii of the table of residuals.
 const SHOWN: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];

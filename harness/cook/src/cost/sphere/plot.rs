@@ -3,7 +3,7 @@
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
 use crate::cost::CostError;
 use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Root, captioned, legend, line, span, ticks, written};
-use crate::random_walk::{BINS, Form};
+use lapidary_reference::random_walk::{BINS, Form};
 use lapidary_cdrf as cdrf;
 use plotters::prelude::*;
 
@@ -131,7 +131,7 @@ fn draw_profile(root: &Root<'_>, report: &SphereReport) -> Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random_walk;
+    use lapidary_reference::random_walk;
 
     #[test]
     fn plots_show_every_line() {

@@ -1,8 +1,8 @@
 //! Of surfaces and what they reflect: cdrf, curvature, fresnel, microfacet.
 
 use super::{any_vector, close, of_length, that};
-use crate::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
-use crate::property::draws::Draws;
+use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
+use lapidary_assay::property::draws::Draws;
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use lapidary_cdrf::oracle as cdrf;
 use lapidary_curvature::{CurvatureFrame, CurvaturePixel};

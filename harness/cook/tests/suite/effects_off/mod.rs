@@ -8,10 +8,11 @@ mod canonical;
 mod pictures;
 
 use canonical::{Canonical, canonical};
-use lapidary_harness::cookbook::marks::{self, override_of};
-use lapidary_harness::dispatch;
-use lapidary_harness::specialise::specialise;
-use lapidary_harness::spirv_counts::spirv_counts;
+use lapidary_cook::cookbook::marks;
+use lapidary_cook::cookbook::marks::override_of;
+use lapidary_assay::dispatch;
+use lapidary_specialise::specialise;
+use lapidary_specialise::spirv_counts::spirv_counts;
 use lapidary_wgsl::{RECIPES, Recipe};
 use naga::back::pipeline_constants::process_overrides;
 use naga::compact::{KeepUnused, compact};

@@ -2,12 +2,13 @@
 //! picture by the recipe's text without the effect's lines.
 
 use super::cut;
-use crate::gpu;
+use lapidary_gpu as gpu;
 use glam::Vec3;
-use lapidary_harness::plan::{Decisions, Effect, Effects};
-use lapidary_harness::render::{Environment, Settings, render_with};
-use lapidary_harness::scene::environment_map::EnvironmentMap;
-use lapidary_harness::scene::{Light, Medium, Scene};
+use lapidary_plan::{Decisions, Effect, Effects};
+use lapidary_scene::Environment;
+use lapidary_render::{Settings, render_with};
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Light, Medium, Scene};
 
 /// A scene and a rung, and effects of their recipe, each of which is left out in turn.
 struct Case {

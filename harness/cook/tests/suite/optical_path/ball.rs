@@ -3,7 +3,7 @@
 use super::bodies::Case;
 use super::solve;
 use glam::{UVec3, Vec3};
-use lapidary_harness::optical_path::{Method, Stencil};
+use lapidary_scene::solver::{Method, Stencil};
 use lapidary_optical_path::oracle;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, relax, seed, through};
 

@@ -1,10 +1,10 @@
 //! Bodies of voxels with seeds, made on the CPU.
 
 use glam::{UVec3, Vec3};
-use lapidary_harness::gpu::Gpu;
-use lapidary_harness::property::draws::Draws;
-use lapidary_harness::scene::{Bounds, Scene};
-use lapidary_harness::voxel_grid::VoxelGrid;
+use lapidary_gpu::Gpu;
+use lapidary_assay::property::draws::Draws;
+use lapidary_scene::{Bounds, Scene};
+use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_optical_path::kernels::Body;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};
 

@@ -3,8 +3,8 @@
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve, solve_within, truth};
 use glam::UVec3;
-use lapidary_harness::extremum::larger;
-use lapidary_harness::optical_path::Method;
+use lapidary_assay::extremum::larger;
+use lapidary_scene::solver::Method;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, luminance};
 
 fn ball(cells: u32, extinction: f32) -> Case {

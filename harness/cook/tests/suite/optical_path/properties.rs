@@ -3,8 +3,8 @@
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve};
 use glam::{IVec3, UVec3};
-use lapidary_harness::optical_path::{Method, Stencil};
-use lapidary_harness::property::draws::Draws;
+use lapidary_scene::solver::{Method, Stencil};
+use lapidary_assay::property::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 
 /// Of Godunov's costs: what the tolerance of its passes adds up to.

@@ -1,11 +1,11 @@
 //! A homogeneous ball, in which every cheapest way is a straight chord.
 
 use super::{RADIUS, ball, draw, lamp, settings, spot, sun};
-use crate::pixels::on_the_ball;
+use lapidary_cook::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
-use lapidary_harness::extremum::larger;
-use lapidary_harness::scene::{Light, Scene};
-use lapidary_harness::voxel_grid::VoxelGrid;
+use lapidary_assay::extremum::larger;
+use lapidary_scene::{Light, Scene};
+use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle;
 use std::f64::consts::PI;
 

@@ -1,14 +1,15 @@
 //! Bodies, lights and media at which a renderer of voxels goes wrong.
 
 use super::{RADIUS, apart, ball, coarse, covered, draw, lamp, scene, settings, spot, stone, sun};
-use crate::pixels::on_the_ball;
+use lapidary_cook::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
-use lapidary_harness::extremum::larger;
-use lapidary_harness::render::{Note, Picture, Settings};
-use lapidary_harness::scene::surfaces::sphere;
-use lapidary_harness::scene::{Averaging, Bounds, Light, Mesh, Scene};
-use lapidary_harness::voxel_grid::VoxelGrid;
-use lapidary_harness::voxelization::Voxelizer;
+use lapidary_assay::extremum::larger;
+use lapidary_plan::Note;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Averaging, Bounds, Light, Mesh, Scene};
+use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_render::voxelization::Voxelizer;
 use std::f64::consts::PI;
 
 fn is_black(picture: &Picture) -> bool {
@@ -323,7 +324,7 @@ fn a_hole_in_the_bunny_leaves_no_streaks() {
         let [Note::Open { odd_columns, columns, .. }] = &holed.notes[..] else { panic!("{:?}", holed.notes) };
         assert!(*odd_columns > 10 && columns / odd_columns > 10, "{odd_columns} of {columns}");
         // Three radii about the hole may show it.
-        let to_clip = lapidary_harness::render::clip_from_world(&open, whole.width, whole.height);
+        let to_clip = lapidary_scene::clip_from_world(&open, whole.width, whole.height);
         let on_screen = |point: Vec3| {
             let clip = to_clip.project_point3(point);
             0.5 * whole.width as f32 * (clip.truncate() * glam::Vec2::new(1.0, -1.0) + 1.0)
@@ -426,7 +427,7 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     let eye = scene.camera.eye.as_dvec3();
     let turn = (2.0 * PI * radius).hypot(pitch);
     let (mut black, mut right) = (0, 0);
-    for (direction, pixel) in crate::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
+    for (direction, pixel) in lapidary_cook::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
         // The mesh's tube has twelve sides: what lies between the circles about and within them is left out.
         let hits = [1.0, (PI / 12.0).cos()].map(|inscribed| {
             let mut along = eye.length() - 70.0;

@@ -2,8 +2,8 @@
 
 use super::{apart, ball, coarse, covered, draw, lamp, settings, spot, sun};
 use glam::{UVec3, Vec3};
-use lapidary_harness::extremum::larger;
-use lapidary_harness::scene::{Density, DensityGrid, Light, Medium, Scene};
+use lapidary_assay::extremum::larger;
+use lapidary_scene::{Density, DensityGrid, Light, Medium, Scene};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
 

@@ -1,11 +1,11 @@
 //! What is said about a picture.
 
 use super::{ball, coarse, draw, stone, sun};
-use crate::program::{cook, folder, succeeds};
+use lapidary_cook::program::{cook, folder, succeeds};
 use glam::Vec3;
-use lapidary_harness::render::Note;
-use lapidary_harness::scene::surfaces::sphere;
-use lapidary_harness::scene::{Scene, glb};
+use lapidary_plan::Note;
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Scene, glb};
 
 /// The ball without what lies far to the right: columns along x pass the rest once.
 fn open() -> Scene {

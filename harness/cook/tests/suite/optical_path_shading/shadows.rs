@@ -1,10 +1,10 @@
 //! The lights' maps: what they say is lit, against ray queries. A medium so dense that nothing passes shows it pixel by pixel.
 
 use super::{RADIUS, ball, draw, lamp, scene, settings, spot, stone, sun};
-use crate::pixels::{on_the_ball, rays};
+use lapidary_cook::pixels::{on_the_ball, rays};
 use glam::{DVec3, Vec3};
-use lapidary_harness::scene::surfaces::torus;
-use lapidary_harness::scene::{Light, Scene};
+use lapidary_scene::surfaces::torus;
+use lapidary_scene::{Light, Scene};
 use std::f64::consts::PI;
 
 /// Nothing is left after a hundredth of a voxel.

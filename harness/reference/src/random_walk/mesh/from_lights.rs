@@ -5,8 +5,8 @@ mod emission;
 
 use super::walk::{Matter, Ray};
 use super::{Pixel, Rendering, Settings, generator, stratum};
-use crate::reference::view::View;
-use crate::scene::{Bounds, Light};
+use lapidary_scene::view::View;
+use lapidary_scene::{Bounds, Light};
 use emission::Emission;
 use glam::DVec3;
 use rand::RngExt as _;

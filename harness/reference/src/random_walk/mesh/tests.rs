@@ -1,8 +1,8 @@
 use super::*;
-use crate::extremum::larger;
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::surfaces::sphere;
-use crate::scene::{Light, Material, Medium, Mesh, Object};
+use lapidary_assay::extremum::larger;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::surfaces::sphere;
+use lapidary_scene::{Light, Material, Medium, Mesh, Object};
 use glam::Vec3;
 use std::time::Instant;
 

@@ -5,12 +5,12 @@ mod general;
 
 use super::super::isotropic;
 use super::Boundary;
-use crate::reference::geometry::{Bodies, Geometry, Hit, Place};
-use crate::reference::surroundings;
-use crate::reference::view::{Sight, View};
-use crate::render::Environment;
-use crate::scene::light::Arrival;
-use crate::scene::{Light, Medium, Object, Scene};
+use crate::spectral::geometry::{Bodies, Geometry, Hit, Place};
+use lapidary_scene::environment;
+use lapidary_scene::view::{Sight, View};
+use lapidary_scene::Environment;
+use lapidary_scene::light::Arrival;
+use lapidary_scene::{Light, Medium, Object, Scene};
 use general::Structure;
 use glam::DVec3;
 use rand::RngExt as _;

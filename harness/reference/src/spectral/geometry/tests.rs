@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::Scene;
+use lapidary_scene::Scene;
 
 fn bodies(name: &str, geometry: Geometry) -> (Scene, Bodies) {
     let scene = Scene::named(name).unwrap();

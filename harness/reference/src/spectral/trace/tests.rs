@@ -1,8 +1,8 @@
 use super::*;
-use crate::reference::geometry::Geometry;
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::polyhedron::{Plane, Polyhedron};
-use crate::scene::{Averaging, Material, Object};
+use crate::spectral::geometry::Geometry;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::polyhedron::{Plane, Polyhedron};
+use lapidary_scene::{Averaging, Material, Object};
 
 /// Radiance 1 from above, 0 from below, with a soft step of one texel between.
 fn sky() -> Environment {

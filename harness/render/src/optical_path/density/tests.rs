@@ -1,7 +1,7 @@
 use super::*;
-use crate::extremum::larger;
-use crate::gpu::AdapterChoice;
-use crate::scene::Bounds;
+use lapidary_assay::extremum::larger;
+use lapidary_gpu::AdapterChoice;
+use lapidary_scene::Bounds;
 use glam::{UVec3, Vec3};
 use std::sync::Arc;
 

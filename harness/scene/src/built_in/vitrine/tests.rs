@@ -1,9 +1,10 @@
 use super::*;
-use crate::extremum::larger;
-use crate::pixel::Viewer;
-use crate::plan::Decisions;
-use crate::render::{Rung, Settings};
-use crate::scene::{Mineral, glb};
+use lapidary_assay::extremum::larger;
+use lapidary_render::pixel::Viewer;
+use lapidary_plan::Decisions;
+use lapidary_plan::Rung;
+use lapidary_render::Settings;
+use crate::{Mineral, glb};
 
 fn made() -> Scene {
     Scene::made("vitrine").expect("built in")

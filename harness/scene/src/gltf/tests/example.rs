@@ -3,8 +3,8 @@
 use lapidary_veins::VeinsPattern;
 
 use super::*;
-use crate::scene::convex::is_closed;
-use crate::scene::{Density, Light, Medium, Object};
+use crate::convex::is_closed;
+use crate::{Density, Light, Medium, Object};
 
 const PAGE: &str = include_str!("../../../../../docs/scene_files.md");
 

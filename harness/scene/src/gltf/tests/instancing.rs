@@ -1,7 +1,7 @@
 //! Instances of a mesh by `EXT_mesh_gpu_instancing`.
 
 use super::*;
-use crate::scene::Mesh;
+use crate::Mesh;
 
 /// The triangle's file with instances by these attributes, each with its element type, component type and bytes.
 fn instanced(attributes: &[(&str, &str, u32, Vec<u8>)], counts: &[u64]) -> (Value, Vec<u8>) {

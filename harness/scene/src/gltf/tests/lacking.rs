@@ -1,7 +1,7 @@
 //! What a file asks for in vain is listed once, by name.
 
 use super::*;
-use crate::scene::BUILT_IN;
+use crate::BUILT_IN;
 
 fn lacking(change: impl FnOnce(&mut Value)) -> Vec<String> {
     let scene = load_changed(|d| {

@@ -2,7 +2,7 @@
 
 use super::refusals::message;
 use super::*;
-use crate::scene::Light;
+use crate::Light;
 
 /// Puts `light` into the file, at a second node with `transform`.
 fn add_light(document: &mut Value, light: &Value, transform: &Value) {

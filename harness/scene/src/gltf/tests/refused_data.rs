@@ -174,7 +174,7 @@ fn memory_is_bounded_whatever_the_files_size() {
 /// What one budget lets pass another stops: vertices with texture coordinates that no triangle uses.
 #[test]
 fn the_budget_counts_bytes() {
-    use crate::scene::gltf::budget::Budget;
+    use crate::gltf::budget::Budget;
     let mut budget = Budget::new();
     let most = 3 * MAX_TRIANGLES;
     assert_eq!(budget.take(1, most, 32, MAX_TRIANGLES), Ok(()));

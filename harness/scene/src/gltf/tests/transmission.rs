@@ -1,7 +1,7 @@
 //! The medium that diffuse transmission stands for.
 
 use super::*;
-use crate::extremum::largest;
+use lapidary_assay::extremum::largest;
 
 /// A material of this colour, behind which light scatters.
 fn diffuse(color: Vec3, volume: Value) -> Result<Material, SceneError> {

@@ -1,7 +1,7 @@
 //! Rays from lights towards bodies.
 
 use super::super::walk::Ray;
-use crate::scene::{Bounds, Light};
+use lapidary_scene::{Bounds, Light};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 

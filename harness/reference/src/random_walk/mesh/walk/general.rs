@@ -10,9 +10,9 @@
 use super::super::Boundary;
 use super::{Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
 use crate::random_walk::isotropic;
-use crate::reference::geometry::{Hit, Place};
-use crate::reference::surroundings;
-use crate::scene::{Density, Light, Object};
+use crate::spectral::geometry::{Hit, Place};
+use lapidary_scene::environment;
+use lapidary_scene::{Density, Light, Object};
 use glam::{DVec2, DVec3};
 use lapidary_random_walk::oracle;
 use rand::RngExt as _;

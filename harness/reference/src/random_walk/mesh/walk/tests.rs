@@ -1,8 +1,8 @@
 use super::*;
 use crate::random_walk::{BINS, Profile, generator, in_disc, profile};
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::surfaces::{sphere, torus};
-use crate::scene::{Averaging, Camera, Material, Mesh};
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::surfaces::{sphere, torus};
+use lapidary_scene::{Averaging, Camera, Material, Mesh};
 use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};

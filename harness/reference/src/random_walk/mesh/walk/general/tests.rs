@@ -1,10 +1,10 @@
 use super::super::tests::{cuboid, estimate, grey, h, scene, seen, sun};
 use super::*;
 use crate::random_walk::{generator, half_space};
-use crate::render::Environment;
-use crate::scene::environment_map::EnvironmentMap;
-use crate::scene::surfaces::{sphere, torus};
-use crate::scene::{DensityGrid, Medium, Mesh};
+use lapidary_scene::Environment;
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::surfaces::{sphere, torus};
+use lapidary_scene::{DensityGrid, Medium, Mesh};
 use glam::{UVec3, Vec3};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
