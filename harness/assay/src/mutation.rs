@@ -1,7 +1,6 @@
 //! Mutation of a module's functions on naga's IR: one operator, comparison or constant changed at a time. A suite that
 //! lets a mutant pass does not test what was changed.
 
-use crate::cookbook;
 use crate::dispatch;
 use crate::dispatch::KernelModule;
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
@@ -59,24 +58,24 @@ pub fn compacted(mut kernel: KernelModule) -> KernelModule {
     kernel
 }
 
-/// Every mutant of the named function of `module`, and of the consts that it uses.
+/// Every mutant of the named function of `source`, and of the consts that it uses.
 ///
 /// `kernel` is the function's own, compacted.
 ///
 /// # Panics
 /// Where `kernel` is not valid, which [`KernelModule::reflect`] has made sure of.
-pub fn mutants(module: &cookbook::Module, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
+pub fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
     let mut mutants: Vec<Mutant> = Vec::new();
     let mut add = |owner: &str, span: naga::Span, site: Site, change: String, edit: Edit| {
         let start = span.to_range().map_or(0, |range| range.start);
-        let line = module.source[..start.min(module.source.len())].matches('\n').count();
-        let line = module.source.lines().nth(line).unwrap_or_default().trim().to_owned();
+        let line = source[..start.min(source.len())].matches('\n').count();
+        let line = source.lines().nth(line).unwrap_or_default().trim().to_owned();
         let same = |other: &&Mutant| other.owner == owner && other.line == line && other.change == change;
         let occurrence = mutants.iter().filter(same).count() + 1;
         mutants.push(Mutant { owner: owner.to_owned(), line, occurrence, change, site, edit });
     };
     let ir = &kernel.module;
-    let info = dispatch::validate(ir).expect("a kernel is valid");
+    let info = lapidary_specialise::validate(ir).expect("a kernel is valid");
     for (owner, found) in ir.functions.iter().filter(|(_, found)| found.name.as_deref() == Some(function)) {
         let is_vector = |handle: Handle<Expression>| {
             matches!(info[owner][handle].ty.inner_with(&ir.types), naga::TypeInner::Vector { .. })

@@ -118,7 +118,7 @@ fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
     let kernel = KernelModule::reflect(module.source, module.name, formula.function);
     let kernel = mutation::compacted(kernel.expect("the cookbook's WGSL is valid"));
-    let all = mutation::mutants(module, formula.function, &kernel);
+    let all = mutation::mutants(module.source, formula.function, &kernel);
     let (valid, invalid): (Vec<_>, Vec<_>) =
         all.into_iter().partition(|mutant| mutation::apply(&kernel, mutant).is_some());
     (valid, invalid.len())

@@ -4,9 +4,8 @@ use super::effect::{Effect, Effects};
 use super::quality::{Chosen, Technique};
 use super::thickness::Thickness;
 use lapidary_scene::Environment;
-use crate::{Geometry, Rung, Spectrum};
+use crate::{Geometry, Request, Rung, Spectrum};
 use lapidary_scene::solver::Reflectance;
-use lapidary_render::Settings;
 use lapidary_scene::{Density, Dispersion, Light, Material, Medium, Object, Scene, Shape};
 use glam::Vec3;
 
@@ -44,21 +43,27 @@ pub enum Scattering {
 }
 
 impl Decisions {
+    /// For every object of `scene`, in its order.
+    #[must_use]
+    pub fn all(scene: &Scene, request: &Request<'_>) -> Vec<Self> {
+        scene.objects.iter().map(|object| Self::of(object, scene, request)).collect()
+    }
+
     /// For an object of `scene`.
     #[must_use]
-    pub fn of(object: &Object, scene: &Scene, settings: &Settings) -> Self {
-        let (choice, reason) = technique(object, scene, settings);
+    pub fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> Self {
+        let (choice, reason) = technique(object, scene, request);
         let (rung, chosen) = match choice {
             Choice::Named(rung) => (rung, None),
             Choice::By(technique) => {
-                let chosen = Chosen { technique, quality: settings.quality };
+                let chosen = Chosen { technique, quality: request.quality };
                 (chosen.rung(), Some(chosen))
             }
         };
-        let case = Case { object, material: &object.material, lights: &scene.lights, settings, rung };
+        let case = Case { object, material: &object.material, lights: &scene.lights, request, rung };
         let decide = |effect: Effect| {
             let (on, reason) = case.decide(effect);
-            if on && settings.without.has(effect) {
+            if on && request.without.has(effect) {
                 return Decision { effect, on: false, reason: format!("left out on request, though {reason}") };
             }
             Decision { effect, on, reason }
@@ -93,23 +98,23 @@ enum Choice {
 }
 
 /// The rung or technique for an object, and why.
-fn technique(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
+fn technique(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
     let material = &object.material;
-    if settings.rung.is_for_clear_stones() && !material.is_clear() {
-        let (choice, reason) = by_material(object, scene, settings);
-        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", settings.rung));
+    if request.rung.is_for_clear_stones() && !material.is_clear() {
+        let (choice, reason) = by_material(object, scene, request);
+        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", request.rung));
     }
-    if settings.rung != Rung::ByMaterial {
-        return (Choice::Named(settings.rung), "asked for".to_owned());
+    if request.rung != Rung::ByMaterial {
+        return (Choice::Named(request.rung), "asked for".to_owned());
     }
-    by_material(object, scene, settings)
+    by_material(object, scene, request)
 }
 
 /// The rung or technique that an object's material calls for, and why.
-fn by_material(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
+fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
     let material = &object.material;
     if material.scatters() {
-        return scattering(object, scene, settings);
+        return scattering(object, scene, request);
     }
     let (technique, reason) = if material.transmission == 0.0 {
         (Technique::Opaque, "opaque: transmission 0, and nothing inside scatters".to_owned())
@@ -136,21 +141,21 @@ fn clear(shape: Shape) -> (Technique, &'static str) {
 }
 
 /// The rung or technique for a body that scatters light, and why.
-fn scattering(object: &Object, scene: &Scene, settings: &Settings) -> (Choice, String) {
-    if let (Some(rung), None) = (object.material.solver, settings.scattering) {
-        return (Choice::Named(rung), "extras.lapidary.solver names it".to_owned());
+fn scattering(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
+    if let (Some(solver), None) = (object.material.solver, request.scattering) {
+        return (Choice::Named(solver.into()), "extras.lapidary.solver names it".to_owned());
     }
-    let (technique, reason) = by_thickness(object, scene, settings);
+    let (technique, reason) = by_thickness(object, scene, request);
     (Choice::By(technique), reason)
 }
 
 /// Whether light comes through a body that scatters it, and why.
-fn by_thickness(object: &Object, scene: &Scene, settings: &Settings) -> (Technique, String) {
+fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Technique, String) {
     let Some(medium) = &object.material.medium else {
         let reason = "sigma0 alone: no scattering and absorption to follow light through it by";
         return (Technique::Cdrf, reason.to_owned());
     };
-    if let Some(asked) = settings.scattering {
+    if let Some(asked) = request.scattering {
         let technique = if asked == Scattering::Cdrf { Technique::Cdrf } else { Technique::OpticalPath };
         return (technique, "asked for, whatever its thickness".to_owned());
     }
@@ -212,7 +217,7 @@ struct Case<'a> {
     object: &'a Object,
     material: &'a Material,
     lights: &'a [Light],
-    settings: &'a Settings,
+    request: &'a Request<'a>,
     rung: Rung,
 }
 
@@ -283,12 +288,12 @@ impl Case<'_> {
 
     /// Why a clear body's inside is not looked into.
     fn no_inside(&self) -> String {
-        if self.settings.rung == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }.to_owned()
+        if self.request.rung == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }.to_owned()
     }
 
     fn thin_wall(&self) -> Answer {
         match self.rung {
-            Rung::Surface if self.settings.rung != Rung::Surface => {
+            Rung::Surface if self.request.rung != Rung::Surface => {
                 on(format!("transmission {}, thickness 0", self.material.transmission))
             }
             Rung::Surface => off(self.no_inside()),
@@ -402,7 +407,7 @@ impl Case<'_> {
     /// Whether ways through the body are sought; else why not.
     fn along_a_way(&self) -> Result<(), String> {
         match self.optical_path() {
-            (true, _) if self.settings.without.has(Effect::OpticalPath) => Err("optical_path is left out".to_owned()),
+            (true, _) if self.request.without.has(Effect::OpticalPath) => Err("optical_path is left out".to_owned()),
             (true, _) => Ok(()),
             (false, reason) => Err(reason),
         }
@@ -440,7 +445,7 @@ impl Case<'_> {
     fn shadow(&self) -> Answer {
         let called = match self.rung {
             Rung::Diffuse(Reflectance::LambertShadowed) => "the rung casts shadows",
-            Rung::Diffuse(_) if self.settings.shadows => "asked for",
+            Rung::Diffuse(_) if self.request.shadows => "asked for",
             Rung::Diffuse(_) => return off("not asked for by --with shadow or the rung lambert-shadowed"),
             Rung::OpticalPath(_) => return off("part of the rung: ways start where a light sees the body"),
             _ => return off("clear bodies are lit by the environment"),
@@ -460,7 +465,7 @@ impl Case<'_> {
     }
 
     fn environment_map(&self) -> Answer {
-        match self.settings.environment {
+        match self.request.environment {
             Environment::Studio => off("the environment is the procedural studio"),
             Environment::Map(_) if self.is_gem() => on("the environment is an image"),
             Environment::Map(_) if self.reflection().0 => on("the environment is an image, which the surface reflects"),

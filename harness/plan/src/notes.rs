@@ -1,12 +1,9 @@
 //! What a user should know before a scene is drawn: bodies and lights that a technique cannot do justice to.
 
 use super::{Decisions, thickness};
-use lapidary_scene::environment;
-use lapidary_scene::{Environment, clip_from_world};
-use crate::{Geometry, Note, Objects, Rung};
-use lapidary_render::Settings;
+use crate::{Geometry, Note, Objects, Request, Rung};
 use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::{Dispersion, MeshDiagnosis, Object, Scene};
+use lapidary_scene::{Dispersion, Environment, MeshDiagnosis, Object, Scene, clip_from_world};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use std::f64::consts::PI;
@@ -20,15 +17,17 @@ const INVISIBLE: f32 = 1.0 / 2048.0;
 /// The darkest channel of a pixel that is written as 255.
 const WHITE: f32 = 254.5 / 255.0;
 
-/// All notes on a scene, each thing once, with the first object that it is said of. `decisions` are those of the scene's objects.
-pub(super) fn of(scene: &Scene, settings: &Settings, decisions: &[&Decisions]) -> Vec<Note> {
-    let around = mean_radiance(&settings.environment);
+/// What should be known of a scene before it is drawn: meshes, materials, lights and a camera that no technique can do justice to, each thing once,
+/// with the first object that it is said of. `decisions` are those of the scene's objects.
+#[must_use]
+pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec<Note> {
+    let around = mean_radiance(request.environment);
     let mut notes: Vec<Note> = Vec::new();
-    if is_out_of_view(scene, settings) {
+    if is_out_of_view(scene, request) {
         notes.push(Note::NothingInView);
     }
     for (object, decisions) in scene.objects.iter().zip(decisions) {
-        let case = Case { object, rung: decisions.rung, scene, settings };
+        let case = Case { object, rung: decisions.rung, scene, request };
         for note in case.notes(around) {
             add(&mut notes, note);
         }
@@ -62,7 +61,7 @@ struct Case<'a> {
     object: &'a Object,
     rung: Rung,
     scene: &'a Scene,
-    settings: &'a Settings,
+    request: &'a Request<'a>,
 }
 
 impl Case<'_> {
@@ -70,8 +69,8 @@ impl Case<'_> {
         let objects = Objects { first: self.object.name.clone(), count: 1 };
         let rung = self.rung;
         let mut notes = Vec::new();
-        if self.settings.rung.is_for_clear_stones() && !self.object.material.is_clear() {
-            notes.push(Note::NotClear { objects: objects.clone(), asked: self.settings.rung, instead: rung });
+        if self.request.rung.is_for_clear_stones() && !self.object.material.is_clear() {
+            notes.push(Note::NotClear { objects: objects.clone(), asked: self.request.rung, instead: rung });
         }
         notes.extend(self.of_mesh(&objects));
         if rung.geometry_of_inside() == Some(Geometry::Proxy) && has_hard_edges(&self.object.mesh) {
@@ -108,7 +107,7 @@ impl Case<'_> {
 
     fn thin_wall(&self, objects: &Objects) -> Option<Note> {
         let material = &self.object.material;
-        if self.rung != Rung::Surface || self.settings.rung == Rung::Surface || material.thickness > 0.0 {
+        if self.rung != Rung::Surface || self.request.rung == Rung::Surface || material.thickness > 0.0 {
             return None;
         }
         let absorbs = material.absorbs().then_some("absorption");
@@ -128,7 +127,7 @@ impl Case<'_> {
         let coefficient = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
         let left = material.base_color * lapidary_absorption::transmittance(coefficient, thickness);
         let share = left.max_element();
-        (share * self.settings.exposure < INVISIBLE).then(|| Note::Black { objects: objects.clone(), share, thickness })
+        (share * self.request.exposure < INVISIBLE).then(|| Note::Black { objects: objects.clone(), share, thickness })
     }
 
     /// Where a body that the lights meet squarely is shown as plain white.
@@ -146,7 +145,7 @@ impl Case<'_> {
             });
             radiance += arriving.sum::<DVec3>() / PI;
         }
-        let shown = (self.settings.exposure * radiance.as_vec3() * material.base_color).min(Vec3::splat(f32::MAX));
+        let shown = (self.request.exposure * radiance.as_vec3() * material.base_color).min(Vec3::splat(f32::MAX));
         let encoded = lapidary_srgb::encode_color(lapidary_srgb::tone_curve(shown.min(Vec3::splat(1e9))));
         (encoded.min_element() >= WHITE)
             .then(|| Note::ClipsToWhite { objects: objects.clone(), radiance: shown.min_element() })
@@ -165,7 +164,7 @@ fn mean_radiance(environment: &Environment) -> DVec3 {
         let share = 0.5 * (edges[0] - edges[1]) / f64::from(2 * ROWS);
         let columns = (0..2 * ROWS).map(|column| {
             let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v);
-            surroundings::radiance(environment, oracle::direction_from_uv(uv))
+            environment.radiance(oracle::direction_from_uv(uv))
         });
         share * columns.sum::<DVec3>()
     };
@@ -173,8 +172,8 @@ fn mean_radiance(environment: &Environment) -> DVec3 {
 }
 
 /// Whether every triangle lies beyond one of the picture's edges, or behind the eye.
-fn is_out_of_view(scene: &Scene, settings: &Settings) -> bool {
-    let matrix = clip_from_world(scene, settings.width, settings.height);
+fn is_out_of_view(scene: &Scene, request: &Request<'_>) -> bool {
+    let matrix = clip_from_world(scene, request.size[0], request.size[1]);
     let beyond = |clip: Vec4| {
         let [x, y, _, w] = clip.to_array();
         [x < -w, x > w, y < -w, y > w, w <= 0.0]

@@ -1,10 +1,7 @@
 //! The ladder's rungs: how much of the light's way is followed.
 
-use super::optical_path::Paths;
-use super::reflectance::{REFLECTANCES, Reflectance};
 use lapidary_scene::nearest;
-use lapidary_scene::solver::Method;
-use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
+use lapidary_scene::solver::{NoSolver, Paths, Reflectance, Solver};
 use std::fmt;
 use std::str::FromStr;
 
@@ -153,14 +150,23 @@ impl Rung {
     }
 }
 
+impl From<Solver> for Rung {
+    fn from(solver: Solver) -> Self {
+        match solver {
+            Solver::Diffuse(reflectance) => Self::Diffuse(reflectance),
+            Solver::OpticalPath(paths) => Self::OpticalPath(paths),
+        }
+    }
+}
+
 impl fmt::Display for Rung {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (geometry, hits, spectrum) = match self {
             Self::Inside { geometry, hits, spectrum } => (geometry, hits, spectrum),
             Self::ByMaterial => return f.write_str("by-material"),
             Self::Surface => return f.write_str("surface"),
-            Self::Diffuse(reflectance) => return f.write_str(reflectance.name()),
-            Self::OpticalPath(Paths { cells, method }) => return write!(f, "{method}-{cells}"),
+            Self::Diffuse(reflectance) => return write!(f, "{}", Solver::Diffuse(*reflectance)),
+            Self::OpticalPath(paths) => return write!(f, "{}", Solver::OpticalPath(*paths)),
             Self::Reference => return f.write_str("reference"),
         };
         let name = GEOMETRIES.iter().find(|(_, g)| g == geometry).map_or("", |(name, _)| name);
@@ -184,17 +190,10 @@ impl FromStr for Rung {
             "reference" => return Ok(Self::Reference),
             _ => {}
         }
-        if let Some((_, reflectance)) = REFLECTANCES.iter().find(|(name, _)| *name == text) {
-            return Ok(Self::Diffuse(*reflectance));
-        }
-        if let Some((Ok(method), cells)) =
-            text.rsplit_once('-').map(|(method, cells)| (method.parse::<Method>(), cells))
-        {
-            let is_grid = |cells: &u32| (LEAST_CELLS..=MOST_CELLS).contains(cells) && cells.is_multiple_of(MULTIPLE);
-            let cells = whole(cells).filter(is_grid).ok_or_else(|| {
-                format!("`{cells}` cells; a grid has a multiple of {MULTIPLE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")
-            })?;
-            return Ok(Self::OpticalPath(Paths { cells, method }));
+        match text.parse::<Solver>() {
+            Ok(solver) => return Ok(solver.into()),
+            Err(NoSolver::Cells(cells)) => return Err(NoSolver::Cells(cells).to_string()),
+            Err(NoSolver::Unknown) => {}
         }
         let unknown = || format!("no such rung{}; a rung is {GRAMMAR}", nearest::suggest(text, &NAMES));
         let (way, spectrum) = text.split_once('+').map_or((text, None), |(way, spectrum)| (way, Some(spectrum)));

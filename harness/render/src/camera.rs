@@ -1,26 +1,12 @@
 //! The camera's matrix, for the whole picture or for one tile of it.
 
 use super::Tile;
-use lapidary_scene::{Bounds, Camera};
-use glam::{Mat4, Vec3};
+use lapidary_scene::Scene;
+use glam::Mat4;
 
 /// Clip space of `tile` within a picture of `width` × `height` pixels. Depth runs from 0 near to 1 far.
-pub(super) fn clip_from_world(camera: &Camera, bounds: &Bounds, width: u32, height: u32, tile: Tile) -> Mat4 {
-    let (near, far) = depth_range(camera, bounds);
-    let aspect = width as f32 / height as f32;
-    let clip_from_view = glam::camera::rh::proj::directx::perspective(camera.vertical_fov, aspect, near, far);
-    let view_from_world = glam::camera::rh::view::look_at_mat4(camera.eye, camera.target, camera.up);
-    tile_from_picture(width, height, tile) * clip_from_view * view_from_world
-}
-
-/// Near and far distances that enclose the scene, apart by at most 1e4 so that depth keeps its digits.
-fn depth_range(camera: &Camera, bounds: &Bounds) -> (f32, f32) {
-    let forward = (camera.target - camera.eye).normalize_or(Vec3::NEG_Z);
-    let middle = (bounds.centre() - camera.eye).dot(forward);
-    let radius = bounds.radius().max(f32::MIN_POSITIVE);
-    let far = (middle + 1.01 * radius).max(radius * 1e-3);
-    let near = (middle - 1.01 * radius).max(far * 1e-4);
-    (near, far)
+pub(super) fn clip_from_world(scene: &Scene, width: u32, height: u32, tile: Tile) -> Mat4 {
+    tile_from_picture(width, height, tile) * lapidary_scene::clip_from_world(scene, width, height)
 }
 
 /// Scales the tile's part of clip space up to the whole of it.
@@ -53,6 +39,7 @@ fn tile_from_picture(width: u32, height: u32, tile: Tile) -> Mat4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn the_whole_picture_is_its_own_tile() {

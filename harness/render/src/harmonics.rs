@@ -1,7 +1,6 @@
 //! The environment's spherical harmonics: its radiance projected on the degrees that a clamped cosine holds.
 
 use super::Environment;
-use lapidary_scene::environment::radiance;
 use glam::{DVec2, DVec3};
 use lapidary_environment::oracle;
 use rayon::prelude::*;
@@ -24,7 +23,7 @@ pub(super) fn project(environment: &Environment) -> [DVec3; COUNT] {
         for column in 0..2 * ROWS {
             let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v);
             let direction = oracle::direction_from_uv(uv);
-            let arriving = solid_angle * radiance(environment, direction);
+            let arriving = solid_angle * environment.radiance(direction);
             for (sum, value) in sums.iter_mut().zip(basis(direction)) {
                 *sum += value * arriving;
             }

@@ -1,6 +1,8 @@
 //! A scene to a picture: the rung's recipe over tiles, supersampled, then the display recipe; or the reference.
 
 mod camera;
+pub mod cdrf;
+pub mod compute;
 mod deferred;
 mod device;
 mod diffusion;
@@ -13,37 +15,39 @@ mod gem;
 mod harmonics;
 mod light_views;
 mod lighting;
-mod note;
 mod optical_path;
 mod pass;
+pub mod pixel;
+pub mod plan;
 mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
-mod rung;
+pub mod shader;
 mod shadows;
+pub mod solver;
 mod stone;
 pub mod texture_diffusion;
 mod translucent;
 mod variant;
+pub mod voxel_grid;
+pub mod voxelization;
 
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects, Quality, Scattering};
+use lapidary_plan::{Decisions, Effect, Effects, Quality, Request, Rung, Scattering};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral;
 use lapidary_reference::spectral::{Lost, Rendering, Window};
-use lapidary_scene::Scene;
-use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::solver::Reflectance;
+use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES, Scene};
 use deferred::DeferredPass;
 use display::DisplayPass;
 pub use error::RenderError;
 pub use frame::{Frame, FrameTime};
 use lighting::Lighting;
-pub use note::{Note, Objects};
-pub use optical_path::{Paths, Stage};
+pub use optical_path::Stage;
 use pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
-pub use reflectance::{Curvature, Reflectance};
-pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spectrum};
+pub use reflectance::Curvature;
 use shadows::Shadows;
 use std::borrow::Cow;
 use std::sync::Mutex;
@@ -51,14 +55,10 @@ pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths
 use variant::Part;
 pub(crate) use variant::names as object_names;
 
-/// Largest width and height of a picture in pixels.
-pub const LARGEST_SIDE: u32 = 8192;
 /// Largest side of a tile in pixels.
 const TILE: u32 = 512;
 /// Largest side of a tile in samples: far within every device's texture limit, and 80 MiB of colour and depth.
 const TILE_SAMPLES: u32 = 2048;
-/// Samples along each side of a pixel, where nothing else is asked for.
-pub const SAMPLES: u32 = 4;
 /// The most samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
@@ -68,15 +68,6 @@ pub const WALKS: u32 = 256;
 /// The share of a body's extinction that light loses along its way, where nothing else is asked for: scattering takes light from the way, but
 /// much of it goes on beside it. Fitted to random walks: docs/optical_path_shading.md.
 pub const EXTINCTION_SCALE: f32 = 0.18;
-
-/// The light around the scene.
-#[derive(Clone, Debug)]
-pub enum Environment {
-    /// The procedural studio of `wgsl/environment.wgsl`.
-    Studio,
-    /// A latitude-longitude image.
-    Map(EnvironmentMap),
-}
 
 /// What to render.
 #[derive(Clone, Debug)]
@@ -162,6 +153,23 @@ impl Settings {
             walks_from: mesh::Origin::Eye,
             boundary: mesh::Boundary::Matched,
             seed: 1,
+        }
+    }
+}
+
+impl Settings {
+    /// What of this a plan is made by.
+    #[must_use]
+    pub fn request(&self) -> Request<'_> {
+        Request {
+            size: [self.width, self.height],
+            rung: self.rung,
+            quality: self.quality,
+            without: self.without,
+            scattering: self.scattering,
+            shadows: self.shadows,
+            environment: &self.environment,
+            exposure: self.exposure,
         }
     }
 }
@@ -266,7 +274,7 @@ fn render_from(
     })?;
     let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();
     for (done, tile) in (1..).zip(&tiles) {
-        let clip_from_world = camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, *tile);
+        let clip_from_world = camera::clip_from_world(scene, width, height, *tile);
         let eye = scene.camera.eye;
         let size = [tile.width * settings.samples, tile.height * settings.samples];
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -324,7 +332,7 @@ fn scene_pass<'gpu>(
 
 /// The overrides of the gem recipes for a scene's first object.
 pub(crate) fn gem_constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
-    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, settings));
+    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| gem::constants(&decisions, decisions.rung, settings))
 }
 
@@ -334,7 +342,7 @@ pub(crate) fn translucent_constants(
     settings: &Settings,
     reflectance: Reflectance,
 ) -> Vec<(&'static str, f64)> {
-    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, settings));
+    let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| translucent::constants(&decisions, settings, reflectance))
 }
 
@@ -438,11 +446,6 @@ pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> R
         display.finish(encoder, tile, settings, picture)?;
     }
     Ok(())
-}
-
-/// Clip space of a whole picture of `scene`. Depth runs from 0 near to 1 far.
-pub fn clip_from_world(scene: &Scene, width: u32, height: u32) -> glam::Mat4 {
-    camera::clip_from_world(&scene.camera, &scene.bounds(), width, height, Tile::whole([width, height]))
 }
 
 /// A rectangle of the picture in pixels.

@@ -31,15 +31,6 @@ const TEXELS_PER_VOXEL: u32 = 4;
 /// For smaller bodies there are more, so that none of their voxels is left out, but no more than this along a side.
 const MOST_TEXELS: u32 = 2048;
 
-/// How light's ways through bodies are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Paths {
-    /// Voxels along each edge of a body's grid, as [`VoxelGrid::cells`] has them.
-    pub cells: u32,
-    /// The solver.
-    pub method: Method,
-}
-
 /// The passes of a frame before the bodies are drawn.
 pub(super) struct OpticalPaths<'gpu> {
     gpu: &'gpu Gpu,

@@ -4,22 +4,12 @@
 //! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is not foretold but found: the renderer
 //! itself draws the scene on a device that does nothing, and everything that it makes and runs is written down.
 
-mod decision;
-mod effect;
-pub mod ladder;
-mod notes;
-pub mod quality;
 mod text;
-pub mod thickness;
-
-pub use decision::{Decision, Decisions, Scattering};
-pub use effect::{Effect, Effects, UnknownEffect};
-pub use quality::{Quality, Technique};
 
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::{Capture, capture};
 use crate as render;
-use lapidary_plan::{Note, Rung};
+use lapidary_plan::{Decisions, Note, Rung};
 use crate::{RenderError, Settings};
 use lapidary_scene::Scene;
 
@@ -51,14 +41,6 @@ pub struct Plan {
     pub lacking: Vec<String>,
 }
 
-/// What should be known of a scene before it is drawn with these settings: meshes, materials, lights and a camera that no technique can do justice
-/// to, each thing once.
-#[must_use]
-pub fn notes(scene: &Scene, settings: &Settings) -> Vec<Note> {
-    let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
-    notes::of(scene, settings, &all.iter().collect::<Vec<_>>())
-}
-
 impl Plan {
     /// What drawing `scene` with these settings takes. The reference, which is computed on the CPU, takes nothing of a device.
     ///
@@ -68,7 +50,7 @@ impl Plan {
         let planned = |(object, name): (&lapidary_scene::Object, String)| PlannedObject {
             object: name,
             material: object.material.name.clone(),
-            decisions: Decisions::of(object, scene, settings),
+            decisions: Decisions::of(object, scene, &settings.request()),
         };
         let capture = if settings.rung == Rung::Reference {
             Capture::default()
@@ -83,7 +65,7 @@ impl Plan {
         Ok(Self {
             scene: scene.name.clone(),
             size: [settings.width, settings.height],
-            notes: notes::of(scene, settings, &decisions),
+            notes: lapidary_plan::notes(scene, &settings.request(), &decisions),
             objects,
             capture,
             lacking: scene.lacking.clone(),

@@ -1,68 +1,18 @@
-//! How what scatters light sends it back: the rungs of the curvature-dependent reflectance function.
+//! The forms of the curvature-dependent reflectance function and of curvature, as the recipe `cdrf_shading` numbers them.
 
-use lapidary_scene::solver::Format;
+use lapidary_scene::solver::{Format, Reflectance};
 
-/// A step of the ladder from cheap to exact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reflectance {
-    /// Lambert's law: no scattering.
-    Lambert,
-    /// Lambert's law with cast shadows: what a renderer without scattering would show.
-    LambertShadowed,
-    /// Wrap lighting.
-    Wrap,
-    /// A lookup table of this many texels a side.
-    Table(u32, Format),
-    /// The cheap closed form.
-    Cheap,
-    /// The accurate closed form.
-    Accurate,
-    /// The convolution by quadrature.
-    Quadrature,
-    /// The form that keeps energy over the sphere.
-    Spherical,
-    /// Irradiance blurred in the mesh's texture, which the others do without.
-    Blur,
-}
-
-/// Every one, by its rung's name.
-pub(super) const REFLECTANCES: [(&str, Reflectance); 11] = [
-    ("lambert", Reflectance::Lambert),
-    ("lambert-shadowed", Reflectance::LambertShadowed),
-    ("wrap", Reflectance::Wrap),
-    ("table-256-rgba8", Reflectance::Table(256, Format::Rgba8)),
-    ("table-257-rgba16f", Reflectance::Table(257, Format::Rgba16Float)),
-    ("table-257-r32f", Reflectance::Table(257, Format::R32Float)),
-    ("cheap", Reflectance::Cheap),
-    ("accurate", Reflectance::Accurate),
-    ("quadrature", Reflectance::Quadrature),
-    ("spherical", Reflectance::Spherical),
-    ("blur", Reflectance::Blur),
-];
-
-impl Reflectance {
-    /// Its rung's name.
-    pub fn name(self) -> &'static str {
-        REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
-    }
-
-    /// Whether it is Lambert's law, with shadows or without: nothing scatters.
-    pub fn is_lambert(self) -> bool {
-        matches!(self, Self::Lambert | Self::LambertShadowed)
-    }
-
-    /// `CDRF_FORM` of the recipe; none where it is not used.
-    pub(super) fn form(self) -> Option<u32> {
-        match self {
-            Self::Lambert | Self::LambertShadowed | Self::Blur => None,
-            Self::Wrap => Some(0),
-            Self::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
-            Self::Table(_, Format::R32Float) => Some(2),
-            Self::Cheap => Some(3),
-            Self::Accurate => Some(4),
-            Self::Quadrature => Some(5),
-            Self::Spherical => Some(6),
-        }
+/// `CDRF_FORM` of the recipe; none where it is not used.
+pub(super) fn form(reflectance: Reflectance) -> Option<u32> {
+    match reflectance {
+        Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur => None,
+        Reflectance::Wrap => Some(0),
+        Reflectance::Table(_, Format::Rgba8 | Format::Rgba16Float) => Some(1),
+        Reflectance::Table(_, Format::R32Float) => Some(2),
+        Reflectance::Cheap => Some(3),
+        Reflectance::Accurate => Some(4),
+        Reflectance::Quadrature => Some(5),
+        Reflectance::Spherical => Some(6),
     }
 }
 

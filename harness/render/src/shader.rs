@@ -1,10 +1,8 @@
 //! A recipe specialised: some of its entry points with override values, and the bindings that are left of it.
 
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::DispatchError;
 use lapidary_gpu::capture::Pipeline;
 use lapidary_gpu::{Device, GpuError};
-use lapidary_specialise::{SpecialiseError, specialise};
+use lapidary_specialise::{SourceError, SpecialiseError, declared, parse, specialise};
 use lapidary_specialise::spirv_counts;
 use lapidary_specialise::spirv_counts::{SpirvCounts, SpirvCountsError, spirv_counts};
 use naga::valid::ModuleInfo;
@@ -15,7 +13,7 @@ use std::borrow::Cow;
 pub enum ShaderError {
     /// The text is not valid.
     #[error(transparent)]
-    Dispatch(#[from] DispatchError),
+    Source(#[from] SourceError),
     /// It does not specialise.
     #[error(transparent)]
     Specialise(#[from] SpecialiseError),
@@ -43,11 +41,11 @@ impl Shader {
         entries: &[&str],
         constants: &[(&str, f64)],
     ) -> Result<Self, ShaderError> {
-        let (module, _) = dispatch::parse(source, &format!("recipe {recipe}"))?;
-        let declared = dispatch::declared(&module, constants);
+        let (module, _) = parse(source, &format!("recipe {recipe}"))?;
+        let declared = declared(&module, constants);
         let (module, info) = specialise(module, &declared, entries).map_err(|error| match error {
             SpecialiseError::NoEntryPoint { .. } => {
-                ShaderError::Dispatch(DispatchError::Source(format!("recipe {recipe}: {error}")))
+                SourceError(format!("recipe {recipe}: {error}")).into()
             }
             error => error.into(),
         })?;

@@ -83,7 +83,7 @@ pub(crate) fn constants(
 ) -> Vec<(&'static str, f64)> {
     let mut constants = decisions.constants();
     constants.extend([
-        ("CDRF_FORM", f64::from(reflectance.form().unwrap_or_default())),
+        ("CDRF_FORM", f64::from(form(reflectance).unwrap_or_default())),
         ("CURVATURE_FORM", f64::from(settings.curvature.form())),
         ("ENVIRONMENT_AT_VERTICES", f64::from(u8::from(settings.environment_at_vertices))),
     ]);

@@ -27,7 +27,7 @@ impl<'a> Part<'a> {
         // An object without triangles has nothing to draw, and no buffer is empty.
         let shown = scene.objects.iter().zip(names(scene)).filter(|(object, _)| !object.mesh.indices.is_empty());
         let drawn =
-            shown.map(|(object, name)| Drawn { object, name, decisions: Decisions::of(object, scene, settings) });
+            shown.map(|(object, name)| Drawn { object, name, decisions: Decisions::of(object, scene, &settings.request()) });
         let part = |(rung, objects)| Part { rung, lights: &scene.lights, settings, objects };
         grouped(drawn.collect(), |drawn| drawn.decisions.rung).into_iter().map(part).collect()
     }

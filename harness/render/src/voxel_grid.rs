@@ -2,13 +2,7 @@
 
 use lapidary_scene::Bounds;
 use glam::{UVec3, Vec3};
-
-/// Voxels along an edge of the smallest grid.
-pub const LEAST_CELLS: u32 = 16;
-/// Voxels along an edge of the largest grid.
-pub const MOST_CELLS: u32 = 256;
-/// The voxels along an edge are a multiple of this: what the passes over voxels take at a time, along any axis, goes into it.
-pub const MULTIPLE: u32 = 8;
+use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 
 /// A cube of `cells`³ voxels. Voxel (x, y, z) has the number x + `cells` (y + `cells` z).
 #[derive(Clone, Copy, Debug, PartialEq)]

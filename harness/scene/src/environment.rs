@@ -1,16 +1,27 @@
-//! Light from far away, in f64.
+//! Light from far away.
 
-use crate::Environment;
 use crate::environment_map::EnvironmentMap;
 use glam::{DVec3, UVec2};
 use lapidary_environment::oracle;
 
-/// Linear RGB radiance that arrives from a direction, by the recipe's rule: the studio, or the map's four nearest
-/// texels.
-pub(crate) fn radiance(environment: &Environment, direction: DVec3) -> DVec3 {
-    match environment {
-        Environment::Studio => oracle::studio(direction),
-        Environment::Map(map) => bilinear(map, direction),
+/// The light around a scene.
+#[derive(Clone, Debug)]
+pub enum Environment {
+    /// The procedural studio of `wgsl/environment.wgsl`.
+    Studio,
+    /// A latitude-longitude image.
+    Map(EnvironmentMap),
+}
+
+impl Environment {
+    /// Linear RGB radiance that arrives from a direction, in f64, by the recipe's rule: the studio, or the map's four nearest
+    /// texels.
+    #[must_use]
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        match self {
+            Self::Studio => oracle::studio(direction),
+            Self::Map(map) => bilinear(map, direction),
+        }
     }
 }
 
@@ -37,7 +48,7 @@ mod tests {
         let environment = Environment::Map(map);
         let seen = |column: f64, row: f64| {
             let uv = glam::DVec2::new((column + 0.5) / 8.0, (row + 0.5) / 4.0);
-            radiance(&environment, oracle::direction_from_uv(uv))
+            environment.radiance(oracle::direction_from_uv(uv))
         };
         let texel = |k: usize| DVec3::new(pixels[k][0].into(), pixels[k][1].into(), 1.0);
         assert!(seen(3.0, 2.0).abs_diff_eq(texel(19), 1e-9));

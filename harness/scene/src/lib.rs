@@ -18,6 +18,7 @@ pub mod convex;
 pub mod curvatures;
 pub mod cuts;
 pub mod deform;
+pub mod environment;
 pub mod environment_map;
 mod error;
 pub mod figure;
@@ -31,14 +32,19 @@ pub mod material;
 pub mod medium;
 pub mod mesh;
 pub mod mesh_diagnosis;
+pub mod nearest;
 pub mod normals;
 pub mod polyhedron;
+pub mod solver;
+pub mod spectrum;
 pub mod surfaces;
+pub mod view;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::{Convex, Shape};
+pub use environment::Environment;
 pub use error::SceneError;
 pub use light::Light;
 pub use material::{Dispersion, Material, Mineral};
@@ -46,6 +52,13 @@ pub use medium::{Density, DensityGrid, Medium};
 pub use mesh::Mesh;
 pub use mesh_diagnosis::MeshDiagnosis;
 pub use normals::Averaging;
+pub use solver::Solver;
+pub use view::clip_from_world;
+
+/// Largest width and height of a picture in pixels.
+pub const LARGEST_SIDE: u32 = 8192;
+/// Samples along each side of a pixel, where nothing else is asked for.
+pub const SAMPLES: u32 = 4;
 
 /// One body of a scene.
 #[derive(Debug, Clone, PartialEq)]

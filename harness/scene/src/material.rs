@@ -1,7 +1,6 @@
 //! What a body is made of, as far as glTF says it, and a little further.
 
-use super::Medium;
-use lapidary_plan::Rung;
+use super::{Medium, Solver};
 use glam::Vec3;
 use lapidary_dispersion::oracle as dispersion;
 
@@ -39,14 +38,8 @@ pub struct Material {
     pub sigma0: Option<Vec3>,
     /// How the inside scatters light; `None` where the material does not say.
     pub medium: Option<Medium>,
-    /// By which rung the body is drawn, one for what scatters light; `None` where the material does not say. Only a body that scatters light has
-    /// one.
-    pub solver: Option<Rung>,
-}
-
-/// Whether a rung draws what scatters light, and that alone.
-pub(super) fn draws_scattering(rung: Rung) -> bool {
-    matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))
+    /// By what the body is drawn; `None` where the material does not say. Only a body that scatters light has one.
+    pub solver: Option<Solver>,
 }
 
 /// How a refractive index depends on the wavelength.
@@ -196,8 +189,6 @@ impl Material {
             Some("its material's roughness is not between 0 and 1; mend it")
         } else if !self.sigma0.is_none_or(is_length) {
             Some("its material's sigma0 is not finite and at least 0; mend it")
-        } else if self.solver.is_some_and(|rung| !draws_scattering(rung)) {
-            Some("its material's solver is no rung for what scatters light; take another")
         } else if self.solver.is_some() && !self.scatters() {
             Some("its material has a solver, but does not scatter light; remove the solver")
         } else {

@@ -1,12 +1,32 @@
 //! From places on the picture to directions, as the rasteriser maps them.
 
-use crate::Camera;
-use glam::DVec3;
+use crate::{Bounds, Camera, Scene};
+use glam::{DVec3, Mat4, Vec3};
+
+/// Clip space of a whole picture of `scene`. Depth runs from 0 near to 1 far.
+#[must_use]
+pub fn clip_from_world(scene: &Scene, width: u32, height: u32) -> Mat4 {
+    let camera = &scene.camera;
+    let (near, far) = depth_range(camera, &scene.bounds());
+    let aspect = width as f32 / height as f32;
+    let clip_from_view = glam::camera::rh::proj::directx::perspective(camera.vertical_fov, aspect, near, far);
+    clip_from_view * glam::camera::rh::view::look_at_mat4(camera.eye, camera.target, camera.up)
+}
+
+/// Near and far distances that enclose the scene, apart by at most 1e4 so that depth keeps its digits.
+fn depth_range(camera: &Camera, bounds: &Bounds) -> (f32, f32) {
+    let forward = (camera.target - camera.eye).normalize_or(Vec3::NEG_Z);
+    let middle = (bounds.centre() - camera.eye).dot(forward);
+    let radius = bounds.radius().max(f32::MIN_POSITIVE);
+    let far = (middle + 1.01 * radius).max(radius * 1e-3);
+    let near = (middle - 1.01 * radius).max(far * 1e-4);
+    (near, far)
+}
 
 /// A camera over a picture of a given size.
-pub(crate) struct View {
+pub struct View {
     /// The camera's place.
-    pub(crate) eye: DVec3,
+    pub eye: DVec3,
     /// The line of sight, and the picture's half sides at distance 1.
     forward: DVec3,
     half_right: DVec3,
@@ -16,7 +36,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    pub(crate) fn new(camera: &Camera, width: u32, height: u32) -> Self {
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let (eye, target) = (camera.eye.as_dvec3(), camera.target.as_dvec3());
         let (width, height) = (f64::from(width), f64::from(height));
         let forward = (target - eye).normalize_or(DVec3::NEG_Z);
@@ -33,14 +53,14 @@ impl View {
     }
 
     /// The unit direction in which `x` pixels from the left and `y` pixels from the top lie; pixel k spans k to k + 1.
-    pub(crate) fn direction(&self, x: f64, y: f64) -> DVec3 {
+    pub fn direction(&self, x: f64, y: f64) -> DVec3 {
         let right = 2.0 * x / self.width - 1.0;
         let up = 1.0 - 2.0 * y / self.height;
         (self.forward + self.half_right * right + self.half_up * up).normalize()
     }
 
     /// How the picture shows a point; nothing where it lies behind the eye or beside the picture.
-    pub(crate) fn sight(&self, point: DVec3) -> Option<Sight> {
+    pub fn sight(&self, point: DVec3) -> Option<Sight> {
         let way = point - self.eye;
         let depth = way.dot(self.forward);
         if depth <= 0.0 {
@@ -61,15 +81,15 @@ impl View {
 
 /// How a picture shows a point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight {
+pub struct Sight {
     /// In pixels from the left and from the top.
-    pub(crate) x: f64,
-    pub(crate) y: f64,
+    pub x: f64,
+    pub y: f64,
     /// Unit direction from the point to the eye, and how far that is.
-    pub(crate) toward: DVec3,
-    pub(crate) distance: f64,
+    pub toward: DVec3,
+    pub distance: f64,
     /// The mean radiance over the pixel that a radiant intensity of 1 from the point adds.
-    pub(crate) weight: f64,
+    pub weight: f64,
 }
 
 #[cfg(test)]

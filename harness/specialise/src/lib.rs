@@ -25,14 +25,17 @@
 mod arguments;
 mod dead;
 mod fold;
-pub(crate) mod operands;
+pub mod operands;
+pub mod spirv_counts;
 mod stages;
+mod text;
 mod value;
 
 #[cfg(test)]
 mod tests;
 
-use lapidary_assay::dispatch;
+pub use text::{SourceError, declared, parse, validate};
+
 use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
@@ -75,7 +78,7 @@ pub fn specialise(
     constants: &[(&str, f64)],
     entry_points: &[&str],
 ) -> Result<(Module, ModuleInfo), SpecialiseError> {
-    let info = dispatch::validate(&ir).map_err(|error| SpecialiseError::Invalid { when: "before", error })?;
+    let info = validate(&ir).map_err(|error| SpecialiseError::Invalid { when: "before", error })?;
     let ir = keep_entry_points(ir, entry_points)?;
     let mut module = apply_overrides(&ir, &info, constants)?;
     loop {
@@ -161,6 +164,6 @@ fn finish(mut module: Module) -> Result<(Module, ModuleInfo), SpecialiseError> {
         let name = left.name.clone().or(left.id.map(|id| format!("@id({id})"))).unwrap_or_default();
         return Err(SpecialiseError::ArrayLength { name });
     }
-    let info = dispatch::validate(&module).map_err(|error| SpecialiseError::Invalid { when: "after", error })?;
+    let info = validate(&module).map_err(|error| SpecialiseError::Invalid { when: "after", error })?;
     Ok((module, info))
 }

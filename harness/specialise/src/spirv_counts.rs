@@ -255,8 +255,7 @@ fn is_constant(function: &Function, expression: Handle<Expression>) -> bool {
 mod tests {
     use super::*;
     use crate as specialise;
-    use crate::cookbook;
-    use lapidary_assay::dispatch;
+    use crate as dispatch;
 
     fn counts(source: &str) -> SpirvCounts {
         let (module, info) = dispatch::parse(source, "test").unwrap_or_else(|error| panic!("{error}"));

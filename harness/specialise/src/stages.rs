@@ -1,6 +1,6 @@
 //! What a vertex stage hands on and no fragment stage reads.
 
-use lapidary_assay::dispatch;
+use crate::validate;
 use naga::proc::{Alignment, Layouter};
 use naga::valid::{FunctionInfo, ModuleInfo, ValidationError};
 use naga::{Arena, Binding, EntryPoint, Expression, Function, Handle, Module, ShaderStage, StructMember, Type};
@@ -14,7 +14,7 @@ use std::collections::HashSet;
 /// ask for what no vertex stage gives. Nor is a member that the vertex stage assigns by itself.
 pub(super) fn drop_unread_members(module: &mut Module) -> Result<bool, Box<WithSpan<ValidationError>>> {
     let Some(handed_on) = handed_on(module) else { return Ok(false) };
-    let info = dispatch::validate(module)?;
+    let info = validate(module)?;
     let members = members(module, handed_on);
     let read = read_members(module, &info, handed_on);
     let is_kept =

@@ -1,7 +1,7 @@
 //! What is left of small shaders, and of the gem's recipe.
 
 use super::{SpecialiseError, specialise};
-use lapidary_assay::dispatch;
+use crate as dispatch;
 use naga::{Module, TypeInner, back};
 
 /// What each small shader has: a texture and a buffer that only some branches read, and somewhere to write to.

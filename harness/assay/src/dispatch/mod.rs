@@ -24,8 +24,6 @@ use value::{Arguments, Value};
 /// Rows in one dispatch: enough to fill the device, few enough that memory stays bounded (16 MiB at 64 words a row).
 pub const ROWS_PER_DISPATCH: usize = 65_536;
 
-/// Bytes of a message of naga's, with its excerpt of the source, that are passed on as they are.
-const MOST_MESSAGE: usize = 4_096;
 /// Most words of a row of arguments or results.
 const MOST_WORDS: usize = 16_384;
 
@@ -53,41 +51,7 @@ pub enum DispatchError {
 
 /// Parses and validates WGSL; an error holds naga's message with `path`, line and column.
 pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), DispatchError> {
-    let module = naga::front::wgsl::parse_str(source).map_err(|error| {
-        let place = error.location(source).map(|place| (place.line_number, place.line_position));
-        DispatchError::Source(short(error.emit_to_string_with_path(source, path), place, error.message(), path))
-    })?;
-    let info = validate(&module).map_err(|error| {
-        let place = error.location(source).map(|place| (place.line_number, place.line_position));
-        DispatchError::Source(short(error.emit_to_string_with_path(source, path), place, &error.to_string(), path))
-    })?;
-    Ok((module, info))
-}
-
-/// The whole message, or one line where the excerpt of the source would fill the screen.
-fn short(whole: String, place: Option<(u32, u32)>, message: &str, path: &str) -> String {
-    if whole.len() <= MOST_MESSAGE {
-        return whole;
-    }
-    let (line, column) = place.unwrap_or_default();
-    let first: String = message.lines().next().unwrap_or_default().chars().take(400).collect();
-    format!("{path}:{line}:{column}: {first}")
-}
-
-/// Those of `constants` that `module` declares as overrides. One that it does not is an error to wgpu and naga; a user's recipe
-/// may have left one out, and recipes that share settings need not have all.
-pub fn declared<'a>(module: &naga::Module, constants: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
-    let is_declared = |key: &str| module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(key));
-    constants.iter().copied().filter(|(key, _)| is_declared(key)).collect()
-}
-
-/// Validates a module for what core WebGPU offers.
-pub fn validate(
-    module: &naga::Module,
-) -> Result<naga::valid::ModuleInfo, Box<naga::WithSpan<naga::valid::ValidationError>>> {
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
-        .validate(module)
-        .map_err(Box::new)
+    lapidary_specialise::parse(source, path).map_err(|error| DispatchError::Source(error.0))
 }
 
 /// A function's source with its entry point, as naga IR: what a kernel is compiled from, and what a mutant is made of.

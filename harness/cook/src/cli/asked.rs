@@ -127,7 +127,7 @@ impl Asked {
         // Deciding measures bodies.
         if settings.shadows {
             let all: Vec<Decisions> =
-                scene.objects.iter().map(|object| Decisions::of(object, scene, settings)).collect();
+                scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request())).collect();
             if !all.iter().any(|decisions| decisions.has(Effect::Shadow)) {
                 let decisions = all.iter().flat_map(|decisions| &decisions.effects);
                 let shadow = decisions.into_iter().find(|decision| decision.effect == Effect::Shadow);

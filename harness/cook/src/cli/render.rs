@@ -5,6 +5,7 @@ use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_scene::nearest::suggest;
 use lapidary_plan as plan;
 use lapidary_plan::Decisions;
+use lapidary_plan::Decisions;
 use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_reference::spectral::Lost;
 use lapidary_render::file;
@@ -59,7 +60,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     exposure: f32,
     /// Samples along each side of a pixel.
-    #[arg(long, default_value_t = render::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
+    #[arg(long, default_value_t = lapidary_scene::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
     samples: u32,
     /// Wavelengths of the reference; 31 where left out.
     #[arg(long, value_parser = number::whole(0..=usize::MAX))]
@@ -141,7 +142,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
         return Ok(());
     }
     let scatters = render::scatters(scene);
-    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, settings).rung).collect();
+    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
     match given.iter().find(|(_, _, obeys)| !rungs.iter().any(|rung| obeys(*rung, scatters))) {
         Some((flag, ..)) => {
             let rung = settings.rung;
@@ -202,7 +203,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     bar.finish_and_clear();
     file::write(&picture, &out)?;
-    notes.extend(plan::notes(&scene, &settings));
+    let decisions = Decisions::all(&scene, &settings.request());
+    notes.extend(plan::notes(&scene, &settings.request(), &decisions.iter().collect::<Vec<_>>()));
     notes.retain(|note| !is_told_again(note, &picture.notes));
     notes.extend(picture.notes);
     for note in &notes {

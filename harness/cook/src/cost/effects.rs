@@ -257,7 +257,7 @@ pub fn run(
             });
             timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
         }
-        let drawn = case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings));
+        let drawn = case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings.request()));
         let rung = drawn.map(|decisions| decisions.rung).next().unwrap_or(case.settings.rung).to_string();
         studies.push(Study { scene: case.name.to_owned(), rung, frames });
     }
@@ -336,7 +336,7 @@ mod tests {
     fn every_effect_is_studied_where_it_is_on() {
         let mut studied = Effects::NONE;
         for case in cases([16, 16]).expect("built in") {
-            let decisions = Decisions::of(&case.scene.objects[0], &case.scene, &case.settings);
+            let decisions = Decisions::of(&case.scene.objects[0], &case.scene, &case.settings.request());
             for effect in case.effects {
                 assert!(decisions.has(*effect), "{}: {effect} is off", case.name);
                 studied = studied.and(Effects::of(&[*effect]));

@@ -1,5 +1,6 @@
 //! The translucent sphere: how near the curvature-dependent reflectance comes to what random walks give, and with which width.
 
+mod fit;
 mod page;
 pub mod plot;
 mod rule;
@@ -7,7 +8,8 @@ mod table;
 
 pub use rule::{Choice, Law};
 
-use lapidary_reference::random_walk::{Fit, Form, Profile, half_space, profile};
+pub use fit::{Fit, Form};
+use lapidary_reference::random_walk::{Profile, half_space, profile};
 use serde::{Deserialize, Serialize};
 
 /// Albedos of one scattering.

@@ -224,7 +224,7 @@ impl Shot {
     fn left_out(&self) -> Vec<&'static str> {
         let Ok(scene) = self.open() else { return Vec::new() };
         let settings = Settings { without: Effects::NONE, ..self.settings(1) };
-        let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings)).collect();
+        let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings.request())).collect();
         let is_called = |effect: &Effect| self.without().has(*effect) && all.iter().any(|of| of.has(*effect));
         Effect::ALL.into_iter().filter(is_called).map(Effect::name).collect()
     }

@@ -1,7 +1,7 @@
 //! A missing adapter is an error, never another adapter and never a pass.
 
-use lapidary_gpu as gpu;
-use lapidary_cook::program::{cook, cook_in};
+use crate::gpu;
+use crate::program::{cook, cook_in};
 use lapidary_gpu::{AdapterChoice, Gpu};
 
 #[test]

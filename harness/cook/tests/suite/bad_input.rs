@@ -1,6 +1,6 @@
 //! Bad usage and bad input: exit code 2, one clear line that names what is wrong, nothing on stdout, no file left behind.
 
-use lapidary_cook::program::cook;
+use crate::program::cook;
 use base64::Engine as _;
 use lapidary_scene::{Scene, glb};
 use serde_json::{Value, json};

@@ -70,7 +70,7 @@ impl Body {
     fn queries(&self, seed: u64, count: usize) -> Vec<Query> {
         (0..count as u64)
             .map(|row| {
-                let draws = &mut Draws::of_row(seed ^ lapidary_cook::seed(), row);
+                let draws = &mut Draws::of_row(seed ^ crate::seed(), row);
                 let mut query = self.start(draws);
                 for _ in 0..draws.below(3) {
                     let hit = self.trace(&query);

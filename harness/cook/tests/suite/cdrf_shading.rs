@@ -1,7 +1,7 @@
 //! The recipe `cdrf_shading` against what its parts promise: spheres, whose curvature is known, by every rung; the environment by quadrature;
 //! what is off; and what nobody should draw.
 
-use lapidary_cook::pixels::on_the_ball;
+use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_cdrf::oracle;
 use lapidary_cook::cost::exposed_distance;

@@ -1,6 +1,6 @@
 //! `cook` does what its help says.
 
-use lapidary_cook::program::{cook, folder, succeeds};
+use crate::program::{cook, folder, succeeds};
 use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
 use lapidary_scene::{Scene, glb, gltf};

@@ -1,7 +1,7 @@
 //! The comparison and the search for counterexamples fail where they must: a suite whose comparator lets NaN pass, or whose
 //! generator misses its edges, checks nothing.
 
-use lapidary_gpu as gpu;
+use crate::gpu;
 use glam::{DVec3, Vec3};
 use lapidary_cook::check;
 use lapidary_cook::check::Source;

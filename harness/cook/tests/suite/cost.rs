@@ -1,6 +1,6 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
-use lapidary_cook::program::{folder, succeeds};
+use crate::program::{folder, succeeds};
 use lapidary_cook::cost::cdrf;
 use lapidary_cook::cost::cdrf::CdrfReport;
 use lapidary_cook::cost::effects::EffectsReport;

@@ -59,7 +59,7 @@ fn check(scene: &str, settings: Settings) {
 fn a_position_comes_back_from_depth() {
     for name in ["brilliant", "prism", "bunny_stone"] {
         let scene = Scene::named(name).expect("built in");
-        let matrix = render::clip_from_world(&scene, 512, 512);
+        let matrix = lapidary_scene::clip_from_world(&scene, 512, 512);
         let back = matrix.as_dmat4().inverse().as_mat4();
         let mut worst = 0f32;
         for position in scene.objects.iter().flat_map(|object| &object.mesh.positions) {

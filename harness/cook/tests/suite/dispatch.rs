@@ -1,6 +1,6 @@
 //! Any WGSL function as a kernel: shapes and bits survive the way to the device and back.
 
-use lapidary_gpu as gpu;
+use crate::gpu;
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use lapidary_assay::dispatch::shape::{Scalar, Shape, Signature};
 use lapidary_assay::dispatch::value::Value;
@@ -121,7 +121,7 @@ fn random_signatures_survive_and_their_words_come_back() {
     let mut deepest = 0;
     let mut counts = BTreeSet::new();
     for case in 0..SIGNATURES {
-        let mut generator = Generator { draws: Draws::of_row(SEED ^ lapidary_cook::seed(), case), structs: Vec::new() };
+        let mut generator = Generator { draws: Draws::of_row(SEED ^ crate::seed(), case), structs: Vec::new() };
         let count = 1 + generator.draws.below(6) as usize;
         let arguments: Vec<(String, Shape)> =
             (0..count).map(|index| (named("a_", index), generator.argument(MOST_WORDS / count))).collect();

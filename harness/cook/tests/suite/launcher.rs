@@ -1,6 +1,6 @@
 //! The launcher `./cook`, with a toolchain and a binary that stand in: what is tested is what it does with them.
 
-use lapidary_cook::program::folder;
+use crate::program::folder;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -43,6 +43,7 @@ mod specialise;
 mod text;
 mod texture_diffusion;
 mod user_file;
+mod vitrine;
 mod voxelization;
 mod walked_references;
 

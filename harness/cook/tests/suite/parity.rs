@@ -1,8 +1,9 @@
 //! The whole path of a pixel on the GPU against the same path in Rust from the mirrors, at random pixels.
 
+mod compare;
+
+use compare::Parity;
 use lapidary_assay::extremum::largest;
-use lapidary_cook::parity_compare;
-use lapidary_cook::parity_compare::Parity;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
@@ -30,7 +31,7 @@ fn parity(scene: &Scene, settings: &Settings, faulty: Option<&str>) -> Parity {
     let positions = source.replace(FRAGMENT, &format!("{FRAGMENT}{POSITION}"));
     let render = |source: &str| render::render_with(super::gpu(), scene, settings, source).expect("rendered");
     let [picture, positions] = [faulty.unwrap_or(&source), positions.as_str()].map(render);
-    parity::compare(scene, settings, [&picture, &positions], PIXELS, 1).expect("compared")
+    compare::compare(scene, settings, [&picture, &positions], PIXELS, 1).expect("compared")
 }
 
 fn compare(scene: &str, settings: Settings) -> Parity {
@@ -65,7 +66,7 @@ fn check(scene: &str, what: &str, parity: &Parity) {
     assert!(parity.differing_at_an_edge <= 1, "{scene} {what}: {}", parity.differing_at_an_edge);
     assert!(of_compared(parity.parting) <= MOST_PARTING, "{scene} {what}: {}", parity.parting);
     assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
-    assert!(parity.misplaced <= parity::SNAP, "{scene} {what}: {} pixels", parity.misplaced);
+    assert!(parity.misplaced <= compare::SNAP, "{scene} {what}: {} pixels", parity.misplaced);
 }
 
 #[test]

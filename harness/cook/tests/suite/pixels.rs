@@ -8,7 +8,7 @@ use lapidary_scene::Scene;
 /// For each pixel the unit direction in which the camera looks through its middle, and what it found.
 pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {
     let (width, height) = (picture.width, picture.height);
-    let world_from_clip = render::clip_from_world(scene, width, height).as_dmat4().inverse();
+    let world_from_clip = lapidary_scene::clip_from_world(scene, width, height).as_dmat4().inverse();
     let eye = scene.camera.eye.as_dvec3();
     let ray = |(index, pixel): (u32, &[f32; 4])| {
         let clip = |place: u32, side: u32| 2.0 * (f64::from(place) + 0.5) / f64::from(side) - 1.0;

@@ -1,6 +1,6 @@
 //! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is captured.
 
-use lapidary_gpu as gpu;
+use crate::gpu;
 use glam::Vec3;
 use lapidary_gpu::capture::{Capture, Resource, capture};
 use lapidary_plan::{Effect, Effects, Quality, Technique};
@@ -14,7 +14,7 @@ use lapidary_scene::{Density, Material, Object, Scene};
 use std::collections::BTreeSet;
 
 fn settings() -> Settings {
-    Settings { samples: 1, rung: render::Rung::ByMaterial, ..Settings::of_size(32, 24) }
+    Settings { samples: 1, rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(32, 24) }
 }
 
 fn of_rung(rung: &str) -> Settings {
@@ -402,7 +402,7 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
 fn the_vitrine_is_drawn_as_planned_and_explained() {
     let vitrine = named("vitrine");
     assert_eq!(drawn(&vitrine, &settings()), planned(&vitrine, &settings()));
-    let usual = Settings { rung: render::Rung::ByMaterial, ..Settings::of_size(512, 512) };
+    let usual = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(512, 512) };
     let plan = Plan::of(&vitrine, &usual).expect("a plan").to_string();
     // Multiples of time come from a record that is measured again and again.
     let untimed = |line: &str| match line.split_once("; ") {

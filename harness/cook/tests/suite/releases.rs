@@ -3,7 +3,7 @@
 //!
 //! After a change to a module: `LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-harness --test suite -- releases`.
 
-use lapidary_cook::program::{cook, folder, succeeds};
+use crate::program::{cook, folder, succeeds};
 use lapidary_cook::cookbook::release;
 use lapidary_cook::cookbook::release::{CURRENT, Change, Hashes, History, Release};
 use lapidary_cook::cookbook::{module, modules};

@@ -47,12 +47,12 @@ fn rewritten(function: &str, before: &str, after: &str) -> String {
 
 #[test]
 fn a_copy_with_a_naive_rewrite_fails_its_check() {
-    let gpu = lapidary_gpu();
+    let gpu = crate::gpu();
     let mut passed = Vec::new();
     for (function, before, after) in REWRITES {
         let formula = formulas::of_function(function).expect("a formula");
         let text = rewritten(function, before, after);
-        let settings = Settings { cases: 4_096, seed: lapidary_cook::seed() };
+        let settings = Settings { cases: 4_096, seed: crate::seed() };
         let row = check::run(gpu, formula, Source::Copy("mine.wgsl", &text), settings).expect("the check runs");
         println!("{function}: {after}: {} failed, {:?}", row.failed, row.broken_hard_cases);
         // Not a random input that happens to tell: the hard case that is there for it.

@@ -1,6 +1,6 @@
 //! A failure can be run again from what is printed, and work can be shared out.
 
-use lapidary_cook::program::{cook, succeeds};
+use crate::program::{cook, succeeds};
 use lapidary_cook::check;
 use lapidary_cook::check::Source;
 use lapidary_cook::cookbook;
@@ -22,8 +22,8 @@ fn a_failure_runs_again_with_the_command_that_it_prints() {
     let changed = source.replacen("2.0f * dot", "1.9f * dot", 1);
     std::fs::write(folder.path().join("mine.wgsl"), &changed).expect("a file");
     let formula = formulas::of_function("refraction_reflect").expect("a formula");
-    let settings = Settings { cases: 500, seed: lapidary_cook::seed() };
-    let row = check::run(lapidary_gpu(), formula, Source::Copy("mine.wgsl", &changed), settings).expect("the check runs");
+    let settings = Settings { cases: 500, seed: crate::seed() };
+    let row = check::run(crate::gpu(), formula, Source::Copy("mine.wgsl", &changed), settings).expect("the check runs");
     assert!(!row.passed());
     let mut words = row.reproduce.split_whitespace();
     assert_eq!(words.next(), Some("./cook"));
@@ -60,8 +60,8 @@ fn inputs_that_were_once_wrong_are_right() {
     let mut wrong = Vec::new();
     let mut inputs = 0;
     for formula in formulas::all() {
-        let mut kernel = check::kernel(lapidary_gpu(), formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
-        let tolerance = check::tolerance(lapidary_gpu(), formula);
+        let mut kernel = check::kernel(crate::gpu(), formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
+        let tolerance = check::tolerance(crate::gpu(), formula);
         let rows = once_wrong.load(formula.function, kernel.argument_words()).expect("a file of inputs");
         inputs += rows.len();
         let mut check = Check { formula, kernel: &mut kernel, tolerance: &tolerance };

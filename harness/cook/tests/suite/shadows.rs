@@ -1,6 +1,6 @@
 //! Cast shadows of what is drawn by its surface: what the lights' maps let through, pixel by pixel, is what rays through a hierarchy of the triangles find.
 
-use lapidary_cook::pixels::rays;
+use crate::pixels::rays;
 use glam::{DVec3, Vec3};
 use lapidary_bvh_trace::BvhTraceHit;
 use lapidary_bvh_trace::traversal::{self, met};

@@ -252,7 +252,7 @@ fn the_pictures_commands_are_taken() {
         let value = |flag: &str| words.iter().position(|word| *word == flag).map(|place| words[place + 1]);
         let (Some(rung), Some(without)) = (value("--rung"), value("--without")) else { continue };
         let arguments = ["plan", shot.scene, "--size", "8x8", "--rung", rung, "--without", without, "--json"];
-        lapidary_cook::program::succeeds(lapidary_cook::program::folder().path(), &arguments);
+        crate::program::succeeds(crate::program::folder().path(), &arguments);
         left_out += 1;
     }
     assert!(left_out > 5, "{left_out} commands leave anything out");

@@ -1,6 +1,6 @@
 //! `cook check --wgsl` on other people's files: what is in them is found and said, whatever they hold ends in an answer.
 
-use lapidary_cook::program::{Answer, cook, cook_in, folder, succeeds};
+use crate::program::{Answer, cook, cook_in, folder, succeeds};
 use lapidary_assay::literal::{Language, call};
 use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;

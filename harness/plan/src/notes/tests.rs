@@ -1,17 +1,15 @@
 use super::*;
-use crate as plan;
-use lapidary_scene::Environment;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{BUILT_IN, Camera, Material, Mesh};
 
-fn usual() -> Settings {
-    Settings { rung: Rung::ByMaterial, ..Settings::of_size(64, 64) }
+fn usual() -> Request<'static> {
+    Request::of_size([64, 64])
 }
 
-fn by(rung: &str) -> Settings {
-    Settings { rung: rung.parse().expect("a rung"), ..usual() }
+fn by(rung: &str) -> Request<'static> {
+    Request { rung: rung.parse().expect("a rung"), ..usual() }
 }
 
 fn named(name: &str) -> Scene {
@@ -25,13 +23,14 @@ fn changed(name: &str, change: impl FnOnce(&mut Object)) -> Scene {
     scene
 }
 
-fn said(scene: &Scene, settings: &Settings) -> Vec<String> {
-    plan::notes(scene, settings).iter().map(Note::to_string).collect()
+fn said(scene: &Scene, request: &Request<'_>) -> Vec<String> {
+    let decisions = Decisions::all(scene, request);
+    of(scene, request, &decisions.iter().collect::<Vec<_>>()).iter().map(Note::to_string).collect()
 }
 
 /// The only note, which holds `part`.
-fn one(scene: &Scene, settings: &Settings, part: &str) {
-    let said = said(scene, settings);
+fn one(scene: &Scene, request: &Request<'_>, part: &str) {
+    let said = said(scene, request);
     assert!(matches!(&said[..], [note] if note.contains(part)), "`{part}` is not all that is said: {said:?}");
 }
 
@@ -113,11 +112,11 @@ fn light_that_no_picture_can_show_is_named() {
     // Lux for watts.
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(100_000.0) }];
     one(&scene, &by("lambert"), "is shown as plain white");
-    assert_eq!(said(&scene, &Settings { exposure: 1e-5, ..by("lambert") }), [""; 0]);
+    assert_eq!(said(&scene, &Request<'_> { exposure: 1e-5, ..by("lambert") }), [""; 0]);
     let near = Light::Point { position: scene.bounds().centre(), intensity: Vec3::splat(1e9) };
     one(&Scene { lights: vec![near], ..scene.clone() }, &by("lambert"), "plain white");
     let map = EnvironmentMap { width: 2, height: 2, pixels: vec![[1000.0, 1000.0, 1000.0, 1.0]; 4] };
-    let bright = Settings { environment: Environment::Map(map), ..usual() };
+    let bright = Request { environment: Environment::Map(map), ..usual() };
     one(&named("brilliant"), &bright, "plain white");
 }
 

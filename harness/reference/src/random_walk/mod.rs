@@ -4,12 +4,10 @@
 //! A walk is analogue: at each scattering it ends with the probability that light is absorbed, so that counts of walks are
 //! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
 
-mod fit;
 pub mod half_space;
 pub mod mesh;
 mod sphere;
 
-pub use fit::{Fit, Form, best_sigma};
 pub use sphere::{BINS, Profile, profile};
 
 use glam::DVec3;

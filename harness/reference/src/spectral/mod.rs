@@ -13,10 +13,7 @@
 mod bvh;
 mod cells;
 pub(crate) mod geometry;
-pub mod spectrum;
-pub(crate) mod surroundings;
 mod trace;
-pub(crate) mod view;
 
 pub use geometry::Geometry;
 

@@ -1,7 +1,6 @@
 //! A ray of one wavelength, split at every surface that it meets.
 
 use super::geometry::{Bodies, Hit, Place};
-use super::surroundings;
 use lapidary_scene::Environment;
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
@@ -106,7 +105,7 @@ impl Surroundings<'_> {
         let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
         let reflected = reflect(direction, arrival.normal);
         let free = self.bodies.enter(arrival.point, reflected, Some(hit.place)).is_none();
-        let reflected_radiance = free.then(|| surroundings::radiance(self.environment, reflected));
+        let reflected_radiance = free.then(|| self.environment.radiance(reflected));
         Some(Primary { arrival, reflected, reflected_radiance })
     }
 
@@ -164,7 +163,7 @@ impl Surroundings<'_> {
         }
         let hit = self.bodies.enter(ray.origin, ray.direction, Some(ray.left));
         if hit.is_none() {
-            outcome.radiance += ray.throughput * surroundings::radiance(self.environment, ray.direction);
+            outcome.radiance += ray.throughput * self.environment.radiance(ray.direction);
         }
         hit.map(|hit| Arrival::new(ray.origin, ray.direction, hit, false, ray.throughput))
     }

@@ -6,45 +6,33 @@ use lapidary_gpu::Gpu;
 use crate::shader::ShaderError;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
+use lapidary_scene::solver::Format;
 
 /// Side of the recipe's workgroups.
 const WORKGROUP: u32 = 8;
 
-/// What a texture keeps of a texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// 8 bits a channel, the paper's.
-    Rgba8,
-    /// Half floats.
-    Rgba16Float,
-    /// Single floats; its one channel is looked up once for each of the material's.
-    R32Float,
+/// The nearest value that the format holds.
+pub fn round(format: Format, value: f32) -> f32 {
+    match format {
+        Format::Rgba8 => (value * 255.0).round() / 255.0,
+        Format::Rgba16Float => exr::prelude::f16::from_f32(value).to_f32(),
+        Format::R32Float => value,
+    }
 }
 
-impl Format {
-    /// The nearest value that the format holds.
-    pub fn round(self, value: f32) -> f32 {
-        match self {
-            Self::Rgba8 => (value * 255.0).round() / 255.0,
-            Self::Rgba16Float => exr::prelude::f16::from_f32(value).to_f32(),
-            Self::R32Float => value,
+/// The texture's format, and the bytes of `texels` in it; alpha, where there is one, is 1.
+pub fn texture(format: Format, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>) {
+    let colors = || texels.iter().flat_map(|texel| texel.extend(1.0).to_array());
+    match format {
+        Format::Rgba8 => {
+            (wgpu::TextureFormat::Rgba8Unorm, colors().map(|value| (value * 255.0).round() as u8).collect())
         }
-    }
-
-    /// The texture's format, and the bytes of `texels` in it; alpha, where there is one, is 1.
-    pub fn texture(self, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>) {
-        let colors = || texels.iter().flat_map(|texel| texel.extend(1.0).to_array());
-        match self {
-            Self::Rgba8 => {
-                (wgpu::TextureFormat::Rgba8Unorm, colors().map(|value| (value * 255.0).round() as u8).collect())
-            }
-            Self::Rgba16Float => {
-                let half = |value| exr::prelude::f16::from_f32(value).to_le_bytes();
-                (wgpu::TextureFormat::Rgba16Float, colors().flat_map(half).collect())
-            }
-            Self::R32Float => {
-                (wgpu::TextureFormat::R32Float, texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect())
-            }
+        Format::Rgba16Float => {
+            let half = |value| exr::prelude::f16::from_f32(value).to_le_bytes();
+            (wgpu::TextureFormat::Rgba16Float, colors().flat_map(half).collect())
+        }
+        Format::R32Float => {
+            (wgpu::TextureFormat::R32Float, texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect())
         }
     }
 }

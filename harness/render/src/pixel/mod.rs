@@ -5,7 +5,6 @@
 
 pub mod display;
 mod geometry;
-pub mod parity;
 mod surface;
 
 pub use geometry::Stone;

@@ -15,9 +15,7 @@ use serde_json::value::RawValue;
 
 use super::error::excerpt;
 use super::medium::medium;
-use lapidary_plan::Rung;
-use crate::material::draws_scattering;
-use crate::{Dispersion, Material, Mineral};
+use crate::{Dispersion, Material, Mineral, Solver};
 
 /// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
 const INDEX_AGREES: f64 = 0.005;
@@ -80,7 +78,7 @@ impl Lapidary<'_> {
                         sigma0, or remove the solver"
                 .to_owned());
         }
-        if matches!(material.solver, Some(Rung::OpticalPath(_))) && material.medium.is_none() {
+        if matches!(material.solver, Some(Solver::OpticalPath(_))) && material.medium.is_none() {
             return Err("its extras.lapidary has a solver of optical paths, but no scattering and absorption to follow light by; give \
                         them, or another solver"
                 .to_owned());
@@ -154,10 +152,10 @@ fn mineral(json: &RawValue) -> Result<Mineral, String> {
     })
 }
 
-/// The rung that `solver` names, one that draws what scatters light.
-fn solver(json: &RawValue) -> Result<Rung, String> {
-    let rung = serde_json::from_str::<String>(json.get()).ok().and_then(|name| name.parse().ok());
-    rung.filter(|rung| draws_scattering(*rung)).ok_or_else(|| {
+/// What `solver` names.
+fn solver(json: &RawValue) -> Result<Solver, String> {
+    let solver = serde_json::from_str::<String>(json.get()).ok().and_then(|name| name.parse().ok());
+    solver.ok_or_else(|| {
         format!(
             "its extras.lapidary.solver is {}, but must be a rung for what scatters light, such as lambert, accurate, blur or \
              godunov-64; `./cook render --help` says which there are",

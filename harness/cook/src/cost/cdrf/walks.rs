@@ -2,7 +2,7 @@
 
 use crate::cost::CostError;
 use crate::cost::sphere::{ScaleKind, SphereReport};
-use lapidary_reference::random_walk::Fit;
+use crate::cost::sphere::Fit;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -150,7 +150,7 @@ mod tests {
             let scene = scene(view).expect("built in");
             let settings = settings(view, of("godunov-64"), [64; 2]);
             for (scene, colored) in [(scene.clone(), true), (grey(scene), false)] {
-                let decisions = Decisions::of(&scene.objects[0], &scene, &settings);
+                let decisions = Decisions::of(&scene.objects[0], &scene, &settings.request());
                 assert!(decisions.has(Effect::Color) == colored && decisions.has(Effect::OpticalPath), "{view}");
             }
         }

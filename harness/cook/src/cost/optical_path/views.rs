@@ -144,7 +144,7 @@ fn exact(scene: &Scene) -> Vec<Option<f64>> {
         let lower = (place.floor() as usize).min(ANGLES as usize - 1);
         by_angle[lower] + (place - lower as f64) * (by_angle[lower + 1] - by_angle[lower])
     };
-    let world_from_clip = render::clip_from_world(scene, SIDE, SIDE).as_dmat4().inverse();
+    let world_from_clip = lapidary_scene::clip_from_world(scene, SIDE, SIDE).as_dmat4().inverse();
     let eye = scene.camera.eye.as_dvec3();
     let of_pixel = |index: u32| {
         let clip = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIDE) - 1.0;

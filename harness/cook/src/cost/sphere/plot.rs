@@ -3,7 +3,8 @@
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
 use crate::cost::CostError;
 use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Root, captioned, legend, line, span, ticks, written};
-use lapidary_reference::random_walk::{BINS, Form};
+use super::Form;
+use lapidary_reference::random_walk::BINS;
 use lapidary_cdrf as cdrf;
 use plotters::prelude::*;
 

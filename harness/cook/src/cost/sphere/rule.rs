@@ -1,7 +1,9 @@
 //! Rules for the width: how it goes with the radius, and what one width times radius costs.
 
 use super::{Row, ScaleKind, rows_of};
-use lapidary_reference::random_walk::{Fit, Form, Profile, best_sigma};
+use super::fit::best_sigma;
+use super::{Fit, Form};
+use lapidary_reference::random_walk::Profile;
 use serde::{Deserialize, Serialize};
 
 /// The radii whose widths make the laws: larger spheres are so near Lambert's law that a width hardly matters.

@@ -6,7 +6,7 @@
 
 mod browser;
 
-use lapidary_specialise::{specialised_program, specialised_texts};
+use crate::specialise::{specialised_program, specialised_texts};
 use browser::Message;
 use lapidary_cook::cookbook::modules;
 use lapidary_assay::dispatch;

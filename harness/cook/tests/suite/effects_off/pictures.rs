@@ -2,7 +2,7 @@
 //! picture by the recipe's text without the effect's lines.
 
 use super::cut;
-use lapidary_gpu as gpu;
+use crate::gpu;
 use glam::Vec3;
 use lapidary_plan::{Decisions, Effect, Effects};
 use lapidary_scene::Environment;
@@ -73,7 +73,7 @@ fn a_picture_without_an_effect_is_the_one_by_the_text_without_it() {
     for case in &CASES {
         let Case { scene: name, rung, effects } = case;
         let scene = scene(name);
-        let called = Decisions::of(&scene.objects[0], &scene, &settings(case));
+        let called = Decisions::of(&scene.objects[0], &scene, &settings(case).request());
         let whole = lapidary_wgsl::recipe_source(called.rung.recipe());
         let draw = |settings: &Settings, source: &str| {
             let picture = render_with(gpu(), &scene, settings, source);

@@ -1,7 +1,7 @@
 //! A homogeneous ball, in which every cheapest way is a straight chord.
 
 use super::{RADIUS, ball, draw, lamp, settings, spot, sun};
-use lapidary_cook::pixels::on_the_ball;
+use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_scene::{Light, Scene};

@@ -1,7 +1,7 @@
 //! Bodies, lights and media at which a renderer of voxels goes wrong.
 
 use super::{RADIUS, apart, ball, coarse, covered, draw, lamp, scene, settings, spot, stone, sun};
-use lapidary_cook::pixels::on_the_ball;
+use crate::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Note;
@@ -427,7 +427,7 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     let eye = scene.camera.eye.as_dvec3();
     let turn = (2.0 * PI * radius).hypot(pitch);
     let (mut black, mut right) = (0, 0);
-    for (direction, pixel) in lapidary_cook::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
+    for (direction, pixel) in crate::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
         // The mesh's tube has twelve sides: what lies between the circles about and within them is left out.
         let hits = [1.0, (PI / 12.0).cos()].map(|inscribed| {
             let mut along = eye.length() - 70.0;

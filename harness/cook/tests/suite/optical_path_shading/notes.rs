@@ -1,7 +1,7 @@
 //! What is said about a picture.
 
 use super::{ball, coarse, draw, stone, sun};
-use lapidary_cook::program::{cook, folder, succeeds};
+use crate::program::{cook, folder, succeeds};
 use glam::Vec3;
 use lapidary_plan::Note;
 use lapidary_scene::surfaces::sphere;

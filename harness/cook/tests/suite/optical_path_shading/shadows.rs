@@ -1,7 +1,7 @@
 //! The lights' maps: what they say is lit, against ray queries. A medium so dense that nothing passes shows it pixel by pixel.
 
 use super::{RADIUS, ball, draw, lamp, scene, settings, spot, stone, sun};
-use lapidary_cook::pixels::{on_the_ball, rays};
+use crate::pixels::{on_the_ball, rays};
 use glam::{DVec3, Vec3};
 use lapidary_scene::surfaces::torus;
 use lapidary_scene::{Light, Scene};

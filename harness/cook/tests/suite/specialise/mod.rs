@@ -5,7 +5,7 @@ mod recipes;
 
 pub(crate) use recipes::specialised_texts;
 
-use lapidary_gpu as gpu;
+use crate::gpu;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::{ENTRY_POINT, Kernel, KernelModule};
 use lapidary_assay::property::draws::Draws;
@@ -23,7 +23,7 @@ const ROWS: usize = 256;
 
 /// The kernel of a random program, with values for its overrides.
 fn kernel(row: u64) -> (String, KernelModule, Vec<(&'static str, f64)>) {
-    let mut draws = Draws::of_row(SEED ^ lapidary_cook::seed(), row);
+    let mut draws = Draws::of_row(SEED ^ crate::seed(), row);
     let source = random_program(&mut draws);
     let constants = random_constants(&mut draws);
     let kernel = KernelModule::reflect(&source, "program", "subject").unwrap_or_else(|e| panic!("{e}\n{source}"));
@@ -67,7 +67,7 @@ fn a_specialised_program_gives_the_same_bits() {
     let (mut varied, mut sensitive, mut others) = (0, 0, 0);
     for row in 0..RUN {
         let (source, kernel, constants) = kernel(row);
-        let arguments = arguments(&mut Draws::of_row((SEED + 1) ^ lapidary_cook::seed(), row));
+        let arguments = arguments(&mut Draws::of_row((SEED + 1) ^ crate::seed(), row));
         let whole = outcomes(kernel.clone(), &constants, &arguments);
         let special = outcomes(specialised(&kernel, &constants), &[], &arguments);
         if let Some(word) = (0..whole.len()).find(|word| whole[*word] != special[*word]) {

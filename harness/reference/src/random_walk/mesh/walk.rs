@@ -202,7 +202,7 @@ impl<'scene> Matter<'scene> {
                 match self.environment {
                     _ if outcome.scatterings == 0 => outcome.straight = throughput,
                     Some(environment) => {
-                        outcome.radiance += throughput * surroundings::radiance(environment, direction);
+                        outcome.radiance += throughput * environment.radiance(direction);
                     }
                     None => {}
                 }

@@ -78,7 +78,7 @@ fn an_index_of_one_is_not_seen() {
     for geometry in [Geometry::Planes, Geometry::Triangles] {
         let direction = DVec3::new(0.3, -0.8, 0.1).normalize();
         let seen = outcome(&plate(), &Environment::Studio, geometry, clear(1.0), direction);
-        let behind = surroundings::radiance(&Environment::Studio, direction);
+        let behind = Environment::Studio.radiance(direction);
         assert!(seen.radiance.abs_diff_eq(behind, 1e-12));
     }
 }

@@ -201,7 +201,7 @@ impl Matter<'_> {
             return;
         }
         if let Some(environment) = self.environment {
-            outcome.radiance += throughput * surroundings::radiance(environment, direction);
+            outcome.radiance += throughput * environment.radiance(direction);
         }
         if self.boundary == Boundary::Dielectric {
             for light in &self.lights {

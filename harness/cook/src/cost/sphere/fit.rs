@@ -1,6 +1,6 @@
 //! Reflectance functions fitted to what a sphere really shows.
 
-use super::{BINS, Profile};
+use lapidary_reference::random_walk::{BINS, Profile};
 use lapidary_assay::golden_section::golden_section;
 use lapidary_cdrf as cdrf;
 use serde::{Deserialize, Serialize};
@@ -119,8 +119,8 @@ pub fn best_sigma(value: impl Fn(f64) -> f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{half_space, profile};
     use super::*;
+    use lapidary_reference::random_walk::{half_space, profile};
     use lapidary_cdrf::oracle;
 
     /// A reflectance of a cosine and a width.

@@ -1,0 +1,43 @@
+//! The vitrine: a body for each technique, all of them in view.
+
+use lapidary_plan::Decisions;
+use lapidary_render::Settings;
+use lapidary_render::pixel::Viewer;
+use lapidary_scene::{Object, Scene};
+
+/// The rule decides, by what the file gives of the candle and what is measured of the figure.
+#[test]
+fn each_body_calls_for_a_technique_of_its_own() {
+    let scene = Scene::named("vitrine").expect("built in");
+    let settings = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(4, 3) };
+    let decisions = Decisions::all(&scene, &settings.request());
+    let rungs: Vec<String> = decisions.iter().map(|decisions| decisions.rung.to_string()).collect();
+    let stone = "convex-8+tracker";
+    assert_eq!(rungs, ["lambert", stone, stone, "cheap", "godunov-64", "bvh-8+tracker"]);
+}
+
+/// In a picture of 4:3, by a ray through every tenth pixel of 640 by 480.
+#[test]
+fn the_camera_sees_every_body() {
+    let (columns, rows) = (64, 48);
+    let scene = Scene::named("vitrine").expect("built in");
+    let viewer = Viewer::new(&scene, columns, rows);
+    let mut seen = vec![0; scene.objects.len()];
+    let mut at_an_edge = vec![false; scene.objects.len()];
+    for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row))) {
+        let distance = |object: &Object| {
+            let found = viewer.see(&object.mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
+            found.map(|point| point.position.distance(scene.camera.eye))
+        };
+        let found = scene.objects.iter().enumerate().filter_map(|(k, object)| Some((distance(object)?, k)));
+        if let Some((_, nearest)) = found.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            seen[nearest] += 1;
+            at_an_edge[nearest] |= column == 0 || column + 1 == columns || row == 0 || row + 1 == rows;
+        }
+    }
+    let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
+    println!("{shares:?}");
+    assert!(shares.iter().all(|(_, share)| *share > 0.012), "{shares:?}");
+    // The table goes on beyond the picture.
+    assert_eq!(at_an_edge, [true, false, false, false, false, false]);
+}

@@ -1,0 +1,53 @@
+//! How a body that scatters light sends it back: the rungs of the curvature-dependent reflectance function.
+
+use super::Format;
+
+/// A step of the ladder from cheap to exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reflectance {
+    /// Lambert's law: no scattering.
+    Lambert,
+    /// Lambert's law with cast shadows: what a renderer without scattering would show.
+    LambertShadowed,
+    /// Wrap lighting.
+    Wrap,
+    /// A lookup table of this many texels a side.
+    Table(u32, Format),
+    /// The cheap closed form.
+    Cheap,
+    /// The accurate closed form.
+    Accurate,
+    /// The convolution by quadrature.
+    Quadrature,
+    /// The form that keeps energy over the sphere.
+    Spherical,
+    /// Irradiance blurred in the mesh's texture, which the others do without.
+    Blur,
+}
+
+/// Every one, by its rung's name.
+pub const REFLECTANCES: [(&str, Reflectance); 11] = [
+    ("lambert", Reflectance::Lambert),
+    ("lambert-shadowed", Reflectance::LambertShadowed),
+    ("wrap", Reflectance::Wrap),
+    ("table-256-rgba8", Reflectance::Table(256, Format::Rgba8)),
+    ("table-257-rgba16f", Reflectance::Table(257, Format::Rgba16Float)),
+    ("table-257-r32f", Reflectance::Table(257, Format::R32Float)),
+    ("cheap", Reflectance::Cheap),
+    ("accurate", Reflectance::Accurate),
+    ("quadrature", Reflectance::Quadrature),
+    ("spherical", Reflectance::Spherical),
+    ("blur", Reflectance::Blur),
+];
+
+impl Reflectance {
+    /// Its rung's name.
+    pub fn name(self) -> &'static str {
+        REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
+    }
+
+    /// Whether it is Lambert's law, with shadows or without: nothing scatters.
+    pub fn is_lambert(self) -> bool {
+        matches!(self, Self::Lambert | Self::LambertShadowed)
+    }
+}
