@@ -1,8 +1,7 @@
 //! Mutation of a module's functions on naga's IR: one operator, comparison or constant changed at a time. A suite that
 //! lets a mutant pass does not test what was changed.
 
-use crate::dispatch;
-use crate::dispatch::KernelModule;
+use crate::dispatch::{self, KernelModule};
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
 use std::fmt;
 

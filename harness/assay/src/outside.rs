@@ -1,12 +1,11 @@
 //! What a function promises outside of its domain, as its `Outside:` line says it, tested: hostile inputs, and what must hold of
 //! the results there. The promises stand in `formulas/outside/`.
 
-use crate::literal;
-use crate::literal::Language;
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::value::{Arguments, Value};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
+use crate::literal::{self, Language};
 use crate::property::draws::{Domain, Draws};
 use crate::property::tolerance::{Tolerance, number};
 

@@ -8,8 +8,8 @@ mod bodies;
 
 use bodies::{Case, Uploaded};
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_scene::solver::Method;
 use lapidary_render::solver::Solver;
+use lapidary_scene::solver::Method;
 use std::time::{Duration, Instant};
 
 /// Rounds over all solvers, of which the least time counts.

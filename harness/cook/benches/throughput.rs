@@ -1,10 +1,9 @@
 //! How fast the harness itself is: `cargo bench --profile dev`, which serves from the build that `cook` runs from.
 
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
+use lapidary_assay::property::{Check, Settings};
+use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_assay::property::{Check, Settings};
 use lapidary_scene::fuzz;
 
 /// Cases in one sample.

@@ -3,24 +3,21 @@
 pub mod bounds;
 pub mod failure;
 pub mod guard;
-pub mod literal;
 pub mod user_file;
 
-use crate::cookbook;
 use crate::cookbook::header::FunctionDoc;
+use crate::{cookbook, formulas};
+use failure::Failure;
 use lapidary_assay::dispatch::shape::{Scalar, Shape};
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::{DispatchError, Kernel};
+use lapidary_assay::dispatch::{self, DispatchError, Kernel};
 use lapidary_assay::formula::{Formula, Words};
-use crate::formulas;
-use lapidary_gpu::Gpu;
 use lapidary_assay::outside;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};
-use lapidary_assay::property::seams;
 use lapidary_assay::property::tolerance::{Tolerance, number};
-use lapidary_assay::property::{Check, DEFAULT_CASES, Report, Settings};
-use failure::Failure;
+use lapidary_assay::property::{Check, DEFAULT_CASES, Report, Settings, seams};
+use lapidary_gpu::Gpu;
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 /// Why a check could not run; a check that ran and failed is a report.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +39,13 @@ pub enum CheckError {
     /// The kept inputs could not be read or written.
     #[error(transparent)]
     Persistence(#[from] PersistenceError),
+}
+
+/// Where the cookbook's own failing inputs are kept and replayed from: in the folder of what is built, `CARGO_TARGET_DIR`, else the cookbook's `target`.
+pub fn failures() -> Regressions {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    let target = target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"));
+    Regressions::in_folder(target.join("lapidary/failures"))
 }
 
 /// File and line, as compilers write them, where there is a line.
@@ -152,7 +156,10 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
         filter.split_once("::").map_or((filter, None), |(module, function)| (module, Some(function)));
     let Some(module) = cookbook::module(module) else {
         let names: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
-        return Err(CheckError::Unknown(format!("no module `{module}`{}", lapidary_scene::nearest::suggest(module, &names))));
+        return Err(CheckError::Unknown(format!(
+            "no module `{module}`{}",
+            lapidary_scene::nearest::suggest(module, &names)
+        )));
     };
     let Some(function) = function else {
         return Ok(formulas::all().iter().filter(|f| f.module == module.name).filter(promised).collect());
@@ -192,7 +199,7 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
 /// in later runs; those of a user's copy are not kept.
 pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings) -> Result<Row, CheckError> {
     match source {
-        Source::Cookbook => run_keeping(gpu, formula, source, settings, Some(&Regressions::of_target())),
+        Source::Cookbook => run_keeping(gpu, formula, source, settings, Some(&failures())),
         Source::Copy(..) => run_keeping(gpu, formula, source, settings, None),
     }
 }

@@ -6,5 +6,6 @@ pub mod cookbook;
 pub mod cost;
 pub mod formulas;
 pub mod gallery;
+pub mod seed;
 pub mod snapshot;
 pub mod text_file;

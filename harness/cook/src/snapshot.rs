@@ -7,12 +7,12 @@ mod shots;
 pub mod strip;
 mod walked;
 
+pub(crate) use comparison::flip;
+pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings, file};
 use lapidary_scene::{Scene, SceneError};
-pub(crate) use comparison::flip;
-pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare};
 pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
@@ -77,7 +77,7 @@ impl Committed {
 
 /// Where the pictures of a technique's recipes are.
 pub fn folder(technique: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../snapshots").join(technique)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../snapshots").join(technique)
 }
 
 /// A committed reference's linear radiance, and as it is seen with the settings' size and exposure.

@@ -8,18 +8,15 @@
 //! All mutants take minutes. `LAPIDARY_MUTANTS=sample` judges one in ten, chosen by the suite's seed, so that another change meets
 //! others; `listed` those that are listed; `all` all. Without it a run that names a module or function judges all of its mutants, any other run a sample.
 
-use lapidary_cook::check;
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch::{Kernel, KernelModule};
 use lapidary_assay::formula::{Formula, Words};
-use lapidary_cook::formulas;
-use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_assay::mutation;
-use lapidary_assay::mutation::Mutant;
+use lapidary_assay::mutation::{self, Mutant};
 use lapidary_assay::outside;
-use lapidary_assay::property::seed::SuiteSeed;
 use lapidary_assay::property::tolerance::Tolerance;
 use lapidary_assay::property::{Check, Settings};
+use lapidary_cook::seed::SuiteSeed;
+use lapidary_cook::{check, cookbook, formulas};
+use lapidary_gpu::{AdapterChoice, Gpu};
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};

@@ -255,7 +255,7 @@ pub(super) fn bind_group(descriptor: &wgpu::BindGroupDescriptor<'_>, group: &Bin
 }
 
 /// Notes a pipeline, whose description is made only where someone listens.
-pub(crate) fn render_pipeline(pipeline: &RenderPipeline, describe: impl FnOnce() -> Pipeline) {
+pub fn render_pipeline(pipeline: &RenderPipeline, describe: impl FnOnce() -> Pipeline) {
     record(|recorder| {
         let name = recorder.pipeline(describe());
         recorder.render_pipelines.insert(pipeline.clone(), name);
@@ -263,7 +263,7 @@ pub(crate) fn render_pipeline(pipeline: &RenderPipeline, describe: impl FnOnce()
 }
 
 /// The same of a compute pipeline.
-pub(crate) fn compute_pipeline(pipeline: &ComputePipeline, describe: impl FnOnce() -> Pipeline) {
+pub fn compute_pipeline(pipeline: &ComputePipeline, describe: impl FnOnce() -> Pipeline) {
     record(|recorder| {
         let name = recorder.pipeline(describe());
         recorder.compute_pipelines.insert(pipeline.clone(), name);

@@ -3,11 +3,10 @@
 use super::effect::{Effect, Effects};
 use super::quality::{Chosen, Technique};
 use super::thickness::Thickness;
-use lapidary_scene::Environment;
 use crate::{Geometry, Request, Rung, Spectrum};
-use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Density, Dispersion, Light, Material, Medium, Object, Scene, Shape};
 use glam::Vec3;
+use lapidary_scene::solver::Reflectance;
+use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +84,7 @@ impl Decisions {
     }
 
     /// The recipes' overrides.
-    pub(crate) fn constants(&self) -> Vec<(&'static str, f64)> {
+    pub fn constants(&self) -> Vec<(&'static str, f64)> {
         let of = |decision: &Decision| (decision.effect.override_name(), f64::from(u8::from(decision.on)));
         self.effects.iter().map(of).collect()
     }

@@ -2,10 +2,10 @@
 
 use super::{Decisions, thickness};
 use crate::{Geometry, Note, Objects, Request, Rung};
-use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::{Dispersion, Environment, MeshDiagnosis, Object, Scene, clip_from_world};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
+use lapidary_scene::normals::has_hard_edges;
+use lapidary_scene::{Dispersion, Environment, MeshDiagnosis, Object, Scene, clip_from_world};
 use std::f64::consts::PI;
 
 /// Meshes of more triangles are not looked through: it takes seconds, and as much memory again as the mesh.

@@ -1,9 +1,8 @@
 //! `--quality`: a rung for each technique, from its ladder.
 
 use super::ladder::Ladder;
-use lapidary_scene::solver::{Method, Stencil};
 use crate::{Geometry, Rung, Spectrum};
-use lapidary_scene::solver::{Paths, Reflectance};
+use lapidary_scene::solver::{Method, Paths, Reflectance, Stencil};
 use std::fmt;
 
 /// How much time a body's technique may take.
@@ -167,7 +166,7 @@ impl fmt::Display for Chosen {
 }
 
 /// Two digits.
-pub(crate) fn figure(error: f64) -> String {
+pub fn figure(error: f64) -> String {
     if error == 0.0 || error >= 0.0095 { format!("{error:.2}") } else { format!("{error:.0e}") }
 }
 

@@ -1,8 +1,8 @@
 //! How thick a body is, and which technique follows from it for a body that scatters light.
 
-use lapidary_scene::{Bvh, Material, Medium, Mesh, Object};
 use glam::Vec3;
 use lapidary_bvh_trace::traversal;
+use lapidary_scene::{Bvh, Material, Medium, Mesh, Object};
 
 /// Bodies of up to this many mean free paths are seen through; see [`Thickness::shows_through`].
 pub const MOST_MEAN_FREE_PATHS: f32 = 16.0;

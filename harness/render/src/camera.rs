@@ -1,8 +1,8 @@
 //! The camera's matrix, for the whole picture or for one tile of it.
 
 use super::Tile;
-use lapidary_scene::Scene;
 use glam::Mat4;
+use lapidary_scene::Scene;
 
 /// Clip space of `tile` within a picture of `width` × `height` pixels. Depth runs from 0 near to 1 far.
 pub(super) fn clip_from_world(scene: &Scene, width: u32, height: u32, tile: Tile) -> Mat4 {

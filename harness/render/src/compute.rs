@@ -4,8 +4,8 @@ mod recipe;
 
 pub use recipe::{Binding, RecipeRun, run_recipe};
 
-use lapidary_gpu::{Device, Gpu, capture};
 use crate::shader::{Bindings, Shader, ShaderError};
+use lapidary_gpu::{Device, Gpu, capture};
 
 /// A compiled entry point.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
-use lapidary_gpu::{Encoder, Gpu};
 use glam::{Mat4, Vec3};
+use lapidary_gpu::{Encoder, Gpu};
 
 /// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
 pub(super) const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -106,12 +106,12 @@ impl<'gpu> DeferredPass<'gpu> {
 #[cfg(test)]
 mod tests {
     use super::COMPOSITE;
-    use lapidary_assay::extremum::larger;
-    use lapidary_gpu::{AdapterChoice, Gpu};
     use crate::pixel::Viewer;
     use crate::{Settings, render_from};
-    use lapidary_scene::Scene;
     use glam::Vec3;
+    use lapidary_assay::extremum::larger;
+    use lapidary_gpu::{AdapterChoice, Gpu};
+    use lapidary_scene::Scene;
 
     /// The paper's section 4.3.1 through a real depth buffer: its 32-bit values end 2^-24 of the range from near to far away from the
     /// truth, the interpolation of clip coordinates and the product with the inverse matrix add a few units in the last place of the distance.

@@ -1,9 +1,9 @@
 //! Pipelines and buffers, made in one way for every pass.
 
 use super::RenderError;
+use crate::shader::{Bindings, Shader};
 use lapidary_gpu::{Device, Gpu, capture};
 use lapidary_scene::Object;
-use crate::shader::{Bindings, Shader};
 
 /// What a pass is compiled from.
 pub(super) struct PipelineSource<'a> {

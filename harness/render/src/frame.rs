@@ -4,8 +4,8 @@ use super::device::{Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
 use super::{RenderError, Settings, Stage, camera, device, scene_pass};
-use lapidary_gpu::{Encoder, Gpu, GpuError};
 use crate::solver::Status;
+use lapidary_gpu::{Encoder, Gpu, GpuError};
 use lapidary_scene::Scene;
 use std::time::{Duration, Instant};
 

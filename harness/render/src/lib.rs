@@ -32,18 +32,17 @@ mod variant;
 pub mod voxel_grid;
 pub mod voxelization;
 
-use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects, Quality, Request, Rung, Scattering};
-use lapidary_reference::random_walk::mesh;
-use lapidary_reference::random_walk::mesh::Rendering as Walked;
-use lapidary_reference::spectral;
-use lapidary_reference::spectral::{Lost, Rendering, Window};
-use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES, Scene};
 use deferred::DeferredPass;
 use display::DisplayPass;
 pub use error::RenderError;
 pub use frame::{Frame, FrameTime};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Decisions, Effect, Effects, Quality, Request, Rung, Scattering};
+use lapidary_reference::random_walk::mesh;
+use lapidary_reference::random_walk::mesh::Rendering as Walked;
+use lapidary_reference::spectral::{self, Lost, Rendering, Window};
+use lapidary_scene::solver::Reflectance;
+use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES, Scene};
 use lighting::Lighting;
 pub use optical_path::Stage;
 use pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
@@ -51,7 +50,8 @@ pub use reflectance::Curvature;
 use shadows::Shadows;
 use std::borrow::Cow;
 use std::sync::Mutex;
-pub(crate) use stone::{geometry_bytes, material as material_uniform, wavelengths as wavelength_table};
+pub use stone::geometry_bytes;
+pub(crate) use stone::{material as material_uniform, wavelengths as wavelength_table};
 use variant::Part;
 pub(crate) use variant::names as object_names;
 
@@ -331,17 +331,13 @@ fn scene_pass<'gpu>(
 }
 
 /// The overrides of the gem recipes for a scene's first object.
-pub(crate) fn gem_constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
+pub fn gem_constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
     let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| gem::constants(&decisions, decisions.rung, settings))
 }
 
 /// The same of the recipe `cdrf_shading`.
-pub(crate) fn translucent_constants(
-    scene: &Scene,
-    settings: &Settings,
-    reflectance: Reflectance,
-) -> Vec<(&'static str, f64)> {
+pub fn translucent_constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
     let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| translucent::constants(&decisions, settings, reflectance))
 }
@@ -435,7 +431,7 @@ fn follow(
 }
 
 /// Fills in `encoded` from `linear`, as the display recipe shows means: of one sample a pixel.
-pub(crate) fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
+pub fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
     let display = DisplayPass::new(gpu, 1, [picture.width, picture.height])?;
     for tile in Tile::all(picture.width, picture.height, 1) {
         let rows = (tile.top..tile.top + tile.height).map(|row| (row * picture.width + tile.left) as usize);

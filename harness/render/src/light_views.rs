@@ -1,8 +1,8 @@
 //! From where reflective shadow maps look: one view for a sun, a spot or a lamp that stands off, six for a lamp amid what it shines at.
 
-use lapidary_scene::{Bounds, Light};
 use glam::Vec3;
 use lapidary_reflective_shadow_map::ReflectiveShadowMapView;
+use lapidary_scene::{Bounds, Light};
 
 /// One view of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,11 @@
 use super::device::{Pipeline, buffer, uniform};
 use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
+use glam::Vec3;
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
 use lapidary_scene::light::Falloff;
 use lapidary_scene::{Light, Scene};
-use glam::Vec3;
 use std::cell::OnceCell;
 
 /// The parts `surroundings`, `lights` and `harmonics`.

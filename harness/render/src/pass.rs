@@ -5,9 +5,9 @@ use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
 use super::{Note, RenderError};
+use glam::{Mat4, Vec3};
 use lapidary_gpu::capture::OfObject;
 use lapidary_gpu::{Encoder, Gpu, RenderPass};
-use glam::{Mat4, Vec3};
 
 /// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.
 pub(super) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;

@@ -6,11 +6,11 @@
 
 mod text;
 
+use crate as render;
+use crate::{RenderError, Settings};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::{Capture, capture};
-use crate as render;
 use lapidary_plan::{Decisions, Note, Rung};
-use crate::{RenderError, Settings};
 use lapidary_scene::Scene;
 
 /// What one object is drawn with.

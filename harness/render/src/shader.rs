@@ -2,9 +2,8 @@
 
 use lapidary_gpu::capture::Pipeline;
 use lapidary_gpu::{Device, GpuError};
+use lapidary_specialise::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
 use lapidary_specialise::{SourceError, SpecialiseError, declared, parse, specialise};
-use lapidary_specialise::spirv_counts;
-use lapidary_specialise::spirv_counts::{SpirvCounts, SpirvCountsError, spirv_counts};
 use naga::valid::ModuleInfo;
 use std::borrow::Cow;
 
@@ -24,7 +23,7 @@ pub enum ShaderError {
 
 /// A recipe's specialised part.
 #[derive(Debug)]
-pub(crate) struct Shader {
+pub struct Shader {
     recipe: String,
     entries: Vec<String>,
     overrides: Vec<(String, f64)>,
@@ -35,18 +34,11 @@ pub(crate) struct Shader {
 impl Shader {
     /// Specialises the `entries` of `source`, the composed text of `recipe`, to override values: bools as 0 or 1; those that the text does not declare are
     /// left out.
-    pub(crate) fn new(
-        recipe: &str,
-        source: &str,
-        entries: &[&str],
-        constants: &[(&str, f64)],
-    ) -> Result<Self, ShaderError> {
+    pub fn new(recipe: &str, source: &str, entries: &[&str], constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
         let (module, _) = parse(source, &format!("recipe {recipe}"))?;
         let declared = declared(&module, constants);
         let (module, info) = specialise(module, &declared, entries).map_err(|error| match error {
-            SpecialiseError::NoEntryPoint { .. } => {
-                SourceError(format!("recipe {recipe}: {error}")).into()
-            }
+            SpecialiseError::NoEntryPoint { .. } => SourceError(format!("recipe {recipe}: {error}")).into(),
             error => error.into(),
         })?;
         Ok(Self {
@@ -59,13 +51,13 @@ impl Shader {
     }
 
     /// Group and number of each binding that is left.
-    pub(crate) fn bindings(&self) -> Bindings {
+    pub fn bindings(&self) -> Bindings {
         let places = self.module.global_variables.iter().filter_map(|(_, global)| global.binding);
         Bindings(places.map(|at| (at.group, at.binding)).collect())
     }
 
     /// Sends it to the device.
-    pub(crate) fn upload(&self, device: &Device) -> wgpu::ShaderModule {
+    pub fn upload(&self, device: &Device) -> wgpu::ShaderModule {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&self.recipe),
             source: wgpu::ShaderSource::Naga(Cow::Owned(self.module.clone())),
@@ -73,13 +65,13 @@ impl Shader {
     }
 
     /// What a vertex and a fragment entry point, in this order, are made of.
-    pub(crate) fn counts(&self) -> Result<SpirvCounts, SpirvCountsError> {
+    pub fn counts(&self) -> Result<SpirvCounts, SpirvCountsError> {
         let [vertex, fragment] = [0, 1].map(|place| self.entries.get(place).map_or("", String::as_str));
         spirv_counts(&self.module, &self.info, vertex, fragment)
     }
 
     /// What a capture says of a pipeline called `name`.
-    pub(crate) fn description(&self, name: &str) -> Pipeline {
+    pub fn description(&self, name: &str) -> Pipeline {
         let counts = spirv_counts::instructions(&self.module, &self.info);
         Pipeline {
             name: name.to_owned(),
@@ -94,16 +86,16 @@ impl Shader {
 
 /// The bindings of a shader: group and number.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Bindings(Vec<(u32, u32)>);
+pub struct Bindings(Vec<(u32, u32)>);
 
 impl Bindings {
     /// Whether there is this one.
-    pub(crate) fn has(&self, group: u32, binding: u32) -> bool {
+    pub fn has(&self, group: u32, binding: u32) -> bool {
         self.0.contains(&(group, binding))
     }
 
     /// The bind group of those of `resources`, by number, that there are. Nothing where there is none in this group.
-    pub(crate) fn bind(
+    pub fn bind(
         &self,
         device: &Device,
         layout: impl FnOnce(u32) -> wgpu::BindGroupLayout,

@@ -2,9 +2,9 @@
 
 use super::Method;
 use crate::compute::Kernel;
-use lapidary_gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
+use lapidary_gpu::{Encoder, Gpu};
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};
 
 /// Voxels along an edge of a solver's tile.

@@ -4,13 +4,12 @@ use super::device::{Pipeline, buffer, mesh_vertices, record};
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint};
-use lapidary_gpu::Gpu;
-use lapidary_gpu::capture::OfObject;
-use lapidary_scene::spectrum;
-use lapidary_scene::normals::soft_normals;
-use lapidary_scene::{Bvh, Convex, Material, Object, convex};
 use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
+use lapidary_gpu::Gpu;
+use lapidary_gpu::capture::OfObject;
+use lapidary_scene::normals::soft_normals;
+use lapidary_scene::{Bvh, Convex, Material, Object, convex, spectrum};
 use std::borrow::Cow;
 
 /// Sends an object to the device: what `pipeline` reads of it.
@@ -114,7 +113,7 @@ impl<'a> Geometries<'a> {
 }
 
 /// The bytes that a rung's geometry needs on the device for `object`, beside positions and indices.
-pub(crate) fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
+pub fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
     Ok(Geometries::of(object, rung)?.own.iter().map(|(_, part)| part.len() as u64).sum())
 }
 

@@ -2,8 +2,8 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use lapidary_gpu::{Encoder, Gpu};
 use glam::{Vec2, Vec3};
+use lapidary_gpu::{Encoder, Gpu};
 use lapidary_texture_diffusion as mirror;
 
 /// The recipe's name.

@@ -8,13 +8,13 @@ use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
 use super::{Reflectance, RenderError, Rung, Settings};
 use crate::cdrf::table;
-use lapidary_scene::solver::Format;
+use glam::{UVec2, Vec2, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
 use lapidary_plan::{Decisions, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
+use lapidary_scene::solver::Format;
 use lapidary_scene::{Material, Object};
-use glam::{UVec2, Vec2, Vec3};
 
 /// What shines on the objects, and what keeps it from them, where anything does.
 pub(super) type Light<'a> = (&'a Lighting<'a>, Option<&'a Shadows<'a>>);

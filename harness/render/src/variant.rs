@@ -26,8 +26,11 @@ impl<'a> Part<'a> {
     pub(super) fn all(scene: &'a Scene, settings: &'a Settings) -> Vec<Self> {
         // An object without triangles has nothing to draw, and no buffer is empty.
         let shown = scene.objects.iter().zip(names(scene)).filter(|(object, _)| !object.mesh.indices.is_empty());
-        let drawn =
-            shown.map(|(object, name)| Drawn { object, name, decisions: Decisions::of(object, scene, &settings.request()) });
+        let drawn = shown.map(|(object, name)| Drawn {
+            object,
+            name,
+            decisions: Decisions::of(object, scene, &settings.request()),
+        });
         let part = |(rung, objects)| Part { rung, lights: &scene.lights, settings, objects };
         grouped(drawn.collect(), |drawn| drawn.decisions.rung).into_iter().map(part).collect()
     }

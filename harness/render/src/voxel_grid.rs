@@ -1,7 +1,7 @@
 //! A cube of cubic voxels about a body: what the passes over voxels agree on.
 
-use lapidary_scene::Bounds;
 use glam::{UVec3, Vec3};
+use lapidary_scene::Bounds;
 use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 
 /// A cube of `cells`³ voxels. Voxel (x, y, z) has the number x + `cells` (y + `cells` z).

@@ -1,9 +1,9 @@
 //! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
 
 use crate::compute::Kernel;
-use lapidary_gpu::{Encoder, Gpu};
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
+use lapidary_gpu::{Encoder, Gpu};
 use lapidary_voxelization::VoxelizationGrid;
 
 /// The recipe's name.

@@ -25,7 +25,7 @@
 mod arguments;
 mod dead;
 mod fold;
-pub mod operands;
+mod operands;
 pub mod spirv_counts;
 mod stages;
 mod text;
@@ -34,6 +34,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
+pub use operands::for_each_statement;
 pub use text::{SourceError, declared, parse, validate};
 
 use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};

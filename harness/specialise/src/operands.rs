@@ -228,7 +228,7 @@ pub(super) fn blocks(statement: &Statement) -> Vec<&naga::Block> {
 }
 
 /// Calls `visit` for each statement of a block and of the blocks inside it.
-pub(crate) fn for_each_statement(block: &naga::Block, visit: &mut dyn FnMut(&Statement)) {
+pub fn for_each_statement(block: &naga::Block, visit: &mut dyn FnMut(&Statement)) {
     for statement in block.iter() {
         visit(statement);
         for inner in blocks(statement) {

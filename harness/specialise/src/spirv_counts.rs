@@ -59,7 +59,7 @@ pub fn spirv_counts(
 }
 
 /// The instructions of all entry points of a valid module without overrides; 0 of one that SPIR-V cannot say.
-pub(crate) fn instructions(ir: &Module, info: &ModuleInfo) -> usize {
+pub fn instructions(ir: &Module, info: &ModuleInfo) -> usize {
     let of =
         |entry: &naga::EntryPoint| instructions_of(ir, info, entry.stage, &entry.name).unwrap_or_default() as usize;
     ir.entry_points.iter().map(of).sum()

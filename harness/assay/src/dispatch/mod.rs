@@ -11,9 +11,9 @@ pub mod value;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
 
-use lapidary_gpu::{Gpu, GpuError};
 use crate::tokens::{items, tokens};
 use batch::Buffers;
+use lapidary_gpu::{Gpu, GpuError};
 use layout::Layout;
 use shape::{Signature, SignatureError};
 use std::borrow::Cow;

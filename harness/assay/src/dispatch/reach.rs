@@ -1,7 +1,7 @@
 //! What a function reaches: the functions that it calls, and the module-scope variables that those read. A function that
 //! a kernel calls must be pure, and small enough for a compiler to inline into one piece.
 
-use lapidary_specialise::operands::for_each_statement;
+use lapidary_specialise::for_each_statement;
 use naga::{AddressSpace, Expression, Function, Handle, Module, Span, Statement, TypeInner};
 use std::collections::BTreeSet;
 

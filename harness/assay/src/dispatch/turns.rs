@@ -4,7 +4,7 @@
 //! little earlier, and writes the count of each row beside the result.
 
 use super::kernel::ENTRY_POINT;
-use lapidary_specialise::operands::for_each_statement;
+use lapidary_specialise::for_each_statement;
 use naga::{AddressSpace, BinaryOperator, Block, Expression, Handle, Literal, Span, Statement, Type, TypeInner};
 
 /// Most turns of all loops of an invocation together on lavapipe: below its own limit by more than what its compiler

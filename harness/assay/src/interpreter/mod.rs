@@ -8,8 +8,7 @@ mod machine;
 
 pub use machine::{Decision, Machine, Nearest, Site, Slack, Slacking, Traced};
 
-use crate::dispatch;
-use crate::dispatch::DispatchError;
+use crate::dispatch::{self, DispatchError};
 use layout::{Frame, Layout};
 use naga::{Block, Function, Handle, Statement, SwitchValue};
 

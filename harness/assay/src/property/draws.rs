@@ -136,7 +136,7 @@ impl<'a> Draws<'a> {
 
 /// SplitMix64's output function: a bijection of 64 bits that passes statistical tests on counters.
 /// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-pub(super) fn mix(key: u64) -> u64 {
+pub fn mix(key: u64) -> u64 {
     let key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let key = (key ^ (key >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let key = (key ^ (key >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -5,7 +5,6 @@ pub mod histogram;
 pub mod persistence;
 pub mod seams;
 mod search;
-pub mod seed;
 pub mod slack;
 pub mod tolerance;
 

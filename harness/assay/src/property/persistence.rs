@@ -4,7 +4,7 @@
 
 use crate::formula::Words;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Why inputs could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -39,13 +39,6 @@ impl Regressions {
     /// Files in `folder`.
     pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
-    }
-
-    /// In the folder of what is built: `CARGO_TARGET_DIR`, else the cookbook's `target`.
-    pub fn of_target() -> Self {
-        let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-        let target = target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"));
-        Self::in_folder(target.join("lapidary/failures"))
     }
 
     fn path(&self, function: &str) -> PathBuf {

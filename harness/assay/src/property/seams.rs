@@ -7,12 +7,11 @@
 
 use super::draws::mix;
 use super::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
-use crate::literal;
-use crate::literal::Language;
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Decision, Program, Site, Stopped, Traced};
+use crate::literal::{self, Language};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

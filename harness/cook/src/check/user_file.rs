@@ -2,8 +2,7 @@
 
 use super::{CheckError, bounds, select};
 use crate::cookbook::release::{History, Standing};
-use crate::cookbook;
-use crate::cookbook::Module;
+use crate::cookbook::{self, Module};
 use lapidary_assay::dispatch;
 use lapidary_assay::formula::Formula;
 use lapidary_scene::nearest;

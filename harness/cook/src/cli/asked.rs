@@ -1,14 +1,12 @@
 //! What `cook render` and `cook plan` ask alike: a scene, and what of it is drawn how.
 
 use super::Failure;
-use lapidary_scene::nearest::suggest;
-use lapidary_plan::{Decisions, Effect, Effects, Quality, Scattering};
-use lapidary_scene::Environment;
-use lapidary_plan::{GRAMMAR, Note, Rung};
+use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
 use lapidary_render::Settings;
-use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
 use lapidary_scene as scene;
-use lapidary_scene::Scene;
+use lapidary_scene::environment_map::{Clamped, EnvironmentMap};
+use lapidary_scene::nearest::suggest;
+use lapidary_scene::{Environment, Scene};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]

@@ -3,16 +3,14 @@
 mod text;
 
 use super::{Context, Failure, Outcome, number, output};
-use lapidary_cook::check::guard;
-use lapidary_cook::check::guard::Stage;
-use lapidary_cook::check::user_file::{Contents, UserFile};
-use lapidary_cook::check;
-use lapidary_cook::check::{CheckError, Row, Source};
-use lapidary_cook::cookbook::release::Standing;
 use lapidary_assay::formula::Formula;
-use lapidary_gpu::Gpu;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
+use lapidary_cook::check::guard::{self, Stage};
+use lapidary_cook::check::user_file::{Contents, UserFile};
+use lapidary_cook::check::{self, CheckError, Row, Source};
+use lapidary_cook::cookbook::release::Standing;
+use lapidary_gpu::Gpu;
 use std::path::PathBuf;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
@@ -88,7 +86,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let formulas = check::select(arguments.filter.as_deref())?;
             let formulas = Shard::share(arguments.shard, formulas);
             let gpu = context.gpu()?;
-            let regressions = arguments.failures.as_ref().map_or_else(Regressions::of_target, Regressions::in_folder);
+            let regressions = arguments.failures.as_ref().map_or_else(check::failures, Regressions::in_folder);
             let rows = all(gpu, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
             Checked { rows, ..Checked::default() }
         }

@@ -1,14 +1,12 @@
 //! `cook copy`.
 
 use super::{Failure, Outcome, output};
+use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_cook::cookbook::marks::{effect_of, effects, override_of};
 use lapidary_cook::cookbook::translate::{Target, translate};
-use lapidary_cook::cookbook;
-use lapidary_cook::cookbook::Module;
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::{ENTRY_POINT, KernelModule};
-use lapidary_scene::nearest;
+use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
+use lapidary_scene::nearest;
 use lapidary_wgsl::Recipe;
 use std::path::PathBuf;
 

@@ -8,12 +8,11 @@ mod restraint;
 mod sphere;
 
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_cook::cost::page;
-use lapidary_cook::cost::page::Tables;
+use lapidary_cook::cost::page::{self, Tables};
 use lapidary_cook::cost::{CostError, Options, views};
+use lapidary_cook::text_file;
 use lapidary_plan::Rung;
 use lapidary_render::file;
-use lapidary_cook::text_file;
 use serde::{Serialize, de::DeserializeOwned};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};

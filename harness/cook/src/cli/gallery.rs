@@ -2,12 +2,10 @@
 
 use super::{Context, Failure, Outcome, output, progress};
 use lapidary_cook::cost::drawing::SIZE as PLOT_SIZE;
-use lapidary_cook::gallery;
-use lapidary_cook::gallery::{Picture, Site};
+use lapidary_cook::gallery::{self, Picture, Site};
+use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
 use lapidary_render::file;
 use lapidary_scene::BUILT_IN;
-use lapidary_cook::snapshot;
-use lapidary_cook::snapshot::{Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
 use std::path::{Path, PathBuf};
 
 /// Renders every picture and builds the gallery, a static page that needs no network.
@@ -23,7 +21,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/gallery"));
+    let out =
+        arguments.out.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gallery"));
     let gpu = context.gpu()?;
     let rendered = tempfile::tempdir()?;
     let bar = progress::bar(Committed::COUNT as u64, "rendering");
@@ -93,7 +92,7 @@ fn plots() -> Vec<(String, Picture)> {
     let figure = |name: &str, file: &str, command: &str, title: &str, paragraph: &str| {
         let picture = Picture {
             title: title.to_owned(),
-            file: Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements").join(file),
+            file: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements").join(file),
             paragraph: paragraph.to_owned(),
             command: command.to_owned(),
             size: PLOT_SIZE,

@@ -1,9 +1,9 @@
 //! `cook list`.
 
 use super::{Failure, Outcome, output};
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::shape::Signature;
+use lapidary_cook::cookbook;
 use serde::Serialize;
 
 /// Modules and functions: signature and promised accuracy of each.

@@ -3,8 +3,8 @@
 use super::asked::Asked;
 use super::{Failure, Outcome, output};
 use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
-use lapidary_plan::quality::Chosen;
 use lapidary_plan::Decision;
+use lapidary_plan::quality::Chosen;
 use lapidary_render::plan::{Plan, PlannedObject};
 use lapidary_scene::Scene;
 use serde::Serialize;

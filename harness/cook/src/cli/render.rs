@@ -2,18 +2,15 @@
 
 use super::asked::Asked;
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_scene::nearest::suggest;
 use lapidary_plan as plan;
-use lapidary_plan::Decisions;
-use lapidary_plan::Decisions;
+use lapidary_plan::{Decisions, Geometry, Note, Rung, Spectrum};
 use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_reference::spectral::Lost;
-use lapidary_render::file;
-use lapidary_render::file::Format;
 use lapidary_render as render;
+use lapidary_render::file::{self, Format};
 use lapidary_render::{Curvature, Settings, WalkedPicture};
-use lapidary_plan::{Geometry, Note, Rung, Spectrum};
 use lapidary_scene::Scene;
+use lapidary_scene::nearest::suggest;
 use std::path::PathBuf;
 
 /// Renders a scene: a built-in's name, or a .glb or .gltf file.
@@ -142,7 +139,8 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
         return Ok(());
     }
     let scatters = render::scatters(scene);
-    let rungs: Vec<Rung> = scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
+    let rungs: Vec<Rung> =
+        scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
     match given.iter().find(|(_, _, obeys)| !rungs.iter().any(|rung| obeys(*rung, scatters))) {
         Some((flag, ..)) => {
             let rung = settings.rung;

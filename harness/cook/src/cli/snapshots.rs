@@ -1,9 +1,8 @@
 //! `cook snapshots`.
 
 use super::{Context, Failure, Outcome, output, progress};
+use lapidary_cook::snapshot::{self, Committed};
 use lapidary_scene::nearest::suggest;
-use lapidary_cook::snapshot;
-use lapidary_cook::snapshot::Committed;
 
 /// Renders the committed pictures again and compares them, or accepts the new ones.
 #[derive(clap::Args)]

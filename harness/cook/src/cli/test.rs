@@ -1,8 +1,8 @@
 //! `cook test`.
 
 use super::{Context, Failure, Outcome};
+use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::ADAPTER_VARIABLE;
-use lapidary_assay::property::seed::{SEED_VARIABLE, SuiteSeed};
 use std::path::Path;
 use std::process::Command;
 
@@ -31,17 +31,15 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     // The mutation tests last and apart: cargo stops at the first target that fails.
-    let parts: [&[&str]; 2] = [
-        &["--workspace", "--lib", "--bins", "--test", "suite"],
-        &["--package", "lapidary-harness", "--test", "mutation"],
-    ];
+    let parts: [&[&str]; 2] =
+        [&["--workspace", "--lib", "--bins", "--test", "suite"], &["--package", "lapidary-cook", "--test", "mutation"]];
     let parts = if arguments.quick { &parts[..1] } else { &parts[..] };
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut outcome = Outcome::Passed;
     for part in parts {
         let mut command = Command::new(&cargo);
         command.arg("test").args(*part).arg("--manifest-path");
-        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
+        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml"));
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
         // The same for all parts, whatever changes in the tree meanwhile.
         command.env(SEED_VARIABLE, seed.value.to_string());

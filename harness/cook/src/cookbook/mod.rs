@@ -1,7 +1,6 @@
 //! The cookbook as data: what the modules' comments promise, the contract that modules and recipes keep, and how they are written for other
 //! shading languages.
 
-pub mod accuracy_line;
 pub mod header;
 pub mod lint;
 pub mod marks;

@@ -16,11 +16,11 @@ pub use scenes::{SCENES, SceneReport};
 pub use walks::Residuals;
 
 use super::{CostError, Row, mark, mark_rows};
-use lapidary_gpu::Gpu;
-use lapidary_scene::solver::Reflectance;
-use lapidary_plan::Rung;
 use error::Samples;
 use lapidary_cdrf::oracle;
+use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
+use lapidary_scene::solver::Reflectance;
 use serde::{Deserialize, Serialize};
 
 /// The ladder's name.

@@ -3,8 +3,8 @@
 use super::seen::{SAMPLES, Watched};
 use super::{CostError, Errors};
 use lapidary_gpu::Gpu;
-use lapidary_render as render;
 use lapidary_plan::Rung;
+use lapidary_render as render;
 use lapidary_render::Settings;
 use serde::{Deserialize, Serialize};
 

@@ -4,10 +4,10 @@ use super::CostError;
 use super::views::View;
 use lapidary_assay::golden_section::golden_section;
 use lapidary_gpu::Gpu;
-use lapidary_render::pixel::{Shading, Stone, Viewer};
-use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
 use lapidary_plan::{Rung, Spectrum};
+use lapidary_render as render;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 

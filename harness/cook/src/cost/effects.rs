@@ -5,13 +5,11 @@ mod tables;
 use super::timing::{self, Timed, Timing};
 use super::{CostError, Row};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects};
+use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, Settings};
-use lapidary_scene::Environment;
-use lapidary_plan::Rung;
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Light, Scene};
+use lapidary_scene::{Environment, Light, Scene};
 use serde::{Deserialize, Serialize};
 
 /// The ladder's name.
@@ -257,7 +255,8 @@ pub fn run(
             });
             timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
         }
-        let drawn = case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings.request()));
+        let drawn =
+            case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings.request()));
         let rung = drawn.map(|decisions| decisions.rung).next().unwrap_or(case.settings.rung).to_string();
         studies.push(Study { scene: case.name.to_owned(), rung, frames });
     }

@@ -1,7 +1,7 @@
 //! How far a rung's picture is from the reference.
 
-use lapidary_render::Picture;
 use crate::snapshot;
+use lapidary_render::Picture;
 use serde::{Deserialize, Serialize};
 
 /// The distance of a picture from its reference.

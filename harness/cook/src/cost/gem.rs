@@ -5,11 +5,11 @@ use super::timing::{self, Timed};
 use super::views::{self, View};
 use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_sizes, reflection};
 use lapidary_gpu::Gpu;
-use lapidary_render as render;
 use lapidary_plan::{Geometry, Rung, Spectrum};
+use lapidary_render as render;
 use lapidary_render::Settings;
-use lapidary_scene::Scene;
 use lapidary_render::shader::Shader;
+use lapidary_scene::Scene;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
 /// the loop over triangles give the planes' pictures, so a few rungs show what they take; a hierarchy's have colours, which cost it a twentieth. Hits

@@ -13,9 +13,8 @@ pub use views::{COMPARED, Distance, VIEWS, WALKED};
 
 use super::{CostError, Row, mark, mark_rows};
 use lapidary_gpu::Gpu;
-use lapidary_scene::solver::Method;
-use lapidary_scene::solver::Paths;
 use lapidary_plan::Rung;
+use lapidary_scene::solver::{Method, Paths};
 use serde::{Deserialize, Serialize};
 use walks::Walks;
 

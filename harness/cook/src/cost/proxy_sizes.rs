@@ -3,15 +3,14 @@
 
 use super::views::{self, View};
 use super::{CostError, Errors};
-use lapidary_gpu::Gpu;
-use lapidary_render as render;
-use lapidary_scene::Environment;
-use lapidary_render::{Picture, Settings};
-use lapidary_plan::Rung;
-use lapidary_scene::Scene;
-use lapidary_scene::environment_map::EnvironmentMap;
 use glam::{UVec2, Vec3};
 use lapidary_environment::direction_from_uv;
+use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene};
 use serde::{Deserialize, Serialize};
 
 /// A stone of that size under one rung.

@@ -2,9 +2,9 @@
 //! averaged and how the table was cut into triangles.
 
 use super::CostError;
-use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_render::Settings;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_scene::cuts::{BrilliantParameters, round_brilliant};
 use lapidary_scene::polyhedron::Triangulation;
 use lapidary_scene::{Averaging, Scene};

@@ -1,11 +1,11 @@
 //! What the gem ladder is looked at with: several cuts, from several angles, each with its committed reference.
 
 use super::CostError;
+use crate::snapshot;
+use lapidary_plan::Rung;
 use lapidary_reference::spectral;
 use lapidary_render::{Picture, Settings};
-use lapidary_plan::Rung;
 use lapidary_scene::{Camera, Scene, SceneError};
-use crate::snapshot;
 use std::path::PathBuf;
 
 /// Side of a reference picture.

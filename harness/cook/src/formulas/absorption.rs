@@ -1,10 +1,10 @@
 //! `wgsl/absorption.wgsl`.
 
 use super::near;
-use lapidary_assay::formula::{Formula, formula};
-use lapidary_assay::property::draws::Draws;
 use glam::Vec3;
 use lapidary_absorption::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
+use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::property::draws::Draws;
 
 const M: &str = "absorption";
 

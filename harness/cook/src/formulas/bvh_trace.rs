@@ -1,10 +1,10 @@
 //! `wgsl/bvh_trace.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec2, Vec3};
 use lapidary_bvh_trace::{
     self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceObjectRay, BvhTraceRay,
     oracle,

@@ -1,10 +1,10 @@
 //! `wgsl/cdrf.wgsl`.
 
 use super::near;
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_cdrf::{self as mirror, CdrfTexels, oracle};
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -1,9 +1,9 @@
 //! `wgsl/closest_point.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec2, Vec3};
 use lapidary_closest_point::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 
 const M: &str = "closest_point";

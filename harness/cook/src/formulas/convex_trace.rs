@@ -1,10 +1,10 @@
 //! `wgsl/convex_trace.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_convex_trace::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 
 mirror_struct!(lapidary_convex_trace, ConvexTraceHit { distance, face });

@@ -1,11 +1,11 @@
 //! `wgsl/curvature.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec3};
 use lapidary_assay::dispatch::value::Value;
 use lapidary_assay::formula::{Builder, Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec3};
 use lapidary_curvature::{
     self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle,
 };

@@ -2,10 +2,10 @@
 
 use super::near;
 use super::refraction::{cosine_near_critical, incidence, relative_index};
+use glam::{DVec3, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec3};
 use lapidary_dispersion::{self as mirror, DispersionSellmeier, oracle};
 
 mirror_struct!(lapidary_dispersion, DispersionSellmeier { constant, strengths, resonances });

@@ -1,10 +1,10 @@
 //! `wgsl/environment.wgsl`.
 
 use super::near;
+use glam::{DVec2, UVec2, Vec2, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec2, UVec2, Vec2, Vec3};
 use lapidary_environment::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use std::f64::consts::PI;
 

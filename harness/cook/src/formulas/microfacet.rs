@@ -1,9 +1,9 @@
 //! `wgsl/microfacet.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec3};
 use lapidary_microfacet::{self as mirror, oracle};
 use std::f64::consts::PI;
 

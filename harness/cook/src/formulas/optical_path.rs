@@ -1,9 +1,9 @@
 //! `wgsl/optical_path.wgsl`.
 
 use super::near;
+use glam::{Vec3, Vec3Swizzles as _};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::property::draws::Draws;
-use glam::{Vec3, Vec3Swizzles as _};
 use lapidary_optical_path::{
     self as mirror, OPTICAL_PATH_DARKEST, OPTICAL_PATH_DEEPEST, OPTICAL_PATH_UNREACHED, oracle,
 };

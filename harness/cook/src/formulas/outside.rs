@@ -5,9 +5,9 @@ mod matter;
 mod rays;
 mod surfaces;
 
+use glam::Vec3;
 use lapidary_assay::outside::{Promise, any_finite};
 use lapidary_assay::property::draws::Draws;
-use glam::Vec3;
 use std::sync::OnceLock;
 
 /// All promises, function by function.

@@ -1,10 +1,10 @@
 //! `wgsl/proxy_geometry.wgsl`.
 
 use super::near;
+use glam::{DVec3, IVec2, Vec2, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, IVec2, Vec2, Vec3};
 use lapidary_proxy_geometry::{
     self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit,
     ProxyGeometryPlane, oracle,

@@ -1,10 +1,10 @@
 //! `wgsl/random_walk.wgsl`.
 
 use super::near;
+use glam::{DVec3, UVec4, Vec2, Vec3, Vec4};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, UVec4, Vec2, Vec3, Vec4};
 use lapidary_random_walk::{self as mirror, RandomWalkBasis, RandomWalkCrossing, oracle};
 use std::f64::consts::{FRAC_1_PI, TAU};
 

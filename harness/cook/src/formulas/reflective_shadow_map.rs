@@ -1,10 +1,10 @@
 //! `wgsl/reflective_shadow_map.wgsl`.
 
 use super::near;
+use glam::{Vec3, Vec4};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{Vec3, Vec4};
 use lapidary_reflective_shadow_map::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 
 mirror_struct!(lapidary_reflective_shadow_map, ReflectiveShadowMapView { origin, lamp, axis, extent, near, far });

@@ -1,10 +1,10 @@
 //! `wgsl/refraction.wgsl`.
 
 use super::near;
+use glam::{DVec3, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, Vec3};
 use lapidary_refraction::{self as mirror, RefractionHit, oracle};
 
 mirror_struct!(lapidary_refraction, RefractionHit { direction, total });

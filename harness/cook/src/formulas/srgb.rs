@@ -1,9 +1,9 @@
 //! `wgsl/srgb.wgsl`.
 
 use super::near;
+use glam::Vec3;
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::property::draws::Draws;
-use glam::Vec3;
 use lapidary_srgb::{self as mirror, oracle};
 
 const M: &str = "srgb";

@@ -1,10 +1,10 @@
 //! `wgsl/texture_diffusion.wgsl`.
 
 use super::near;
+use glam::{Vec2, Vec3, Vec4};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 
 mirror_struct!(lapidary_texture_diffusion, TextureDiffusionTap { offset, weight });

@@ -1,10 +1,10 @@
 //! `wgsl/veins.wgsl`.
 
 use super::near;
+use glam::{IVec3, UVec3, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{IVec3, UVec3, Vec3};
 use lapidary_veins::{self as mirror, VeinsCell, VeinsPattern, oracle};
 
 mirror_struct!(lapidary_veins, VeinsCell { corner, offset });

@@ -1,10 +1,10 @@
 //! `wgsl/voxelization.wgsl`.
 
 use super::near;
+use glam::{DVec3, UVec3, Vec2, Vec3};
 use lapidary_assay::formula::{Formula, formula};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, UVec3, Vec2, Vec3};
 use lapidary_voxelization::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
 
 mirror_struct!(lapidary_voxelization, VoxelizationGrid { origin, spacing, cells });

@@ -4,9 +4,8 @@ use super::{
     Placed, highlight, section,
     text::{escape, framed, prose},
 };
-use crate::cookbook;
-use crate::cookbook::Module;
 use crate::cookbook::header::LICENCE;
+use crate::cookbook::{self, Module};
 use lapidary_wgsl::Recipe;
 
 /// A brilliant cut from the side, as line art; the page's mark and icon.

@@ -6,8 +6,8 @@ use super::{
     text::{escape, framed, prose},
 };
 use crate::cookbook::Module;
-use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use crate::cookbook::header::{FunctionDoc, parse_header};
+use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use lapidary_wgsl::Recipe;
 
 /// The section of a module: what it is, its WGSL, its functions and the rest of its doc page.

@@ -5,10 +5,9 @@ use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
 use crate::cost::best_exposure;
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
-use lapidary_plan::Rung;
 use lapidary_scene::Scene;
 
 /// Its file's name.

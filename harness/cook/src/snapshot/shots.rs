@@ -1,11 +1,9 @@
 //! Pictures of one scene each, and the commands that render them.
 
 use super::folder;
-use lapidary_plan::{Decisions, Effect, Effects};
+use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::{Curvature, MOST_SAMPLES, Settings};
-use lapidary_plan::Rung;
-use lapidary_scene::SAMPLES;
-use lapidary_scene::{Scene, SceneError};
+use lapidary_scene::{SAMPLES, Scene, SceneError};
 use std::path::PathBuf;
 
 /// A picture of a recipe.
@@ -224,7 +222,8 @@ impl Shot {
     fn left_out(&self) -> Vec<&'static str> {
         let Ok(scene) = self.open() else { return Vec::new() };
         let settings = Settings { without: Effects::NONE, ..self.settings(1) };
-        let all: Vec<Decisions> = scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings.request())).collect();
+        let all: Vec<Decisions> =
+            scene.objects.iter().map(|object| Decisions::of(object, &scene, &settings.request())).collect();
         let is_called = |effect: &Effect| self.without().has(*effect) && all.iter().any(|of| of.has(*effect));
         Effect::ALL.into_iter().filter(is_called).map(Effect::name).collect()
     }

@@ -2,16 +2,14 @@
 
 use super::SnapshotError;
 use super::frames::{halved, side_by_side};
-use lapidary_gpu::Gpu;
-use lapidary_scene::solver::Method;
-use lapidary_plan::{Effect, Effects};
-use lapidary_render as render;
-use lapidary_scene::solver::Paths;
-use lapidary_render::{Picture, Settings};
-use lapidary_plan::Rung;
-use lapidary_scene::deform::{merging, twisting};
-use lapidary_scene::{Bounds, Light, Object, Scene, SceneError};
 use glam::{DVec2, Vec3};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects, Rung};
+use lapidary_render as render;
+use lapidary_render::{Picture, Settings};
+use lapidary_scene::deform::{merging, twisting};
+use lapidary_scene::solver::{Method, Paths};
+use lapidary_scene::{Bounds, Light, Object, Scene, SceneError};
 use std::f32::consts::PI;
 
 /// Its file's name.

@@ -2,14 +2,12 @@
 //! the formats that a texture may have, against the oracle.
 
 use glam::{UVec2, Vec3};
-use lapidary_cdrf as mirror;
-use lapidary_render::cdrf::table;
-use lapidary_scene::solver::Format;
-use lapidary_render::cdrf::table::Table;
-use lapidary_cook::cost::cdrf::error;
-use lapidary_cook::cost::cdrf::error::Samples;
-use lapidary_cook::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
 use lapidary_assay::extremum::largest;
+use lapidary_cdrf as mirror;
+use lapidary_cook::cost::cdrf::error::{self, Samples};
+use lapidary_cook::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
+use lapidary_render::cdrf::table::{self, Table};
+use lapidary_scene::solver::Format;
 use std::sync::OnceLock;
 
 fn convolution() -> &'static Samples {
@@ -99,7 +97,7 @@ fn an_odd_width_wins_and_the_half_texel_counts() {
 /// The record's errors, which the pages show, are those of this code, as far as the pages show them.
 #[test]
 fn the_record_has_the_rungs_errors() {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/lavapipe/cdrf.json");
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements/lavapipe/cdrf.json");
     let record = std::fs::read_to_string(file).expect("the record");
     let record: CdrfReport = serde_json::from_str(&record).expect("a report");
     let again = "./cook cost cdrf --out docs/measurements/lavapipe";

@@ -3,17 +3,16 @@
 
 use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
+use lapidary_assay::extremum::{larger, largest};
 use lapidary_cdrf::oracle;
 use lapidary_cook::cost::exposed_distance;
-use lapidary_assay::extremum::{larger, largest};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
 use lapidary_render::{Curvature, Picture, RenderError, Settings};
-use lapidary_scene::Environment;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Light, Material, Object, Scene};
+use lapidary_scene::{Environment, Light, Material, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 const SIDE: u32 = 160;

@@ -1,8 +1,8 @@
 //! `cook` does what its help says.
 
 use crate::program::{cook, folder, succeeds};
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
+use lapidary_cook::cookbook;
 use lapidary_scene::{Scene, glb, gltf};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -120,7 +120,7 @@ fn changed_copy() -> String {
 fn a_changed_copy_fails_and_names_an_input() {
     let folder = folder();
     std::fs::write(folder.path().join("mine.wgsl"), changed_copy()).expect("a file");
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target/lapidary/failures/refraction_reflect.txt");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/lapidary/failures/refraction_reflect.txt");
     let before = std::fs::read(&kept).ok();
     let arguments = ["check", "refraction::reflect", "--wgsl", "mine.wgsl", "--cases", "1000"];
     let answer = cook(folder.path(), &arguments);
@@ -426,6 +426,6 @@ fn absorption_can_be_left_out() {
 fn the_committed_brilliant_is_what_the_command_writes() {
     let scene = lapidary_scene::Scene::named("brilliant").expect("built in");
     let written = lapidary_scene::glb::write(&scene).expect("glTF can hold it");
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/brilliant.glb");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/brilliant.glb");
     assert!(std::fs::read(path).expect("the asset") == written, "`./cook scene brilliant --out {path}` remakes it");
 }

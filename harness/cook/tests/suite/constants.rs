@@ -1,9 +1,9 @@
 //! Every `const` of every module has its mirror's value to the bit, also where no function reads it; those that stand for
 //! something measured are near what others published.
 
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::value::Value;
+use lapidary_cook::cookbook;
 use naga::{Expression, Handle, Literal, Module};
 use std::collections::BTreeMap;
 

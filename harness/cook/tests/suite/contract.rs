@@ -1,15 +1,12 @@
 //! The module contract: the cookbook keeps it, and each rule notices a module that does not.
 
-use lapidary_cook::check;
 use lapidary_assay::accuracy_line::Accuracy;
-use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
-use lapidary_cook::cookbook::marks;
-use lapidary_cook::cookbook::modules;
-use lapidary_cook::cookbook::translate::{Target, translate};
 use lapidary_assay::dispatch::shape::Signature;
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::{ENTRY_POINT, KernelModule};
-use lapidary_cook::formulas;
+use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
+use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
+use lapidary_cook::cookbook::translate::{Target, translate};
+use lapidary_cook::cookbook::{marks, modules};
+use lapidary_cook::{check, formulas};
 use lapidary_wgsl::RECIPES;
 use std::path::Path;
 
@@ -28,7 +25,7 @@ fn all_modules_compile_as_one() {
 
 #[test]
 fn every_module_has_its_four_places() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for module in modules() {
         assert!(root.join("crates").join(module.name).join("src/oracle.rs").is_file(), "{}", module.name);
         assert!(root.join("docs").join(format!("{}.md", module.name)).is_file(), "{}", module.name);

@@ -1,18 +1,14 @@
 //! `cook cost`: the ladder's report holds together. Nothing timed is asserted.
 
 use crate::program::{folder, succeeds};
-use lapidary_cook::cost::cdrf;
-use lapidary_cook::cost::cdrf::CdrfReport;
+use lapidary_cook::cost::cdrf::{self, CdrfReport};
 use lapidary_cook::cost::effects::EffectsReport;
-use lapidary_cook::cost::optical_path;
-use lapidary_cook::cost::optical_path::OpticalPathReport;
-use lapidary_cook::cost::page;
-use lapidary_cook::cost::page::Tables;
+use lapidary_cook::cost::optical_path::{self, OpticalPathReport};
+use lapidary_cook::cost::page::{self, Tables};
 use lapidary_cook::cost::restraint::RestraintReport;
 use lapidary_cook::cost::sphere::{ALBEDOS, Law, RADII, Row, SphereReport};
 use lapidary_cook::cost::{Errors, MEASURES, Report, views};
-use lapidary_reference::random_walk;
-use lapidary_reference::random_walk::Form;
+use lapidary_reference::random_walk::{self, Form};
 use lapidary_render::{Frame, Settings};
 use lapidary_scene::Scene;
 use serde_json::Value;
@@ -84,8 +80,7 @@ fn errors_and_times_are_of_the_same_pictures() {
         let settings =
             Settings { rung: "bvh-2".parse().expect("a rung"), samples, ..Settings::of_size(report.side, report.side) };
         let scene = view.open().expect("built in");
-        let picture =
-            |scene: &Scene| lapidary_render::render(super::gpu(), scene, &settings).expect("rendered");
+        let picture = |scene: &Scene| lapidary_render::render(super::gpu(), scene, &settings).expect("rendered");
         let (now, next) = (picture(&scene), picture(&views::turned(&scene)));
         let reference = view.reference(super::gpu()).expect("committed");
         let errors = Errors::between(&now, &reference);
@@ -203,7 +198,7 @@ fn the_pages_show_the_record() {
 }
 
 fn docs(name: &str) -> String {
-    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     std::fs::read_to_string(docs.join(name)).expect(name)
 }
 

@@ -1,13 +1,12 @@
 //! The deferred way against the forward one (the paper's sections 4.3.1 and 4.3.4).
 
 use glam::{Vec3, Vec4};
-use lapidary_cook::cost::Errors;
 use lapidary_assay::extremum::larger;
+use lapidary_cook::cost::Errors;
 use lapidary_render as render;
-use lapidary_scene::Environment;
 use lapidary_render::Settings;
-use lapidary_scene::Scene;
 use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene};
 
 #[test]
 fn the_composite_shows_the_forward_picture() {

@@ -1,11 +1,10 @@
 //! The property tests of every formula, at the default number of cases, and of every naive form on its benign domain: from the
 //! suite's seed, and from a second one.
 
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
-use lapidary_cook::formulas;
-use lapidary_assay::property::seed::SuiteSeed;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
+use lapidary_cook::check::{self, Source};
+use lapidary_cook::formulas;
+use lapidary_cook::seed::SuiteSeed;
 
 /// A line for each formula that does not hold; it ends with the command that runs the same inputs again.
 fn faults(seed: u64) -> Vec<String> {

@@ -1,12 +1,11 @@
 //! The white furnace: surrounded by radiance 1, a clear stone shows radiance 1 wherever one looks, for what its surface does not
 //! reflect comes from inside, and what is still inside when a ray ends is taken from the environment as well.
 
-use lapidary_render as render;
-use lapidary_scene::Environment;
 use lapidary_plan::Rung;
+use lapidary_render as render;
 use lapidary_render::Settings;
-use lapidary_scene::Scene;
 use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene};
 
 /// Sums of products whose weights add up to 1, each rounded, one for every hit, over the 16 samples of a pixel.
 fn bound(rung: Rung) -> f32 {

@@ -1,12 +1,12 @@
 //! The gem recipes as wholes: scale and place, dispersion's order, energy with more bounces.
 
 use glam::Vec3;
-use lapidary_cook::cost::Errors;
 use lapidary_assay::extremum::{larger, largest};
-use lapidary_render::pixel::Viewer;
-use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
+use lapidary_cook::cost::Errors;
 use lapidary_plan::Rung;
+use lapidary_render as render;
+use lapidary_render::pixel::Viewer;
+use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
 
 fn picture(scene: &Scene, rung: &str) -> Picture {

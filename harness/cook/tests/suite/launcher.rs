@@ -25,7 +25,7 @@ impl Clone {
         for file in ["Cargo.toml", "Cargo.lock", "harness/lib.rs"] {
             std::fs::write(clone.at(file), "").expect("written");
         }
-        std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../cook"), clone.at("cook")).expect("copied");
+        std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cook"), clone.at("cook")).expect("copied");
         script(&clone.at("tools/cargo"), cargo);
         script(&clone.at("target/debug/cook"), binary);
         clone

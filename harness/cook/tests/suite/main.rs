@@ -47,8 +47,8 @@ mod vitrine;
 mod voxelization;
 mod walked_references;
 
+use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_assay::property::seed::{SEED_VARIABLE, SuiteSeed};
 
 /// The seed of the property tests. What it is stands in the output of every test that uses it and fails.
 fn seed() -> u64 {

@@ -7,10 +7,10 @@ mod properties;
 
 use bodies::Case;
 use lapidary_assay::extremum::larger;
-use lapidary_scene::solver::{Method, Stencil};
+use lapidary_optical_path::oracle::{Number, dijkstra};
 use lapidary_render::solver::{Solver, Status};
 use lapidary_render::voxel_grid::VoxelGrid;
-use lapidary_optical_path::oracle::{Number, dijkstra};
+use lapidary_scene::solver::{Method, Stencil};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 

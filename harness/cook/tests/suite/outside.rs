@@ -1,13 +1,10 @@
 //! The `Outside:` lines: each clause is a promise that is tested, or is said to promise nothing; and a promise that does not hold
 //! is noticed.
 
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
-use lapidary_cook::cookbook;
 use lapidary_assay::accuracy_line::Accuracy;
-use lapidary_cook::formulas;
-use lapidary_assay::outside;
-use lapidary_assay::outside::{Promise, accurate, any_bits, finite, holds, like};
+use lapidary_assay::outside::{self, Promise, accurate, any_bits, finite, holds, like};
+use lapidary_cook::check::{self, Source};
+use lapidary_cook::{cookbook, formulas};
 
 #[test]
 fn every_promise_holds() {

@@ -4,13 +4,12 @@ mod compare;
 
 use compare::Parity;
 use lapidary_assay::extremum::largest;
-use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_scene::Environment;
 use lapidary_render::Settings;
-use lapidary_scene::Scene;
+use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene};
 
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;

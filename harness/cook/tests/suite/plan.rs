@@ -4,13 +4,12 @@ use crate::gpu;
 use glam::Vec3;
 use lapidary_gpu::capture::{Capture, Resource, capture};
 use lapidary_plan::{Effect, Effects, Quality, Technique};
-use lapidary_render::plan::Plan;
 use lapidary_render as render;
+use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, Settings};
-use lapidary_scene::Environment;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
-use lapidary_scene::{Density, Material, Object, Scene};
+use lapidary_scene::{Density, Environment, Material, Object, Scene};
 use std::collections::BTreeSet;
 
 fn settings() -> Settings {
@@ -311,10 +310,8 @@ fn what_is_off_says_why() {
     let settings = settings();
     assert_eq!(off(&one("brilliant"), &settings, Effect::Absorption), "attenuation white");
     assert_eq!(off(&one("prism"), &settings, Effect::Cdrf), "nothing inside scatters");
-    let plain = with_material("ruby", |material| Material {
-        dispersion: lapidary_scene::Dispersion::None,
-        ..material.clone()
-    });
+    let plain =
+        with_material("ruby", |material| Material { dispersion: lapidary_scene::Dispersion::None, ..material.clone() });
     assert_eq!(off(&plain, &settings, Effect::Dispersion), "dispersion 0");
     let thin = with_material("ruby", |material| Material { thickness: 0.0, ..material.clone() });
     for effect in [Effect::ConvexTrace, Effect::Absorption, Effect::Dispersion] {

@@ -1,9 +1,9 @@
 //! Whole walks through a slab on the GPU: against the mirror decision by decision, and in the mean against what is known without walks.
 
 use glam::Vec3;
-use lapidary_render::compute::{Binding, RecipeRun, run_recipe};
-use lapidary_reference::random_walk::half_space;
 use lapidary_random_walk::slab::{self, Slab, SlabExit};
+use lapidary_reference::random_walk::half_space;
+use lapidary_render::compute::{Binding, RecipeRun, run_recipe};
 use lapidary_veins::{self as veins, VeinsPattern};
 
 const UNIFORM: VeinsPattern =

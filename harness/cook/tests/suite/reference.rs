@@ -1,15 +1,14 @@
 //! The reference against the GPU, where both follow the same light: what a stone's surface reflects. That holds camera,
 //! sample places, environment and reflectance of one to those of the other.
 
-use lapidary_cook::cost::views::{CONCAVE, SHOWN, VIEWS};
 use lapidary_assay::extremum::larger;
+use lapidary_cook::cost::views::{CONCAVE, SHOWN, VIEWS};
+use lapidary_plan::Rung;
 use lapidary_reference::spectral;
 use lapidary_render as render;
-use lapidary_scene::Environment;
 use lapidary_render::{Picture, Settings};
-use lapidary_plan::Rung;
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Dispersion, Scene};
+use lapidary_scene::{Dispersion, Environment, Scene};
 
 const SIDE: u32 = 96;
 

@@ -1,26 +1,25 @@
 //! Releases: every module states which it is, the tables hold what the modules are, the changelog names what changed, and
 //! an old copy is recognised however it was pasted.
 //!
-//! After a change to a module: `LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-harness --test suite -- releases`.
+//! After a change to a module: `LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-cook --test suite -- releases`.
 
 use crate::program::{cook, folder, succeeds};
-use lapidary_cook::cookbook::release;
-use lapidary_cook::cookbook::release::{CURRENT, Change, Hashes, History, Release};
-use lapidary_cook::cookbook::{module, modules};
 use lapidary_assay::tokens::{items, tokens};
+use lapidary_cook::cookbook::release::{self, CURRENT, Change, Hashes, History, Release};
+use lapidary_cook::cookbook::{module, modules};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Where it is set, the lines and the table are written instead of compared.
 const REFRESH: &str = "LAPIDARY_REFRESH_RELEASE";
-const COMMAND: &str = "LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-harness --test suite -- releases";
+const COMMAND: &str = "LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-cook --test suite -- releases";
 
 fn history() -> &'static History {
     History::of_cookbook()
 }
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("wgsl")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../wgsl")
 }
 
 /// Compares a file with what it ought to hold, or writes it.

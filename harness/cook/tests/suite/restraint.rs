@@ -1,19 +1,17 @@
 //! Rays that end when what they carry can no longer be seen: the bound on the picture, and what the bound rests on.
 
 use glam::{DVec3, Vec3};
-use lapidary_environment as environment;
-use lapidary_cook::cost::restraint::facets;
 use lapidary_assay::extremum::larger;
-use lapidary_render::pixel::Shading;
 use lapidary_assay::property::draws::Draws;
-use lapidary_scene::spectrum;
-use lapidary_render::restraint::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance, largest_weight};
-use lapidary_render as render;
-use lapidary_scene::Environment;
-use lapidary_render::{Picture, Settings};
+use lapidary_cook::cost::restraint::facets;
+use lapidary_environment as environment;
 use lapidary_plan::{Rung, Spectrum};
-use lapidary_scene::Scene;
+use lapidary_render as render;
+use lapidary_render::pixel::Shading;
+use lapidary_render::restraint::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance, largest_weight};
+use lapidary_render::{Picture, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
+use lapidary_scene::{Environment, Scene, spectrum};
 
 const SIDE: u32 = 96;
 /// Where the recipe compares, ...

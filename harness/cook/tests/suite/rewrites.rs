@@ -1,11 +1,9 @@
 //! Rewrites that are the same on paper and lose what a comment sells: a user's copy with one of them fails its check, where the
 //! tolerance of backward error alone would forgive most.
 
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
-use lapidary_cook::cookbook;
-use lapidary_cook::formulas;
 use lapidary_assay::property::Settings;
+use lapidary_cook::check::{self, Source};
+use lapidary_cook::{cookbook, formulas};
 
 /// Function, what stands there, what one might write instead.
 const REWRITES: &[(&str, &str, &str)] = &[

@@ -3,16 +3,13 @@
 mod branches;
 
 use branches::{Exception, Line};
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch::Kernel;
 use lapidary_assay::formula::Formula;
-use lapidary_cook::formulas;
 use lapidary_assay::interpreter::{Nearest, Program};
 use lapidary_assay::property::Settings;
-use lapidary_assay::property::seams;
-use lapidary_assay::property::seams::{Fault, Seam};
+use lapidary_assay::property::seams::{self, Fault, Seam};
+use lapidary_cook::check::{self, Source};
+use lapidary_cook::{cookbook, formulas};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 

@@ -1,12 +1,10 @@
 //! A failure can be run again from what is printed, and work can be shared out.
 
 use crate::program::{cook, succeeds};
-use lapidary_cook::check;
-use lapidary_cook::check::Source;
-use lapidary_cook::cookbook;
-use lapidary_cook::formulas;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Settings};
+use lapidary_cook::check::{self, Source};
+use lapidary_cook::{cookbook, formulas};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,11 +1,9 @@
 //! The `portable` bounds, held to the worst that WGSL lets a device make of a function.
 
-use lapidary_cook::check;
-use lapidary_cook::cookbook;
-use lapidary_cook::formulas;
 use lapidary_assay::interpreter::Program;
 use lapidary_assay::property::slack;
 use lapidary_assay::property::tolerance::Tolerance;
+use lapidary_cook::{check, cookbook, formulas};
 
 /// Functions whose portable bounds are derived from what WGSL guarantees.
 const DERIVED: [&str; 12] = [

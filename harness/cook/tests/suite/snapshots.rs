@@ -1,10 +1,9 @@
 //! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
 
+use lapidary_cook::snapshot::{self, Committed, Comparison, SHOTS, Shot, SnapshotError};
 use lapidary_render as render;
 use lapidary_render::Picture;
 use lapidary_scene::Scene;
-use lapidary_cook::snapshot;
-use lapidary_cook::snapshot::{Committed, Comparison, SHOTS, Shot, SnapshotError};
 use std::path::Path;
 
 fn source() -> String {

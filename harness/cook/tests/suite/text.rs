@@ -1,9 +1,9 @@
 //! What users rely on in text: every signature and every promised accuracy. A change of either is a change of the cookbook's
 //! interface, and is to be seen in review. `INSTA_UPDATE=always ./cook test text` accepts it.
 
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::shape::Signature;
+use lapidary_cook::cookbook;
 use std::fmt::Write as _;
 
 #[test]

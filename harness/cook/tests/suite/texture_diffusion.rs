@@ -2,8 +2,8 @@
 //! between them, seams.
 
 use glam::Vec3;
-use lapidary_cdrf::oracle as exact;
 use lapidary_assay::extremum::larger;
+use lapidary_cdrf::oracle as exact;
 use lapidary_gpu::Gpu;
 use lapidary_render::texture_diffusion::{Chart, Taps, TextureDiffusion};
 use lapidary_texture_diffusion as mirror;
@@ -225,7 +225,7 @@ fn taps_are_as_few_as_the_error_allows() {
         );
     }
     println!("{rows}");
-    let page = include_str!("../../../docs/texture_diffusion.md");
+    let page = include_str!("../../../../docs/texture_diffusion.md");
     assert!(page.contains(&rows), "docs/texture_diffusion.md should hold:\n{rows}");
 }
 

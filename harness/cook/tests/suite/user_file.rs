@@ -1,11 +1,10 @@
 //! `cook check --wgsl` on other people's files: what is in them is found and said, whatever they hold ends in an answer.
 
 use crate::program::{Answer, cook, cook_in, folder, succeeds};
-use lapidary_assay::literal::{Language, call};
-use lapidary_cook::cookbook;
 use lapidary_assay::dispatch;
-use lapidary_cook::formulas;
+use lapidary_assay::literal::{Language, call};
 use lapidary_assay::property::Settings;
+use lapidary_cook::{cookbook, formulas};
 use serde_json::Value;
 use std::path::Path;
 
@@ -360,7 +359,7 @@ fn settled(text: &str) -> Vec<String> {
 /// The page's example is what the command prints. `LAPIDARY_REFRESH_PAGES=1` writes it anew.
 #[test]
 fn the_page_shows_what_the_command_prints() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs/check.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/check.md");
     let page = std::fs::read_to_string(&path).expect("the page");
     let (before, rest) = page.split_once("<!-- captured: ").expect("a place");
     let (arguments, rest) = rest.split_once(" -->\n").expect("a command");

@@ -1,10 +1,10 @@
 //! Voxels of meshes on the device, against volumes, winding numbers in f64, the mirror, and one another.
 
 use glam::{DQuat, DVec3, UVec3, Vec3};
-use lapidary_scene::surfaces::{sphere, torus};
-use lapidary_scene::{Bounds, Mesh, Scene};
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization::{Status, Voxelizer};
+use lapidary_scene::surfaces::{sphere, torus};
+use lapidary_scene::{Bounds, Mesh, Scene};
 use lapidary_voxelization::{kernels, oracle};
 use rayon::prelude::*;
 

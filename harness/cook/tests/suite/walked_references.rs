@@ -1,13 +1,13 @@
 //! The committed pictures by random walks.
 
-use lapidary_cook::cost::exposed_distance;
 use lapidary_assay::extremum::larger;
+use lapidary_cook::cost::exposed_distance;
+use lapidary_cook::snapshot::frames::halved;
+use lapidary_cook::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 use lapidary_reference::random_walk::mesh;
 use lapidary_render as render;
 use lapidary_render::Settings;
 use lapidary_scene::Scene;
-use lapidary_cook::snapshot::frames::halved;
-use lapidary_cook::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 
 /// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
 /// walks leave open.

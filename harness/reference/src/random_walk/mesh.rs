@@ -13,11 +13,10 @@ mod from_lights;
 mod walk;
 
 use super::generator;
-use lapidary_scene::view::View;
-use lapidary_scene::{Environment, LARGEST_SIDE};
-use lapidary_scene::mesh_diagnosis::open_edges;
-use lapidary_scene::{Light, Scene};
 use glam::{DVec2, DVec3};
+use lapidary_scene::mesh_diagnosis::open_edges;
+use lapidary_scene::view::View;
+use lapidary_scene::{Environment, LARGEST_SIDE, Light, Scene};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;

@@ -2,10 +2,10 @@
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
+use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
 use lapidary_scene::polyhedron::{MAX_PLANES, Plane};
 use lapidary_scene::{Mesh, Object};
-use glam::{DVec3, Mat4, Vec4};
 use std::sync::OnceLock;
 
 /// How bodies are met.

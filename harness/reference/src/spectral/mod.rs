@@ -17,11 +17,10 @@ mod trace;
 
 pub use geometry::Geometry;
 
-use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES};
-use lapidary_scene::{Object, Scene};
 use geometry::Bodies;
 use glam::DVec3;
 use lapidary_absorption::oracle as absorption;
+use lapidary_scene::{Environment, LARGEST_SIDE, Object, SAMPLES, Scene};
 use rayon::prelude::*;
 use spectrum::Wavelength;
 use std::sync::atomic::{AtomicU64, Ordering};

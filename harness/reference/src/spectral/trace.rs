@@ -1,10 +1,10 @@
 //! A ray of one wavelength, split at every surface that it meets.
 
 use super::geometry::{Bodies, Hit, Place};
-use lapidary_scene::Environment;
 use glam::DVec3;
 use lapidary_fresnel::oracle as fresnel;
 use lapidary_refraction::oracle as refraction;
+use lapidary_scene::Environment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 

@@ -1,11 +1,10 @@
 //! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
 
-use crate::compute;
-use crate::compute::{Binding, RecipeRun};
-use lapidary_gpu::Gpu;
+use crate::compute::{self, Binding, RecipeRun};
 use crate::shader::ShaderError;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
+use lapidary_gpu::Gpu;
 use lapidary_scene::solver::Format;
 
 /// Side of the recipe's workgroups.

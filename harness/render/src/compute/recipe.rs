@@ -1,8 +1,8 @@
 //! A recipe's compute entry point, run once over buffers of its own.
 
 use super::Kernel;
-use lapidary_gpu::Gpu;
 use crate::shader::ShaderError;
+use lapidary_gpu::Gpu;
 
 /// What stands at a binding; numbered from 0 in its group.
 #[derive(Clone, Copy, Debug)]

@@ -1,15 +1,14 @@
 use super::super::lighting::Lighting;
 use super::super::pass::Before;
 use super::*;
+use crate::{Settings, scene_pass};
+use glam::{Vec2, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_gpu::AdapterChoice;
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_scene::solver::Reflectance;
-use lapidary_plan::Rung;
-use crate::{Settings, scene_pass};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Mesh, Scene, atlas};
-use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
 type Half = exr::prelude::f16;

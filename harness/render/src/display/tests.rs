@@ -1,10 +1,10 @@
 use super::*;
-use lapidary_gpu::AdapterChoice;
 use crate::pixel::display::{backdrop, shown};
+use glam::{Vec2, Vec3, Vec4};
 use lapidary_assay::property::draws::Draws;
+use lapidary_gpu::AdapterChoice;
 use lapidary_plan::Rung;
 use lapidary_scene::Scene;
-use glam::{Vec2, Vec3, Vec4};
 
 fn gpu() -> &'static Gpu {
     Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"))

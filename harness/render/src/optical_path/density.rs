@@ -3,9 +3,9 @@
 use super::super::RenderError;
 use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
+use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Encoder, Gpu};
 use lapidary_scene::{Density, DensityGrid};
-use crate::voxel_grid::VoxelGrid;
 use lapidary_veins::VeinsPattern;
 
 const RECIPE: &str = "optical_path_density";

@@ -1,10 +1,10 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
 use crate::compute::Kernel;
-use lapidary_gpu::{Device, Encoder, Gpu};
 use crate::device::buffer;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
+use lapidary_gpu::{Device, Encoder, Gpu};
 
 const RECIPE: &str = "optical_path_seed";
 /// Invocations of a workgroup along each side of a map.

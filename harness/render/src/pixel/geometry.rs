@@ -1,15 +1,15 @@
 //! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the mirrors.
 
 use super::SurfacePoint;
-use lapidary_plan::Geometry;
 use crate::{RenderError, Settings};
-use lapidary_scene::normals::soft_normals;
-use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
 use glam::Vec3;
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
 use lapidary_convex_trace as convex_trace;
+use lapidary_plan::Geometry;
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
+use lapidary_scene::normals::soft_normals;
+use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
 use std::borrow::Cow;
 
 /// An object with what its rung's geometry needs.

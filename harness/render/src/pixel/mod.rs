@@ -10,19 +10,17 @@ mod surface;
 pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
-use lapidary_plan::Effect;
 use crate as render;
-use lapidary_scene::Environment;
-use lapidary_plan::{Rung, Spectrum};
 use crate::Settings;
-use lapidary_scene::Material;
 use geometry::{Entry, Hit, Place};
 use glam::{Mat3, UVec2, Vec3};
 use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
 use lapidary_environment as environment;
 use lapidary_fresnel as fresnel;
+use lapidary_plan::{Effect, Rung, Spectrum};
 use lapidary_refraction as refraction;
+use lapidary_scene::{Environment, Material};
 
 /// What happened to a ray at one facet, as far as it is discrete: which facet, and which channels left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! Which point of a mesh a pixel shows.
 
-use lapidary_scene::clip_from_world;
-use lapidary_scene::{Mesh, Scene};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use lapidary_scene::{Mesh, Scene, clip_from_world};
 
 /// A point of a mesh's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

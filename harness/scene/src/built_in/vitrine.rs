@@ -5,8 +5,9 @@ use glam::{DQuat, DVec3, Vec3};
 use super::{VERTICAL_FOV, materials, prisms, stone, translucent};
 use crate::cuts::{BrilliantParameters, CutError, round_brilliant};
 use crate::surfaces::rounded_box;
-use crate::{Averaging, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure};
-use crate::{Bounds, gltf};
+use crate::{
+    Averaging, Bounds, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure, gltf,
+};
 
 /// What [`made`] makes, in a second or two.
 const VITRINE: &[u8] = include_bytes!("../../../assets/vitrine.glb");

@@ -1,8 +1,8 @@
 use super::*;
-use lapidary_assay::extremum::larger;
 use crate::Bounds;
 use crate::convex::is_closed;
 use glam::{Vec2, Vec3};
+use lapidary_assay::extremum::larger;
 
 #[test]
 fn the_candle_is_closed_smooth_and_right_side_out() {

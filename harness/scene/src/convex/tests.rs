@@ -1,8 +1,10 @@
 use super::*;
-use lapidary_assay::extremum::largest;
-use crate::cuts::{BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut};
+use crate::cuts::{
+    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
+};
 use crate::polyhedron::Polyhedron;
 use crate::{Averaging, Scene};
+use lapidary_assay::extremum::largest;
 
 fn all_cuts() -> [(&'static str, Polyhedron, usize); 4] {
     [

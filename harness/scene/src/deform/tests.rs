@@ -1,9 +1,9 @@
 use super::*;
-use lapidary_assay::extremum::larger;
 use crate::implicit::tests::survey;
 use crate::normals::{Averaging, shared_normals};
 use crate::surfaces::torus;
 use glam::{DQuat, dvec2};
+use lapidary_assay::extremum::larger;
 
 /// A ring that stands aslant, off the axis.
 fn ring() -> Mesh {

@@ -193,9 +193,7 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
         note("attenuation", "`KHR_materials_volume`", "no light gets in without a transmission");
     }
     let has = |name: &str| extensions(json).is_some_and(|all| all.contains_key(name));
-    if material.dispersion != crate::Dispersion::None
-        && has("KHR_materials_dispersion")
-        && !has("KHR_materials_volume")
+    if material.dispersion != crate::Dispersion::None && has("KHR_materials_dispersion") && !has("KHR_materials_volume")
     {
         note("dispersion", "`KHR_materials_dispersion` without a volume", "a thin wall disperses nothing");
     }

@@ -6,17 +6,17 @@ use std::f64::consts::PI;
 
 /// What is to be known of a mesh from a net.
 #[derive(Debug)]
-pub(in crate) struct Survey {
+pub(crate) struct Survey {
     /// In degrees.
-    pub(in crate) least_angle: f64,
+    pub(crate) least_angle: f64,
     /// The share of corners whose normal looks into their triangle.
-    pub(in crate) turned: f64,
+    pub(crate) turned: f64,
     /// Bodies that no triangle connects.
-    pub(in crate) bodies: usize,
+    pub(crate) bodies: usize,
 }
 
 /// Of a mesh that is closed, manifold, right side out, and has unit normals: which is checked.
-pub(in crate) fn survey(mesh: &Mesh) -> Survey {
+pub(crate) fn survey(mesh: &Mesh) -> Survey {
     assert!(mesh.positions.len() == mesh.normals.len() && mesh.uvs.is_empty() && mesh.halo.is_empty());
     assert!(mesh.normals.iter().all(|normal| normal.is_normalized()) && mesh.volume_and_area().0 > 0.0);
     // About each vertex, which of its neighbours follows which, counter-clockwise. A directed edge occurs once.

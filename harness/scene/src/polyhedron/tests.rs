@@ -2,7 +2,9 @@ use std::collections::HashMap;
 
 use super::triangulation::SLIVERS;
 use super::*;
-use crate::cuts::{BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut};
+use crate::cuts::{
+    BrilliantParameters, PrismParameters, StepCutParameters, octahedron, prism, round_brilliant, step_cut,
+};
 
 fn plane(x: f64, y: f64, z: f64, distance: f64) -> Plane {
     Plane { normal: DVec3::new(x, y, z), distance }

@@ -1,10 +1,9 @@
 //! The curvature-dependent reflectance's ladder.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_cook::cost::cdrf;
-use lapidary_cook::cost::cdrf::{CurvatureSource, Options, Part, plot};
-use lapidary_scene::solver::Reflectance;
+use lapidary_cook::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
 use lapidary_plan::Rung;
+use lapidary_scene::solver::Reflectance;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(cdrf::TECHNIQUE, &["--rungs", "--rounds"])?;

@@ -1,8 +1,7 @@
 //! What each effect costs.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_cook::cost::effects;
-use lapidary_cook::cost::effects::Options;
+use lapidary_cook::cost::effects::{self, Options};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but(effects::TECHNIQUE, &["--rounds"])?;

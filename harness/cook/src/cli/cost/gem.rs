@@ -1,8 +1,7 @@
 //! The gem ladder.
 
 use super::{Arguments, Context, Failure, Options, Outcome, Places, Rung, Shown, behind_a_bar, file, output, views};
-use lapidary_cook::cost;
-use lapidary_cook::cost::{CostError, plot};
+use lapidary_cook::cost::{self, CostError, plot};
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.refuse_but("gem", &["--rungs", "--views", "--rounds", "--profile"])?;

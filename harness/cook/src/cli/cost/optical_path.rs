@@ -1,8 +1,7 @@
 //! The ladder of light's ways through stone.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_cook::cost::optical_path;
-use lapidary_cook::cost::optical_path::{Options, RungReport, plot};
+use lapidary_cook::cost::optical_path::{self, Options, RungReport, plot};
 use lapidary_plan::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {

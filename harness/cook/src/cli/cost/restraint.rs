@@ -1,8 +1,7 @@
 //! What restraint saves.
 
 use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_cook::cost::restraint;
-use lapidary_cook::cost::restraint::Options;
+use lapidary_cook::cost::restraint::{self, Options};
 use lapidary_plan::Rung;
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {

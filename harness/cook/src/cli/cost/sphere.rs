@@ -1,8 +1,7 @@
 //! The translucent sphere.
 
 use super::{Arguments, Failure, Outcome, Places, Shown, behind_a_bar};
-use lapidary_cook::cost::sphere;
-use lapidary_cook::cost::sphere::plot;
+use lapidary_cook::cost::sphere::{self, plot};
 
 /// Walks through each sphere: half a minute on two cores.
 const WALKS: u64 = 1_000_000;

@@ -1,14 +1,12 @@
 //! How far a rung's function is from the one that it stands for.
 
 use super::CostError;
-use lapidary_render::cdrf::table;
-use lapidary_scene::solver::Format;
-use lapidary_render::cdrf::table::Table;
-use lapidary_gpu::Gpu;
-use lapidary_render as render;
-use lapidary_scene::solver::Reflectance;
 use glam::{UVec2, Vec3};
 use lapidary_cdrf::{self as mirror, oracle};
+use lapidary_gpu::Gpu;
+use lapidary_render as render;
+use lapidary_render::cdrf::table::{self, Table};
+use lapidary_scene::solver::{Format, Reflectance};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

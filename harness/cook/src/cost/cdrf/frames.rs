@@ -1,16 +1,14 @@
 //! The frames that a rung draws, to be timed, and the memory that they need beside mesh and material.
 
 use super::{CostError, Options, RungReport, shader};
-use crate::cost::timing;
-use crate::cost::timing::{Timed, Timing};
+use crate::cost::timing::{self, Timed, Timing};
+use glam::{Vec2, Vec3};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects};
+use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
 use lapidary_render::{Curvature, Frame, RenderError, Settings};
 use lapidary_scene::solver::Reflectance;
-use lapidary_plan::Rung;
 use lapidary_scene::{Camera, Scene, SceneError};
-use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// The scene that is timed.
@@ -227,10 +225,10 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lapidary_scene::solver::Format;
     use lapidary_assay::extremum::larger;
     use lapidary_gpu::AdapterChoice;
     use lapidary_render as render;
+    use lapidary_scene::solver::Format;
 
     #[test]
     fn the_lit_part_fills_the_frame_and_the_whole_does_not() {

@@ -2,8 +2,9 @@
 
 use super::{BLUR, CdrfReport, CurvatureSource, Part, RungReport, SPHERICAL};
 use crate::cost::CostError;
-use crate::cost::drawing;
-use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, ticks, written};
+use crate::cost::drawing::{
+    self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, ticks, written,
+};
 use plotters::prelude::*;
 
 /// Labels of the axis of times.

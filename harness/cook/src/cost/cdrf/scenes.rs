@@ -2,17 +2,15 @@
 
 use super::CostError;
 use crate::cost::exposed_distance;
-use crate::cost::timing;
-use crate::cost::timing::{Timed, Timing};
-use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects};
-use lapidary_render as render;
-use lapidary_render::{Curvature, Settings};
-use lapidary_scene::solver::Reflectance;
-use lapidary_plan::Rung;
-use lapidary_scene::Scene;
+use crate::cost::timing::{self, Timed, Timing};
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WalkedReference};
+use lapidary_gpu::Gpu;
+use lapidary_plan::{Effect, Effects, Rung};
+use lapidary_render as render;
+use lapidary_render::{Curvature, Settings};
+use lapidary_scene::Scene;
+use lapidary_scene::solver::Reflectance;
 use serde::{Deserialize, Serialize};
 
 /// The scenes.

@@ -2,10 +2,10 @@
 
 use super::CostError;
 use lapidary_render as render;
-use lapidary_scene::solver::Reflectance;
 use lapidary_render::Settings;
-use lapidary_scene::Scene;
 use lapidary_render::shader::Shader;
+use lapidary_scene::Scene;
+use lapidary_scene::solver::Reflectance;
 use lapidary_specialise::spirv_counts::SpirvCounts;
 
 /// The recipe's entry points.
@@ -24,9 +24,8 @@ mod tests {
     use super::*;
     use crate::cost::cdrf::{Options, RUNGS};
     use lapidary_assay::dispatch;
-    use lapidary_plan::{Effect, Effects};
+    use lapidary_plan::{Effect, Effects, Rung};
     use lapidary_render::Curvature;
-    use lapidary_plan::Rung;
 
     #[test]
     fn every_override_of_the_recipe_has_a_value() {

@@ -1,8 +1,7 @@
 //! How far a rung's function is from what random walks through spheres give: what the convolution itself leaves, and what a rung's errors add to it.
 
 use crate::cost::CostError;
-use crate::cost::sphere::{ScaleKind, SphereReport};
-use crate::cost::sphere::Fit;
+use crate::cost::sphere::{Fit, ScaleKind, SphereReport};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -19,7 +18,7 @@ pub struct Residuals {
 
 /// Where the spheres are recorded.
 pub fn record_file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/random_walk/sphere.json")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements/random_walk/sphere.json")
 }
 
 /// The recorded spheres.
@@ -54,8 +53,8 @@ pub fn residuals(spheres: &SphereReport, function: &(dyn Fn(f32, f32) -> f32 + S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lapidary_reference::random_walk::Form;
     use lapidary_cdrf as mirror;
+    use lapidary_reference::random_walk::Form;
 
     #[test]
     fn residuals_are_those_of_the_spheres_rows() {

@@ -3,8 +3,8 @@
 use super::views::{grey, scene, settings};
 use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
 use lapidary_gpu::Gpu;
-use lapidary_render::{Frame, Stage};
 use lapidary_plan::Rung;
+use lapidary_render::{Frame, Stage};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 

@@ -4,8 +4,9 @@ use super::page::solve_and_frame;
 use super::views::BALL;
 use super::{CELLS, GROWING, OpticalPathReport, RungReport};
 use crate::cost::CostError;
-use crate::cost::drawing;
-use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, ticks, written};
+use crate::cost::drawing::{
+    self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, ticks, written,
+};
 use plotters::prelude::*;
 
 /// Labels of the axes of times.

@@ -2,15 +2,14 @@
 
 use super::{FINEST, Measured};
 use crate::cost::CostError;
+use glam::{DVec3, Vec3};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Effect, Effects};
+use lapidary_optical_path::oracle;
+use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings};
-use lapidary_plan::Rung;
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Material, Medium, Object, Scene, SceneError};
-use glam::{DVec3, Vec3};
-use lapidary_optical_path::oracle;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_PI, PI};

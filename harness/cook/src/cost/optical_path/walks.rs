@@ -3,14 +3,14 @@
 use super::Measured;
 use super::views::{SIDE, settings};
 use crate::cost::{CostError, exposed_distance};
+use crate::snapshot::frames::halved;
+use crate::snapshot::{EXR_SIDE, WALKED};
 use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
 use lapidary_render as render;
 use lapidary_render::RenderError;
-use lapidary_plan::Rung;
 use lapidary_scene::Scene;
-use crate::snapshot::frames::halved;
-use crate::snapshot::{EXR_SIDE, WALKED};
 
 /// The picture that is walked again, for the spread of its walks, has so many for each pixel.
 const FEW: u32 = 4;

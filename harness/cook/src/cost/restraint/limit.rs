@@ -1,16 +1,15 @@
 //! Rays that end when what they carry can no longer be seen.
 
 use super::{Options, SCENES};
-use crate::cost::timing;
-use crate::cost::timing::{Timed, Timing};
+use crate::cost::timing::{self, Timed, Timing};
 use crate::cost::{CostError, views};
 use lapidary_assay::extremum::larger;
 use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
+use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::restraint::LEAST_DIFFERENCE;
-use lapidary_render as render;
 use lapidary_render::{RenderError, Settings};
-use lapidary_plan::Rung;
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 

@@ -2,13 +2,13 @@
 
 use crate::cost::CostError;
 use lapidary_gpu::{Encoder, Gpu};
-use lapidary_scene::solver::{Method, Stencil};
-use lapidary_render::solver::Solver;
+use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_render::RenderError;
-use lapidary_scene::{Bounds, Mesh, Scene};
+use lapidary_render::solver::Solver;
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization::Voxelizer;
-use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
+use lapidary_scene::solver::{Method, Stencil};
+use lapidary_scene::{Bounds, Mesh, Scene};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 

@@ -1,14 +1,13 @@
 //! Each material drawn by its own variant of the recipe, beside one variant with every effect for all of them.
 
 use crate::cost::CostError;
-use crate::cost::timing;
-use crate::cost::timing::{Timed, Timing};
+use crate::cost::timing::{self, Timed, Timing};
 use lapidary_assay::extremum::larger;
 use lapidary_gpu::Gpu;
-use lapidary_render::plan::Plan;
-use lapidary_render as render;
 use lapidary_plan::{Geometry, Rung, Spectrum};
+use lapidary_render as render;
 use lapidary_render::Settings;
+use lapidary_render::plan::Plan;
 use lapidary_scene::{Dispersion, Material, Object, Scene};
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,8 @@
 //! Reflectance functions fitted to what a sphere really shows.
 
-use lapidary_reference::random_walk::{BINS, Profile};
 use lapidary_assay::golden_section::golden_section;
 use lapidary_cdrf as cdrf;
+use lapidary_reference::random_walk::{BINS, Profile};
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 
@@ -120,8 +120,8 @@ pub fn best_sigma(value: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lapidary_reference::random_walk::{half_space, profile};
     use lapidary_cdrf::oracle;
+    use lapidary_reference::random_walk::{half_space, profile};
 
     /// A reflectance of a cosine and a width.
     type Reflectance = fn(f64, f64) -> f64;

@@ -1,11 +1,11 @@
 //! The spheres as pictures: the width over the radius, and what spheres show over the angle from the light.
 
+use super::Form;
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
 use crate::cost::CostError;
 use crate::cost::drawing::{COLORS, Drawn, GREY, LIGHT, Root, captioned, legend, line, span, ticks, written};
-use super::Form;
-use lapidary_reference::random_walk::BINS;
 use lapidary_cdrf as cdrf;
+use lapidary_reference::random_walk::BINS;
 use plotters::prelude::*;
 
 /// The spheres whose profiles are drawn: their albedo ...

@@ -1,8 +1,8 @@
 //! Rules for the width: how it goes with the radius, and what one width times radius costs.
 
-use super::{Row, ScaleKind, rows_of};
 use super::fit::best_sigma;
 use super::{Fit, Form};
+use super::{Row, ScaleKind, rows_of};
 use lapidary_reference::random_walk::Profile;
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
 //! Of surfaces and what they reflect: cdrf, curvature, fresnel, microfacet.
 
 use super::{any_vector, close, of_length, that};
+use glam::{DVec3, UVec2, Vec2, Vec3};
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
 use lapidary_assay::property::draws::Draws;
-use glam::{DVec3, UVec2, Vec2, Vec3};
 use lapidary_cdrf::oracle as cdrf;
 use lapidary_curvature::{CurvatureFrame, CurvaturePixel};
 use lapidary_microfacet as microfacet;

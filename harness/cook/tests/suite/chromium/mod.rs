@@ -8,8 +8,8 @@ mod browser;
 
 use crate::specialise::{specialised_program, specialised_texts};
 use browser::Message;
-use lapidary_cook::cookbook::modules;
 use lapidary_assay::dispatch;
+use lapidary_cook::cookbook::modules;
 use lapidary_wgsl::{RECIPES, compose};
 use std::io::Write as _;
 use std::sync::OnceLock;

@@ -8,9 +8,8 @@ mod canonical;
 mod pictures;
 
 use canonical::{Canonical, canonical};
-use lapidary_cook::cookbook::marks;
-use lapidary_cook::cookbook::marks::override_of;
 use lapidary_assay::dispatch;
+use lapidary_cook::cookbook::marks::{self, override_of};
 use lapidary_specialise::specialise;
 use lapidary_specialise::spirv_counts::spirv_counts;
 use lapidary_wgsl::{RECIPES, Recipe};

@@ -5,10 +5,9 @@ use super::cut;
 use crate::gpu;
 use glam::Vec3;
 use lapidary_plan::{Decisions, Effect, Effects};
-use lapidary_scene::Environment;
 use lapidary_render::{Settings, render_with};
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Light, Medium, Scene};
+use lapidary_scene::{Environment, Light, Medium, Scene};
 
 /// A scene and a rung, and effects of their recipe, each of which is left out in turn.
 struct Case {

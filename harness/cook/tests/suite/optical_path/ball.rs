@@ -3,9 +3,9 @@
 use super::bodies::Case;
 use super::solve;
 use glam::{UVec3, Vec3};
-use lapidary_scene::solver::{Method, Stencil};
 use lapidary_optical_path::oracle;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, relax, seed, through};
+use lapidary_scene::solver::{Method, Stencil};
 
 /// Voxels along the ball's radius.
 const RADIUS: f32 = 30.0;

@@ -1,12 +1,12 @@
 //! Bodies of voxels with seeds, made on the CPU.
 
 use glam::{UVec3, Vec3};
-use lapidary_gpu::Gpu;
 use lapidary_assay::property::draws::Draws;
-use lapidary_scene::{Bounds, Scene};
-use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_gpu::Gpu;
 use lapidary_optical_path::kernels::Body;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};
+use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_scene::{Bounds, Scene};
 
 /// A body in a grid, with its seeds.
 #[derive(Clone, Debug)]

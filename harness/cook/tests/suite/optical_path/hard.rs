@@ -4,8 +4,8 @@ use super::bodies::Case;
 use super::{STENCILS, assert_same, solve, solve_within, truth};
 use glam::UVec3;
 use lapidary_assay::extremum::larger;
-use lapidary_scene::solver::Method;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, luminance};
+use lapidary_scene::solver::Method;
 
 fn ball(cells: u32, extinction: f32) -> Case {
     let middle = 0.5 * cells as f32;

@@ -3,9 +3,9 @@
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve};
 use glam::{IVec3, UVec3};
-use lapidary_scene::solver::{Method, Stencil};
 use lapidary_assay::property::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
+use lapidary_scene::solver::{Method, Stencil};
 
 /// Of Godunov's costs: what the tolerance of its passes adds up to.
 const GODUNOV: f32 = 1e-4;

@@ -4,9 +4,9 @@ use super::{RADIUS, ball, draw, lamp, settings, spot, sun};
 use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_assay::extremum::larger;
-use lapidary_scene::{Light, Scene};
-use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_optical_path::oracle;
+use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_scene::{Light, Scene};
 use std::f64::consts::PI;
 
 /// Optical depths along the ball's radius.

@@ -5,11 +5,11 @@ use crate::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Note;
+use lapidary_render::voxel_grid::VoxelGrid;
+use lapidary_render::voxelization::Voxelizer;
 use lapidary_render::{Picture, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Averaging, Bounds, Light, Mesh, Scene};
-use lapidary_render::voxel_grid::VoxelGrid;
-use lapidary_render::voxelization::Voxelizer;
 use std::f64::consts::PI;
 
 fn is_black(picture: &Picture) -> bool {

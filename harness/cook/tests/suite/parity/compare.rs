@@ -1,11 +1,11 @@
 //! A picture of the GPU against the mirrors, pixel by pixel.
 
-use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 use crate::extremum::larger;
 use crate::property::draws::Draws;
 use crate::render::{Picture, RenderError, Settings, Spectrum};
 use crate::scene::Scene;
 use glam::Vec3;
+use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 
 /// How far, in pixels, a rasteriser may have put a pixel's middle beside where it is: Vulkan devices snap vertices to a grid, of
 /// 1/256 pixel on lavapipe and every desktop GPU (at least 1/16 is guaranteed).

@@ -6,8 +6,7 @@ mod recipes;
 pub(crate) use recipes::specialised_texts;
 
 use crate::gpu;
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::{ENTRY_POINT, Kernel, KernelModule};
+use lapidary_assay::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
 use lapidary_assay::property::draws::Draws;
 use lapidary_specialise::specialise;
 use naga::back;

@@ -5,8 +5,7 @@
 use super::{ROWS, SEED, outcomes, specialised};
 
 use lapidary_assay::dispatch::shape::Signature;
-use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::KernelModule;
+use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_assay::property::draws::Draws;
 use lapidary_specialise::specialise;
 use lapidary_wgsl::{RECIPES, Recipe};

@@ -5,10 +5,10 @@ mod emission;
 
 use super::walk::{Matter, Ray};
 use super::{Pixel, Rendering, Settings, generator, stratum};
-use lapidary_scene::view::View;
-use lapidary_scene::{Bounds, Light};
 use emission::Emission;
 use glam::DVec3;
+use lapidary_scene::view::View;
+use lapidary_scene::{Bounds, Light};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 use super::*;
+use glam::Vec3;
 use lapidary_assay::extremum::larger;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Material, Medium, Mesh, Object};
-use glam::Vec3;
 use std::time::Instant;
 
 fn settings(side: u32, samples_per_pixel: u32) -> Settings<'static> {

@@ -1,8 +1,8 @@
 use super::*;
+use glam::{UVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_gpu::AdapterChoice;
 use lapidary_scene::Bounds;
-use glam::{UVec3, Vec3};
 use std::sync::Arc;
 
 /// 40 voxels do not fill their rows' words.

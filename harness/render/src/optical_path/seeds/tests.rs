@@ -1,15 +1,14 @@
 use super::*;
-use lapidary_assay::extremum::larger;
-use lapidary_gpu::AdapterChoice;
 use crate::Settings;
 use crate::device::texture;
-use crate::light_views;
-use crate::light_views::LightView;
+use crate::light_views::{self, LightView};
 use crate::lighting::Lighting;
 use crate::reflective_shadow_map::view_buffer;
-use lapidary_scene::{Bounds, Light, Scene};
 use glam::{IVec3, UVec3, Vec3, Vec4};
+use lapidary_assay::extremum::larger;
+use lapidary_gpu::AdapterChoice;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, decode, seed};
+use lapidary_scene::{Bounds, Light, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt as _, SeedableRng as _};
 

@@ -1,6 +1,6 @@
 use super::*;
-use lapidary_assay::extremum::larger;
 use crate::{Mineral, glb};
+use lapidary_assay::extremum::larger;
 
 fn made() -> Scene {
     Scene::made("vitrine").expect("built in")

@@ -1,8 +1,8 @@
 //! Rays from lights towards bodies.
 
 use super::super::walk::Ray;
-use lapidary_scene::{Bounds, Light};
 use glam::{DVec2, DVec3};
+use lapidary_scene::{Bounds, Light};
 use std::f64::consts::{PI, TAU};
 
 /// Lights about a sphere that holds all bodies.

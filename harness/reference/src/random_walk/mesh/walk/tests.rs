@@ -1,9 +1,9 @@
 use super::*;
 use crate::random_walk::{BINS, Profile, generator, in_disc, profile};
+use glam::{DQuat, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
 use lapidary_scene::{Averaging, Camera, Material, Mesh};
-use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -1,11 +1,10 @@
 use super::super::tests::{cuboid, estimate, grey, h, scene, seen, sun};
 use super::*;
 use crate::random_walk::{generator, half_space};
-use lapidary_scene::Environment;
+use glam::{UVec3, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
-use lapidary_scene::{DensityGrid, Medium, Mesh};
-use glam::{UVec3, Vec3};
+use lapidary_scene::{DensityGrid, Environment, Medium, Mesh};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
 

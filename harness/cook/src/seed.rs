@@ -1,6 +1,6 @@
 //! The suite's seed: derived from the commit, so that each change meets other inputs, and a run on the same commit the same ones.
 
-use super::draws::mix;
+use lapidary_assay::property::draws::mix;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
@@ -28,7 +28,7 @@ impl SuiteSeed {
     pub fn of_environment() -> Result<&'static SuiteSeed, String> {
         static SEED: OnceLock<Result<SuiteSeed, String>> = OnceLock::new();
         SEED.get_or_init(|| {
-            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
             derive(std::env::var(SEED_VARIABLE).ok().as_deref(), || tree_of(&root))
         })
         .as_ref()
