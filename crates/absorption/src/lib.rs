@@ -3,6 +3,8 @@
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::Vec3;

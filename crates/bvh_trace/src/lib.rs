@@ -4,6 +4,8 @@
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
 //! [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 pub mod traversal;
 

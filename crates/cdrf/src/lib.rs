@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/cdrf.wgsl`, line by line: curvature-dependent reflectance. Units, domain and accuracy stand above
 //! the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::{UVec2, Vec2, Vec3, Vec4};

@@ -3,6 +3,8 @@
 
 use glam::{Vec2, Vec3};
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 /// Weight of the fallback point against the three lines in [`centre`], 2^-12.

@@ -4,6 +4,8 @@
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. `position_x`
 //! stands for the derivative of the position along the screen's x axis, and so on.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 #[cfg(test)]
 mod tests;

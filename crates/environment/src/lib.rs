@@ -1,6 +1,8 @@
 //! Mirror of `wgsl/environment.wgsl`: coordinates and texels of a latitude-longitude map, and a procedural studio. The
 //! shader's comments hold the reasons, domains and accuracies.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _};

@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/fresnel.wgsl`, line by line: the share of unpolarised light that an interface between two
 //! dielectrics reflects. Units, domain and accuracy stand above the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 /// Reflectance of a dielectric interface, exact for unpolarised light, with total internal reflection.

@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/microfacet.wgsl`, line by line: the highlight of a rough dielectric surface. Units, domain and
 //! accuracy stand above the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::Vec3;

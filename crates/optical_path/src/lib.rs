@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/optical_path.wgsl`, line by line: the path of least optical depth from the light to every voxel of a
 //! body. Units, domain and accuracy stand above the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod kernels;
 pub mod oracle;
 

@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/random_walk.wgsl`, line by line: light followed through scattering matter by chance. Units, domain and
 //! accuracy stand above the WGSL functions. [`slab`] mirrors the recipe `random_walk_slab`.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 pub mod slab;
 

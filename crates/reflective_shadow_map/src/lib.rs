@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/reflective_shadow_map.wgsl`, line by line: a light's view of a scene. Units, domain and accuracy stand
 //! above the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::{Vec2, Vec3, Vec4};

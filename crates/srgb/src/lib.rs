@@ -1,6 +1,8 @@
 //! Mirror of `wgsl/srgb.wgsl`: from scene radiance to display code values. The shader's comments hold the reasons,
 //! domains and accuracies.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::Vec3;

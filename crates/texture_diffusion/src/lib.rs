@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/texture_diffusion.wgsl`, line by line: diffusion of light along a surface as a blur of its texture. Units,
 //! domain and accuracy stand above the WGSL functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::{UVec3, Vec2, Vec3, Vec4};

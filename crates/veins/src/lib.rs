@@ -1,6 +1,8 @@
 //! Rust mirror of `wgsl/veins.wgsl`, line by line: density of veined stone. Units, domain and accuracy stand above the WGSL
 //! functions.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod oracle;
 
 use glam::{IVec3, UVec4, Vec3, Vec4, Vec4Swizzles as _};

@@ -4,6 +4,8 @@
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
 //! [`kernels`] mirrors the recipe `wgsl/recipes/voxelization.wgsl`.
 
+#[cfg(feature = "formulas")]
+pub mod formulas;
 pub mod kernels;
 pub mod oracle;
 

@@ -260,3 +260,9 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self.formula
     }
 }
+
+/// Passes where `value` lies within `bound` of `wanted`; the message says by how much it does not.
+pub fn near(what: &str, value: f64, wanted: f64, bound: f64) -> Result<(), String> {
+    // Written so that a NaN does not pass.
+    if (value - wanted).abs() <= bound { Ok(()) } else { Err(format!("{what} is {value}, not {wanted} ± {bound:e}")) }
+}

@@ -1,7 +1,7 @@
 //! Mutation of a module's functions on naga's IR: one operator, comparison or constant changed at a time. A suite that
 //! lets a mutant pass does not test what was changed.
 
-use crate::dispatch::{self, KernelModule};
+use crate::dispatch::KernelModule;
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
 use std::fmt;
 
@@ -123,7 +123,7 @@ pub fn apply(kernel: &KernelModule, mutant: &Mutant) -> Option<KernelModule> {
             edit(function.expressions.get_mut(handle), &mutant.edit);
         }
     }
-    dispatch::validate(&mutated.module).ok()?;
+    lapidary_specialise::validate(&mutated.module).ok()?;
     Some(mutated)
 }
 

@@ -4,7 +4,6 @@ use lapidary_assay::property::{Check, Settings};
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_scene::fuzz;
 
 /// Cases in one sample.
 const CASES: u64 = 1 << 20;
@@ -25,12 +24,4 @@ fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
         let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
         assert_eq!(report.failed, 0);
     });
-}
-
-/// The loader on mutated files: 100,000 of them, none may panic.
-#[divan::bench(sample_count = 1, sample_size = 1)]
-fn loader_fuzz(bencher: divan::Bencher<'_, '_>) {
-    bencher
-        .counter(divan::counter::ItemsCount::new(fuzz::BENCHMARK_CASES))
-        .bench_local(|| fuzz::run(fuzz::BENCHMARK_CASES).unwrap_or_else(|fault| panic!("{fault}")));
 }

@@ -197,7 +197,7 @@ mod tests {
     fn every_recipes_effects_are_known() {
         let mut seen = Effects::NONE;
         for recipe in lapidary_wgsl::RECIPES {
-            let (module, _) = lapidary_assay::dispatch::parse(&recipe.compose(), recipe.name).expect("a valid recipe");
+            let (module, _) = lapidary_specialise::parse(&recipe.compose(), recipe.name).expect("a valid recipe");
             for (_, of) in module.overrides.iter() {
                 let name = of.name.clone().unwrap_or_default();
                 if name.starts_with("EFFECT_") {

@@ -1,7 +1,8 @@
 //! Why there is no picture.
 
-use super::{MOST_SAMPLES, Rung};
+use super::MOST_SAMPLES;
 use lapidary_gpu::GpuError;
+use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
 
@@ -127,7 +128,7 @@ pub enum RenderError {
     },
     /// The reference refuses.
     #[error(transparent)]
-    Reference(#[from] reference::ReferenceError),
+    Reference(#[from] spectral::ReferenceError),
     /// The reference of what scatters light refuses.
     #[error(transparent)]
     Walk(#[from] mesh::WalkError),

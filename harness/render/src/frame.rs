@@ -3,7 +3,7 @@
 use super::device::{Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
-use super::{RenderError, Settings, Stage, camera, device, scene_pass};
+use super::{RenderError, Settings, Stage, device, scene_pass};
 use crate::solver::Status;
 use lapidary_gpu::{Encoder, Gpu, GpuError};
 use lapidary_scene::Scene;
@@ -97,8 +97,7 @@ impl<'gpu> Frame<'gpu> {
             [("samples", SAMPLE_FORMAT, Usage::TEXTURE_BINDING), ("depth", DEPTH_FORMAT, Usage::empty())]
                 .map(|(what, format, usage)| device::view(&device::target(device, what, size, format, usage)))
         })?;
-        let matrix =
-            camera::clip_from_world(&scene.camera, &scene.bounds(), size[0], size[1], super::Tile::whole(size));
+        let matrix = lapidary_scene::clip_from_world(scene, size[0], size[1]);
         let view = pass.view(matrix, scene.camera.eye);
         Ok(Self { gpu, pass, view, color, depth, size, display: None })
     }

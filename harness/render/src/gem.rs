@@ -4,9 +4,9 @@ use super::device::{self, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
 use super::variant::{Drawn, Part};
-use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint, stone};
+use super::{RenderError, Settings, restraint, stone};
 use lapidary_gpu::Gpu;
-use lapidary_plan::Decisions;
+use lapidary_plan::{Decisions, Geometry, Rung, Spectrum};
 
 /// The overrides of the gem recipes for an object.
 pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'static str, f64)> {

@@ -37,7 +37,7 @@ use display::DisplayPass;
 pub use error::RenderError;
 pub use frame::{Frame, FrameTime};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects, Quality, Request, Rung, Scattering};
+use lapidary_plan::{Decisions, Effect, Effects, Note, Quality, Request, Rung, Scattering};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral::{self, Lost, Rendering, Window};
@@ -147,8 +147,8 @@ impl Settings {
             extinction_scale: EXTINCTION_SCALE,
             environment: Environment::Studio,
             exposure: 1.0,
-            wavelengths: reference::WAVELENGTHS,
-            energy_bound: reference::ENERGY_BOUND,
+            wavelengths: spectral::WAVELENGTHS,
+            energy_bound: spectral::ENERGY_BOUND,
             walks: WALKS,
             walks_from: mesh::Origin::Eye,
             boundary: mesh::Boundary::Matched,
@@ -402,17 +402,17 @@ fn follow(
     let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
     for tile in tiles {
         let Tile { left, top, width, height } = tile;
-        let of_reference = reference::Settings {
+        let of_reference = spectral::Settings {
             window: Some(Window { left, top, width, height }),
             samples: settings.samples,
             wavelengths: settings.wavelengths,
             energy_bound: settings.energy_bound,
             environment: &settings.environment,
-            ..reference::Settings::of_size(settings.width, settings.height)
+            ..spectral::Settings::of_size(settings.width, settings.height)
         };
         let mut of_all = |of_tile: u64, _: u64| progress(done + of_tile, rows);
         let (Rendering { linear, lost: of_tile, .. }, samples) =
-            reference::render_samples(scene, &of_reference, &from_any_thread(&mut of_all))?;
+            spectral::render_samples(scene, &of_reference, &from_any_thread(&mut of_all))?;
         done += u64::from(height);
         display.write(tile, &samples);
         let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -454,11 +454,6 @@ struct Tile {
 }
 
 impl Tile {
-    /// A whole picture.
-    fn whole([width, height]: [u32; 2]) -> Self {
-        Self { left: 0, top: 0, width, height }
-    }
-
     /// The largest side in pixels of a tile with so many samples along each side of a pixel.
     fn side(samples: u32) -> u32 {
         TILE.min(TILE_SAMPLES / samples)

@@ -1,13 +1,14 @@
 //! A scene on the device under compiled recipes, and drawing it.
 
+use super::RenderError;
 use super::device::{self, Pipeline};
 use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
-use super::{Note, RenderError};
 use glam::{Mat4, Vec3};
 use lapidary_gpu::capture::OfObject;
 use lapidary_gpu::{Encoder, Gpu, RenderPass};
+use lapidary_plan::Note;
 
 /// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.
 pub(super) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;

@@ -6,8 +6,9 @@
 //! weighs a ray by the share that its surface lets through, at most 1, by the base colour, and by the exposure; of separate wavelengths also by their
 //! matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit` divides by all of these.
 
-use super::{Environment, Rung, Settings, Spectrum, stone};
-use lapidary_scene::Material;
+use super::{Settings, stone};
+use lapidary_plan::{Rung, Spectrum};
+use lapidary_scene::{Environment, Material};
 
 /// The least difference in radiance times exposure that counts: half a step of a display of 8 bits, taken linearly.
 pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;

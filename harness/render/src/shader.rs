@@ -38,7 +38,9 @@ impl Shader {
         let (module, _) = parse(source, &format!("recipe {recipe}"))?;
         let declared = declared(&module, constants);
         let (module, info) = specialise(module, &declared, entries).map_err(|error| match error {
-            SpecialiseError::NoEntryPoint { .. } => SourceError(format!("recipe {recipe}: {error}")).into(),
+            SpecialiseError::NoEntryPoint { .. } => {
+                ShaderError::Source(SourceError(format!("recipe {recipe}: {error}")))
+            }
             error => error.into(),
         })?;
         Ok(Self {

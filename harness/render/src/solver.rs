@@ -1,11 +1,11 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
-use super::Method;
 use crate::compute::Kernel;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Encoder, Gpu};
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};
+use lapidary_scene::solver::Method;
 
 /// Voxels along an edge of a solver's tile.
 const TILE: u32 = 4;

@@ -3,11 +3,12 @@
 use super::device::{Pipeline, buffer, mesh_vertices, record};
 use super::pass::Body;
 use super::variant::Drawn;
-use super::{Geometry, RenderError, Rung, Settings, Spectrum, restraint};
+use super::{RenderError, Settings, restraint};
 use glam::{DMat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
+use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Material, Object, convex, spectrum};
 use std::borrow::Cow;

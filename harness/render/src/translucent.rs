@@ -4,16 +4,17 @@ use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, recor
 use super::diffusion::{Diffusion, MeshBuffers};
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
+use super::reflectance::form;
 use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
-use super::{Reflectance, RenderError, Rung, Settings};
+use super::{RenderError, Settings};
 use crate::cdrf::table;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
-use lapidary_plan::{Decisions, thickness};
+use lapidary_plan::{Decisions, Rung, thickness};
 use lapidary_scene::curvatures::vertex_curvatures;
-use lapidary_scene::solver::Format;
+use lapidary_scene::solver::{Format, Reflectance};
 use lapidary_scene::{Material, Object};
 
 /// What shines on the objects, and what keeps it from them, where anything does.
@@ -193,7 +194,7 @@ fn baked(gpu: &Gpu, material: &Material, side: u32, format: Format) -> Result<wg
 }
 
 fn texture(gpu: &Gpu, side: u32, format: Format, texels: &[Vec3]) -> Result<wgpu::TextureView, RenderError> {
-    let (format, bytes) = format.texture(texels);
+    let (format, bytes) = table::texture(format, texels);
     let texture = gpu.guarded("uploading a table", |_| {
         device::texture(gpu, "table", (wgpu::TextureDimension::D2, format), [side, side, 1], &bytes)
     })?;

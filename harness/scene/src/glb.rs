@@ -90,7 +90,10 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
 }
 
 /// A .glb container about a JSON and a binary chunk, each padded to four bytes.
-pub(super) fn container(json: &[u8], binary: &[u8]) -> Result<Vec<u8>, GlbError> {
+///
+/// # Errors
+/// [`GlbError::TooLarge`] from 4 GiB on.
+pub fn container(json: &[u8], binary: &[u8]) -> Result<Vec<u8>, GlbError> {
     let padded = |length: usize| length.next_multiple_of(4);
     let total = 12 + 8 + padded(json.len()) + 8 + padded(binary.len());
     let length = u32::try_from(total).map_err(|_| GlbError::TooLarge { bytes: total as u64 })?;

@@ -22,7 +22,6 @@ pub mod environment;
 pub mod environment_map;
 mod error;
 pub mod figure;
-pub mod fuzz;
 pub mod glb;
 pub mod gltf;
 pub mod implicit;

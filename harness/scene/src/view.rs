@@ -36,6 +36,8 @@ pub struct View {
 }
 
 impl View {
+    /// A camera over a picture of `width` × `height` pixels.
+    #[must_use]
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let (eye, target) = (camera.eye.as_dvec3(), camera.target.as_dvec3());
         let (width, height) = (f64::from(width), f64::from(height));
@@ -82,11 +84,13 @@ impl View {
 /// How a picture shows a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
-    /// In pixels from the left and from the top.
+    /// In pixels from the left.
     pub x: f64,
+    /// In pixels from the top.
     pub y: f64,
-    /// Unit direction from the point to the eye, and how far that is.
+    /// Unit direction from the point to the eye.
     pub toward: DVec3,
+    /// From the point to the eye.
     pub distance: f64,
     /// The mean radiance over the pixel that a radiant intensity of 1 from the point adds.
     pub weight: f64,

@@ -4,7 +4,8 @@
 use super::kernel::{self, kernel_source};
 use super::layout::Layout;
 use super::shape::Signature;
-use super::{DispatchError, KernelModule, parse, validate};
+use super::{DispatchError, KernelModule, parse};
+use lapidary_specialise::validate;
 use naga::{BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, MathFunction};
 use naga::{RelationalFunction, Scalar, ScalarKind, Span, Statement, TypeInner, VectorSize};
 

@@ -116,8 +116,9 @@ impl Asked {
             let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
             // What a scene calls for is what its materials do; and deciding measures bodies.
             let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };
-            let calls_for =
-                |effect: &Effect| scene.objects.iter().any(|object| Decisions::of(object, scene, &usual).has(*effect));
+            let calls_for = |effect: &Effect| {
+                scene.objects.iter().any(|object| Decisions::of(object, scene, &usual.request()).has(*effect))
+            };
             return others.into_iter().find(|effect| calls_for(effect)).map_or(Ok(()), |effect| {
                 Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
             });

@@ -121,7 +121,7 @@ fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, F
     let kernel = KernelModule::reflect(module.source, module.name, function)?;
     let mut ir = kernel.module;
     naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
-    let info = dispatch::validate(&ir).map_err(|error| Failure(error.to_string()))?;
+    let info = lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?;
     translate(&ir, &info, to, Some((ENTRY_POINT, naga::ShaderStage::Compute))).map_err(Failure)
 }
 

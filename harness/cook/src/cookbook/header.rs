@@ -1,7 +1,7 @@
 //! What a module's comments say: its header and the tags of each function. Format in `docs/contract.md`.
 
-use super::accuracy_line::Accuracy;
 use super::release;
+use lapidary_assay::accuracy_line::Accuracy;
 
 /// The licence line that every module carries.
 pub const LICENCE: &str = "MIT-0 OR Apache-2.0";

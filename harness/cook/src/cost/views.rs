@@ -80,10 +80,10 @@ impl View {
     }
 
     /// How its reference is made.
-    pub fn reference_settings(&self) -> reference::Settings<'static> {
-        let usual = reference::Settings::of_size(SIDE, SIDE);
+    pub fn reference_settings(&self) -> spectral::Settings<'static> {
+        let usual = spectral::Settings::of_size(SIDE, SIDE);
         let (samples, energy_bound) = COARSE;
-        if self.coarse { reference::Settings { samples, energy_bound, ..usual } } else { usual }
+        if self.coarse { spectral::Settings { samples, energy_bound, ..usual } } else { usual }
     }
 
     /// Its committed reference, linear and as it is seen.

@@ -1,26 +1,6 @@
-//! Every formula of the cookbook, one file a module: WGSL function, mirror and oracle bound by name, with the domain,
-//! its edges, invariants and hard cases.
+//! Every formula of the cookbook, by module, and what functions promise outside of their domains.
 
-mod absorption;
-mod bvh_trace;
-mod cdrf;
-mod closest_point;
-mod convex_trace;
-mod curvature;
-mod dispersion;
-mod environment;
-mod fresnel;
-mod microfacet;
-mod optical_path;
 pub mod outside;
-mod proxy_geometry;
-mod random_walk;
-mod reflective_shadow_map;
-mod refraction;
-mod srgb;
-mod texture_diffusion;
-mod veins;
-mod voxelization;
 
 use lapidary_assay::formula::Formula;
 use std::sync::OnceLock;
@@ -30,25 +10,25 @@ pub fn all() -> &'static [Formula] {
     static FORMULAS: OnceLock<Vec<Formula>> = OnceLock::new();
     FORMULAS.get_or_init(|| {
         [
-            absorption::formulas(),
-            bvh_trace::formulas(),
-            cdrf::formulas(),
-            closest_point::formulas(),
-            convex_trace::formulas(),
-            curvature::formulas(),
-            dispersion::formulas(),
-            environment::formulas(),
-            fresnel::formulas(),
-            microfacet::formulas(),
-            optical_path::formulas(),
-            proxy_geometry::formulas(),
-            random_walk::formulas(),
-            reflective_shadow_map::formulas(),
-            refraction::formulas(),
-            srgb::formulas(),
-            texture_diffusion::formulas(),
-            veins::formulas(),
-            voxelization::formulas(),
+            lapidary_absorption::formulas::formulas(),
+            lapidary_bvh_trace::formulas::formulas(),
+            lapidary_cdrf::formulas::formulas(),
+            lapidary_closest_point::formulas::formulas(),
+            lapidary_convex_trace::formulas::formulas(),
+            lapidary_curvature::formulas::formulas(),
+            lapidary_dispersion::formulas::formulas(),
+            lapidary_environment::formulas::formulas(),
+            lapidary_fresnel::formulas::formulas(),
+            lapidary_microfacet::formulas::formulas(),
+            lapidary_optical_path::formulas::formulas(),
+            lapidary_proxy_geometry::formulas::formulas(),
+            lapidary_random_walk::formulas::formulas(),
+            lapidary_reflective_shadow_map::formulas::formulas(),
+            lapidary_refraction::formulas::formulas(),
+            lapidary_srgb::formulas::formulas(),
+            lapidary_texture_diffusion::formulas::formulas(),
+            lapidary_veins::formulas::formulas(),
+            lapidary_voxelization::formulas::formulas(),
         ]
         .into_iter()
         .flatten()
@@ -59,10 +39,4 @@ pub fn all() -> &'static [Formula] {
 /// The formula of a WGSL function.
 pub fn of_function(function: &str) -> Option<&'static Formula> {
     all().iter().find(|formula| formula.function == function)
-}
-
-/// Passes where `value` lies within `bound` of `wanted`; the message says by how much it does not.
-fn near(what: &str, value: f64, wanted: f64, bound: f64) -> Result<(), String> {
-    // Written so that a NaN does not pass.
-    if (value - wanted).abs() <= bound { Ok(()) } else { Err(format!("{what} is {value}, not {wanted} ± {bound:e}")) }
 }

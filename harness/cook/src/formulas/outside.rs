@@ -6,6 +6,7 @@ mod rays;
 mod surfaces;
 
 use glam::Vec3;
+use lapidary_assay::formula::near;
 use lapidary_assay::outside::{Promise, any_finite};
 use lapidary_assay::property::draws::Draws;
 use std::sync::OnceLock;
@@ -41,10 +42,7 @@ fn that(right: bool, what: impl FnOnce() -> String) -> Result<(), String> {
 
 /// Passes where every component of `value` is within `bound` of `wanted`; a NaN never is.
 fn close(value: &[f32], wanted: &[f64], bound: f64) -> Result<(), String> {
-    value
-        .iter()
-        .zip(wanted)
-        .try_for_each(|(value, wanted)| super::near("a component", f64::from(*value), *wanted, bound))
+    value.iter().zip(wanted).try_for_each(|(value, wanted)| near("a component", f64::from(*value), *wanted, bound))
 }
 
 /// Passes where all are finite.

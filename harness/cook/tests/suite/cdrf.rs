@@ -37,7 +37,7 @@ fn shader_and_mirror_bake_the_same_table() {
                 // Twice what the accuracy line allows either on lavapipe; a NaN fails.
                 assert!(apart <= 1.6e-6, "texel {index} of {size}: {shader} and {mirror}");
                 for channel in 0..3 {
-                    let kept = [shader[channel], mirror[channel]].map(|value| format.round(value));
+                    let kept = [shader[channel], mirror[channel]].map(|value| table::round(format, value));
                     assert!((kept[0] - kept[1]).abs() <= step.max(1.6e-6), "texel {index} of {size}: {kept:?}");
                     // In deep shadow half floats are as fine as the shader's rounding.
                     moved += usize::from(kept[0] != kept[1] && kept[0] > 0.1);

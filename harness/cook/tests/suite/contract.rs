@@ -82,7 +82,7 @@ fn every_function_can_be_written_in_every_language() {
     for formula in formulas::all() {
         let module = modules().iter().find(|module| module.name == formula.module).expect("a formula's module");
         let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("valid WGSL");
-        let info = dispatch::validate(&kernel.module).expect("valid IR");
+        let info = lapidary_specialise::validate(&kernel.module).expect("valid IR");
         for target in [Target::Wgsl, Target::Spirv, Target::Hlsl, Target::Msl, Target::Glsl] {
             let bytes = translate(&kernel.module, &info, target, entry)
                 .unwrap_or_else(|error| panic!("{} in {target:?}: {error}", formula.function));

@@ -1,7 +1,6 @@
 //! What a picture's pixels show, and where that lies.
 
 use glam::DVec3;
-use lapidary_render as render;
 use lapidary_render::Picture;
 use lapidary_scene::Scene;
 

@@ -57,12 +57,12 @@ fn surfaces_reflect_alike() {
             for object in &mut scene.objects {
                 object.material.base_color = glam::Vec3::ZERO;
             }
-            let settings = reference::Settings {
+            let settings = spectral::Settings {
                 environment: &environment,
-                wavelengths: reference::spectrum::FEWEST,
-                ..reference::Settings::of_size(SIDE, SIDE)
+                wavelengths: lapidary_scene::spectrum::FEWEST,
+                ..spectral::Settings::of_size(SIDE, SIDE)
             };
-            let followed = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
+            let followed = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");
             let pairs = || drawn.linear.iter().zip(&followed.linear);
             let covered = pairs().filter(|(drawn, _)| drawn[3] > 0.0).count();
             // A sample on an edge may fall to either side; the rasteriser rounds corners to 1/256 of its pixels.
@@ -78,7 +78,7 @@ fn surfaces_reflect_alike() {
 }
 
 /// The rectangle of that size nearest to the middle of a picture that a stone covers wholly.
-fn covered(picture: &Picture, width: u32, height: u32) -> reference::Window {
+fn covered(picture: &Picture, width: u32, height: u32) -> spectral::Window {
     let full = |left: u32, top: u32| {
         let pixels = (top..top + height).flat_map(|row| (left..left + width).map(move |column| (row, column)));
         pixels.into_iter().all(|(row, column)| picture.linear[(row * picture.width + column) as usize][3] == 1.0)
@@ -88,7 +88,7 @@ fn covered(picture: &Picture, width: u32, height: u32) -> reference::Window {
         (2 * left + width).abs_diff(picture.width).pow(2) + (2 * top + height).abs_diff(picture.height).pow(2)
     };
     let (left, top) = places.filter(|&(left, top)| full(left, top)).min_by_key(off).expect("a covered rectangle");
-    reference::Window { left, top, width, height }
+    spectral::Window { left, top, width, height }
 }
 
 /// The committed pictures are what the reference sees: a crop of each, as near to the middle as the stone is, rendered again.
@@ -98,8 +98,8 @@ fn the_committed_references_are_remade() {
         let scene = view.open().expect("built in");
         let picture = view.reference(super::gpu()).unwrap_or_else(|error| panic!("{error}"));
         let window = covered(&picture, 8, 4);
-        let settings = reference::Settings { window: Some(window), ..view.reference_settings() };
-        let crop = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
+        let settings = spectral::Settings { window: Some(window), ..view.reference_settings() };
+        let crop = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");
         for (row, line) in (window.top..).zip(crop.linear.chunks_exact(window.width as usize)) {
             let start = (row * picture.width + window.left) as usize;
             let expected_line = &picture.linear[start..][..line.len()];
@@ -123,8 +123,8 @@ fn stones_transmit_alike() {
         let rung = "convex-64+7".parse().expect("a rung");
         let drawn = Settings { rung, samples: 1, limit_throughput: Some(false), ..Settings::of_size(48, 48) };
         let drawn = render::render(super::gpu(), &scene, &drawn).expect("rendered");
-        let settings = reference::Settings { samples: 1, wavelengths: 7, ..reference::Settings::of_size(48, 48) };
-        let followed = reference::render(&scene, &settings, &|_, _| {}).expect("rendered");
+        let settings = spectral::Settings { samples: 1, wavelengths: 7, ..spectral::Settings::of_size(48, 48) };
+        let followed = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");
         let apart = |(drawn, followed): (&[f32; 4], &[f32; 4])| {
             (0..3).map(|k| (drawn[k] - followed[k]).abs() / followed[k].abs().max(0.1)).fold(0.0, larger)
         };

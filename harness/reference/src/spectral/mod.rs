@@ -20,12 +20,12 @@ pub use geometry::Geometry;
 use geometry::Bodies;
 use glam::DVec3;
 use lapidary_absorption::oracle as absorption;
+use lapidary_scene::spectrum::{self, Wavelength};
+use lapidary_scene::view::View;
 use lapidary_scene::{Environment, LARGEST_SIDE, Object, SAMPLES, Scene};
 use rayon::prelude::*;
-use spectrum::Wavelength;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Surroundings};
-use view::View;
 
 /// Wavelengths where nothing else is asked for.
 pub const WAVELENGTHS: usize = 31;

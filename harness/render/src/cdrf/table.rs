@@ -71,8 +71,8 @@ impl Table {
     /// Where there are not as many as `size` says.
     pub fn new(size: UVec2, format: Format, texels: &[Vec3]) -> Table {
         assert_eq!(texels.len(), (size.x * size.y) as usize, "a table of {size}");
-        let round = |texel: &Vec3| Vec3::new(format.round(texel.x), format.round(texel.y), format.round(texel.z));
-        Table { size, texels: texels.iter().map(round).collect() }
+        let kept = |texel: &Vec3| Vec3::new(round(format, texel.x), round(format, texel.y), round(format, texel.z));
+        Table { size, texels: texels.iter().map(kept).collect() }
     }
 
     /// The bilinear lookup at a place of the table, 0 and 1 being the middles of its first and last texel.

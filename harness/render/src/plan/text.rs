@@ -1,8 +1,8 @@
 //! A plan to be read.
 
-use super::{Decision, Decisions, Plan, PlannedObject};
+use super::{Plan, PlannedObject};
 use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
-use lapidary_plan::Rung;
+use lapidary_plan::{Decision, Decisions, Rung};
 use std::collections::HashMap;
 use std::fmt;
 

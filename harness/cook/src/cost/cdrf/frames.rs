@@ -215,7 +215,7 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
         u64::from(format.block_copy_size(None).unwrap_or_default()) * u64::from(side).pow(2)
     };
     match reflectance {
-        Reflectance::Table(side, format) => bytes(format.texture(&[]).0, side),
+        Reflectance::Table(side, format) => bytes(lapidary_render::cdrf::table::texture(format, &[]).0, side),
         // Irradiance before and after each pass of the blur, and the stretch.
         Reflectance::Blur => 2 * bytes(IRRADIANCE_FORMAT, Frame::BLUR_SIDE) + bytes(STRETCH_FORMAT, Frame::BLUR_SIDE),
         _ => 0,

@@ -53,8 +53,8 @@ pub fn residuals(spheres: &SphereReport, function: &(dyn Fn(f32, f32) -> f32 + S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cost::sphere::Form;
     use lapidary_cdrf as mirror;
-    use lapidary_reference::random_walk::Form;
 
     #[test]
     fn residuals_are_those_of_the_spheres_rows() {

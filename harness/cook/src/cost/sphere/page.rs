@@ -1,8 +1,8 @@
 //! The spheres' tables for the pages of `docs/`.
 
+use super::Form;
 use super::{ALBEDOS, Choice, FORMS, Law, RADII, Row, ScaleKind, SphereReport, table};
 use crate::cost::page::{Table, Tables, header, row};
-use lapidary_reference::random_walk::Form;
 
 /// The radii of the table of residuals.
 const SHOWN: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];

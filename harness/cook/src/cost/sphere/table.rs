@@ -1,7 +1,7 @@
 //! The spheres as text.
 
+use super::Form;
 use super::{FORMS, Row, ScaleKind, SphereReport};
-use lapidary_reference::random_walk::Form;
 use std::fmt::Write as _;
 
 /// A form's name.

@@ -3,6 +3,7 @@
 use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
 use glam::{IVec3, UVec2, UVec3, UVec4, Vec2, Vec3};
 use lapidary_absorption as absorption;
+use lapidary_assay::formula::near;
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
 use lapidary_assay::property::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
@@ -163,7 +164,7 @@ fn textures() -> Vec<Promise> {
             |(value,): (Vec3,), half: Vec3| {
                 // A half float's subnormals are the multiples of 2^-24.
                 let stored = (half.x * 2f32.powi(24)).round() * 2f32.powi(-24);
-                super::super::near("what is stored", stored.into(), value.x.into(), 2f64.powi(-24))
+                near("what is stored", stored.into(), value.x.into(), 2f64.powi(-24))
             },
         ),
         holds(
@@ -194,7 +195,7 @@ fn paths() -> Vec<Promise> {
             },
             |(least, _): (Vec3, f32), cost: f32| {
                 let wanted = f64::from(least.min_element());
-                super::super::near("the cost", cost.into(), wanted, 1e-6 * wanted + 2f64.powi(-125))
+                near("the cost", cost.into(), wanted, 1e-6 * wanted + 2f64.powi(-125))
             },
         ),
         accurate("optical_path_encode", "none is", |draws| (any_bits(draws),)),

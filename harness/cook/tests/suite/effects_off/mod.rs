@@ -102,7 +102,7 @@ impl Left {
 fn specialised(source: &str, values: &[(String, f64)], pass: &[String]) -> (Module, ModuleInfo) {
     let module = parse(source);
     let values: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let values = dispatch::declared(&module, &values);
+    let values = lapidary_specialise::declared(&module, &values);
     let pass: Vec<&str> = pass.iter().map(String::as_str).collect();
     specialise(module, &values, &pass).unwrap_or_else(|error| panic!("{pass:?} with {values:?}: {error}"))
 }
@@ -158,12 +158,12 @@ fn an_effect_that_is_off_leaves_the_recipe_without_it() {
 fn by_naga(source: &str, pass: &[String]) -> (Module, ModuleInfo) {
     let mut module = parse(source);
     module.entry_points.retain(|entry| pass.contains(&entry.name));
-    let info = dispatch::validate(&module).expect("valid");
+    let info = lapidary_specialise::validate(&module).expect("valid");
     let (module, _) =
         process_overrides(&module, &info, None, &Default::default()).expect("every override has a default");
     let mut module = module.into_owned();
     compact(&mut module, KeepUnused::No);
-    let info = dispatch::validate(&module).expect("valid");
+    let info = lapidary_specialise::validate(&module).expect("valid");
     (module, info)
 }
 
@@ -240,7 +240,7 @@ fn a_binding_that_is_kept_is_seen() {
     let map = whole.global_variables.iter().map(|(_, variable)| variable).find(is_map).expect("the map's binding");
     let ty = module.types.insert(whole.types[map.ty].clone(), naga::Span::UNDEFINED);
     module.global_variables.append(naga::GlobalVariable { ty, ..map.clone() }, naga::Span::UNDEFINED);
-    let info = dispatch::validate(&module).expect("valid");
+    let info = lapidary_specialise::validate(&module).expect("valid");
     let difference = Left::of(&module, &info).difference(&cut).expect("one binding more");
     assert!(difference.starts_with("bindings"), "{difference}");
 }

@@ -1,11 +1,12 @@
 //! A picture of the GPU against the mirrors, pixel by pixel.
 
-use crate::extremum::larger;
-use crate::property::draws::Draws;
-use crate::render::{Picture, RenderError, Settings, Spectrum};
-use crate::scene::Scene;
 use glam::Vec3;
+use lapidary_assay::extremum::larger;
+use lapidary_assay::property::draws::Draws;
+use lapidary_plan::Spectrum;
 use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
+use lapidary_render::{Picture, RenderError, Settings};
+use lapidary_scene::Scene;
 
 /// How far, in pixels, a rasteriser may have put a pixel's middle beside where it is: Vulkan devices snap vertices to a grid, of
 /// 1/256 pixel on lavapipe and every desktop GPU (at least 1/16 is guaranteed).

@@ -44,7 +44,7 @@ pub(crate) fn specialised_program(row: u64) -> String {
 
 /// A valid module as WGSL.
 fn written(module: &naga::Module, row: u64) -> String {
-    let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
+    let info = lapidary_specialise::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
     back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
         .unwrap_or_else(|error| panic!("program {row}: {error}"))
 }
@@ -104,7 +104,7 @@ fn a_specialised_program_can_be_written_and_is_final() {
     for row in 0..WRITTEN {
         let (source, kernel, constants) = kernel(row);
         let write = |module: &naga::Module| {
-            let info = dispatch::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
+            let info = lapidary_specialise::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
             back::spv::write_vec(module, &info, &back::spv::Options::default(), None)
                 .unwrap_or_else(|error| panic!("program {row}: {error}"));
             written(module, row)

@@ -10,7 +10,7 @@ use general::Structure;
 use glam::DVec3;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::view::{Sight, View};
-use lapidary_scene::{Environment, Light, Medium, Object, Scene, environment};
+use lapidary_scene::{Environment, Light, Medium, Object, Scene};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use std::f64::consts::PI;

@@ -13,7 +13,7 @@ use crate::random_walk::isotropic;
 use crate::spectral::geometry::{Hit, Place};
 use glam::{DVec2, DVec3};
 use lapidary_random_walk::oracle;
-use lapidary_scene::{Density, Light, Object, environment};
+use lapidary_scene::{Density, Light, Object};
 use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use std::f64::consts::{PI, TAU};

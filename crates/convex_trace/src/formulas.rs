@@ -1,13 +1,12 @@
 //! `wgsl/convex_trace.wgsl`.
 
-use super::near;
+use crate::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_convex_trace::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 
-mirror_struct!(lapidary_convex_trace, ConvexTraceHit { distance, face });
+mirror_struct!(crate, ConvexTraceHit { distance, face });
 
 const M: &str = "convex_trace";
 
@@ -209,7 +208,9 @@ fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
     (position, direction, distance, plane)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     // From the far side, at 30 degrees to the plane's normal.
     let (across, direction, way) = (Vec3::Z * -1e4, Vec3::new(0.5, 0.0, 0.866_025_4), 11_547.813f32);
     vec![

@@ -1,15 +1,14 @@
 //! `wgsl/environment.wgsl`.
 
-use super::near;
+use crate::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use glam::{DVec2, UVec2, Vec2, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_environment::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use std::f64::consts::PI;
 
-mirror_struct!(lapidary_environment, EnvironmentTexels { lower, upper, weight });
-mirror_struct!(lapidary_environment, EnvironmentHarmonics { zeroth, first, second, fourth });
+mirror_struct!(crate, EnvironmentTexels { lower, upper, weight });
+mirror_struct!(crate, EnvironmentHarmonics { zeroth, first, second, fourth });
 
 const M: &str = "environment";
 
@@ -121,7 +120,9 @@ fn within(what: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(format!("{what} is {value}, outside [{low}, {high}]")) }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [angle_formulas(), coordinate_formulas(), texel_formulas(), light_formulas()].into_iter().flatten().collect()
 }
 

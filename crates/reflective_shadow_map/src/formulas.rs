@@ -1,14 +1,13 @@
 //! `wgsl/reflective_shadow_map.wgsl`.
 
-use super::near;
+use crate::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 use glam::{Vec3, Vec4};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_reflective_shadow_map::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 
-mirror_struct!(lapidary_reflective_shadow_map, ReflectiveShadowMapView { origin, lamp, axis, extent, near, far });
-mirror_struct!(lapidary_reflective_shadow_map, ReflectiveShadowMapBasis { right, up });
+mirror_struct!(crate, ReflectiveShadowMapView { origin, lamp, axis, extent, near, far });
+mirror_struct!(crate, ReflectiveShadowMapBasis { right, up });
 
 const M: &str = "reflective_shadow_map";
 
@@ -88,7 +87,9 @@ fn square(basis: &ReflectiveShadowMapBasis, axis: Vec3) -> Result<(), String> {
     near("right x up . axis", right.cross(up).dot(axis), 1.0, SQUARE)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     vec![basis(), basis_naive(), clip(), texel(), cosine(), height(), height_naive()]
 }
 

@@ -1,13 +1,12 @@
 //! `wgsl/texture_diffusion.wgsl`.
 
-use super::near;
+use crate::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 use glam::{Vec2, Vec3, Vec4};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_texture_diffusion::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 
-mirror_struct!(lapidary_texture_diffusion, TextureDiffusionTap { offset, weight });
+mirror_struct!(crate, TextureDiffusionTap { offset, weight });
 
 const M: &str = "texture_diffusion";
 
@@ -111,7 +110,9 @@ fn step(draws: &mut Draws<'_>) -> Vec2 {
     Vec2::new(draws.below(5) as f32 - 2.0, draws.below(5) as f32 - 2.0)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [places(), widths(), taps(), means()].into_iter().flatten().collect()
 }
 

@@ -1,15 +1,14 @@
 //! `wgsl/random_walk.wgsl`.
 
-use super::near;
+use crate::{self as mirror, RandomWalkBasis, RandomWalkCrossing, oracle};
 use glam::{DVec3, UVec4, Vec2, Vec3, Vec4};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_random_walk::{self as mirror, RandomWalkBasis, RandomWalkCrossing, oracle};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-mirror_struct!(lapidary_random_walk, RandomWalkBasis { tangent, bitangent });
-mirror_struct!(lapidary_random_walk, RandomWalkCrossing { direction, crosses });
+mirror_struct!(crate, RandomWalkBasis { tangent, bitangent });
+mirror_struct!(crate, RandomWalkCrossing { direction, crosses });
 
 const M: &str = "random_walk";
 
@@ -112,7 +111,9 @@ fn unit(vector: Vec3) -> Result<(), String> {
     near("length", vector.as_dvec3().length(), 1.0, UNIT)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [numbers(), paths(), scattering(), directions(), surfaces()].into_iter().flatten().collect()
 }
 

@@ -1,7 +1,6 @@
 use glam::{Vec2, Vec3};
 
 use super::*;
-use crate::Light;
 
 #[test]
 fn the_hand_written_seed_reaches_what_it_says() {
@@ -28,6 +27,13 @@ fn loader_survives_mutated_bytes() {
     // A fuzzer whose files all fail at the first check, or never fail, checks nothing.
     assert!(tally.loaded > SUITE_CASES / 20, "{tally:?}");
     assert!(tally.refused > SUITE_CASES / 4, "{tally:?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn loader_survives_many_mutated_bytes() {
+    let tally = run(LONG_CASES).unwrap();
+    assert_eq!(tally.loaded + tally.refused, LONG_CASES);
 }
 
 #[test]

@@ -1,14 +1,13 @@
 //! `wgsl/veins.wgsl`.
 
-use super::near;
+use crate::{self as mirror, VeinsCell, VeinsPattern, oracle};
 use glam::{IVec3, UVec3, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_veins::{self as mirror, VeinsCell, VeinsPattern, oracle};
 
-mirror_struct!(lapidary_veins, VeinsCell { corner, offset });
-mirror_struct!(lapidary_veins, VeinsPattern { frequency, width, least, greatest, octaves, seed });
+mirror_struct!(crate, VeinsCell { corner, offset });
+mirror_struct!(crate, VeinsPattern { frequency, width, least, greatest, octaves, seed });
 
 const M: &str = "veins";
 
@@ -66,7 +65,9 @@ fn whole(x: f32) -> bool {
     x.fract() == 0.0
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [cells(), noises(), folds()].into_iter().flatten().collect()
 }
 

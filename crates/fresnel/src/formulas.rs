@@ -1,9 +1,8 @@
 //! `wgsl/fresnel.wgsl`.
 
-use super::near;
-use lapidary_assay::formula::{Formula, formula};
+use crate::{self as mirror, oracle};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
-use lapidary_fresnel::{self as mirror, oracle};
 
 const M: &str = "fresnel";
 
@@ -51,7 +50,9 @@ fn in_unit_range(reflectance: f32) -> Result<(), String> {
     if (0.0..=1.0).contains(&reflectance) { Ok(()) } else { Err(format!("reflectance {reflectance}")) }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     vec![exact(), textbook(), normal_incidence(), schlick()]
 }
 

@@ -1,14 +1,13 @@
 //! `wgsl/cdrf.wgsl`.
 
-use super::near;
+use crate::{self as mirror, CdrfTexels, oracle};
 use glam::{UVec2, Vec2, Vec3, Vec4};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_cdrf::{self as mirror, CdrfTexels, oracle};
 use std::f64::consts::{FRAC_1_PI, PI};
 
-mirror_struct!(lapidary_cdrf, CdrfTexels { lower, upper, weight });
+mirror_struct!(crate, CdrfTexels { lower, upper, weight });
 
 const M: &str = "cdrf";
 
@@ -127,7 +126,9 @@ fn darker(reflectance: f32, turned: f32, bound: f64) -> Result<(), String> {
     if rise <= 2.0 * bound { Ok(()) } else { Err(format!("rises by {rise:e} to {turned}")) }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [widths(), helpers(), rungs(), accurate(), others(), tables()].into_iter().flatten().collect()
 }
 

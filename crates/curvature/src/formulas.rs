@@ -1,17 +1,14 @@
 //! `wgsl/curvature.wgsl`.
 
-use super::near;
+use crate::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::dispatch::value::Value;
-use lapidary_assay::formula::{Builder, Formula, formula};
+use lapidary_assay::formula::{Builder, Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_curvature::{
-    self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle,
-};
 
-mirror_struct!(lapidary_curvature, CurvaturePixel { p_x, p_y, n_x, n_y });
-mirror_struct!(lapidary_curvature, CurvatureFrame { first, second, normal, width, lean, rise, bounded });
+mirror_struct!(crate, CurvaturePixel { p_x, p_y, n_x, n_y });
+mirror_struct!(crate, CurvatureFrame { first, second, normal, width, lean, rise, bounded });
 
 const M: &str = "curvature";
 
@@ -187,7 +184,9 @@ fn lit_by((p_x, p_y, n_x, n_y): Derivatives, light: Vec3) -> Lit {
     (p_x, p_y, n_x, n_y, light)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [input_formulas(), mean_formulas(), gaussian_formulas(), towards_formulas()].into_iter().flatten().collect()
 }
 

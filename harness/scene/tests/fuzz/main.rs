@@ -1,22 +1,24 @@
 //! Fuzzing of the glTF loader: valid files, broken in many ways.
 //!
-//! The test suite runs [`SUITE_CASES`], a benchmark [`BENCHMARK_CASES`]; both call [`run`]. A case is a
+//! Every run takes [`SUITE_CASES`], a long one, `--ignored`, [`LONG_CASES`]; both call [`run`]. A case is a
 //! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
-//! more memory than [`gltf::MAX_SCENE_BYTES`] allows or breaks what [`Mesh`], [`Material`](super::Material) or
-//! [`Light`](super::Light) promises.
+//! more memory than [`gltf::MAX_SCENE_BYTES`] allows or breaks what [`Mesh`], `Material` or
+//! [`Light`] promises.
+
+mod checks;
 
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, any, prop_oneof};
 use proptest::sample::Index;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-use super::{Mesh, MeshDiagnosis, Scene, SceneError, glb, gltf};
+use lapidary_scene::{Light, Mesh, MeshDiagnosis, Scene, SceneError, glb, gltf};
 
 /// Cases of the test suite: seconds.
 pub const SUITE_CASES: u32 = 5_000;
 
-/// Cases of the benchmark: minutes.
-pub const BENCHMARK_CASES: u32 = 100_000;
+/// Cases of a long run: minutes.
+pub const LONG_CASES: u32 = 100_000;
 
 /// One change to a file.
 #[derive(Debug, Clone)]
@@ -255,7 +257,7 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     if let Some(problem) = scene.objects.iter().find_map(|object| object.material.problem()) {
         return Err(format!("a broken material: {problem}"));
     }
-    let problem = scene.lights.iter().find_map(super::Light::problem);
+    let problem = scene.lights.iter().find_map(Light::problem);
     problem.map_or(Ok(()), |problem| Err(format!("a broken light: {problem}")))
 }
 
@@ -296,6 +298,3 @@ pub fn run(cases: u32) -> Result<Tally, String> {
         Err(TestError::Abort(reason)) => Err(reason.to_string()),
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,10 +1,9 @@
 //! `wgsl/microfacet.wgsl`.
 
-use super::near;
+use crate::{self as mirror, oracle};
 use glam::{DVec3, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
-use lapidary_microfacet::{self as mirror, oracle};
 use std::f64::consts::PI;
 
 const M: &str = "microfacet";
@@ -116,7 +115,9 @@ fn within(what: &str, value: f32, most: f64) -> Result<(), String> {
     if (0.0..=most * ROUNDED).contains(&f64::from(value)) { Ok(()) } else { Err(format!("{what} {value} of {most}")) }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive(), reflectance()]
 }
 

@@ -1,19 +1,18 @@
 //! `wgsl/proxy_geometry.wgsl`.
 
-use super::near;
-use glam::{DVec3, IVec2, Vec2, Vec3};
-use lapidary_assay::formula::{Formula, formula};
-use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
-use lapidary_proxy_geometry::{
+use crate::{
     self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit,
     ProxyGeometryPlane, oracle,
 };
+use glam::{DVec3, IVec2, Vec2, Vec3};
+use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 
-mirror_struct!(lapidary_proxy_geometry, ProxyGeometryPlane { origin, edge_first, edge_second });
-mirror_struct!(lapidary_proxy_geometry, ProxyGeometryHit { point, distance, hit });
-mirror_struct!(lapidary_proxy_geometry, ProxyGeometryCell { steps, turned });
-mirror_struct!(lapidary_proxy_geometry, ProxyGeometryFacet { vertex_first, vertex_second, vertex_third });
+mirror_struct!(crate, ProxyGeometryPlane { origin, edge_first, edge_second });
+mirror_struct!(crate, ProxyGeometryHit { point, distance, hit });
+mirror_struct!(crate, ProxyGeometryCell { steps, turned });
+mirror_struct!(crate, ProxyGeometryFacet { vertex_first, vertex_second, vertex_third });
 
 const M: &str = "proxy_geometry";
 
@@ -190,7 +189,9 @@ fn ordinary_tile(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     (centre, tile.0, tile.1, tile.2)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [plane_formulas(), normal_formulas(), intersection_formulas(), lattice_formulas()].into_iter().flatten().collect()
 }
 

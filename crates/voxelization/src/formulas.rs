@@ -1,15 +1,14 @@
 //! `wgsl/voxelization.wgsl`.
 
-use super::near;
+use crate::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
 use glam::{DVec3, UVec3, Vec2, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_voxelization::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
 
-mirror_struct!(lapidary_voxelization, VoxelizationGrid { origin, spacing, cells });
-mirror_struct!(lapidary_voxelization, VoxelizationCrossing { crossed, at });
-mirror_struct!(lapidary_voxelization, VoxelizationColumn { inside, depth });
+mirror_struct!(crate, VoxelizationGrid { origin, spacing, cells });
+mirror_struct!(crate, VoxelizationCrossing { crossed, at });
+mirror_struct!(crate, VoxelizationColumn { inside, depth });
 
 const M: &str = "voxelization";
 
@@ -144,7 +143,9 @@ fn exact_triangle((a, b, c): Triangle) -> [DVec3; 3] {
     [a, b, c].map(Vec3::as_dvec3)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [grid_formulas(), column_formulas(), row_formulas(), surface_formulas()].into_iter().flatten().collect()
 }
 

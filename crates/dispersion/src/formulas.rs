@@ -1,14 +1,13 @@
 //! `wgsl/dispersion.wgsl`.
 
-use super::near;
-use super::refraction::{cosine_near_critical, incidence, relative_index};
+use crate::{self as mirror, DispersionSellmeier, oracle};
 use glam::{DVec3, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_dispersion::{self as mirror, DispersionSellmeier, oracle};
+use lapidary_refraction::formulas::{cosine_near_critical, incidence, relative_index};
 
-mirror_struct!(lapidary_dispersion, DispersionSellmeier { constant, strengths, resonances });
+mirror_struct!(crate, DispersionSellmeier { constant, strengths, resonances });
 
 const M: &str = "dispersion";
 
@@ -19,7 +18,9 @@ const UNIT: f64 = 16.0 / (1 << 24) as f64;
 /// Diamond's index at the d line.
 const DIAMOND: f32 = 2.41749;
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     vec![
         sellmeier(),
         cauchy(),

@@ -1,13 +1,12 @@
 //! `wgsl/refraction.wgsl`.
 
-use super::near;
+use crate::{self as mirror, RefractionHit, oracle};
 use glam::{DVec3, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::property::draws::Draws;
-use lapidary_refraction::{self as mirror, RefractionHit, oracle};
 
-mirror_struct!(lapidary_refraction, RefractionHit { direction, total });
+mirror_struct!(crate, RefractionHit { direction, total });
 
 /// Error of a length that three squares, two sums and the inputs' own rounding leave: 2⁻²⁴ each, with room for the
 /// portable bounds.
@@ -23,7 +22,7 @@ fn cosine(draws: &mut Draws<'_>) -> f32 {
 }
 
 /// Relative indices in [1/4, 4]: anywhere, and 1 ± every magnitude down to the last place.
-pub(super) fn relative_index(draws: &mut Draws<'_>) -> f32 {
+pub fn relative_index(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 4.0, 0.25, 1.0f32.next_up(), 1.0f32.next_down(), 2.41749, 1.0 / 2.41749]),
         1 | 2 => {
@@ -36,7 +35,7 @@ pub(super) fn relative_index(draws: &mut Draws<'_>) -> f32 {
 }
 
 /// A cosine within a few ulp of the critical angle of `index` < 1, on both sides; any cosine for the others.
-pub(super) fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
+pub fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
     if index < 1.0 && draws.below(3) == 0 {
         let index = f64::from(index);
         let critical = ((1.0 - index) * (1.0 + index)).sqrt() as f32;
@@ -47,7 +46,7 @@ pub(super) fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
 }
 
 /// An incident direction and a normal at the angle of incidence of `cosine`; exact where the normal lies along an axis.
-pub(super) fn incidence(draws: &mut Draws<'_>, cosine: f32) -> (Vec3, Vec3) {
+pub fn incidence(draws: &mut Draws<'_>, cosine: f32) -> (Vec3, Vec3) {
     let normal = draws.unit_vector();
     let axis = normal.as_dvec3().normalize();
     let tangent = draws.perpendicular(axis);
@@ -79,7 +78,9 @@ fn squared_sine_transmitted(incident: Vec3, normal: Vec3, index: f32) -> f64 {
     (1.0 - cosine * cosine) / f64::from(index).powi(2)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     const M: &str = "refraction";
     let grazing = |cosine: f32| {
         let cosine = f64::from(cosine);

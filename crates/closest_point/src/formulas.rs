@@ -1,10 +1,9 @@
 //! `wgsl/closest_point.wgsl`.
 
-use super::near;
+use crate::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 use glam::{DVec3, Vec2, Vec3};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
-use lapidary_closest_point::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 
 const M: &str = "closest_point";
 
@@ -125,7 +124,9 @@ fn extent(vertices: [Vec3; 3]) -> f64 {
     (b - a).length().max((c - a).length()).max((c - b).length())
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [vector_formulas(), line_formulas(), fallback_formulas(), centre_formulas(), paper_formulas()]
         .into_iter()
         .flatten()
@@ -261,8 +262,8 @@ fn fallback_formulas() -> Vec<Formula> {
     let below = |size: f64| {
         let third = size / 3.0;
         // √2 of the longest edge, less what the fading takes of it.
-        let depth = std::f64::consts::SQRT_2 * size
-            / (1.0 + (2.0 * f64::from(lapidary_closest_point::CLOSEST_POINT_SLIVER)).powi(2)).sqrt();
+        let depth =
+            std::f64::consts::SQRT_2 * size / (1.0 + (2.0 * f64::from(crate::CLOSEST_POINT_SLIVER)).powi(2)).sqrt();
         [third, third, -depth]
     };
     let corner = Vec3::new(1.0, 2.0, 3.0);

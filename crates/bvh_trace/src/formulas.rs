@@ -1,19 +1,18 @@
 //! `wgsl/bvh_trace.wgsl`.
 
-use super::near;
-use glam::{DVec3, Vec2, Vec3};
-use lapidary_assay::formula::{Formula, formula};
-use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
-use lapidary_bvh_trace::{
+use crate::{
     self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceObjectRay, BvhTraceRay,
     oracle,
 };
+use glam::{DVec3, Vec2, Vec3};
+use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::mirror_struct;
+use lapidary_assay::property::draws::Draws;
 
-mirror_struct!(lapidary_bvh_trace, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
-mirror_struct!(lapidary_bvh_trace, BvhTraceObjectRay { origin, direction, stretch });
-mirror_struct!(lapidary_bvh_trace, BvhTraceBox { entry, hit });
-mirror_struct!(lapidary_bvh_trace, BvhTraceHit { distance, barycentrics, triangle });
+mirror_struct!(crate, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
+mirror_struct!(crate, BvhTraceObjectRay { origin, direction, stretch });
+mirror_struct!(crate, BvhTraceBox { entry, hit });
+mirror_struct!(crate, BvhTraceHit { distance, barycentrics, triangle });
 
 const M: &str = "bvh_trace";
 /// What a component of the direction is replaced by if it is smaller, 2⁻²⁴.
@@ -321,7 +320,9 @@ fn any_box(draws: &mut Draws<'_>) -> BoxCase {
     (mirror::ray(origin, toward, lower.min(origin), upper.max(origin)), lower, upper, nearest)
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     let all = [vec![to_object_formula()], ray_formulas(), box_formulas(), triangle_formulas()];
     all.into_iter().flatten().collect()
 }

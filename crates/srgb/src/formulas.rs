@@ -1,10 +1,9 @@
 //! `wgsl/srgb.wgsl`.
 
-use super::near;
+use crate::{self as mirror, oracle};
 use glam::Vec3;
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
-use lapidary_srgb::{self as mirror, oracle};
 
 const M: &str = "srgb";
 
@@ -53,7 +52,9 @@ fn radiance(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [encoding_formulas(), decoding_formulas(), tone_formulas()].into_iter().flatten().collect()
 }
 

@@ -1,9 +1,8 @@
 //! `wgsl/absorption.wgsl`.
 
-use super::near;
+use crate::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
 use glam::Vec3;
-use lapidary_absorption::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
 
 const M: &str = "absorption";
@@ -64,7 +63,9 @@ fn benign_color(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(draws.between(0.01, 0.9), draws.between(0.01, 0.9), draws.between(0.01, 0.9))
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     let nearly_clear = 1.0f32.next_down();
     // -ln(1 - h) with h = 2^-24.
     let clear_depth = 2f64.powi(-24) + 2f64.powi(-49);

@@ -1,12 +1,9 @@
 //! `wgsl/optical_path.wgsl`.
 
-use super::near;
+use crate::{self as mirror, OPTICAL_PATH_DARKEST, OPTICAL_PATH_DEEPEST, OPTICAL_PATH_UNREACHED, oracle};
 use glam::{Vec3, Vec3Swizzles as _};
-use lapidary_assay::formula::{Formula, formula};
+use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::property::draws::Draws;
-use lapidary_optical_path::{
-    self as mirror, OPTICAL_PATH_DARKEST, OPTICAL_PATH_DEEPEST, OPTICAL_PATH_UNREACHED, oracle,
-};
 
 const M: &str = "optical_path";
 
@@ -103,7 +100,9 @@ fn rise_within_bounds((least, slowness): (Vec3, f32), cost: f32) -> Result<(), S
     }
 }
 
-pub(super) fn formulas() -> Vec<Formula> {
+/// Every function of the module, bound to its mirror and its oracle.
+#[must_use]
+pub fn formulas() -> Vec<Formula> {
     [on_graphs(), on_grids(), of_light()].into_iter().flatten().collect()
 }
 
