@@ -2,8 +2,8 @@
 
 use crate::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
 use glam::Vec3;
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
-use lapidary_assay::property::draws::Draws;
 
 const M: &str = "absorption";
 

@@ -5,9 +5,9 @@ use crate::{
     oracle,
 };
 use glam::{DVec3, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
 mirror_struct!(crate, BvhTraceObjectRay { origin, direction, stretch });

@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, CdrfTexels, oracle};
 use glam::{UVec2, Vec2, Vec3, Vec4};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 mirror_struct!(crate, CdrfTexels { lower, upper, weight });

@@ -2,8 +2,8 @@
 
 use crate::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 use glam::{DVec3, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
-use lapidary_assay::property::draws::Draws;
 
 const M: &str = "closest_point";
 

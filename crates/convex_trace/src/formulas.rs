@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, ConvexTraceHit { distance, face });
 

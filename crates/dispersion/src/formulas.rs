@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, DispersionSellmeier, oracle};
 use glam::{DVec3, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 use lapidary_refraction::formulas::{cosine_near_critical, incidence, relative_index};
 
 mirror_struct!(crate, DispersionSellmeier { constant, strengths, resonances });

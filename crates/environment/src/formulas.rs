@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use glam::{DVec2, UVec2, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 use std::f64::consts::PI;
 
 mirror_struct!(crate, EnvironmentTexels { lower, upper, weight });

@@ -1,8 +1,8 @@
 //! `wgsl/fresnel.wgsl`.
 
 use crate::{self as mirror, oracle};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
-use lapidary_assay::property::draws::Draws;
 
 const M: &str = "fresnel";
 

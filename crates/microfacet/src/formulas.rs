@@ -2,8 +2,8 @@
 
 use crate::{self as mirror, oracle};
 use glam::{DVec3, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
-use lapidary_assay::property::draws::Draws;
 use std::f64::consts::PI;
 
 const M: &str = "microfacet";

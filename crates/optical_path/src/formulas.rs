@@ -2,8 +2,8 @@
 
 use crate::{self as mirror, OPTICAL_PATH_DARKEST, OPTICAL_PATH_DEEPEST, OPTICAL_PATH_UNREACHED, oracle};
 use glam::{Vec3, Vec3Swizzles as _};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
-use lapidary_assay::property::draws::Draws;
 
 const M: &str = "optical_path";
 

@@ -5,9 +5,9 @@ use crate::{
     ProxyGeometryPlane, oracle,
 };
 use glam::{DVec3, IVec2, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, ProxyGeometryPlane { origin, edge_first, edge_second });
 mirror_struct!(crate, ProxyGeometryHit { point, distance, hit });

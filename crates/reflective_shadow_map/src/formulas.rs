@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 use glam::{Vec3, Vec4};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, ReflectiveShadowMapView { origin, lamp, axis, extent, near, far });
 mirror_struct!(crate, ReflectiveShadowMapBasis { right, up });

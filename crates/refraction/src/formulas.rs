@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, RefractionHit, oracle};
 use glam::{DVec3, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, RefractionHit { direction, total });
 

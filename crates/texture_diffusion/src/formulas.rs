@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 use glam::{Vec2, Vec3, Vec4};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, TextureDiffusionTap { offset, weight });
 

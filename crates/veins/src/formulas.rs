@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, VeinsCell, VeinsPattern, oracle};
 use glam::{IVec3, UVec3, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, VeinsCell { corner, offset });
 mirror_struct!(crate, VeinsPattern { frequency, width, least, greatest, octaves, seed });

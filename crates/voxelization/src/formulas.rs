@@ -2,9 +2,9 @@
 
 use crate::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
 use glam::{DVec3, UVec3, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near};
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 
 mirror_struct!(crate, VoxelizationGrid { origin, spacing, cells });
 mirror_struct!(crate, VoxelizationCrossing { crossed, at });

@@ -3,8 +3,8 @@
 
 use crate::dispatch::shape::Shape;
 use crate::dispatch::value::{Arguments, Exact, Function, Value};
-use crate::property::draws::{Domain, Draws};
-use crate::property::tolerance::number;
+use crate::draws::{Domain, Draws};
+use crate::tolerance::number;
 
 /// A row's words.
 pub type Words = Vec<u32>;

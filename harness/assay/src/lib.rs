@@ -3,6 +3,7 @@
 
 pub mod accuracy_line;
 pub mod dispatch;
+pub mod draws;
 pub mod extremum;
 pub mod formula;
 pub mod golden_section;
@@ -12,3 +13,4 @@ pub mod mutation;
 pub mod outside;
 pub mod property;
 pub mod tokens;
+pub mod tolerance;

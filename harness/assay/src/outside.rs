@@ -4,10 +4,10 @@
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::value::{Arguments, Value};
 use crate::dispatch::{DispatchError, Kernel};
+use crate::draws::{Domain, Draws};
 use crate::formula::{Formula, Words};
 use crate::literal::{self, Language};
-use crate::property::draws::{Domain, Draws};
-use crate::property::tolerance::{Tolerance, number};
+use crate::tolerance::{Tolerance, number};
 
 /// Inputs tried for each promise.
 const CASES: u64 = 2_048;

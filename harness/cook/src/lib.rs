@@ -4,6 +4,7 @@
 pub mod check;
 pub mod cookbook;
 pub mod cost;
+pub mod exposure;
 pub mod formulas;
 pub mod gallery;
 pub mod seed;

@@ -1,6 +1,6 @@
 //! The suite's seed: derived from the commit, so that each change meets other inputs, and a run on the same commit the same ones.
 
-use lapidary_assay::property::draws::mix;
+use lapidary_assay::draws::mix;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;

@@ -122,7 +122,7 @@ fn rounded(exact: f64, direction: f64) -> f32 {
 
 /// The float farthest off within so many ulp.
 fn within(exact: f64, direction: f64, ulps: f64) -> f32 {
-    let reach = direction * ulps * crate::property::tolerance::ulp_of(exact.abs());
+    let reach = direction * ulps * crate::tolerance::ulp_of(exact.abs());
     let end = exact + reach;
     let found = end as f32;
     // Rounding may not carry it beyond.

@@ -1,21 +1,18 @@
 //! Property testing on a GPU: batches of inputs a dispatch, every row compared, the worst one shrunk alone.
 
-pub mod draws;
 pub mod histogram;
 pub mod persistence;
 pub mod seams;
-mod search;
 pub mod slack;
-pub mod tolerance;
 
 use crate::dispatch::shape::Scalar;
 use crate::dispatch::{DispatchError, Kernel, ROWS_PER_DISPATCH};
 use crate::formula::{Formula, Words};
+use crate::tolerance::{Tolerance, Verdict, number};
 use histogram::Histogram;
 use proptest::strategy::ValueTree;
 use rayon::prelude::*;
 use std::time::Instant;
-use tolerance::{Tolerance, Verdict, number};
 
 /// Cases a formula by default.
 pub const DEFAULT_CASES: u64 = 65_536;

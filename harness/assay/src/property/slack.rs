@@ -2,10 +2,10 @@
 //!
 //! What the reference device computes says little of other devices. The `portable` bounds are held to this instead.
 
-use super::draws::mix;
-use super::tolerance::Tolerance;
+use crate::draws::mix;
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Program, Slacking, Stopped};
+use crate::tolerance::Tolerance;
 use rayon::prelude::*;
 
 /// Sets of directions that a climb starts from.

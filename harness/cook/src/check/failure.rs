@@ -4,7 +4,7 @@ use lapidary_assay::dispatch::shape::Scalar;
 use lapidary_assay::dispatch::{DispatchError, Kernel};
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::literal::{Language, call, value};
-use lapidary_assay::property::tolerance::{Allowed, Tolerance, number};
+use lapidary_assay::tolerance::{Allowed, Tolerance, number};
 use serde::Serialize;
 
 /// A failing input and its results, as literals and as numbers.

@@ -24,7 +24,7 @@ pub mod views;
 
 pub use choices::Choice;
 pub use dispersion::Colours;
-pub use error::{Errors, best_exposure, exposed_distance};
+pub use error::Errors;
 pub use gem::{Options, RUNGS, run};
 pub use profile::profile;
 pub use reflection::Reflection;

@@ -6,9 +6,9 @@ mod rays;
 mod surfaces;
 
 use glam::Vec3;
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::near;
 use lapidary_assay::outside::{Promise, any_finite};
-use lapidary_assay::property::draws::Draws;
 use std::sync::OnceLock;
 
 /// All promises, function by function.

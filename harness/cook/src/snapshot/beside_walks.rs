@@ -3,7 +3,7 @@
 use super::frames::{halved, side_by_side};
 use super::shots::LIGHTS_ALONE;
 use super::{EXR_SIDE, SnapshotError, WalkedReference};
-use crate::cost::best_exposure;
+use crate::exposure::best_exposure;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;

@@ -2,8 +2,8 @@
 //! f64 by brute force.
 
 use glam::{DVec3, Vec2, Vec3};
+use lapidary_assay::draws::{Domain, Draws};
 use lapidary_assay::extremum::larger;
-use lapidary_assay::property::draws::{Domain, Draws};
 use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
 use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
 use lapidary_gpu::Gpu;

@@ -5,7 +5,7 @@ use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
 use lapidary_assay::extremum::{larger, largest};
 use lapidary_cdrf::oracle;
-use lapidary_cook::cost::exposed_distance;
+use lapidary_cook::exposure::exposed_distance;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
 use lapidary_render::{Curvature, Picture, RenderError, Settings};

@@ -5,8 +5,8 @@ use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2, UV
 use lapidary_assay::dispatch::shape::{Scalar, Shape, Signature};
 use lapidary_assay::dispatch::value::Value;
 use lapidary_assay::dispatch::{self, DispatchError, Kernel, KernelModule, ROWS_PER_DISPATCH};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::mirror_struct;
-use lapidary_assay::property::draws::Draws;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 

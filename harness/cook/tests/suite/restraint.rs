@@ -1,8 +1,8 @@
 //! Rays that end when what they carry can no longer be seen: the bound on the picture, and what the bound rests on.
 
 use glam::{DVec3, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::extremum::larger;
-use lapidary_assay::property::draws::Draws;
 use lapidary_cook::cost::restraint::facets;
 use lapidary_environment as environment;
 use lapidary_plan::{Rung, Spectrum};

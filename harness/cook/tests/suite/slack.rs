@@ -2,7 +2,7 @@
 
 use lapidary_assay::interpreter::Program;
 use lapidary_assay::property::slack;
-use lapidary_assay::property::tolerance::Tolerance;
+use lapidary_assay::tolerance::Tolerance;
 use lapidary_cook::{check, cookbook, formulas};
 
 /// Functions whose portable bounds are derived from what WGSL guarantees.

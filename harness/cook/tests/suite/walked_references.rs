@@ -1,7 +1,7 @@
 //! The committed pictures by random walks.
 
 use lapidary_assay::extremum::larger;
-use lapidary_cook::cost::exposed_distance;
+use lapidary_cook::exposure::exposed_distance;
 use lapidary_cook::snapshot::frames::halved;
 use lapidary_cook::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 use lapidary_reference::random_walk::mesh;

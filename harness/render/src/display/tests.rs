@@ -1,7 +1,7 @@
 use super::*;
 use crate::pixel::display::{backdrop, shown};
 use glam::{Vec2, Vec3, Vec4};
-use lapidary_assay::property::draws::Draws;
+use lapidary_assay::draws::Draws;
 use lapidary_gpu::AdapterChoice;
 use lapidary_plan::Rung;
 use lapidary_scene::Scene;

@@ -1,8 +1,8 @@
 //! Whole pictures beside the committed ones by random walks, with cast shadows and without, and the time of these very pictures.
 
 use super::CostError;
-use crate::cost::exposed_distance;
 use crate::cost::timing::{self, Timed, Timing};
+use crate::exposure::exposed_distance;
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WalkedReference};
 use lapidary_gpu::Gpu;

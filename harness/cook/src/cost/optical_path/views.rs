@@ -46,7 +46,7 @@ pub struct Distance {
     pub nats: Option<f64>,
     /// The same of luminance, e to the minus cost: of the brightest possible.
     pub luminance: Option<f64>,
-    /// From the committed picture by random walks: [`crate::cost::exposed_distance`]. Of the walks themselves, their own standard error.
+    /// From the committed picture by random walks: [`crate::exposure::exposed_distance`]. Of the walks themselves, their own standard error.
     pub walks: Option<f64>,
 }
 

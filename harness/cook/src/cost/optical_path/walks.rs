@@ -2,7 +2,8 @@
 
 use super::Measured;
 use super::views::{SIDE, settings};
-use crate::cost::{CostError, exposed_distance};
+use crate::cost::CostError;
+use crate::exposure::exposed_distance;
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WALKED};
 use lapidary_gpu::Gpu;

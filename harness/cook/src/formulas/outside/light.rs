@@ -2,8 +2,8 @@
 
 use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
 use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, accurate, any_finite, finite, holds, like, nothing};
-use lapidary_assay::property::draws::Draws;
 use lapidary_environment::EnvironmentTexels;
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 use std::f64::consts::{PI, TAU};

@@ -3,9 +3,9 @@
 use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
 use glam::{IVec3, UVec2, UVec3, UVec4, Vec2, Vec3};
 use lapidary_absorption as absorption;
+use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::near;
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
-use lapidary_assay::property::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_random_walk::{RANDOM_WALK_PASSED, RANDOM_WALK_THINNEST, RandomWalkCrossing};
 use lapidary_texture_diffusion::TextureDiffusionTap;

@@ -2,8 +2,8 @@
 
 use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
 use glam::{DVec3, IVec2, Mat3, Quat, Vec2, Vec3, Vec4};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, accurate, finite, holds, like, nothing};
-use lapidary_assay::property::draws::Draws;
 use lapidary_bvh_trace::{self as bvh, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceRay};
 use lapidary_closest_point::oracle as closest_point;
 use lapidary_convex_trace::{self as convex, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit};

@@ -2,8 +2,8 @@
 
 use super::{any_vector, close, of_length, that};
 use glam::{DVec3, UVec2, Vec2, Vec3};
+use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, finite, holds, like, nothing};
-use lapidary_assay::property::draws::Draws;
 use lapidary_cdrf::oracle as cdrf;
 use lapidary_curvature::{CurvatureFrame, CurvaturePixel};
 use lapidary_microfacet as microfacet;

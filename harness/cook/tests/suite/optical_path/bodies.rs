@@ -1,7 +1,7 @@
 //! Bodies of voxels with seeds, made on the CPU.
 
 use glam::{UVec3, Vec3};
-use lapidary_assay::property::draws::Draws;
+use lapidary_assay::draws::Draws;
 use lapidary_gpu::Gpu;
 use lapidary_optical_path::kernels::Body;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};

@@ -3,7 +3,7 @@
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve};
 use glam::{IVec3, UVec3};
-use lapidary_assay::property::draws::Draws;
+use lapidary_assay::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_scene::solver::{Method, Stencil};
 

@@ -1,8 +1,8 @@
 //! A picture of the GPU against the mirrors, pixel by pixel.
 
 use glam::Vec3;
+use lapidary_assay::draws::Draws;
 use lapidary_assay::extremum::larger;
-use lapidary_assay::property::draws::Draws;
 use lapidary_plan::Spectrum;
 use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 use lapidary_render::{Picture, RenderError, Settings};

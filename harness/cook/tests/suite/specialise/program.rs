@@ -1,7 +1,7 @@
 //! Random shaders: nested branches, switches, loops and calls whose conditions mix overrides with what is known only at
 //! run time, in every proportion.
 
-use lapidary_assay::property::draws::Draws;
+use lapidary_assay::draws::Draws;
 use std::fmt::Write as _;
 
 /// Branches, switches and loops inside one another at most.

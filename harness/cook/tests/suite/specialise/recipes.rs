@@ -6,7 +6,7 @@ use super::{ROWS, SEED, outcomes, specialised};
 
 use lapidary_assay::dispatch::shape::Signature;
 use lapidary_assay::dispatch::{self, KernelModule};
-use lapidary_assay::property::draws::Draws;
+use lapidary_assay::draws::Draws;
 use lapidary_specialise::specialise;
 use lapidary_wgsl::{RECIPES, Recipe};
 use naga::{Expression, Function, Handle, Literal, Module, Statement, back};

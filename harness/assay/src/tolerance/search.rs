@@ -1,9 +1,9 @@
 //! The range of an oracle over inputs that are off by what `backward` allows: corners of the box about the input, places where a discrete
 //! result changes, and extrema.
 
-use super::draws::mix;
-use super::tolerance::{FLUSHED, OracleFn, largest, number, ulp_of};
+use super::{FLUSHED, OracleFn, largest, number, ulp_of};
 use crate::dispatch::shape::{Leaf, Scalar};
+use crate::draws::mix;
 use crate::golden_section::golden_section;
 use std::convert::Infallible;
 

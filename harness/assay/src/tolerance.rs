@@ -1,9 +1,11 @@
 //! Whether a result is right: the comparison of a shader's row with the mirror's and with the oracle's, under the
 //! bounds of the function's `Accuracy:` line.
 
-use super::search::{Effort, InputBox, Search, Spread};
+mod search;
+
 use crate::accuracy_line::{Bound, FieldBound};
 use crate::dispatch::shape::{Leaf, Scalar, Shape};
+use search::{Effort, InputBox, Search, Spread};
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.
 pub(super) const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
