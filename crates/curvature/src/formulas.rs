@@ -2,10 +2,10 @@
 
 use crate::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle};
 use glam::{DVec3, Vec3};
-use lapidary_assay::dispatch::value::Value;
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Builder, Formula, formula, near};
 use lapidary_assay::mirror_struct;
+use lapidary_assay::value::Value;
 
 mirror_struct!(crate, CurvaturePixel { p_x, p_y, n_x, n_y });
 mirror_struct!(crate, CurvatureFrame { first, second, normal, width, lean, rise, bounded });

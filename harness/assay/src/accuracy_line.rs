@@ -1,6 +1,6 @@
 //! The `Accuracy:` line of a function: the tolerance that its tests apply. Grammar in `docs/contract.md`.
 
-use crate::dispatch::shape::Shape;
+use crate::shape::Shape;
 use std::fmt;
 
 /// What a function promises.

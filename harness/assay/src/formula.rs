@@ -1,10 +1,10 @@
 //! What a formula is: a WGSL function with its mirror, its oracle, the domain of its inputs and the edges that the domain
 //! must reach, its invariants, and its hard cases. One file of `formulas/` per module declares them.
 
-use crate::dispatch::shape::Shape;
-use crate::dispatch::value::{Arguments, Exact, Function, Value};
 use crate::draws::{Domain, Draws};
+use crate::shape::Shape;
 use crate::tolerance::number;
+use crate::value::{Arguments, Exact, Function, Value};
 
 /// A row's words.
 pub type Words = Vec<u32>;

@@ -1,16 +1,26 @@
 //! Property tests of WGSL functions on a GPU: any function is reflected and run as a compute kernel, compared with a function in Rust over random,
 //! hard and shrunk inputs, under a tolerance in ulp, absolute, relative or backward error.
+//!
+//! Without the feature `gpu`, what needs no device is left: random inputs, shapes and values, tolerances.
 
 pub mod accuracy_line;
+#[cfg(feature = "gpu")]
 pub mod dispatch;
 pub mod draws;
 pub mod extremum;
 pub mod formula;
 pub mod golden_section;
+#[cfg(feature = "gpu")]
 pub mod interpreter;
 pub mod literal;
+#[cfg(feature = "gpu")]
 pub mod mutation;
+#[cfg(feature = "gpu")]
 pub mod outside;
+#[cfg(feature = "gpu")]
 pub mod property;
+pub mod shape;
+#[cfg(feature = "gpu")]
 pub mod tokens;
 pub mod tolerance;
+pub mod value;

@@ -1,8 +1,8 @@
 //! Values as literals that can be pasted: Rust for the mirrors' crates, WGSL for a shader. Decimals are the shortest that
 //! name the f32 exactly.
 
-use crate::dispatch::shape::{Scalar, Shape};
 use crate::formula::Formula;
+use crate::shape::{Scalar, Shape};
 
 /// The language of a literal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,13 +1,13 @@
 //! What a function promises outside of its domain, as its `Outside:` line says it, tested: hostile inputs, and what must hold of
 //! the results there. The promises stand in `formulas/outside/`.
 
-use crate::dispatch::shape::{Scalar, Shape};
-use crate::dispatch::value::{Arguments, Value};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::draws::{Domain, Draws};
 use crate::formula::{Formula, Words};
 use crate::literal::{self, Language};
+use crate::shape::{Scalar, Shape};
 use crate::tolerance::{Tolerance, number};
+use crate::value::{Arguments, Value};
 
 /// Inputs tried for each promise.
 const CASES: u64 = 2_048;

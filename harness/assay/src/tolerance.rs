@@ -4,7 +4,7 @@
 mod search;
 
 use crate::accuracy_line::{Bound, FieldBound};
-use crate::dispatch::shape::{Leaf, Scalar, Shape};
+use crate::shape::{Leaf, Scalar, Shape};
 use search::{Effort, InputBox, Search, Spread};
 
 /// What WGSL lets an implementation flush to zero: the smallest normal f32.

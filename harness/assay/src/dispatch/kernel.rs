@@ -3,7 +3,8 @@
 //! Buffers cannot hold bools, so each struct that has one travels as a twin with `u32` in its place; everything else
 //! travels as it is, in the layout that naga gives it.
 
-use super::shape::{Scalar, Shape, Signature};
+use super::signature::Signature;
+use crate::shape::{Scalar, Shape};
 use std::fmt::Write as _;
 
 /// The entry point's name.

@@ -5,21 +5,20 @@ mod kernel;
 mod layout;
 mod nonfinite;
 pub mod reach;
-pub mod shape;
+pub mod signature;
 mod turns;
-pub mod value;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
 
 use crate::tokens::{items, tokens};
+use crate::value::{Arguments, Value};
 use batch::Buffers;
 use lapidary_gpu::{Gpu, GpuError};
 use layout::Layout;
-use shape::{Signature, SignatureError};
+use signature::{Signature, SignatureError};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
-use value::{Arguments, Value};
 
 /// Rows in one dispatch: enough to fill the device, few enough that memory stays bounded (16 MiB at 64 words a row).
 pub const ROWS_PER_DISPATCH: usize = 65_536;

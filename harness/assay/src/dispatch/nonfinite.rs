@@ -3,7 +3,7 @@
 
 use super::kernel::{self, kernel_source};
 use super::layout::Layout;
-use super::shape::Signature;
+use super::signature::Signature;
 use super::{DispatchError, KernelModule, parse};
 use lapidary_specialise::validate;
 use naga::{BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, MathFunction};

@@ -58,7 +58,7 @@ impl Program {
     /// The function of that name in WGSL source; `path` is for messages.
     pub fn new(source: &str, path: &str, function: &str) -> Result<Program, DispatchError> {
         let (module, info) = dispatch::parse(source, path)?;
-        dispatch::shape::Signature::reflect(&module, function)?;
+        dispatch::signature::Signature::reflect(&module, function)?;
         let found = module.functions.iter().find(|(_, found)| found.name.as_deref() == Some(function));
         let Some((function, _)) = found else { unreachable!("a reflected function is there") };
         let layouts =

@@ -5,9 +5,9 @@ pub mod persistence;
 pub mod seams;
 pub mod slack;
 
-use crate::dispatch::shape::Scalar;
 use crate::dispatch::{DispatchError, Kernel, ROWS_PER_DISPATCH};
 use crate::formula::{Formula, Words};
+use crate::shape::Scalar;
 use crate::tolerance::{Tolerance, Verdict, number};
 use histogram::Histogram;
 use proptest::strategy::ValueTree;
@@ -224,7 +224,7 @@ impl Check<'_, '_> {
             stopped.iter_mut().enumerate().for_each(|(row, stopped)| *stopped |= self.kernel.stopped(row));
             others.push(other);
         }
-        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::dispatch::shape::Shape::scalars).collect();
+        let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::shape::Shape::scalars).collect();
         let tolerance = self.tolerance;
         let judge_row = |row: usize, thoroughly: bool, scratch: &mut (Words, Vec<f64>, Vec<f64>)| {
             let (mirrored, numbers, exact) = scratch;

@@ -5,12 +5,12 @@
 //! and then one float, down to neighbours. Both sides are held to the function's tolerance, like any input. Then they are within their bounds of
 //! each other as well, provided that the mathematics does not jump there ([`jump`]); and that is asked of the oracle, in the f64 between the two.
 
-use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{DispatchError, Kernel};
 use crate::draws::mix;
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Decision, Program, Site, Stopped, Traced};
 use crate::literal::{self, Language};
+use crate::shape::{Scalar, Shape};
 use crate::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

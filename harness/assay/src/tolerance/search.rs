@@ -2,9 +2,9 @@
 //! result changes, and extrema.
 
 use super::{FLUSHED, OracleFn, largest, number, ulp_of};
-use crate::dispatch::shape::{Leaf, Scalar};
 use crate::draws::mix;
 use crate::golden_section::golden_section;
+use crate::shape::{Leaf, Scalar};
 use std::convert::Infallible;
 
 /// Corners of the input box that are tried where it has too many to try all, at first and once more in earnest.

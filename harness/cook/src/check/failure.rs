@@ -1,9 +1,9 @@
 //! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
 
-use lapidary_assay::dispatch::shape::Scalar;
 use lapidary_assay::dispatch::{DispatchError, Kernel};
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::literal::{Language, call, value};
+use lapidary_assay::shape::Scalar;
 use lapidary_assay::tolerance::{Allowed, Tolerance, number};
 use serde::Serialize;
 

@@ -54,7 +54,7 @@ impl UserFile {
         if let ([only], Some(true)) = (asked.as_slice(), filter.map(|filter| filter.contains("::")))
             && formulas.is_empty()
         {
-            let error = dispatch::shape::SignatureError::Missing { function: only.function.to_owned() };
+            let error = dispatch::signature::SignatureError::Missing { function: only.function.to_owned() };
             return Err(in_path(error.into()));
         }
         if formulas.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::{Failure, Outcome, output};
 use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::shape::Signature;
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::cookbook;
 use serde::Serialize;
 

@@ -4,7 +4,7 @@ use super::header::{self, Header};
 use super::marks;
 use super::precedence::mixed_operators;
 use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::shape::Shape;
+use lapidary_assay::dispatch::signature::of_type;
 use naga::{Expression, Function, Handle};
 use std::fmt;
 
@@ -139,7 +139,7 @@ fn check_functions(source: &str, module: &naga::Module, report: &mut Report<'_>)
             report(Rule::FunctionComment, comment.line, format!("`{name}` returns nothing, so nothing can test it"));
             continue;
         };
-        match Shape::of_type(module, result.ty) {
+        match of_type(module, result.ty) {
             Err(reason) => report(Rule::FunctionComment, comment.line, format!("`{name}`: result: {reason}")),
             Ok(shape) => {
                 if let Err(reason) = comment.accuracy.check_fields(&shape) {

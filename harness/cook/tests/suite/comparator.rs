@@ -4,11 +4,11 @@
 use crate::gpu;
 use glam::{DVec3, Vec3};
 use lapidary_assay::accuracy_line::{Bound, FieldBound};
-use lapidary_assay::dispatch::shape::{Scalar, Shape};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, Words, formula};
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Report, Settings};
+use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::{Tolerance, Verdict};
 use lapidary_cook::check::{self, Source};
 

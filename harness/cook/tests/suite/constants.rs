@@ -2,7 +2,7 @@
 //! something measured are near what others published.
 
 use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::value::Value;
+use lapidary_assay::value::Value;
 use lapidary_cook::cookbook;
 use naga::{Expression, Handle, Literal, Module};
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! The module contract: the cookbook keeps it, and each rule notices a module that does not.
 
 use lapidary_assay::accuracy_line::Accuracy;
-use lapidary_assay::dispatch::shape::Signature;
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_cook::cookbook::lint::{Finding, Rule, lint, lint_composition, lint_recipe};
 use lapidary_cook::cookbook::translate::{Target, translate};

@@ -2,11 +2,12 @@
 
 use crate::gpu;
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
-use lapidary_assay::dispatch::shape::{Scalar, Shape, Signature};
-use lapidary_assay::dispatch::value::Value;
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, DispatchError, Kernel, KernelModule, ROWS_PER_DISPATCH};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::mirror_struct;
+use lapidary_assay::shape::{Scalar, Shape};
+use lapidary_assay::value::Value;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 

@@ -1,7 +1,7 @@
 //! The catalogue of hard cases, on both sides: the stable form holds its limit, and the naive form fails there by as much as is
 //! stated. Where nothing fails, it is no hard case.
 
-use lapidary_assay::dispatch::shape::{Scalar, Shape};
+use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_cook::check::{self, Source, distance_from_limit};
 use lapidary_cook::formulas;
 

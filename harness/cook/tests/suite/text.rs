@@ -2,7 +2,7 @@
 //! interface, and is to be seen in review. `INSTA_UPDATE=always ./cook test text` accepts it.
 
 use lapidary_assay::dispatch;
-use lapidary_assay::dispatch::shape::Signature;
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::cookbook;
 use std::fmt::Write as _;
 

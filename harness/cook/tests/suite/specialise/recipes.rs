@@ -4,7 +4,7 @@
 
 use super::{ROWS, SEED, outcomes, specialised};
 
-use lapidary_assay::dispatch::shape::Signature;
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_assay::draws::Draws;
 use lapidary_specialise::specialise;

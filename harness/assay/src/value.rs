@@ -1,6 +1,6 @@
 //! How Rust values become words and words become values, for mirrors (32-bit) and for oracles (f64).
 
-use super::shape::{Scalar, Shape};
+use crate::shape::{Scalar, Shape};
 use glam::{
     BVec2, BVec3, BVec4, DMat2, DMat3, DMat4, DVec2, DVec3, DVec4, IVec2, IVec3, IVec4, Mat2, Mat3, Mat4, UVec2, UVec3,
     UVec4, Vec2, Vec3, Vec4,
@@ -208,22 +208,22 @@ macro_rules! mirror_struct {
         $crate::mirror_struct!(@one Exact, f64, $krate::oracle::$name, $name { $($field),* });
     };
     (@one $trait:ident, $word:ty, $type:path, $name:ident { $($field:ident),* }) => {
-        impl $crate::dispatch::value::$trait for $type {
-            fn shape() -> $crate::dispatch::shape::Shape {
+        impl $crate::value::$trait for $type {
+            fn shape() -> $crate::shape::Shape {
                 // Never called: only its type says what a member's is.
-                fn of<S, T: $crate::dispatch::value::$trait>(_: impl Fn(&S) -> &T) -> $crate::dispatch::shape::Shape {
-                    <T as $crate::dispatch::value::$trait>::shape()
+                fn of<S, T: $crate::value::$trait>(_: impl Fn(&S) -> &T) -> $crate::shape::Shape {
+                    <T as $crate::value::$trait>::shape()
                 }
-                $crate::dispatch::shape::Shape::Struct(
+                $crate::shape::Shape::Struct(
                     stringify!($name).to_owned(),
                     vec![$((stringify!($field).to_owned(), of(|value: &$type| &value.$field))),*],
                 )
             }
             fn write(&self, words: &mut Vec<$word>) {
-                $($crate::dispatch::value::$trait::write(&self.$field, words);)*
+                $($crate::value::$trait::write(&self.$field, words);)*
             }
             fn read(words: &mut &[$word]) -> Self {
-                Self { $($field: $crate::dispatch::value::$trait::read(words)),* }
+                Self { $($field: $crate::value::$trait::read(words)),* }
             }
         }
     };
