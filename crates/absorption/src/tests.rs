@@ -2,16 +2,8 @@
 
 use super::*;
 use glam::DVec3;
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
-
-fn ulp(value: f64) -> f64 {
-    let value = (value as f32).abs().max(f32::MIN_POSITIVE);
-    f64::from(value.next_up()) - f64::from(value)
-}
+use lapidary_assay::extremum::larger;
+use lapidary_assay::tolerance::ulp_of;
 
 #[test]
 fn the_oracle_is_the_logarithm_and_the_exponential() {
@@ -31,7 +23,7 @@ fn optical_depths_keep_their_digits_at_every_magnitude() {
     let mut worst: f64 = 0.0;
     let mut check = |transmittance: f32| {
         let exact = oracle::optical_depth(f64::from(transmittance));
-        worst = larger(worst, (f64::from(optical_depth(transmittance)) - exact).abs() / ulp(exact));
+        worst = larger(worst, (f64::from(optical_depth(transmittance)) - exact).abs() / ulp_of(exact));
     };
     // Every float next to 1, then every 997th down to the smallest.
     (1..100_000).for_each(|steps| check(f32::from_bits(1.0f32.to_bits() - steps)));

@@ -4,28 +4,8 @@
 use super::*;
 use crate::traversal::{BVH_TRACE_DEPTH, TriangleFn, met, trace, trace_all, trace_with};
 use glam::{DVec3, Vec4};
+use lapidary_assay::draws::Draws;
 use std::collections::BTreeMap;
-
-/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn below(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
-    }
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let vector = DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0;
-            if (1e-2..1.0).contains(&vector.length()) {
-                return vector.normalize();
-            }
-        }
-    }
-}
 
 struct Body {
     nodes: Vec<[Vec4; 2]>,
@@ -119,17 +99,17 @@ fn lens() -> Body {
 }
 
 /// Rays from about the middle, aimed exactly at a vertex, at a point of an edge, or along an edge's plane.
-fn aimed_ray(random: &mut Random, body: &Body) -> (Vec3, Vec3) {
+fn aimed_ray(random: &mut Draws<'_>, body: &Body) -> (Vec3, Vec3) {
     let origin = (0.1 * random.unit() * random.direction()).as_vec3();
     let origin = if random.below(4) == 0 { Vec3::ZERO } else { origin };
-    let corner = 3 * random.below(body.indices.len() / 3);
+    let corner = 3 * random.below((body.indices.len() / 3) as u32) as usize;
     let [a, b] = [0, 1].map(|k| body.positions[body.indices[corner + k] as usize].as_dvec3());
     let target = if random.below(2) == 0 { a } else { a.lerp(b, random.unit()) };
     (origin, (target - origin.as_dvec3()).normalize().as_vec3())
 }
 
 fn leaks(body: &Body, rays: usize, with: TriangleFn) -> usize {
-    let mut random = Random(1);
+    let mut random = Draws::of_row(1, 0);
     (0..rays)
         .filter(|_| {
             let (origin, direction) = aimed_ray(&mut random, body);
@@ -181,7 +161,7 @@ fn faults(body: &Body, origin: Vec3, direction: Vec3, left: u32, hit: &BvhTraceH
 
 #[test]
 fn the_nearest_triangle_is_that_of_f64() {
-    let mut random = Random(2);
+    let mut random = Draws::of_row(2, 0);
     let body = bumpy();
     for count in 0..4000 {
         let (mut origin, mut direction) = aimed_ray(&mut random, &body);
@@ -205,7 +185,7 @@ fn the_nearest_triangle_is_that_of_f64() {
 
 #[test]
 fn the_hierarchy_finds_what_the_loop_finds() {
-    let mut random = Random(3);
+    let mut random = Draws::of_row(3, 0);
     let body = bumpy();
     for _ in 0..3000 {
         let (origin, direction) = aimed_ray(&mut random, &body);
@@ -218,7 +198,7 @@ fn the_hierarchy_finds_what_the_loop_finds() {
 /// From a facet inwards, to a vertex or an edge of another, where its neighbours know nothing of the reflected
 /// direction, and on by mirror reflections; counts the rays that get out.
 fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
-    let mut random = Random(4);
+    let mut random = Draws::of_row(4, 0);
     let count = body.indices.len() / 3;
     let corners =
         |triangle: usize| [0, 1, 2].map(|k| body.positions[body.indices[3 * triangle + k] as usize].as_dvec3());
@@ -227,12 +207,12 @@ fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
         (b - a).cross(c - a).normalize()
     };
     let mut start = || loop {
-        let left = random.below(count);
+        let left = random.below(count as u32) as usize;
         let [a, b, c] = corners(left);
         let (v, w) = (random.unit(), random.unit());
         let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
         let origin = (a + v * (b - a) + w * (c - a)).as_vec3();
-        let [from, to, _] = corners(random.below(count));
+        let [from, to, _] = corners(random.below(count as u32) as usize);
         let target = if random.below(2) == 0 { from } else { from.lerp(to, random.unit()) };
         let direction = (target - origin.as_dvec3()).normalize();
         if normal(left).dot(direction) < -1e-4 {
@@ -283,7 +263,7 @@ fn a_body_far_away_is_traced_in_its_own_coordinates() {
     let place = Vec3::new(1_048_576.0, -2_097_152.0, 524_288.0);
     let moved = self::body(body.positions.iter().map(|position| *position + place).collect(), &body.indices);
     let positions: Vec<DVec3> = body.positions.iter().map(|position| position.as_dvec3()).collect();
-    let mut random = Random(11);
+    let mut random = Draws::of_row(11, 0);
     let (mut worst, mut worst_there) = (0.0f64, 0.0f64);
     for _ in 0..200 {
         let origin = place + (Vec3::new(1.0, 0.0, -2.0) * 0.125);

@@ -1,12 +1,8 @@
 //! The oracle against other formulas, the claims of docs/cdrf.md, and its table of rungs.
 
 use super::*;
+use lapidary_assay::extremum::larger;
 use std::f64::consts::{FRAC_1_PI, PI};
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
 
 /// Cosines of `count` + 1 angles from 0 to 180°.
 fn cosines(count: u32) -> impl Iterator<Item = f64> {

@@ -2,40 +2,9 @@
 
 use super::*;
 use glam::{DVec2, DVec3};
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
-
-/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn below(&mut self, count: u32) -> usize {
-        (self.unit() * f64::from(count)) as usize
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0
-    }
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let vector = self.vector();
-            if (1e-2..1.0).contains(&vector.length()) {
-                return vector.normalize();
-            }
-        }
-    }
-}
-
-fn ulp(value: f64) -> f64 {
-    let value = (value.abs() as f32).max(f32::MIN_POSITIVE);
-    f64::from(f32::from_bits(value.to_bits() + 1)) - f64::from(value)
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::extremum::larger;
+use lapidary_assay::tolerance::ulp_of;
 
 fn largest(vector: DVec3) -> f64 {
     oracle::largest_component(vector)
@@ -52,7 +21,7 @@ fn excess<const N: usize>(value: DVec3, truth: impl Fn([DVec3; N]) -> DVec3, inp
                 let mut reach = DVec3::ZERO;
                 for sign in [-1.0, 1.0] {
                     let mut near = inputs;
-                    near[i] += axis * sign * backward * ulp(largest(inputs[i]));
+                    near[i] += axis * sign * backward * ulp_of(largest(inputs[i]));
                     reach = reach.max((truth(near) - exact).abs());
                 }
                 allowed += reach;
@@ -60,7 +29,7 @@ fn excess<const N: usize>(value: DVec3, truth: impl Fn([DVec3; N]) -> DVec3, inp
         }
     }
     let error = ((value - exact).abs() - allowed).max(DVec3::ZERO);
-    largest(error) / ulp(largest(exact))
+    largest(error) / ulp_of(largest(exact))
 }
 
 fn extend(vector: DVec2) -> DVec3 {
@@ -83,43 +52,44 @@ fn double<const N: usize>(inputs: [Vec3; N]) -> [DVec3; N] {
     inputs.map(|v| v.as_dvec3())
 }
 
-fn pair(random: &mut Random, angle: f64) -> [Vec3; 4] {
+fn pair(random: &mut Draws<'_>, angle: f64) -> [Vec3; 4] {
     let n = random.direction();
     let side = random.direction().reject_from(n).normalize();
     let size = 10f64.powf(30.0 * random.unit() - 15.0);
-    let shift = random.vector() * size * [0.0, 1.0, 100.0][random.below(3)];
+    let shift = random.in_cube().as_dvec3() * size * [0.0, 1.0, 100.0][random.below(3) as usize];
     let x = match random.below(4) {
         0 => n * (random.unit() - 0.5),
         1 => n.cross(side),
-        _ => random.vector(),
+        _ => random.in_cube().as_dvec3(),
     } * size;
     single([shift, n, shift + x, (n * angle.cos() + side * angle.sin()).normalize()])
 }
 
 /// A triangle of any shape, sometimes degenerate, with normals about one axis at an angle, at most 120° apart.
-fn triangle(random: &mut Random, angle: f64) -> [Vec3; 6] {
+fn triangle(random: &mut Draws<'_>, angle: f64) -> [Vec3; 6] {
     let size = 10f64.powf(39.0 * random.unit() - 20.0);
-    let shift = random.vector() * [0.0, 1.0, 10.0, 0.1][random.below(4)];
-    let mut corners = [random.vector() + shift, random.vector() + shift, random.vector() + shift];
+    let shift = random.in_cube().as_dvec3() * [0.0, 1.0, 10.0, 0.1][random.below(4) as usize];
+    let mut corners =
+        [random.in_cube().as_dvec3() + shift, random.in_cube().as_dvec3() + shift, random.in_cube().as_dvec3() + shift];
     match random.below(14) {
         0 => corners[1] = corners[0],
         1 => corners[2] = corners[1],
         2 => corners[2] = corners[0],
         3 => corners = [corners[0]; 3],
         4 => corners[2] = corners[0] + (corners[1] - corners[0]) * random.unit(),
-        12 => corners[2] = corners[0].lerp(corners[1], random.unit()) + random.vector() * 3e-3,
+        12 => corners[2] = corners[0].lerp(corners[1], random.unit()) + random.in_cube().as_dvec3() * 3e-3,
         13 => {
-            corners[1] = random.vector() * 10f64.powf(-8.0 * random.unit());
-            corners[2] = random.vector() * 10f64.powf(-8.0 * random.unit());
+            corners[1] = random.in_cube().as_dvec3() * 10f64.powf(-8.0 * random.unit());
+            corners[2] = random.in_cube().as_dvec3() * 10f64.powf(-8.0 * random.unit());
         }
-        5 => corners[2] = corners[1] + random.vector() * 10f64.powf(-8.0 * random.unit()),
+        5 => corners[2] = corners[1] + random.in_cube().as_dvec3() * 10f64.powf(-8.0 * random.unit()),
         _ => {}
     }
     let axis = random.direction();
     let mut inputs = [DVec3::ZERO; 6];
     for i in 0..3 {
         inputs[2 * i] = corners[i] * size;
-        inputs[2 * i + 1] = (axis + random.vector() * angle.tan()).normalize();
+        inputs[2 * i + 1] = (axis + random.in_cube().as_dvec3() * angle.tan()).normalize();
     }
     if inputs[1].dot(inputs[3]).min(inputs[3].dot(inputs[5])).min(inputs[5].dot(inputs[1])) < -0.5 {
         return triangle(random, angle);
@@ -128,8 +98,8 @@ fn triangle(random: &mut Random, angle: f64) -> [Vec3; 6] {
 }
 
 /// Runs `trial` many times and returns the worst error in ulp beyond the accuracy's `backward` term.
-fn worst(seed: u64, trials: usize, mut trial: impl FnMut(&mut Random) -> f64) -> f64 {
-    let mut random = Random(seed);
+fn worst(seed: u64, trials: usize, mut trial: impl FnMut(&mut Draws<'_>) -> f64) -> f64 {
+    let mut random = Draws::of_row(seed, 0);
     let worst = (0..trials).map(|_| trial(&mut random)).fold(0.0, larger);
     println!("{worst:.2} ulp");
     worst
@@ -190,7 +160,7 @@ fn largest_component_is_exact() {
 #[test]
 fn direction_is_accurate() {
     let error = worst(4, 400_000, |random| {
-        let v = (random.vector() * 10f64.powf(60.0 * random.unit() - 28.0)).as_vec3();
+        let v = (random.in_cube().as_dvec3() * 10f64.powf(60.0 * random.unit() - 28.0)).as_vec3();
         excess(direction(v).as_dvec3(), |v| oracle::direction(v[0]), double([v]), 0.0)
     });
     assert!(error <= 4.0);
@@ -210,7 +180,7 @@ fn centre_is_accurate() {
 
 #[test]
 fn centre_is_bounded_and_does_not_depend_on_the_first_vertex() {
-    let mut random = Random(6);
+    let mut random = Draws::of_row(6, 0);
     for _ in 0..100_000 {
         let angle = 10f64.powf(-8.0 * random.unit());
         let v = triangle(&mut random, angle);

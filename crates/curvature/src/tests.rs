@@ -3,32 +3,8 @@
 
 use super::*;
 use glam::{DMat3, DVec3, Vec3};
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
-
-/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + self.unit() * (high - low)
-    }
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let vector = DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0));
-            if (1e-2..1.0).contains(&vector.length()) {
-                return vector.normalize();
-            }
-        }
-    }
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::extremum::larger;
 
 /// A surface as the zeros of a function, with its curvatures in closed form.
 #[derive(Clone, Copy, Debug)]
@@ -135,20 +111,20 @@ impl Surface {
         tangent.dot(self.hessian(p) * tangent) / self.gradient(p).length()
     }
 
-    fn point(self, random: &mut Random) -> DVec3 {
-        let turn = random.between(0.0, std::f64::consts::TAU);
+    fn point(self, random: &mut Draws<'_>) -> DVec3 {
+        let turn = random.between_f64(0.0, std::f64::consts::TAU);
         match self {
             Surface::Sphere(radius) => radius * random.direction(),
             Surface::Cylinder(radius) => {
-                DVec3::new(radius * turn.cos(), radius * turn.sin(), random.between(-1.0, 1.0))
+                DVec3::new(radius * turn.cos(), radius * turn.sin(), random.between_f64(-1.0, 1.0))
             }
             Surface::Torus(large, small) => {
-                let other = random.between(0.0, std::f64::consts::TAU);
+                let other = random.between_f64(0.0, std::f64::consts::TAU);
                 let radius = large + small * other.cos();
                 DVec3::new(radius * turn.cos(), radius * turn.sin(), small * other.sin())
             }
             Surface::Saddle => {
-                let (x, y) = (random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+                let (x, y) = (random.between_f64(-1.0, 1.0), random.between_f64(-1.0, 1.0));
                 DVec3::new(x, y, 0.5 * (x * x - y * y))
             }
             Surface::Ellipsoid(axes) => axes * random.direction(),
@@ -167,7 +143,7 @@ struct View {
 
 impl View {
     /// From `distance` away, with the surface's normal at the given cosine to the line of sight, at any roll.
-    fn of(random: &mut Random, point: DVec3, normal: DVec3, cosine: f64, distance: f64) -> View {
+    fn of(random: &mut Draws<'_>, point: DVec3, normal: DVec3, cosine: f64, distance: f64) -> View {
         let side = random.direction().reject_from(normal).normalize();
         let back = (cosine * normal + (1.0 - cosine * cosine).sqrt() * side).normalize();
         let right = random.direction().reject_from(back).normalize();
@@ -219,12 +195,12 @@ const UNIT: f64 = 1.0 / (1 << 24) as f64;
 /// The invariant form is the known curvature from every view, down to a cosine of 0.02 and at scales of 1e-4, 1 and 1e4.
 #[test]
 fn known_curvatures_come_out_at_every_view() {
-    let mut random = Random(1);
+    let mut random = Draws::of_row(1, 0);
     for (name, surface) in SURFACES {
         let mut worst = [0f64; 3];
         for _ in 0..20_000 {
             let point = surface.point(&mut random);
-            let cosine = random.between(0.02, 1.0);
+            let cosine = random.between_f64(0.02, 1.0);
             let view = View::of(&mut random, point, surface.normal(point), cosine, 4.0);
             let light = random.direction();
             let (mean, gaussian) = surface.curvature(point);
@@ -263,12 +239,12 @@ struct Row {
 
 /// One point of a surface, at a 1000 views with a cosine of at least 1/4.
 fn row(surface: Surface, point: DVec3, seed: u64) -> Row {
-    let mut random = Random(seed);
+    let mut random = Draws::of_row(seed, 0);
     let (mean, gaussian) = surface.curvature(point);
     let largest = mean.abs() + (mean * mean - gaussian).max(0.0).sqrt();
     let mut row = Row { low: f64::INFINITY, high: 0.0, error: 0.0 };
     for _ in 0..1000 {
-        let cosine = random.between(0.25, 1.0);
+        let cosine = random.between_f64(0.25, 1.0);
         let view = View::of(&mut random, point, surface.normal(point), cosine, 4.0);
         let [p_x, p_y, n_x, n_y] = view.differentials(surface, point).map(|v| (1e-3 * v).as_vec3());
         let usual = f64::from(naive(p_x, p_y, n_x, n_y)) / largest;
@@ -350,12 +326,12 @@ fn finite_pixels_cost_their_size() {
         // As many pixels to 1 radian, from 4 away.
         let size = 1.0 / f64::from(pixels);
         let mut errors = [Vec::new(), Vec::new()];
-        let mut random = Random(3);
+        let mut random = Draws::of_row(3, 0);
         // On the sphere positions and normals differ by a factor only, and no pixel is too large.
         for (_, surface) in &SURFACES[1..] {
             for _ in 0..400 {
                 let point = surface.point(&mut random);
-                let cosine = random.between(0.25, 1.0);
+                let cosine = random.between_f64(0.25, 1.0);
                 let view = View::of(&mut random, point, surface.normal(point), cosine, 4.0);
                 let (mean, gaussian) = surface.curvature(point);
                 let largest = mean.abs() + (mean * mean - gaussian).max(0.0).sqrt();
@@ -386,14 +362,14 @@ fn finite_pixels_cost_their_size() {
 /// give the ellipsoid's curvature; as they are, or with the sphere's normals, they do not.
 #[test]
 fn non_uniform_scale_is_right_with_renormalised_normals() {
-    let mut random = Random(4);
+    let mut random = Draws::of_row(4, 0);
     for axes in [DVec3::new(1.0, 0.5, 2.0), DVec3::new(1e-4, 3e-4, 2e-4), DVec3::new(1e4, 1e4, 5e3)] {
         let ellipsoid = Surface::Ellipsoid(axes);
         let (mut raw, mut old) = (0f64, 0f64);
         for _ in 0..5000 {
             let unit = random.direction();
             let point = axes * unit;
-            let cosine = random.between(0.1, 1.0);
+            let cosine = random.between_f64(0.1, 1.0);
             let view = View::of(&mut random, point, ellipsoid.normal(point), cosine, 4.0 * axes.max_element());
             let [p_x, p_y, ..] = view.differentials(ellipsoid, point).map(|v| 1e-3 * v);
             // The sphere's normal is its position; both move along with the ellipsoid's point.
@@ -468,7 +444,7 @@ fn edge_on_the_curvature_fades() {
 /// The textbook's determinant there is a difference of nearly equal products.
 #[test]
 fn the_textbook_fails_edge_on() {
-    let mut random = Random(5);
+    let mut random = Draws::of_row(5, 0);
     let (mut textbook, mut stable) = (0f32, 0f32);
     for _ in 0..1000 {
         let first = random.direction();

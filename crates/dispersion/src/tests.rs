@@ -3,11 +3,8 @@
 
 use super::*;
 use glam::DVec3;
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::extremum::larger;
 
 const MATERIALS: [(&str, DispersionSellmeier, oracle::DispersionSellmeier); 5] = [
     ("diamond", DISPERSION_DIAMOND, oracle::DISPERSION_DIAMOND),
@@ -23,34 +20,17 @@ const FURTHER: [(&str, DispersionSellmeier, oracle::DispersionSellmeier); 2] = [
     ("strontium titanate", DISPERSION_STRONTIUM_TITANATE, oracle::DISPERSION_STRONTIUM_TITANATE),
 ];
 
-/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-    fn direction(&mut self) -> DVec3 {
-        let (z, azimuth) = (self.between(-1.0, 1.0), self.between(0.0, std::f64::consts::TAU));
-        let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z)
-    }
-    /// A unit normal at `cosine` to the ray that it faces.
-    fn facing(&mut self, ray: DVec3, cosine: f64) -> DVec3 {
-        let tangent = self.direction().cross(ray).normalize();
-        -cosine * ray + (1.0 - cosine * cosine).sqrt() * tangent
-    }
-}
-
 /// Snell's law as vectors; none under total internal reflection.
 fn snell(ray: DVec3, normal: DVec3, relative_index: f64) -> Option<DVec3> {
     let cosine = -normal.dot(ray);
     let radicand = relative_index * relative_index - 1.0 + cosine * cosine;
     (radicand >= 0.0).then(|| (ray + (cosine - radicand.sqrt()) * normal) / relative_index)
+}
+
+/// A unit normal at `cosine` to the ray that it faces.
+fn facing(random: &mut Draws<'_>, ray: DVec3, cosine: f64) -> DVec3 {
+    let tangent = random.direction().cross(ray).normalize();
+    -cosine * ray + (1.0 - cosine * cosine).sqrt() * tangent
 }
 
 /// A way through a stone: in, some reflections, out. Each normal faces the ray.
@@ -65,22 +45,22 @@ struct Path {
 
 impl Path {
     /// With `count` reflections; the way out at `n cos θ_t` of at least `root`.
-    fn random(random: &mut Random, index: f64, count: usize, root: f64) -> Path {
+    fn random(random: &mut Draws<'_>, index: f64, count: usize, root: f64) -> Path {
         let ray = random.direction();
-        let cosine = random.between(0.1, 1.0);
-        let entry = random.facing(ray, cosine);
+        let cosine = random.between_f64(0.1, 1.0);
+        let entry = facing(random, ray, cosine);
         let mut inside = snell(ray, entry, index).expect("a denser medium");
         let mut mirrors = Vec::new();
         for _ in 0..count {
-            let cosine = random.between(0.05, 1.0);
-            let normal = random.facing(inside, cosine);
+            let cosine = random.between_f64(0.05, 1.0);
+            let normal = facing(random, inside, cosine);
             inside -= 2.0 * normal.dot(inside) * normal;
             mirrors.push(normal);
         }
         let critical = (1.0 - 1.0 / (index * index) + root * root).sqrt();
-        let cosine = random.between(critical, 1.0);
-        let exit = random.facing(inside, cosine);
-        Path { ray, entry, mirrors, exit, distance: random.between(0.5, 2.0) }
+        let cosine = random.between_f64(critical, 1.0);
+        let exit = facing(random, inside, cosine);
+        Path { ray, entry, mirrors, exit, distance: random.between_f64(0.5, 2.0) }
     }
 
     /// The ray inside, before the way out, at an index.
@@ -297,10 +277,10 @@ fn channels_stand_at_the_centroids_of_their_matching_functions() {
 
 #[test]
 fn oracle_and_mirror_follow_central_differences_over_whole_paths() {
-    let mut random = Random(1);
+    let mut random = Draws::of_row(1, 0);
     let (mut worst, mut worst_single) = (0.0f64, 0.0f64);
     for step in 0..20_000 {
-        let index = f64::from(random.between(1.3, 2.8) as f32);
+        let index = f64::from(random.between_f64(1.3, 2.8) as f32);
         let path = Path::random(&mut random, index, step % 4, 0.1);
         // Richardson: central differences at two widths, without their error of second order.
         let central = |width: f64| {
@@ -321,11 +301,11 @@ fn oracle_and_mirror_follow_central_differences_over_whole_paths() {
 
 #[test]
 fn entering_is_refracting_without_a_gradient() {
-    let mut random = Random(2);
+    let mut random = Draws::of_row(2, 0);
     for _ in 0..10_000 {
-        let (ray, index) = (random.direction(), random.between(1.0, 4.0) as f32);
+        let (ray, index) = (random.direction(), random.between_f64(1.0, 4.0) as f32);
         let cosine = random.unit();
-        let (normal, ray) = (random.facing(ray, cosine).as_vec3(), ray.as_vec3());
+        let (normal, ray) = (facing(&mut random, ray, cosine).as_vec3(), ray.as_vec3());
         let [one, other] = [enter(ray, normal, index), refract(ray, Vec3::ZERO, normal, index, 1.0)];
         // Divided by n² in one step or in two.
         assert!((one - other).length() <= 1e-5 * one.length().max(1.0), "{one} {other}");
@@ -334,10 +314,10 @@ fn entering_is_refracting_without_a_gradient() {
 
 #[test]
 fn reflection_is_linear() {
-    let mut random = Random(3);
+    let mut random = Draws::of_row(3, 0);
     for _ in 0..10_000 {
         let [one, other, normal] = [(); 3].map(|()| random.direction());
-        let (a, b) = (random.between(-3.0, 3.0), random.between(-3.0, 3.0));
+        let (a, b) = (random.between_f64(-3.0, 3.0), random.between_f64(-3.0, 3.0));
         let sum = oracle::reflect(a * one + b * other, normal);
         assert!((sum - a * oracle::reflect(one, normal) - b * oracle::reflect(other, normal)).length() < 1e-14);
         let normal = normal.as_vec3();
@@ -350,14 +330,14 @@ fn reflection_is_linear() {
 /// A parallel slab in air sends every wavelength on as it came.
 #[test]
 fn a_slab_does_not_disperse_and_the_paper_says_that_it_does() {
-    let mut random = Random(4);
+    let mut random = Draws::of_row(4, 0);
     let mut worst = 0.0f32;
     for step in 0..10_000 {
         let (_, material, _) = MATERIALS[step % 5];
         let index = sellmeier(material, DISPERSION_LINE_D);
         let ray = random.direction();
-        let cosine = random.between(0.05, 0.995);
-        let normal = random.facing(ray, cosine);
+        let cosine = random.between_f64(0.05, 0.995);
+        let normal = facing(&mut random, ray, cosine);
         let slab = Path { ray, entry: normal, mirrors: Vec::new(), exit: normal, distance: 1.0 };
         let (out, gradient) = slab.tracked(index);
         worst = larger(worst, gradient.length());
@@ -387,12 +367,12 @@ fn a_slab_does_not_disperse_and_the_paper_says_that_it_does() {
 /// The order of the colours: the shorter the wavelength, the more a ray bends, in the exact indices and as tracked.
 #[test]
 fn blue_bends_more() {
-    let mut random = Random(5);
+    let mut random = Draws::of_row(5, 0);
     for (name, material, _) in MATERIALS {
         for _ in 0..1000 {
             let ray = random.direction();
-            let cosine = random.between(0.02, 0.98);
-            let normal = random.facing(ray, cosine);
+            let cosine = random.between_f64(0.02, 0.98);
+            let normal = facing(&mut random, ray, cosine);
             let index = sellmeier(material, DISPERSION_LINE_D);
             let inside = snell(ray, normal, index.into()).expect("a denser medium").as_vec3();
             let gradient = enter(ray.as_vec3(), normal.as_vec3(), index);
@@ -421,7 +401,7 @@ fn blue_bends_more() {
 /// The same stone in other units: its light does not know.
 #[test]
 fn the_size_of_a_model_does_not_matter_and_to_the_paper_it_does() {
-    let mut random = Random(6);
+    let mut random = Draws::of_row(6, 0);
     let index = sellmeier(DISPERSION_DIAMOND, DISPERSION_LINE_D);
     let offset = sellmeier(DISPERSION_DIAMOND, DISPERSION_BLUE) - index;
     for _ in 0..1000 {
@@ -440,7 +420,7 @@ fn the_size_of_a_model_does_not_matter_and_to_the_paper_it_does() {
 /// each wavelength's own index, nearly every ray is told right.
 #[test]
 fn each_wavelength_has_its_own_total_internal_reflection() {
-    let mut random = Random(7);
+    let mut random = Draws::of_row(7, 0);
     let exact = oracle::DISPERSION_DIAMOND;
     let reference = sellmeier(DISPERSION_DIAMOND, DISPERSION_LINE_D);
     let wavelengths = [DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE];
@@ -450,8 +430,8 @@ fn each_wavelength_has_its_own_total_internal_reflection() {
         let mut path = Path::random(&mut random, index, 2, 0.0);
         let inside = path.inside(index);
         // Within 0.01 of the critical cosine.
-        let cosine = (1.0 - 1.0 / (index * index)).sqrt() + random.between(-0.01, 0.01);
-        path.exit = random.facing(inside, cosine);
+        let cosine = (1.0 - 1.0 / (index * index)).sqrt() + random.between_f64(-0.01, 0.01);
+        path.exit = facing(&mut random, inside, cosine);
         let (tracked, gradient) = path.tracked_inside(reference);
         let own = wavelengths.map(|wavelength| oracle::sellmeier(exact, wavelength.into()));
         let truth = own.map(|own| path.out(own).is_some());
@@ -475,13 +455,13 @@ fn each_wavelength_has_its_own_total_internal_reflection() {
 #[test]
 fn the_papers_epsilon_is_near_its_best() {
     let errors = |epsilon: f32| -> [f64; 2] {
-        let mut random = Random(8);
+        let mut random = Draws::of_row(8, 0);
         let mut errors: Vec<f64> = (0..4001)
             .map(|_| {
-                let index = 1.0 / random.between(1.4, 2.5) as f32;
+                let index = 1.0 / random.between_f64(1.4, 2.5) as f32;
                 let ray = random.direction();
-                let cosine = random.between((1.0 - f64::from(index * index) + 0.01).sqrt(), 1.0);
-                let normal = random.facing(ray, cosine).as_vec3();
+                let cosine = random.between_f64((1.0 - f64::from(index * index) + 0.01).sqrt(), 1.0);
+                let normal = facing(&mut random, ray, cosine).as_vec3();
                 let spread = random.direction().cross(ray).normalize().as_vec3();
                 let ray = ray.as_vec3();
                 // With no slope, the derivative along the spread.
@@ -508,7 +488,7 @@ fn the_papers_epsilon_is_near_its_best() {
 fn table_is_current() {
     let mut table = String::new();
     for (name, material, exact) in MATERIALS {
-        let mut random = Random(9);
+        let mut random = Draws::of_row(9, 0);
         let [reference, blue] = [DISPERSION_RED, DISPERSION_BLUE].map(|at| sellmeier(material, at));
         let exact_blue = oracle::sellmeier(exact, DISPERSION_BLUE.into());
         let paths: Vec<Path> = (0..4000).map(|_| Path::random(&mut random, reference.into(), 1, 0.25)).collect();

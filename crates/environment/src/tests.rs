@@ -2,48 +2,10 @@
 
 use super::*;
 use glam::{DVec2, DVec3};
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
-
-/// The largest component, NaN where there is one.
-fn largest<const N: usize>(components: [f64; N]) -> f64 {
-    components.into_iter().fold(0.0, larger)
-}
-
-struct Lcg(u64);
-
-impl Lcg {
-    /// Uniform in [0, 1).
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 40) as f32 / (1u64 << 24) as f32
-    }
-    /// Uniform in (-1, 1).
-    fn signed(&mut self) -> f32 {
-        2.0 * self.unit() - 1.0
-    }
-    /// Either sign, magnitudes spread evenly over the exponents from 2^low to 2^high.
-    fn magnitude(&mut self, low: f32, high: f32) -> f32 {
-        let sign = if self.unit() < 0.5 { -1.0 } else { 1.0 };
-        sign * (low + (high - low) * self.unit()).exp2()
-    }
-    fn direction(&mut self) -> Vec3 {
-        loop {
-            let d = Vec3::new(self.signed(), self.signed(), self.signed());
-            if d.length() > 0.1 && d.length() <= 1.0 {
-                return d.normalize();
-            }
-        }
-    }
-}
-
-fn ulp(exact: f64) -> f64 {
-    let x = exact.abs() as f32;
-    f64::from(f32::from_bits(x.to_bits() + 1) - x).max(2f64.powi(-126))
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::extremum::larger;
+use lapidary_assay::extremum::largest;
+use lapidary_assay::tolerance::ulp_of;
 
 fn report(what: &str, worst: f64, bound: f64) {
     println!("{what}: {worst:.3e} of {bound:.3e}");
@@ -52,7 +14,7 @@ fn report(what: &str, worst: f64, bound: f64) {
 
 /// How far `f` moves when each component of `input` moves by `ulps` of the largest: what `ulps` backward allow.
 fn backward(ulps: f64, input: Vec3, f: impl Fn(DVec3) -> DVec3) -> f64 {
-    let (exact, step) = (f(input.as_dvec3()), ulps * ulp(f64::from(input.abs().max_element())));
+    let (exact, step) = (f(input.as_dvec3()), ulps * ulp_of(f64::from(input.abs().max_element())));
     DVec3::AXES
         .iter()
         .map(|&axis| {
@@ -64,24 +26,24 @@ fn backward(ulps: f64, input: Vec3, f: impl Fn(DVec3) -> DVec3) -> f64 {
 
 #[test]
 fn angles_match_the_oracle() {
-    let mut rng = Lcg(1);
+    let mut rng = Draws::of_row(1, 0);
     let mut worst = [0.0f64; 3];
     for i in 0..1_000_000 {
         let (x, y) = match i % 4 {
-            0 => (rng.signed(), rng.signed()),
-            1 => (rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0)),
-            2 => (rng.magnitude(-1.0, 1.0), if i % 8 == 2 { 0.0 } else { rng.magnitude(-30.0, 1.0) }),
-            _ => (if i % 8 == 3 { 0.0 } else { rng.magnitude(-30.0, 1.0) }, rng.magnitude(-1.0, 1.0)),
+            0 => (rng.between(-1.0, 1.0), rng.between(-1.0, 1.0)),
+            1 => (rng.signed(-126, 126), rng.signed(-126, 126)),
+            2 => (rng.signed(-1, 1), if i % 8 == 2 { 0.0 } else { rng.signed(-30, 1) }),
+            _ => (if i % 8 == 3 { 0.0 } else { rng.signed(-30, 1) }, rng.signed(-1, 1)),
         };
         let (wide_x, wide_y) = (f64::from(x), f64::from(y));
         let exact = oracle::turns(wide_y, wide_x);
         assert!(turns(y, x).abs() <= 0.5);
-        worst[0] = larger(worst[0], (f64::from(turns(y, x)) - exact).abs() / ulp(exact));
+        worst[0] = larger(worst[0], (f64::from(turns(y, x)) - exact).abs() / ulp_of(exact));
         let exact = oracle::hypot(wide_x, wide_y);
-        worst[1] = larger(worst[1], (f64::from(hypot(x, y)) - exact).abs() / ulp(exact));
-        let angle = if i % 2 == 0 { x } else { 8.0 * rng.signed() };
+        worst[1] = larger(worst[1], (f64::from(hypot(x, y)) - exact).abs() / ulp_of(exact));
+        let angle = if i % 2 == 0 { x } else { 8.0 * rng.between(-1.0, 1.0) };
         let exact = oracle::sine(f64::from(angle));
-        worst[2] = larger(worst[2], (f64::from(sine(angle)) - exact).abs() / ulp(exact));
+        worst[2] = larger(worst[2], (f64::from(sine(angle)) - exact).abs() / ulp_of(exact));
     }
     report("turns ulp", worst[0], 6.0);
     report("hypot ulp", worst[1], 3.0);
@@ -94,14 +56,14 @@ fn angles_match_the_oracle() {
 
 #[test]
 fn map_coordinates_match_the_oracle() {
-    let mut rng = Lcg(2);
+    let mut rng = Draws::of_row(2, 0);
     let mut worst = [0.0f64; 5];
     for i in 0..1_000_000 {
         let direction = match i % 4 {
-            0 => rng.direction(),
-            1 => Vec3::new(rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0), rng.magnitude(-126.0, 126.0)),
-            2 => Vec3::new(rng.magnitude(-30.0, 0.0), rng.magnitude(0.0, 0.0), rng.magnitude(-30.0, 0.0)),
-            _ => Vec3::new(-1.0, rng.signed(), rng.magnitude(-40.0, -10.0)),
+            0 => rng.direction().as_vec3(),
+            1 => Vec3::new(rng.signed(-126, 126), rng.signed(-126, 126), rng.signed(-126, 126)),
+            2 => Vec3::new(rng.signed(-30, 0), rng.signed(0, 0), rng.signed(-30, 0)),
+            _ => Vec3::new(-1.0, rng.between(-1.0, 1.0), rng.signed(-40, -10)),
         };
         let uv = uv_from_direction(direction);
         assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{direction} {uv}");
@@ -111,14 +73,14 @@ fn map_coordinates_match_the_oracle() {
         worst[1] = larger(worst[1], largest((direction_from_uv(uv).as_dvec3() - unit).abs().to_array()));
 
         let uv = if i % 4 == 0 {
-            Vec2::new(rng.unit(), rng.magnitude(-30.0, 0.0).abs())
+            Vec2::new(rng.unit() as f32, rng.signed(-30, 0).abs())
         } else {
-            Vec2::new(rng.unit(), rng.unit())
+            Vec2::new(rng.unit() as f32, rng.unit() as f32)
         };
         let exact = oracle::direction_from_uv(uv.as_dvec2());
         let got = direction_from_uv(uv);
         worst[2] =
-            larger(worst[2], largest((got.as_dvec3() - exact).abs().to_array()) / ulp(exact.abs().max_element()));
+            larger(worst[2], largest((got.as_dvec3() - exact).abs().to_array()) / ulp_of(exact.abs().max_element()));
         worst[3] = larger(worst[3], (got.as_dvec3().length() - 1.0).abs());
         if unit.y.abs() < 0.9 && i % 4 == 0 {
             let naive = uv_from_direction_naive(direction);
@@ -175,23 +137,23 @@ fn naive_coordinates_fail_where_the_docs_say_so() {
 
 #[test]
 fn texels_match_the_oracle() {
-    let mut rng = Lcg(3);
+    let mut rng = Draws::of_row(3, 0);
     let (mut worst, mut backward, mut disagreements) = (0.0f64, 0.0f64, 0);
     for i in 0..1_000_000 {
         let size = match i % 3 {
-            0 => UVec2::new(1 + (8.0 * rng.unit()) as u32, 1 + (8.0 * rng.unit()) as u32),
+            0 => UVec2::new(1 + (8.0 * (rng.unit() as f32)) as u32, 1 + (8.0 * (rng.unit() as f32)) as u32),
             1 => UVec2::new(2048, 1024),
-            _ => UVec2::new(1 + (16383.0 * rng.unit()) as u32, 1 + (16383.0 * rng.unit()) as u32),
+            _ => UVec2::new(1 + (16383.0 * (rng.unit() as f32)) as u32, 1 + (16383.0 * (rng.unit() as f32)) as u32),
         };
         let uv = match i % 5 {
-            0 => Vec2::new(4.0 * rng.unit(), rng.unit()),
+            0 => Vec2::new(4.0 * (rng.unit() as f32), rng.unit() as f32),
             1 => Vec2::new(
-                (rng.unit() * size.x as f32).floor() / size.x as f32,
-                (rng.unit() * size.y as f32).floor() / size.y as f32,
+                ((rng.unit() as f32) * size.x as f32).floor() / size.x as f32,
+                ((rng.unit() as f32) * size.y as f32).floor() / size.y as f32,
             ),
             2 => Vec2::new([0.0, 1.0, 0.5, 2.0][i % 4], [0.0, 1.0, 0.5, 1.0][i % 4]),
-            3 => Vec2::new(rng.magnitude(-40.0, 0.0).abs(), rng.magnitude(-40.0, 0.0).abs()),
-            _ => Vec2::new(rng.unit(), rng.unit()),
+            3 => Vec2::new(rng.signed(-40, 0).abs(), rng.signed(-40, 0).abs()),
+            _ => Vec2::new(rng.unit() as f32, rng.unit() as f32),
         };
         let got = texels(uv, size);
         assert!(got.lower.cmplt(size).all() && got.upper.cmplt(size).all());
@@ -199,7 +161,7 @@ fn texels_match_the_oracle() {
         let exact = oracle::texels(uv.as_dvec2(), size);
         if (got.lower, got.upper) != (exact.lower, exact.upper) {
             // Right for an input two ulp off.
-            let step = 2.0 * ulp(f64::from(uv.max_element()));
+            let step = 2.0 * ulp_of(f64::from(uv.max_element()));
             let near = [-1.0, 0.0, 1.0].iter().any(|x| {
                 [-1.0, 0.0, 1.0].iter().any(|y| {
                     let moved = oracle::texels(uv.as_dvec2() + step * DVec2::new(*x, *y), size);
@@ -210,7 +172,7 @@ fn texels_match_the_oracle() {
             disagreements += 1;
             continue;
         }
-        let unit = ulp(f64::from(uv.max_element())) * size.as_dvec2();
+        let unit = ulp_of(f64::from(uv.max_element())) * size.as_dvec2();
         let error = (got.weight.as_dvec2() - exact.weight).abs();
         worst = (error - 2.0 * unit).to_array().into_iter().fold(worst, larger);
         backward = ((error - 1e-7) / unit).to_array().into_iter().fold(backward, larger);
@@ -225,27 +187,29 @@ fn texels_match_the_oracle() {
         println!("u {u}: {:?}\n  naive {:?}", texels(Vec2::new(u, 0.5), size), texels_naive(Vec2::new(u, 0.5), size));
     }
     for _ in 0..100_000 {
-        let uv = Vec2::new(0.125 + 0.75 * rng.unit(), 0.25 + 0.5 * rng.unit());
+        let uv = Vec2::new(0.125 + 0.75 * (rng.unit() as f32), 0.25 + 0.5 * (rng.unit() as f32));
         assert_eq!(texels(uv, size), texels_naive(uv, size));
     }
 }
 
 #[test]
 fn softbox_matches_the_oracle() {
-    let mut rng = Lcg(4);
+    let mut rng = Draws::of_row(4, 0);
     let (mut worst, mut naive_differs, mut lit) = (0.0f64, 0.0f32, 0);
     for i in 0..1_000_000 {
-        let axis = rng.direction();
+        let axis = rng.direction().as_vec3();
         // Twice, since a short cross product is not orthogonal to its last digits.
-        let sideways = axis.cross(rng.direction()).normalize();
+        let sideways = axis.cross(rng.direction().as_vec3()).normalize();
         let up = axis.cross(sideways).normalize();
-        let half_size = Vec2::new(0.02 + 2.0 * rng.unit(), 0.02 + 2.0 * rng.unit());
-        let softness = (0.004 + rng.unit() * 0.5).min(half_size.min_element());
+        let half_size = Vec2::new(0.02 + 2.0 * (rng.unit() as f32), 0.02 + 2.0 * (rng.unit() as f32));
+        let softness = (0.004 + (rng.unit() as f32) * 0.5).min(half_size.min_element());
         // Around the edges, where everything happens.
         let reach = (half_size + softness) * 1.2;
-        let mut direction = (axis + reach.x * rng.signed() * up.cross(axis) + reach.y * rng.signed() * up).normalize();
+        let mut direction =
+            (axis + reach.x * rng.between(-1.0, 1.0) * up.cross(axis) + reach.y * rng.between(-1.0, 1.0) * up)
+                .normalize();
         if i % 4 == 0 {
-            direction = rng.direction();
+            direction = rng.direction().as_vec3();
         }
         let got = softbox(direction, axis, up, half_size, softness);
         assert!((0.0..=1.0).contains(&got));
@@ -257,7 +221,7 @@ fn softbox_matches_the_oracle() {
         let allowed = backward(3.0, direction, |d| f(d, a, u))
             + backward(3.0, axis, |a| f(d, a, u))
             + backward(3.0, up, |u| f(d, a, u));
-        let error = (f64::from(got) - exact).abs() - 6.0 * ulp(exact);
+        let error = (f64::from(got) - exact).abs() - 6.0 * ulp_of(exact);
         if error > 0.0 {
             worst = larger(worst, error / allowed);
         }
@@ -275,12 +239,12 @@ fn softbox_matches_the_oracle() {
 
 #[test]
 fn dome_and_studio_match_the_oracle() {
-    let mut rng = Lcg(5);
+    let mut rng = Draws::of_row(5, 0);
     let (mut dome_worst, mut studio_worst) = (0.0f64, 0.0f64);
     let (mut low, mut high, mut mean, mut lit, mut upper) = (Vec3::MAX, Vec3::ZERO, DVec3::ZERO, 0, 0);
     let count = 2_000_000;
     for i in 0..count {
-        let direction = rng.direction();
+        let direction = rng.direction().as_vec3();
         let got = studio(direction);
         (low, high) = (low.min(got), high.max(got));
         mean += got.as_dvec3() / f64::from(count);
@@ -290,17 +254,19 @@ fn dome_and_studio_match_the_oracle() {
             continue;
         }
         let exact = oracle::studio(direction.as_dvec3());
-        let error = largest((got.as_dvec3() - exact).abs().to_array()) - 8.0 * ulp(exact.max_element());
+        let error = largest((got.as_dvec3() - exact).abs().to_array()) - 8.0 * ulp_of(exact.max_element());
         if error > 0.0 {
             studio_worst = larger(studio_worst, error / backward(3.0, direction, oracle::studio));
         }
-        let (ground, zenith) =
-            (Vec3::new(rng.unit(), rng.unit(), rng.unit()), Vec3::new(rng.unit(), rng.unit(), rng.unit()));
+        let (ground, zenith) = (
+            Vec3::new(rng.unit() as f32, rng.unit() as f32, rng.unit() as f32),
+            Vec3::new(rng.unit() as f32, rng.unit() as f32, rng.unit() as f32),
+        );
         let truth = |d: DVec3| oracle::dome(d, ground.as_dvec3(), zenith.as_dvec3());
         let exact = truth(direction.as_dvec3());
         let error = largest((dome(direction, ground, zenith).as_dvec3() - exact).abs().to_array())
             - backward(1.0, direction, truth);
-        dome_worst = larger(dome_worst, error / ulp(exact.max_element()));
+        dome_worst = larger(dome_worst, error / ulp_of(exact.max_element()));
     }
     report("dome ulp beyond 1 backward", dome_worst, 4.0);
     report("studio beyond 8 ulp, of 3 backward", studio_worst, 1.0);

@@ -1,24 +1,8 @@
 //! Mirror against oracle at all magnitudes, known values, and the tables of docs/fresnel.md.
 
 use super::*;
-
-/// A linear congruential generator (Knuth's MMIX constants): enough to spread inputs, and the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn below(&mut self, count: u32) -> u32 {
-        (self.unit() * f64::from(count)) as u32
-    }
-}
-
-fn ulp(value: f32) -> f64 {
-    let value = value.abs().max(f32::MIN_POSITIVE);
-    f64::from(f32::from_bits(value.to_bits() + 1)) - f64::from(value)
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::tolerance::ulp_of;
 
 /// Moves a float by `steps` units in the last place.
 fn step(value: f32, steps: i32) -> f32 {
@@ -26,7 +10,7 @@ fn step(value: f32, steps: i32) -> f32 {
 }
 
 /// An input of the domain: every magnitude of cosine, index - 1, and distance from the critical angle.
-fn input(random: &mut Random) -> (f32, f32) {
+fn input(random: &mut Draws<'_>) -> (f32, f32) {
     let relative_index = match random.below(4) {
         0 => (1.0 + 2f64.powf(-24.0 * random.unit()) * 0.75 * (random.unit() - 0.5).signum()) as f32,
         1 => step(1.0, random.below(41) as i32 - 20),
@@ -53,16 +37,19 @@ fn excess(mirror: fn(f32, f32) -> f32, oracle: fn(f64, f64) -> f64, (cosine, ind
     let (mut low, mut high) = (exact, exact);
     for (i, j) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)]
     {
-        let near = oracle(f64::from(cosine) + i * backward * ulp(cosine), f64::from(index) + j * backward * ulp(index));
+        let near = oracle(
+            f64::from(cosine) + i * backward * ulp_of(f64::from(cosine.abs())),
+            f64::from(index) + j * backward * ulp_of(f64::from(index)),
+        );
         (low, high) = (low.min(near), high.max(near));
     }
     let value = f64::from(mirror(cosine, index));
     assert!(value.is_finite() && (0.0..=1.0).contains(&value), "{cosine:e} {index:e} gives {value}");
-    (value - high).max(low - value).max(0.0) / ulp(exact as f32)
+    (value - high).max(low - value).max(0.0) / ulp_of(exact)
 }
 
 fn worst(mirror: fn(f32, f32) -> f32, oracle: fn(f64, f64) -> f64, backward: f64, keep: fn(f32, f32) -> bool) -> f64 {
-    let mut random = Random(1);
+    let mut random = Draws::of_row(1, 0);
     let mut worst = (0.0, (0.0, 0.0));
     for _ in 0..1_000_000 {
         let input = input(&mut random);
@@ -110,7 +97,7 @@ fn known_values() {
 
 #[test]
 fn light_that_returns_on_its_path_is_reflected_alike() {
-    let mut random = Random(7);
+    let mut random = Draws::of_row(7, 0);
     for _ in 0..100_000 {
         let (cosine, index) = (random.unit(), 1.0 + 3.0 * random.unit());
         let transmitted = (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();

@@ -2,12 +2,8 @@
 
 use super::*;
 use glam::DVec3;
+use lapidary_assay::extremum::larger;
 use std::f64::consts::{FRAC_PI_2, PI};
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
 
 const ALPHAS: [f64; 6] = [0.001, 0.01, 0.1, 0.25, 0.5, 1.0];
 

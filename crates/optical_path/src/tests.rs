@@ -2,11 +2,7 @@
 
 use super::kernels::{self, Body};
 use super::*;
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
+use lapidary_assay::extremum::larger;
 
 /// A cube full of matter, one spacing and extinction throughout.
 fn whole(cells: u32) -> (Vec<bool>, Vec<f32>) {

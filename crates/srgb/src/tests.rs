@@ -2,38 +2,13 @@
 
 use super::*;
 use glam::DVec3;
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
-
-/// The largest component, NaN where there is one.
-fn largest<const N: usize>(components: [f64; N]) -> f64 {
-    components.into_iter().fold(0.0, larger)
-}
-
-struct Lcg(u64);
-
-impl Lcg {
-    /// Uniform in [0, 1).
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 40) as f32 / (1u64 << 24) as f32
-    }
-    /// Magnitudes spread evenly over the exponents from 2^low to 2^high.
-    fn magnitude(&mut self, low: f32, high: f32) -> f32 {
-        (low + (high - low) * self.unit()).exp2()
-    }
-}
-
-fn ulp(exact: f64) -> f64 {
-    let x = exact.abs() as f32;
-    f64::from(f32::from_bits(x.to_bits() + 1) - x)
-}
+use lapidary_assay::draws::Draws;
+use lapidary_assay::extremum::larger;
+use lapidary_assay::extremum::largest;
+use lapidary_assay::tolerance::ulp_of;
 
 fn vector_ulps(got: Vec3, exact: DVec3) -> f64 {
-    largest((got.as_dvec3() - exact).abs().to_array()) / ulp(exact.abs().max_element())
+    largest((got.as_dvec3() - exact).abs().to_array()) / ulp_of(exact.abs().max_element())
 }
 
 fn report(what: &str, worst: f64, bound: f64) {
@@ -46,15 +21,15 @@ const EDGES: [f32; 14] =
 
 #[test]
 fn transfer_function_matches_the_oracle() {
-    let mut rng = Lcg(1);
+    let mut rng = Draws::of_row(1, 0);
     let mut worst = [0.0f64; 3];
     let inputs: Vec<f32> = EDGES
         .into_iter()
         .chain((0..400_000).map(|i| match i % 4 {
-            0 => rng.magnitude(-40.0, 2.0),
-            1 => 0.0031308 * (0.95 + 0.1 * rng.unit()),
-            2 => 0.04045 * (0.95 + 0.1 * rng.unit()),
-            _ => rng.unit(),
+            0 => rng.magnitude(-40, 2),
+            1 => 0.0031308 * (0.95 + 0.1 * (rng.unit() as f32)),
+            2 => 0.04045 * (0.95 + 0.1 * (rng.unit() as f32)),
+            _ => rng.unit() as f32,
         }))
         .collect();
     for x in inputs {
@@ -102,19 +77,19 @@ fn luminance_weights_follow_from_the_primaries() {
 
 #[test]
 fn colours_match_the_oracle() {
-    let mut rng = Lcg(2);
+    let mut rng = Draws::of_row(2, 0);
     let mut worst = [0.0f64; 2];
     for i in 0..400_000 {
         let mut channel = || match i % 5 {
-            0 => rng.magnitude(-40.0, 100.0),
-            1 => rng.unit() * 0.2,
-            2 => rng.magnitude(-6.0, 6.0),
-            3 => rng.magnitude(-3.0, 4.0) - 0.5,
-            _ => 0.7 + rng.unit() * 0.2,
+            0 => rng.magnitude(-40, 100),
+            1 => (rng.unit() as f32) * 0.2,
+            2 => rng.magnitude(-6, 6),
+            3 => rng.magnitude(-3, 4) - 0.5,
+            _ => 0.7 + (rng.unit() as f32) * 0.2,
         };
         let mut color = Vec3::new(channel(), channel(), channel());
         if i % 7 == 0 {
-            color = Vec3::splat(color.x.abs()) * (1.0 + 1e-5 * rng.unit());
+            color = Vec3::splat(color.x.abs()) * (1.0 + 1e-5 * (rng.unit() as f32));
         }
         let exact = oracle::tone_curve(color.as_dvec3());
         let got = tone_curve(color);
@@ -122,7 +97,7 @@ fn colours_match_the_oracle() {
         worst[0] = larger(worst[0], vector_ulps(got, exact));
         let positive = color.abs();
         let exact = oracle::luminance(positive.as_dvec3());
-        worst[1] = larger(worst[1], (f64::from(luminance(positive)) - exact).abs() / ulp(exact));
+        worst[1] = larger(worst[1], (f64::from(luminance(positive)) - exact).abs() / ulp_of(exact));
     }
     report("tone_curve ulp", worst[0], 6.0);
     report("luminance ulp", worst[1], 3.0);
@@ -162,16 +137,16 @@ fn naive_forms_fail_where_the_docs_say_so() {
 /// The naive forms are the same functions on their benign domains.
 #[test]
 fn naive_forms_hold_on_benign_inputs() {
-    let mut rng = Lcg(3);
+    let mut rng = Draws::of_row(3, 0);
     let mut worst = [0.0f64; 3];
     for _ in 0..200_000 {
-        let light = 0.0031309 + (1.0 - 0.0031309) * rng.unit();
+        let light = 0.0031309 + (1.0 - 0.0031309) * (rng.unit() as f32);
         let exact = oracle::encode(f64::from(light));
         worst[0] = worst[0].max((f64::from(encode_naive(light)) - exact).abs() / exact);
-        let code = 0.04046 + (1.0 - 0.04046) * rng.unit();
+        let code = 0.04046 + (1.0 - 0.04046) * (rng.unit() as f32);
         let exact = oracle::decode(f64::from(code));
         worst[1] = worst[1].max((f64::from(decode_naive(code)) - exact).abs() / exact);
-        let mut channel = || rng.magnitude(-6.0, 6.0);
+        let mut channel = || rng.magnitude(-6, 6);
         let color = Vec3::new(channel(), channel(), channel());
         worst[2] = worst[2].max(vector_ulps(tone_curve_naive(color), oracle::tone_curve(color.as_dvec3())));
     }

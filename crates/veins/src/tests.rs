@@ -2,11 +2,7 @@
 
 use super::*;
 use glam::DVec3;
-
-/// The larger of two; NaN where one of them is NaN, which `max` drops: no bound holds for it.
-fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    if one > other || one.partial_cmp(&one).is_none() { one } else { other }
-}
+use lapidary_assay::extremum::larger;
 
 #[test]
 fn value_slope_and_curvature_go_on_across_borders() {

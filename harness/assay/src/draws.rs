@@ -64,6 +64,11 @@ impl<'a> Draws<'a> {
         value as f32
     }
 
+    /// The same in f64.
+    pub fn between_f64(&mut self, low: f64, high: f64) -> f64 {
+        low + self.unit() * (high - low)
+    }
+
     /// Positive, with an exponent uniform in [low, high] and any mantissa, so that all magnitudes are met. The
     /// exponent nearest 0 and the mantissa 1 are the simplest.
     pub fn magnitude(&mut self, low: i32, high: i32) -> f32 {

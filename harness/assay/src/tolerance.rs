@@ -268,8 +268,9 @@ fn forward(bound: &Bound, scale: f64) -> f64 {
     bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED
 }
 
-/// The unit in the last place of an f32 of this magnitude; that of the smallest normal below it.
-pub fn ulp_of(magnitude: f64) -> f64 {
+/// The unit in the last place of an f32 of this size, whatever its sign; that of the smallest normal below it.
+pub fn ulp_of(value: f64) -> f64 {
+    let magnitude = value.abs();
     if magnitude.is_nan() || magnitude < f64::from(f32::MIN_POSITIVE) {
         return 2f64.powi(-149);
     }
