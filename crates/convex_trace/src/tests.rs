@@ -5,7 +5,7 @@ use super::*;
 use glam::{DVec3, DVec4};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::extremum::larger;
-use std::f64::consts::{PI};
+use std::f64::consts::PI;
 
 const BOUNCES: usize = 64;
 /// How far a path must stay inside of all planes but the one that it meets, in units of the girdle's radius, for its

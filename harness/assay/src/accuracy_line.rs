@@ -64,32 +64,36 @@ impl Accuracy {
 
     /// Checks that the fields named are those of `result`, each once.
     pub fn check_fields(&self, result: &Shape) -> Result<(), String> {
-        let fields: Vec<Option<&str>> = match result {
-            Shape::Struct(_, fields) => fields.iter().map(|(name, _)| Some(name.as_str())).collect(),
-            _ => vec![None],
-        };
         let Self::Bounded { lavapipe, portable } = self else { return Ok(()) };
-        for bounds in [lavapipe, portable] {
-            let named: Vec<Option<&str>> = bounds.iter().map(|bound| bound.field.as_deref()).collect();
-            if named != fields {
-                let spell = |names: &[Option<&str>]| {
-                    names.iter().map(|name| name.unwrap_or("(no field name)")).collect::<Vec<_>>().join(", ")
-                };
-                return Err(format!("bounds are for {}, the result has {}", spell(&named), spell(&fields)));
-            }
-            // One box of inputs serves all fields.
-            let mut backward = bounds.iter().map(|bound| bound.bound.backward).filter(|backward| *backward > 0.0);
-            if let Some(first) = backward.next()
-                && backward.any(|other| other != first)
-            {
-                return Err("fields that allow backward error must allow the same".to_owned());
-            }
-        }
-        Ok(())
+        check_fields(lavapipe, result).and_then(|()| check_fields(portable, result))
     }
 }
 
-fn parse_bounds(text: &str) -> Result<Vec<FieldBound>, String> {
+/// Checks that bounds are for the fields of `result`, each once.
+pub fn check_fields(bounds: &[FieldBound], result: &Shape) -> Result<(), String> {
+    let fields: Vec<Option<&str>> = match result {
+        Shape::Struct(_, fields) => fields.iter().map(|(name, _)| Some(name.as_str())).collect(),
+        _ => vec![None],
+    };
+    let named: Vec<Option<&str>> = bounds.iter().map(|bound| bound.field.as_deref()).collect();
+    if named != fields {
+        let spell = |names: &[Option<&str>]| {
+            names.iter().map(|name| name.unwrap_or("(no field name)")).collect::<Vec<_>>().join(", ")
+        };
+        return Err(format!("bounds are for {}, the result has {}", spell(&named), spell(&fields)));
+    }
+    // One box of inputs serves all fields.
+    let mut backward = bounds.iter().map(|bound| bound.bound.backward).filter(|backward| *backward > 0.0);
+    if let Some(first) = backward.next()
+        && backward.any(|other| other != first)
+    {
+        return Err("fields that allow backward error must allow the same".to_owned());
+    }
+    Ok(())
+}
+
+/// Parses bounds for the fields of a result, as `direction 12 ulp + 8 backward, total 8 backward`.
+pub fn parse_bounds(text: &str) -> Result<Vec<FieldBound>, String> {
     text.split(',').map(|bound| parse_bound(bound.trim())).collect()
 }
 

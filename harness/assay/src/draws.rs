@@ -12,7 +12,7 @@ use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
 #[cfg(feature = "gpu")]
-pub use shrinking::DrawTree;
+pub use shrinking::Tree;
 
 /// A stream of random draws, replayed from a record where there is one.
 #[derive(Debug)]
@@ -155,12 +155,19 @@ pub fn mix(key: u64) -> u64 {
 /// A generator of values from draws; with the feature `gpu` also a proptest strategy, which shrinks by its draws.
 pub struct Domain<T> {
     generate: Arc<dyn Fn(&mut Draws<'_>) -> T + Send + Sync>,
+    /// How a row is shrunk, where not by its draws.
+    #[cfg(feature = "gpu")]
+    tree: Option<shrinking::MakeTree<T>>,
 }
 
 impl<T> Domain<T> {
     /// A domain from its generator.
     pub fn new(generate: impl Fn(&mut Draws<'_>) -> T + Send + Sync + 'static) -> Self {
-        Self { generate: Arc::new(generate) }
+        Self {
+            generate: Arc::new(generate),
+            #[cfg(feature = "gpu")]
+            tree: None,
+        }
     }
 
     /// The value of row `row`.
@@ -185,7 +192,11 @@ impl<T> Domain<T> {
 
 impl<T> Clone for Domain<T> {
     fn clone(&self) -> Self {
-        Self { generate: Arc::clone(&self.generate) }
+        Self {
+            generate: Arc::clone(&self.generate),
+            #[cfg(feature = "gpu")]
+            tree: self.tree.clone(),
+        }
     }
 }
 

@@ -160,6 +160,35 @@ where
             hard_cases: Vec::new(),
             benign: None,
         },
+        cases: Vec::new(),
+        types: std::marker::PhantomData,
+    }
+}
+
+/// A formula of no module, of a mirror and an oracle that read their arguments from words and numbers.
+#[cfg(feature = "gpu")]
+pub(crate) fn of_parts<A: Arguments<u32> + 'static, R: Value + 'static>(
+    function: &'static str,
+    mirror: Box<dyn Fn(A) -> R + Send + Sync>,
+    oracle: OracleFn,
+    domain: Domain<Words>,
+) -> Builder<A, R> {
+    Builder {
+        formula: Formula {
+            module: "",
+            function,
+            arguments: A::shapes(),
+            result: R::shape(),
+            mirror: Box::new(move |mut words, result| mirror(A::read(&mut words)).write(result)),
+            oracle,
+            domain,
+            edges: Vec::new(),
+            invariants: Vec::new(),
+            pairs: Vec::new(),
+            hard_cases: Vec::new(),
+            benign: None,
+        },
+        cases: Vec::new(),
         types: std::marker::PhantomData,
     }
 }
@@ -167,6 +196,8 @@ where
 /// A formula in the making, with its types.
 pub struct Builder<A, R> {
     formula: Formula,
+    /// Inputs that are tested always.
+    cases: Vec<Words>,
     types: std::marker::PhantomData<fn(A) -> R>,
 }
 
@@ -253,6 +284,21 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
     pub fn benign(mut self, relative: f64) -> Self {
         self.formula.benign = Some(relative);
         self
+    }
+
+    /// An input that is tested always.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn case(mut self, arguments: A) -> Self {
+        let mut words = Words::new();
+        arguments.write(&mut words);
+        self.cases.push(words);
+        self
+    }
+
+    /// The formula, and the inputs that are tested always.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn build_with_cases(self) -> (Formula, Vec<Words>) {
+        (self.formula, self.cases)
     }
 
     /// The formula.

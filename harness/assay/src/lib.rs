@@ -8,6 +8,8 @@ pub mod accuracy_line;
 pub mod dispatch;
 pub mod draws;
 pub mod extremum;
+#[cfg(feature = "gpu")]
+pub mod failure;
 pub mod formula;
 pub mod golden_section;
 #[cfg(feature = "gpu")]
@@ -24,3 +26,8 @@ pub mod shape;
 pub mod tokens;
 pub mod tolerance;
 pub mod value;
+#[cfg(feature = "gpu")]
+mod wgsl;
+
+#[cfg(feature = "gpu")]
+pub use wgsl::{Failure, Mirrored, Outcome, SEED_VARIABLE, Source, Test, WITHOUT_ADAPTER_VARIABLE, wgsl};

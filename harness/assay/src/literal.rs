@@ -20,7 +20,7 @@ pub fn call(language: Language, formula: &Formula, arguments: &[u32]) -> String 
         Language::Rust => {
             let prefix = format!("{}_", formula.module);
             let name = formula.function.strip_prefix(&prefix).unwrap_or(formula.function);
-            format!("lapidary_{}::{name}", formula.module)
+            format!("{}{name}", path(formula.module))
         }
     };
     let mut rest = arguments;
@@ -78,11 +78,16 @@ fn write(language: Language, module: &str, shape: &Shape, words: &mut &[u32]) ->
                 Rust => {
                     let members: Vec<String> =
                         fields.iter().zip(&parts).map(|((name, _), part)| format!("{name}: {part}")).collect();
-                    format!("lapidary_{module}::{name} {{ {} }}", members.join(", "))
+                    format!("{}{name} {{ {} }}", path(module), members.join(", "))
                 }
             }
         }
     }
+}
+
+/// What stands before a name of a module's mirror: its crate, or nothing where there is no module.
+fn path(module: &str) -> String {
+    if module.is_empty() { String::new() } else { format!("lapidary_{module}::") }
 }
 
 /// What glam puts before `Vec`.

@@ -263,6 +263,16 @@ pub fn number(scalar: Scalar, word: u32) -> f64 {
     }
 }
 
+/// The word nearest to a number.
+pub fn word(kind: Scalar, number: f64) -> u32 {
+    match kind {
+        Scalar::F32 => (number as f32).to_bits(),
+        Scalar::I32 => (number as i32).cast_unsigned(),
+        Scalar::U32 => number as u32,
+        Scalar::Bool => u32::from(number != 0.0),
+    }
+}
+
 /// How far a component may be off where the exact value's largest is `scale`, without what `backward` allows.
 fn forward(bound: &Bound, scale: f64) -> f64 {
     bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED

@@ -1,14 +1,13 @@
 //! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
 
 pub mod bounds;
-pub mod failure;
 pub mod guard;
 pub mod user_file;
 
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
-use failure::Failure;
 use lapidary_assay::dispatch::{self, DispatchError, Kernel};
+use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::outside;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};

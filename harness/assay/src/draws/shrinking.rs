@@ -1,19 +1,62 @@
-//! A domain as a proptest strategy: each failing input is shrunk by its draws.
+//! Domains and proptest: a domain is a strategy, whose failing values are shrunk by their draws; a strategy makes a domain.
 
-use super::Domain;
+use super::{Domain, Draws};
 use proptest::strategy::{NewTree, Strategy, ValueTree};
-use proptest::test_runner::TestRunner;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::fmt::Debug;
+use std::sync::Arc;
 
-impl<T> Domain<T> {
+/// A failing value on its way to a simpler one.
+pub type Tree<T> = Box<dyn ValueTree<Value = T>>;
+/// The tree of a row of a run.
+pub(super) type MakeTree<T> = Arc<dyn Fn(Seed) -> Tree<T> + Send + Sync>;
+/// Draws that seed proptest's generator: 256 bits.
+type Seed = [u32; 8];
+
+impl<T: Debug + 'static> Domain<T> {
+    /// The domain of a proptest strategy. A failing value is shrunk by the strategy's own tree.
+    ///
+    /// # Panics
+    /// When a value is asked for and the strategy has none, as after too many rejections by a filter.
+    pub fn of_strategy(strategy: impl Strategy<Value = T> + Send + Sync + 'static) -> Self
+    where
+        T: Send + Sync,
+    {
+        let strategy = strategy.sboxed();
+        let tree: MakeTree<T> = Arc::new(move |seed: Seed| {
+            let mut runner = runner(seed);
+            let tree = strategy.new_tree(&mut runner);
+            Box::new(tree.unwrap_or_else(|reason| panic!("the strategy gives no value: {reason}")))
+        });
+        let generate = {
+            let tree = Arc::clone(&tree);
+            Arc::new(move |draws: &mut Draws<'_>| tree(seed(draws)).current())
+        };
+        Self { generate, tree: Some(tree) }
+    }
+
     /// The tree of row `row`, to be shrunk.
-    pub fn tree(&self, seed: u64, row: u64) -> DrawTree<T> {
+    pub fn tree(&self, seed: u64, row: u64) -> Tree<T> {
+        if let Some(tree) = &self.tree {
+            return tree(self::seed(&mut Draws::of_row(seed, row)));
+        }
         let draws = self.draws(seed, row);
-        DrawTree { domain: self.clone(), draws, at: 0, stage: 0, undo: None, moved: false }
+        Box::new(DrawTree { domain: self.clone(), draws, at: 0, stage: 0, undo: None, moved: false })
     }
 }
 
-impl<T: std::fmt::Debug> Strategy for Domain<T> {
-    type Tree = DrawTree<T>;
+fn seed(draws: &mut Draws<'_>) -> Seed {
+    std::array::from_fn(|_| draws.bits())
+}
+
+/// A runner whose random numbers follow from `seed`.
+fn runner(seed: Seed) -> TestRunner {
+    let bytes: Vec<u8> = seed.iter().flat_map(|word| word.to_le_bytes()).collect();
+    TestRunner::new_with_rng(Config::default(), TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
+}
+
+impl<T: Debug + 'static> Strategy for Domain<T> {
+    type Tree = Tree<T>;
     type Value = T;
 
     fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
@@ -25,7 +68,7 @@ impl<T: std::fmt::Debug> Strategy for Domain<T> {
 
 /// A value with the draws that made it. Each draw in turn is tried at 0, then with ever fewer of its low bits cleared,
 /// then one less; what still fails is kept, and rounds go on until one changes nothing.
-pub struct DrawTree<T> {
+struct DrawTree<T> {
     domain: Domain<T>,
     draws: Vec<u32>,
     at: usize,

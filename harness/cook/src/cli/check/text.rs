@@ -2,8 +2,8 @@
 
 use super::Checked;
 use anstyle::AnsiColor;
+use lapidary_assay::failure::Failure;
 use lapidary_cook::check::Row;
-use lapidary_cook::check::failure::Failure;
 use lapidary_cook::cookbook::release::Standing;
 use std::fmt::Write as _;
 

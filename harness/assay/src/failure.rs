@@ -1,14 +1,13 @@
 //! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
 
-use lapidary_assay::dispatch::{DispatchError, Kernel};
-use lapidary_assay::formula::{Formula, Words};
-use lapidary_assay::literal::{Language, call, value};
-use lapidary_assay::shape::Scalar;
-use lapidary_assay::tolerance::{Allowed, Tolerance, number};
-use serde::Serialize;
+use crate::dispatch::{DispatchError, Kernel};
+use crate::formula::{Formula, Words};
+use crate::literal::{Language, call, value};
+use crate::tolerance::{Allowed, Tolerance, number, word};
 
 /// A failing input and its results, as literals and as numbers.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Failure {
     /// The call in WGSL.
     pub wgsl: String,
@@ -31,7 +30,8 @@ pub struct Failure {
 }
 
 /// A part of a result.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Field {
     /// Which, as `field.member[index]`; empty where the result has one part.
     pub field: String,
@@ -59,14 +59,14 @@ impl Failure {
         kernel.run(arguments, &mut got)?;
         let (mirrored, exact) = (formula.mirrored(arguments), formula.exact(arguments));
         let rounded: Words =
-            formula.result.scalars().iter().zip(&exact).map(|(kind, number)| to_word(*kind, *number)).collect();
+            formula.result.scalars().iter().zip(&exact).map(|(kind, number)| word(*kind, *number)).collect();
         let fields = tolerance
             .allowed(&exact)
             .into_iter()
             .map(|Allowed { leaf, allowed, backward }| {
                 let range = leaf.start..leaf.start + leaf.length;
                 let numbers =
-                    |words: &[u32]| words[range.clone()].iter().map(|word| number(leaf.scalar, *word)).collect();
+                    |words: &[u32]| words[range.clone()].iter().map(|bits| number(leaf.scalar, *bits)).collect();
                 Field {
                     got: numbers(&got),
                     mirror: numbers(&mirrored),
@@ -89,15 +89,5 @@ impl Failure {
             mirror_rust: value(rust, formula, &mirrored),
             fields,
         })
-    }
-}
-
-/// The word nearest to a number of the oracle.
-fn to_word(kind: Scalar, number: f64) -> u32 {
-    match kind {
-        Scalar::F32 => (number as f32).to_bits(),
-        Scalar::I32 => (number as i32).cast_unsigned(),
-        Scalar::U32 => number as u32,
-        Scalar::Bool => u32::from(number != 0.0),
     }
 }
