@@ -104,14 +104,17 @@ fn benign_corners(draws: &mut Draws<'_>) -> Corners {
     (place(draws), normal(draws, 0.0), place(draws), normal(draws, 1.0), place(draws), normal(draws, 2.0))
 }
 
-/// Two lines at 0.5 to 2.6 radians, apart by about 1.
+/// Two lines at 0.5 to 2.6 radians, at most 1 apart, whose closest points lie 0.5 to 2 from the origins: parameters much smaller than the way between the
+/// origins would be what rounding leaves of it.
 fn benign_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let normal_i = draws.direction();
     let angle = 0.5 + 2.1 * draws.unit();
     let normal_j = tilted(draws, normal_i, angle);
-    let origin = draws.in_cube();
-    let apart = origin.as_dvec3() + draws.direction() + 0.5 * normal_i;
-    (origin, normal_i.as_vec3(), apart.as_vec3(), normal_j.as_vec3())
+    let [t_i, t_j] = [(); 2].map(|()| draws.pick(&[1.0, -1.0]) * (0.5 + 1.5 * draws.unit()));
+    let apart = draws.unit() * normal_i.cross(normal_j).normalize();
+    let origin_i = draws.in_cube();
+    let origin_j = origin_i.as_dvec3() + t_i * normal_i + apart - t_j * normal_j;
+    (origin_i, normal_i.as_vec3(), origin_j.as_vec3(), normal_j.as_vec3())
 }
 
 fn angle_between(a: Vec3, b: Vec3) -> f64 {

@@ -144,21 +144,25 @@ impl History {
     /// Where those `functions` of the module `name` stand that are in `text`.
     pub fn standing(&self, name: &str, functions: &[&str], text: &str) -> Standing {
         let found = Hashes::of(name, text);
+        // Of several modules pasted together, the first line below this one's heading.
+        let start = text.find(&format!("// {name}: "));
+        let stated = start.and_then(|start| stated(&text[start..])).map(|(release, _)| release.to_owned());
         let origin = |function: &&str| {
             let hash = found.functions.get(*function)?;
             let holds = |release: &&Release| {
                 release.modules.get(name).is_some_and(|hashes| hashes.functions.get(*function) == Some(hash))
             };
-            let release = self.releases.iter().rev().find(holds).map(|release| release.release.clone());
-            let changes = release.as_deref().map_or_else(Vec::new, |release| self.changes_since(function, release));
-            Some(Origin { function: (*function).to_owned(), release, changes })
+            let holding: Vec<String> =
+                self.releases.iter().filter(holds).map(|release| release.release.clone()).collect();
+            // Of releases with the same text it is the one that the header states, or else may be the first.
+            let since = holding.iter().find(|release| stated.as_ref() == Some(*release)).or(holding.first()).cloned();
+            let changes = since.as_deref().map_or_else(Vec::new, |since| self.changes_since(function, since));
+            Some(Origin { function: (*function).to_owned(), since, release: holding.last().cloned(), changes })
         };
-        // Of several modules pasted together, the first line below this one's heading.
-        let start = text.find(&format!("// {name}: "));
         Standing {
             module: name.to_owned(),
             origins: functions.iter().filter_map(origin).collect(),
-            stated: start.and_then(|start| stated(&text[start..])).map(|(release, _)| release.to_owned()),
+            stated,
             oldest: None,
             current: self.releases.last().map(|release| release.release.clone()).unwrap_or_default(),
         }
@@ -227,7 +231,9 @@ pub struct Origin {
     pub function: String,
     /// The newest release whose function it is; none where it is none's.
     pub release: Option<String>,
-    /// What was changed in it since, the oldest first.
+    /// The release that it may have been copied from, of those with the same text: the one that the file states, or the oldest.
+    pub since: Option<String>,
+    /// What was changed in it since then, the oldest first; where the text is the same, in what it promises.
     pub changes: Vec<String>,
 }
 
@@ -273,6 +279,14 @@ impl Standing {
         for origin in self.origins.iter().filter(is_old) {
             let what = if origin.changes.is_empty() { "see CHANGELOG.md".to_owned() } else { origin.changes.join(" ") };
             text.push_str(&format!("\n  mended since: `{}` ({what})", origin.function));
+        }
+        let is_same = |origin: &&Origin| origin.release.as_ref() == Some(current) && !origin.changes.is_empty();
+        for Origin { function, since, changes, .. } in self.origins.iter().filter(is_same) {
+            let since = since.as_deref().unwrap_or(current);
+            text.push_str(&format!(
+                "\n  of the same text since {since}, but not the same promise: `{function}` ({})",
+                changes.join(" ")
+            ));
         }
         if !own.is_empty() && own.len() < self.origins.len() {
             text.push_str(&format!("\n  changed from every release: {}", own.join(", ")));

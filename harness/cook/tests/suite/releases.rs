@@ -213,6 +213,17 @@ fn an_old_copy_is_recognised_in_whatever_file_it_is() {
     assert!(answer.stderr.contains("cook: note: this is refraction of release "), "{answer:?}");
 }
 
+/// A function whose text was right and whose promise was not: who copied it then is told, who copied it now need not be.
+#[test]
+fn a_promise_that_changed_is_told_to_an_old_copy_of_the_same_text() {
+    let told = history().standing("refraction", &["refraction_reflect"], OLD_REFLECTION).describe();
+    let wanted = "of the same text since 0.1.0, but not the same promise: `refraction_reflect` (0.2.0: promises 9 ulp";
+    assert!(told.contains(wanted), "{told}");
+    let source = module("refraction").expect("a module").source;
+    let told = history().standing("refraction", &["refraction_reflect"], source).describe();
+    assert_eq!(told, format!("this is refraction of release {CURRENT}, the cookbook's own"));
+}
+
 #[test]
 fn what_was_mended_since_is_said() {
     let source = |doubled: &str, halved: &str| {

@@ -97,3 +97,37 @@ fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
         assert!(coarse < shadowed && fine < 1.1 * coarse, "{}: {fine} {coarse} {shadowed}", reference.scene);
     }
 }
+
+/// The fit of the extinction's scale, as docs/optical_path_shading.md has it: Lambert's law, the same with shadows, then `godunov-64` at three scales.
+const FIT: [(&str, [f64; 5]); 4] = [
+    ("bunny", [0.492, 0.269, 0.283, 0.218, 0.208]),
+    ("dragon", [0.907, 0.901, 0.491, 0.467, 0.491]),
+    ("figure", [0.860, 0.821, 0.400, 0.362, 0.405]),
+    ("wax_bunny", [0.483, 0.337, 0.370, 0.303, 0.275]),
+];
+
+#[test]
+fn the_scale_of_extinction_is_where_the_fit_has_it() {
+    let gpu = super::gpu();
+    for (name, recorded) in FIT {
+        let reference = WalkedReference::of("optical_path").find(|reference| reference.scene == name).expect(name);
+        let truth = reference.picture(gpu).expect(name).linear;
+        let scene = Scene::named(name).expect("built in");
+        let rows = [
+            ("lambert", 0.18),
+            ("lambert-shadowed", 0.18),
+            ("godunov-64", 0.12),
+            ("godunov-64", 0.18),
+            ("godunov-64", 0.25),
+        ];
+        let found = rows.map(|(rung, scale)| {
+            let settings = Settings { extinction_scale: scale, ..beside_walks::settings(rung) };
+            exposed_distance(&render::render(gpu, &scene, &settings).expect("rendered").linear, &truth)
+        });
+        println!("{name}: Lambert, with shadows, godunov-64 at a scale of .12, .18 and .25: {found:.3?}");
+        for (found, recorded) in found.into_iter().zip(recorded) {
+            // Rounded, and another driver's last digits.
+            assert!((found - recorded).abs() < 0.003, "{name}: {found}, on the page {recorded}");
+        }
+    }
+}

@@ -115,4 +115,41 @@ mod tests {
         assert!(of("lambert", true) < 0.8 * of("lambert", false));
         assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
     }
+    /// As docs/cdrf_shading.md has them: what masks over the whole reflectance would leave on the bunny, everywhere and where the surface faces the
+    /// light. Under its one light, visibility is what Lambert's law keeps of itself with shadows, and 0 where the surface faces away.
+    #[test]
+    fn a_mask_over_all_of_the_reflectance_is_farther_from_the_walks() {
+        let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
+        let scene = Scene::named("skin_bunny").expect("built in");
+        assert_eq!(scene.lights.len(), 1);
+        let reference =
+            WalkedReference::of("cdrf").find(|reference| reference.scene == "skin_bunny").expect("committed");
+        let truth = reference.picture(gpu).expect("read").linear;
+        let draw =
+            |reflectance, shadows| render::render(gpu, &scene, &settings(reflectance, shadows)).expect("rendered");
+        let bare = draw(Reflectance::Lambert, false).linear;
+        let cast = draw(Reflectance::Lambert, true).linear;
+        let crossing = draw(Reflectance::Accurate, false);
+        // What `mask` makes of each value, told the light's visibility there, none where the surface faces away.
+        let masked = |mask: fn(Option<f32>) -> f32| {
+            let mut picture = crossing.clone();
+            for ((pixel, bare), cast) in picture.linear.iter_mut().zip(&bare).zip(&cast) {
+                for channel in 0..3 {
+                    pixel[channel] *= mask((bare[channel] > 0.0).then(|| cast[channel] / bare[channel]));
+                }
+            }
+            exposed_distance(&halved(&picture).linear, &truth)
+        };
+        let everywhere = masked(|visibility| visibility.unwrap_or(0.0));
+        let facing = masked(|visibility| visibility.unwrap_or(1.0));
+        let own = exposed_distance(&halved(&draw(Reflectance::Accurate, true)).linear, &truth);
+        println!(
+            "skin_bunny: masked everywhere {everywhere:.3}, where it faces the light {facing:.3}, as the recipe does {own:.3}"
+        );
+        assert!(own < facing && facing < everywhere, "{own} {facing} {everywhere}");
+        // Rounded, and another driver's last digits.
+        for (found, recorded) in [(everywhere, 0.311), (facing, 0.286)] {
+            assert!((found - recorded).abs() < 0.003, "{found}, on the page {recorded}");
+        }
+    }
 }
