@@ -110,15 +110,15 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
     where
         A: fmt::Debug,
     {
-        self.from_domain(Domain::of_strategy(strategy.prop_map(|arguments| to_words(&arguments))))
+        self.over(Domain::of_strategy(strategy.prop_map(|arguments| to_words(&arguments))))
     }
 
     /// Inputs from draws: what a generator guarantees holds of every shrunk input as well.
     pub fn draws(self, generate: impl Fn(&mut Draws<'_>) -> A + Send + Sync + 'static) -> Test<A, R> {
-        self.from_domain(Domain::new(move |draws| to_words(&generate(draws))))
+        self.over(Domain::new(move |draws| to_words(&generate(draws))))
     }
 
-    fn from_domain(self, domain: Domain<Words>) -> Test<A, R> {
+    fn over(self, domain: Domain<Words>) -> Test<A, R> {
         let Source { text, function } = self.source;
         let formula = formula::of_parts(function, self.mirror, self.oracle, domain);
         Test { text, formula, bounds: None, settings: Settings::default() }

@@ -55,7 +55,7 @@ fn fading_is_the_polynomial() -> Outcome {
         .invariant(
             "between 0 and 1",
             |_, faded: f32| {
-                if (0.0..=1.000_001).contains(&faded) { Ok(()) } else { Err(format!("{faded}")) }
+                if (0.0..=1.000_01).contains(&faded) { Ok(()) } else { Err(format!("{faded}")) }
             },
         )
         .case((1.0,))
