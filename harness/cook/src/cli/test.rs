@@ -31,8 +31,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     // The mutation tests last and apart: cargo stops at the first target that fails.
-    let parts: [&[&str]; 2] =
-        [&["--workspace", "--lib", "--bins", "--test", "suite"], &["--package", "lapidary-cook", "--test", "mutation"]];
+    let parts: [&[&str]; 2] = [
+        &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
+        &["--package", "lapidary-cook", "--test", "mutation"],
+    ];
     let parts = if arguments.quick { &parts[..1] } else { &parts[..] };
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut outcome = Outcome::Passed;

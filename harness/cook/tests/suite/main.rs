@@ -40,6 +40,7 @@ mod shadows;
 mod slack;
 mod snapshots;
 mod specialise;
+mod structure;
 mod text;
 mod texture_diffusion;
 mod user_file;

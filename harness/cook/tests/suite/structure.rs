@@ -1,0 +1,112 @@
+//! The house's order: crates whose arrows run one way, mirrors that stand on glam alone, folders that do not need each other.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Of each crate of the harness, the others that it may need; see docs/ARCHITECTURE.md.
+const ARROWS: [(&str, &[&str]); 8] = [
+    ("gpu", &[]),
+    ("specialise", &[]),
+    ("assay", &["gpu", "specialise"]),
+    ("scene", &[]),
+    ("reference", &["scene"]),
+    ("plan", &["scene"]),
+    ("render", &["gpu", "plan", "reference", "scene", "specialise", "wgsl"]),
+    ("cook", &["assay", "gpu", "plan", "reference", "render", "scene", "specialise", "wgsl"]),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The names, without `lapidary-`, that a manifest's `[dependencies]` hold, and whether each is optional.
+fn dependencies(manifest: &Path) -> BTreeMap<String, bool> {
+    let text = std::fs::read_to_string(manifest).unwrap_or_else(|error| panic!("{}: {error}", manifest.display()));
+    let part = text.split("\n[dependencies]\n").nth(1).unwrap_or_default();
+    let lines = part.lines().take_while(|line| !line.starts_with('['));
+    let lines = lines.filter(|line| !line.starts_with('#') && !line.is_empty());
+    lines
+        .map(|line| {
+            let name = line.split(['.', ' ', '=']).next().unwrap_or_default();
+            (name.trim_start_matches("lapidary-").to_owned(), line.contains("optional = true"))
+        })
+        .collect()
+}
+
+fn folders(folder: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let entries = entries.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_dir());
+    entries.map(|path| path.file_name().expect("a name").to_string_lossy().into_owned()).collect()
+}
+
+#[test]
+fn arrows_between_crates_run_one_way() {
+    let modules = folders(&root().join("crates"));
+    let known: BTreeSet<&str> = ARROWS.iter().map(|(name, _)| *name).chain(["wgsl"]).collect();
+    for (name, allowed) in ARROWS {
+        let needed = dependencies(&root().join("harness").join(name).join("Cargo.toml"));
+        assert!(!needed.is_empty(), "{name}");
+        for other in needed.keys().filter(|other| known.contains(other.as_str())) {
+            assert!(allowed.contains(&other.as_str()), "{name} needs {other}");
+        }
+        // Libraries for everyone know nothing of the cookbook.
+        if ["gpu", "specialise", "assay"].contains(&name) {
+            assert!(needed.keys().all(|other| !modules.contains(other)), "{name}");
+        }
+    }
+    let crates: BTreeSet<String> =
+        folders(&root().join("harness")).into_iter().filter(|name| name != "assets").collect();
+    assert_eq!(crates, ARROWS.iter().map(|(name, _)| (*name).to_owned()).collect());
+}
+
+#[test]
+fn mirrors_stand_on_glam_alone() {
+    for module in folders(&root().join("crates")) {
+        let needed = dependencies(&root().join("crates").join(&module).join("Cargo.toml"));
+        let always: Vec<&String> = needed.iter().filter(|(_, optional)| !**optional).map(|(name, _)| name).collect();
+        // A scalar module needs nothing at all.
+        assert!(always.iter().all(|name| *name == "glam"), "{module} needs {always:?}");
+    }
+}
+
+/// In every crate, of two folders at the root of its sources at most one names the other.
+#[test]
+fn no_circles_among_folders() {
+    for (name, _) in ARROWS {
+        let sources = root().join("harness").join(name).join("src");
+        let all = folders(&sources);
+        let mut arrows: BTreeSet<(String, String)> = BTreeSet::new();
+        for folder in &all {
+            let mut texts = texts(&sources.join(folder));
+            texts.extend(std::fs::read_to_string(sources.join(folder).with_extension("rs")));
+            for other in all.iter().filter(|other| *other != folder) {
+                let named = [format!("crate::{other}::"), format!("crate::{other};"), format!("crate::{{{other}")];
+                if texts.iter().any(|text| named.iter().any(|name| text.contains(name))) {
+                    arrows.insert((folder.clone(), other.clone()));
+                }
+            }
+        }
+        for (one, other) in &arrows {
+            assert!(!arrows.contains(&(other.clone(), one.clone())), "{name}: {one} and {other} need each other");
+        }
+    }
+}
+
+/// The texts of a folder's sources, without those of tests.
+fn texts(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let is_test = path.file_stem().is_some_and(|stem| stem == "tests");
+        if is_test {
+            continue;
+        }
+        if path.is_dir() {
+            found.extend(texts(&path));
+        } else {
+            let text = std::fs::read_to_string(&path).expect("a source");
+            found.push(text.split("#[cfg(test)]").next().unwrap_or_default().to_owned());
+        }
+    }
+    found
+}
