@@ -214,7 +214,21 @@ fn a_loop_over_all_triangles_meets_the_same() {
         let queries = body.queries(12, if body.name == "bunny_stone" { 2_048 } else { RAYS });
         let by_tree = traced(gpu, &body, &queries, &[]);
         let by_loop = traced(gpu, &body, &queries, &[("TRAVERSAL_LOOP", 1.0)]);
-        assert_eq!(by_tree, by_loop, "{}", body.name);
+        let positions: Vec<DVec3> = body.mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+        let mut others = 0;
+        for ((query, tree), every) in
+            queries.iter().zip(&by_tree).zip(&by_loop).filter(|((_, tree), every)| tree != every)
+        {
+            // About an edge two triangles are met at one place up to the margin. The tree does not open the box of the one where the other was met
+            // nearer than the box begins, the loop takes whichever comes out nearer: either is right.
+            others += 1;
+            for hit in [tree, every] {
+                let fault = fault(&body, &positions, query, hit);
+                assert_eq!(fault, None, "{}: from {} to {}", body.name, query.origin, query.direction);
+            }
+        }
+        println!("{}: {others} of {} rays meet another triangle by the loop", body.name, queries.len());
+        assert!(others * 1000 <= queries.len(), "{}: {others} of {}", body.name, queries.len());
     }
 }
 
