@@ -233,7 +233,7 @@ pub struct Origin {
     pub release: Option<String>,
     /// The release that it may have been copied from, of those with the same text: the one that the file states, or the oldest.
     pub since: Option<String>,
-    /// What was changed in it since then, the oldest first; where the text is the same, in what it promises.
+    /// What was changed in it since then, the oldest first; where the text is the same, in what it promises or calls.
     pub changes: Vec<String>,
 }
 
@@ -284,7 +284,7 @@ impl Standing {
         for Origin { function, since, changes, .. } in self.origins.iter().filter(is_same) {
             let since = since.as_deref().unwrap_or(current);
             text.push_str(&format!(
-                "\n  of the same text since {since}, but not the same promise: `{function}` ({})",
+                "\n  of the same text since {since}, while what it promises or calls was changed: `{function}` ({})",
                 changes.join(" ")
             ));
         }

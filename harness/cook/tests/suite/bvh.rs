@@ -172,6 +172,15 @@ fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> 
     crossings.iter().find(nearer).map(|crossing| format!("{hit:?} although {crossing:?}"))
 }
 
+/// How far along the ray the plane of a hit's triangle may be met from where it is, at a place that is off by the bound of [`fault`].
+fn slack(body: &Body, query: &Query, hit: &BvhTraceHit) -> f64 {
+    let root = body.bvh.nodes[0];
+    let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
+    let [a, b, c] = body.corners(hit.triangle as usize).map(|p| p.as_dvec3());
+    let normal = (b - a).cross(c - a).normalize();
+    3.0 * f64::from(ray.margin) / normal.dot(query.direction.as_dvec3()).abs()
+}
+
 #[test]
 fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
     let gpu = super::gpu();
@@ -222,12 +231,18 @@ fn a_loop_over_all_triangles_meets_the_same() {
             // About an edge two triangles are met at one place up to the margin. The tree does not open the box of the one where the other was met
             // nearer than the box begins, the loop takes whichever comes out nearer: either is right.
             others += 1;
+            assert_ne!(tree.triangle, every.triangle, "{}: from {} to {}", body.name, query.origin, query.direction);
             for hit in [tree, every] {
                 let fault = fault(&body, &positions, query, hit);
                 assert_eq!(fault, None, "{}: from {} to {}", body.name, query.origin, query.direction);
             }
+            let reach = slack(&body, query, tree) + slack(&body, query, every);
+            let apart = f64::from(tree.distance - every.distance).abs();
+            // A NaN does not hold.
+            assert!(apart <= reach, "{}: {tree:?} and {every:?} are {apart:e} apart, at most {reach:e}", body.name);
         }
         println!("{}: {others} of {} rays meet another triangle by the loop", body.name, queries.len());
+        // No bound, but a tree that leads elsewhere would be seen.
         assert!(others * 1000 <= queries.len(), "{}: {others} of {}", body.name, queries.len());
     }
 }

@@ -477,9 +477,9 @@ fn shape_and_quality_choose_the_rung() {
     let opaque = with_material("ruby", |material| Material { transmission: 0.0, ..material.clone() });
     assert_eq!(all(&opaque), ["lambert"; 3]);
     let mut named = one("octahedron");
-    named.objects[0].material.solver = Some("proxy-1".parse().expect("a rung"));
+    named.objects[0].material.solver = Some("accurate".parse().expect("a solver"));
     named.objects[0].material.sigma0 = Some(Vec3::ONE);
-    assert_eq!(all(&named), ["proxy-1"; 3]);
+    assert_eq!(all(&named), ["accurate"; 3]);
 }
 
 /// A plan says what the chosen rung costs and how far off it is, by the committed ladder.

@@ -217,7 +217,7 @@ fn an_old_copy_is_recognised_in_whatever_file_it_is() {
 #[test]
 fn a_promise_that_changed_is_told_to_an_old_copy_of_the_same_text() {
     let told = history().standing("refraction", &["refraction_reflect"], OLD_REFLECTION).describe();
-    let wanted = "of the same text since 0.1.0, but not the same promise: `refraction_reflect` (0.2.0: promises 9 ulp";
+    let wanted = "of the same text since 0.1.0, while what it promises or calls was changed: `refraction_reflect` (0.2.0: promises 9 ulp";
     assert!(told.contains(wanted), "{told}");
     let source = module("refraction").expect("a module").source;
     let told = history().standing("refraction", &["refraction_reflect"], source).describe();

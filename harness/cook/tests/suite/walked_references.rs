@@ -91,8 +91,9 @@ fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
             coarse / shadowed
         );
         for (found, recorded) in [lambert, shadowed, coarse].into_iter().zip(recorded) {
-            // Rounded, and another driver's last digits.
-            assert!((found - recorded).abs() < 0.003, "{}: {found}, on the page {recorded}", reference.scene);
+            // Rounded. Another driver's pixels at shadows' edges are others.
+            let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };
+            assert!((found - recorded).abs() < allowed, "{}: {found}, on the page {recorded}", reference.scene);
         }
         assert!(coarse < shadowed && fine < 1.1 * coarse, "{}: {fine} {coarse} {shadowed}", reference.scene);
     }
@@ -102,7 +103,7 @@ fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
 const FIT: [(&str, [f64; 5]); 4] = [
     ("bunny", [0.492, 0.269, 0.283, 0.218, 0.208]),
     ("dragon", [0.907, 0.901, 0.491, 0.467, 0.491]),
-    ("figure", [0.860, 0.821, 0.400, 0.362, 0.405]),
+    ("figure", [0.860, 0.821, 0.400, 0.362, 0.404]),
     ("wax_bunny", [0.483, 0.337, 0.370, 0.303, 0.275]),
 ];
 
@@ -126,8 +127,9 @@ fn the_scale_of_extinction_is_where_the_fit_has_it() {
         });
         println!("{name}: Lambert, with shadows, godunov-64 at a scale of .12, .18 and .25: {found:.3?}");
         for (found, recorded) in found.into_iter().zip(recorded) {
-            // Rounded, and another driver's last digits.
-            assert!((found - recorded).abs() < 0.003, "{name}: {found}, on the page {recorded}");
+            // Rounded. Another driver's pixels at shadows' edges are others.
+            let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };
+            assert!((found - recorded).abs() < allowed, "{name}: {found}, on the page {recorded}");
         }
     }
 }

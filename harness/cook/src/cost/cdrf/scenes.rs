@@ -147,9 +147,10 @@ mod tests {
             "skin_bunny: masked everywhere {everywhere:.3}, where it faces the light {facing:.3}, as the recipe does {own:.3}"
         );
         assert!(own < facing && facing < everywhere, "{own} {facing} {everywhere}");
-        // Rounded, and another driver's last digits.
+        // The page rounds to two digits. Another driver's pixels at shadows' edges are others.
         for (found, recorded) in [(everywhere, 0.311), (facing, 0.286)] {
-            assert!((found - recorded).abs() < 0.003, "{found}, on the page {recorded}");
+            let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };
+            assert!((found - recorded).abs() < allowed, "{found}, recorded {recorded}");
         }
     }
 }
