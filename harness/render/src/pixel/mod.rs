@@ -1,6 +1,6 @@
 //! The gem recipes' whole path of one pixel in Rust, from the mirrors: `wgsl/recipes/parts/gem_shading.wgsl` line by line.
 //!
-//! A picture of the GPU is compared with it pixel by pixel ([`parity`]); which facets a ray met is returned besides, for a
+//! A picture of the GPU is compared with it pixel by pixel (`harness/cook/tests/suite/parity`); which facets a ray met is returned besides, for a
 //! difference is allowed only where rays part at a facet's edge.
 
 pub mod display;
