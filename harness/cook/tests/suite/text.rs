@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 #[test]
 fn signatures_and_accuracies_are_as_they_were() {
     let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("../../../snapshots/cookbook");
+    settings.set_snapshot_path("../../../../snapshots/cookbook");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.bind(|| {
