@@ -9,6 +9,7 @@ pub mod user_file;
 use crate::cookbook::{self, header::FunctionDoc};
 use crate::dispatch::shape::{Scalar, Shape};
 use crate::dispatch::{self, DispatchError, Kernel};
+use crate::extremum::largest;
 use crate::formula::{Formula, Words};
 use crate::formulas;
 use crate::gpu::Gpu;
@@ -244,8 +245,8 @@ pub fn run_keeping(
         Err(stopped) => (Vec::new(), Some(stopped.to_string())),
     };
     let reproduce = reproduce(formula, source, settings);
-    let mut row = row(formula, &report, Broken { hard_cases, promises, branches }, failure, reproduce);
-    row.branches_untested = branches_untested;
+    let broken = Broken { hard_cases, promises, branches, branches_untested };
+    let mut row = row(formula, &report, broken, failure, reproduce);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
@@ -278,11 +279,7 @@ pub fn distance_from_limit(
         .zip(result.scalars())
         .zip(limit)
         .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
-    // f64::max would lose a NaN.
-    Ok(distances.fold(
-        0.0,
-        |worst: f64, distance| if distance.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(distance) },
-    ))
+    Ok(largest(distances))
 }
 
 /// The command that runs the same inputs again.
@@ -300,6 +297,8 @@ struct Broken {
     hard_cases: Vec<String>,
     promises: Vec<String>,
     branches: Vec<String>,
+    /// Why branches were not looked at, where they were not.
+    branches_untested: Option<String>,
 }
 
 fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failure>, reproduce: String) -> Row {
@@ -325,7 +324,7 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         broken_hard_cases: broken.hard_cases,
         broken_promises: broken.promises,
         broken_branches: broken.branches,
-        branches_untested: None,
+        branches_untested: broken.branches_untested,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),

@@ -4,15 +4,18 @@
 //! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is not foretold but found: the renderer
 //! itself draws the scene on a device that does nothing, and everything that it makes and runs is written down.
 
+mod choice;
 mod decision;
 mod effect;
 pub mod ladder;
 mod notes;
+mod numbers;
 pub mod quality;
 mod text;
 pub mod thickness;
 
-pub use decision::{Decision, Decisions, Scattering};
+pub use choice::Scattering;
+pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use quality::{Quality, Technique};
 

@@ -8,7 +8,7 @@ use crate::random_walk::mesh;
 use crate::render::{self, RenderError, Rung};
 use crate::scene::Scene;
 use crate::snapshot::frames::halved;
-use crate::snapshot::{EXR_SIDE, WALKED};
+use crate::snapshot::{EXR_SIDE, WalkedReference};
 
 /// The picture that is walked again, for the spread of its walks, has so many for each pixel.
 const FEW: u32 = 4;
@@ -26,7 +26,7 @@ pub(super) struct Walks {
 impl Walks {
     /// Of the built-in scene of that name, in its own colours; nothing where no picture of it is committed.
     pub(super) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
-        let Some(reference) = WALKED.iter().find(|reference| reference.scene == name) else { return Ok(None) };
+        let Some(reference) = WalkedReference::of_scene(name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
         Ok(Some(Self { name, scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
     }
