@@ -381,8 +381,7 @@ fn refract_naive() -> Formula {
         // Across the ray, and at most half a right angle off the plane of incidence's normal: what lies in the plane may cancel against the
         // index's slope, what lies across it cannot.
         let ray = direction.as_dvec3().normalize();
-        let out = if cosine < 1.0 { ray.cross(normal.as_dvec3()).normalize_or_zero() } else { DVec3::ZERO };
-        let out = if out == DVec3::ZERO { draws.perpendicular(ray) } else { out };
+        let out = ray.cross(normal.as_dvec3()).try_normalize().unwrap_or_else(|| draws.perpendicular(ray));
         let turn = std::f64::consts::FRAC_PI_4 * (2.0 * draws.unit() - 1.0);
         let across = (turn.cos() * out + turn.sin() * ray.cross(out)).as_vec3();
         let slope = draws.pick(&[1.0, -1.0]) * draws.between(0.5, 1.0);

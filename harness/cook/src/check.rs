@@ -7,6 +7,7 @@ pub mod user_file;
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
 use lapidary_assay::dispatch::{self, DispatchError, Kernel};
+use lapidary_assay::extremum::largest;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::outside;
@@ -252,8 +253,8 @@ pub fn run_keeping(
         Err(stopped) => (Vec::new(), Some(stopped.to_string())),
     };
     let reproduce = reproduce(formula, source, settings);
-    let mut row = row(formula, &report, Broken { hard_cases, promises, branches }, failure, reproduce);
-    row.branches_untested = branches_untested;
+    let broken = Broken { hard_cases, promises, branches, branches_untested };
+    let mut row = row(formula, &report, broken, failure, reproduce);
     if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
         let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
         row.kept_in = Some(file.display().to_string());
@@ -286,11 +287,7 @@ pub fn distance_from_limit(
         .zip(result.scalars())
         .zip(limit)
         .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
-    // f64::max would lose a NaN.
-    Ok(distances.fold(
-        0.0,
-        |worst: f64, distance| if distance.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(distance) },
-    ))
+    Ok(largest(distances))
 }
 
 /// The command that runs the same inputs again.
@@ -308,6 +305,8 @@ struct Broken {
     hard_cases: Vec<String>,
     promises: Vec<String>,
     branches: Vec<String>,
+    /// Why branches were not looked at, where they were not.
+    branches_untested: Option<String>,
 }
 
 fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failure>, reproduce: String) -> Row {
@@ -333,7 +332,7 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         broken_hard_cases: broken.hard_cases,
         broken_promises: broken.promises,
         broken_branches: broken.branches,
-        branches_untested: None,
+        branches_untested: broken.branches_untested,
         missed_edges: report.missed_edges().collect(),
         release: None,
         changed_since: Vec::new(),

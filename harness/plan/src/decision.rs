@@ -1,12 +1,13 @@
-//! What a material calls for: its technique, and for each effect whether it is on, with the property that decides.
+//! What a material calls for: for each effect whether it is on under the rung that draws it, with the property that decides.
 
+use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
-use super::quality::{Chosen, Technique};
-use super::thickness::Thickness;
+use super::numbers::{short, triple};
+use super::quality::Chosen;
 use crate::{Geometry, Request, Rung, Spectrum};
 use glam::Vec3;
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene, Shape};
+use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, Object, Scene};
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,15 +33,6 @@ pub struct Decisions {
     pub effects: Vec<Decision>,
 }
 
-/// The technique for scattering bodies that a user wants whatever their thickness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scattering {
-    /// By curvature.
-    Cdrf,
-    /// By ways through the body.
-    OpticalPath,
-}
-
 impl Decisions {
     /// For every object of `scene`, in its order.
     #[must_use]
@@ -51,7 +43,7 @@ impl Decisions {
     /// For an object of `scene`.
     #[must_use]
     pub fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> Self {
-        let (choice, reason) = technique(object, scene, request);
+        let (choice, reason) = choice::of(object, scene, request);
         let (rung, chosen) = match choice {
             Choice::Named(rung) => (rung, None),
             Choice::By(technique) => {
@@ -90,102 +82,6 @@ impl Decisions {
     }
 }
 
-/// What an object is drawn by: a rung that a user or the material names, or a technique's.
-enum Choice {
-    Named(Rung),
-    By(Technique),
-}
-
-/// The rung or technique for an object, and why.
-fn technique(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
-    let material = &object.material;
-    if request.rung.is_for_clear_stones() && !material.is_clear() {
-        let (choice, reason) = by_material(object, scene, request);
-        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", request.rung));
-    }
-    if request.rung != Rung::ByMaterial {
-        return (Choice::Named(request.rung), "asked for".to_owned());
-    }
-    by_material(object, scene, request)
-}
-
-/// The rung or technique that an object's material calls for, and why.
-fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
-    let material = &object.material;
-    if material.scatters() {
-        return scattering(object, scene, request);
-    }
-    let (technique, reason) = if material.transmission == 0.0 {
-        (Technique::Opaque, "opaque: transmission 0, and nothing inside scatters".to_owned())
-    } else if material.thickness == 0.0 {
-        let reason = format!("clear: transmission {}, and a thin wall: thickness 0", material.transmission);
-        (Technique::ThinWall, reason)
-    } else {
-        let (technique, shape) = clear(Shape::of(&object.mesh));
-        (technique, format!("clear: transmission {}, thickness {}; {shape}", material.transmission, material.thickness))
-    };
-    (Choice::By(technique), reason)
-}
-
-/// The technique for a clear body with an inside, and why. The proxy is none of them: no ladder has it near the stone that is there.
-fn clear(shape: Shape) -> (Technique, &'static str) {
-    match shape {
-        Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets' planes"),
-        Shape::Concave => (Technique::Concave, "closed, not convex: rays inside meet its triangles"),
-        Shape::Open => (
-            Technique::Concave,
-            "not closed: rays inside meet its triangles, and go straight on into the environment where there are none",
-        ),
-    }
-}
-
-/// The rung or technique for a body that scatters light, and why.
-fn scattering(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
-    if let (Some(solver), None) = (object.material.solver, request.scattering) {
-        return (Choice::Named(solver.into()), "extras.lapidary.solver names it".to_owned());
-    }
-    let (technique, reason) = by_thickness(object, scene, request);
-    (Choice::By(technique), reason)
-}
-
-/// Whether light comes through a body that scatters it, and why.
-fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Technique, String) {
-    let Some(medium) = &object.material.medium else {
-        let reason = "sigma0 alone: no scattering and absorption to follow light through it by";
-        return (Technique::Cdrf, reason.to_owned());
-    };
-    if let Some(asked) = request.scattering {
-        let technique = if asked == Scattering::Cdrf { Technique::Cdrf } else { Technique::OpticalPath };
-        return (technique, "asked for, whatever its thickness".to_owned());
-    }
-    if scene.lights.is_empty() {
-        return (Technique::Cdrf, "no light but the environment, which goes no way through bodies".to_owned());
-    }
-    let thickness = Thickness::of(object, medium);
-    if thickness.thickness == 0.0 {
-        return (Technique::Cdrf, "its mesh has no inside whose thickness could be measured".to_owned());
-    }
-    let free = thickness.mean_free_path;
-    if free.is_infinite() {
-        let reason = "somewhere a colour is neither scattered nor absorbed: light comes through the body";
-        return (Technique::OpticalPath, reason.to_owned());
-    }
-    let paths = thickness.mean_free_paths();
-    let most = super::thickness::MOST_MEAN_FREE_PATHS;
-    let source = if thickness.is_given { "given" } else { "measured" };
-    let compared = format!(
-        "{source} thickness {} is {} mean free paths of {}",
-        short(thickness.thickness),
-        short(paths),
-        short(free)
-    );
-    if thickness.shows_through() {
-        return (Technique::OpticalPath, format!("{compared}, at most {most}: light comes through the body"));
-    }
-    let reason = format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads");
-    (Technique::Cdrf, reason)
-}
-
 /// How a rung finds the facets that rays inside meet.
 fn way_of(geometry: Geometry) -> &'static str {
     match geometry {
@@ -194,21 +90,6 @@ fn way_of(geometry: Geometry) -> &'static str {
         Geometry::Bvh => "a hierarchy of all triangles",
         Geometry::Triangles => "a loop over all triangles",
     }
-}
-
-/// Three digits.
-pub(super) fn short(value: f32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-fn triple(value: Vec3) -> String {
-    let [red, green, blue] = value.to_array().map(short);
-    if red == green && green == blue { red } else { format!("({red}, {green}, {blue})") }
 }
 
 /// One object under one rung.

@@ -2,16 +2,19 @@
 //!
 //! The words of rendering are here ([`Rung`], [`Effect`], [`Quality`], [`Note`]), and the decisions ([`Decisions`]) that the renderer compiles by.
 
+mod choice;
 mod decision;
 mod effect;
 pub mod ladder;
 mod note;
 mod notes;
+mod numbers;
 pub mod quality;
 mod rung;
 pub mod thickness;
 
-pub use decision::{Decision, Decisions, Scattering};
+pub use choice::Scattering;
+pub use decision::{Decision, Decisions};
 pub use effect::{Effect, Effects, UnknownEffect};
 pub use note::{Note, Objects};
 pub use notes::of as notes;

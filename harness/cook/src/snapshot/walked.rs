@@ -47,6 +47,11 @@ impl WalkedReference {
         WALKED.iter().filter(move |reference| reference.technique == technique)
     }
 
+    /// That of a scene.
+    pub fn of_scene(scene: &str) -> Option<&'static Self> {
+        WALKED.iter().find(|reference| reference.scene == scene)
+    }
+
     /// Where it is kept.
     pub fn file(&self) -> PathBuf {
         folder(self.technique).join("reference").join(format!("{}.exr", self.scene))

@@ -145,13 +145,24 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
     hits.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up. By how
-/// much a ray may pass a triangle and still meet it is the margin in the ray's own, slanted frame: √3 of it across and
+/// By how much a ray may pass a triangle and still meet it: the margin in the ray's own, slanted frame, √3 of it across and
 /// √3 for the slant.
-fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> Option<String> {
+fn bound(body: &Body, query: &Query) -> f64 {
     let root = body.bvh.nodes[0];
     let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
-    let bound = 3.0 * f64::from(ray.margin);
+    3.0 * f64::from(ray.margin)
+}
+
+/// Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the cosine: that of a triangle's.
+fn slack(body: &Body, query: &Query, triangle: u32) -> f64 {
+    let [a, b, c] = body.corners(triangle as usize).map(|p| p.as_dvec3());
+    let normal = (b - a).cross(c - a).normalize();
+    bound(body, query) / normal.dot(query.direction.as_dvec3())
+}
+
+/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up.
+fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> Option<String> {
+    let bound = bound(body, query);
     let (origin, direction) = (query.origin.as_dvec3(), query.direction.as_dvec3());
     let crossings = oracle::crossings(positions, &body.bvh.indices, origin, direction, query.left, bound);
     let distance = f64::from(hit.distance);
@@ -160,25 +171,10 @@ fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> 
         return Some(format!("{hit:?} is passed by more than {bound:e}"));
     }
     let nearer = |crossing: &&oracle::Crossing| {
-        // Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the
-        // cosine.
-        let normal = {
-            let [a, b, c] = body.corners(crossing.triangle as usize).map(|p| p.as_dvec3());
-            (b - a).cross(c - a).normalize()
-        };
-        let slack = bound / normal.dot(direction);
+        let slack = slack(body, query, crossing.triangle);
         crossing.clearance > bound && crossing.distance > slack && crossing.distance + slack < distance
     };
     crossings.iter().find(nearer).map(|crossing| format!("{hit:?} although {crossing:?}"))
-}
-
-/// How far along the ray the plane of a hit's triangle may be met from where it is, at a place that is off by the bound of [`fault`].
-fn slack(body: &Body, query: &Query, hit: &BvhTraceHit) -> f64 {
-    let root = body.bvh.nodes[0];
-    let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
-    let [a, b, c] = body.corners(hit.triangle as usize).map(|p| p.as_dvec3());
-    let normal = (b - a).cross(c - a).normalize();
-    3.0 * f64::from(ray.margin) / normal.dot(query.direction.as_dvec3()).abs()
 }
 
 #[test]
@@ -236,7 +232,7 @@ fn a_loop_over_all_triangles_meets_the_same() {
                 let fault = fault(&body, &positions, query, hit);
                 assert_eq!(fault, None, "{}: from {} to {}", body.name, query.origin, query.direction);
             }
-            let reach = slack(&body, query, tree) + slack(&body, query, every);
+            let reach: f64 = [tree, every].map(|hit| slack(&body, query, hit.triangle).abs()).iter().sum();
             let apart = f64::from(tree.distance - every.distance).abs();
             // A NaN does not hold.
             assert!(apart <= reach, "{}: {tree:?} and {every:?} are {apart:e} apart, at most {reach:e}", body.name);

@@ -64,7 +64,7 @@ pub(super) fn measure(
 ) -> Result<Vec<SceneReport>, CostError> {
     let mut scenes = Vec::new();
     for name in SCENES {
-        let reference = WalkedReference::of("cdrf").find(|reference| reference.scene == name);
+        let reference = WalkedReference::of_scene(name);
         let truth = reference.map(|reference| reference.picture(gpu)).transpose()?;
         scenes.push((name, Scene::named(name)?, truth.map_or_else(Vec::new, |truth| truth.linear)));
     }
@@ -115,6 +115,7 @@ mod tests {
         assert!(of("lambert", true) < 0.8 * of("lambert", false));
         assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
     }
+
     /// As docs/cdrf_shading.md has them: what masks over the whole reflectance would leave on the bunny, everywhere and where the surface faces the
     /// light. Under its one light, visibility is what Lambert's law keeps of itself with shadows, and 0 where the surface faces away.
     #[test]
@@ -122,8 +123,7 @@ mod tests {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let scene = Scene::named("skin_bunny").expect("built in");
         assert_eq!(scene.lights.len(), 1);
-        let reference =
-            WalkedReference::of("cdrf").find(|reference| reference.scene == "skin_bunny").expect("committed");
+        let reference = WalkedReference::of_scene("skin_bunny").expect("committed");
         let truth = reference.picture(gpu).expect("read").linear;
         let draw =
             |reflectance, shadows| render::render(gpu, &scene, &settings(reflectance, shadows)).expect("rendered");

@@ -59,7 +59,7 @@ fn every_rung_is_one_of_the_renderers() {
     let names: Vec<String> = Measured::all(&options.rungs).into_iter().map(Measured::name).collect();
     assert_eq!(names.iter().filter(|name| !RUNGS.contains(&name.as_str())).collect::<Vec<_>>(), [UNSCALED]);
     for view in VIEWS {
-        let committed = crate::snapshot::WALKED.iter().any(|reference| reference.scene == view);
+        let committed = crate::snapshot::WalkedReference::of_scene(view).is_some();
         assert_eq!(WALKED.contains(&view), committed, "{view}");
     }
     for solver in GROWING {

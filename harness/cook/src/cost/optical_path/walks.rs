@@ -5,7 +5,7 @@ use super::views::{SIDE, settings};
 use crate::cost::CostError;
 use crate::exposure::exposed_distance;
 use crate::snapshot::frames::halved;
-use crate::snapshot::{EXR_SIDE, WALKED};
+use crate::snapshot::{EXR_SIDE, WalkedReference};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
@@ -29,7 +29,7 @@ pub(super) struct Walks {
 impl Walks {
     /// Of the built-in scene of that name, in its own colours; nothing where no picture of it is committed.
     pub(super) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
-        let Some(reference) = WALKED.iter().find(|reference| reference.scene == name) else { return Ok(None) };
+        let Some(reference) = WalkedReference::of_scene(name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
         Ok(Some(Self { name, scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
     }

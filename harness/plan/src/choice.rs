@@ -1,0 +1,114 @@
+//! What a body is drawn by: the rung or technique that its material and shape call for, and why.
+
+use super::numbers::short;
+use super::quality::Technique;
+use super::thickness::Thickness;
+use crate::{Request, Rung};
+use lapidary_scene::{Object, Scene, Shape};
+
+/// The technique for scattering bodies that a user wants whatever their thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scattering {
+    /// By curvature.
+    Cdrf,
+    /// By ways through the body.
+    OpticalPath,
+}
+
+/// What an object is drawn by: a rung that a user or the material names, or a technique's.
+pub(super) enum Choice {
+    /// A rung.
+    Named(Rung),
+    /// A technique, whose rung is that of the quality asked for.
+    By(Technique),
+}
+
+/// The rung or technique for an object, and why.
+pub(super) fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
+    let material = &object.material;
+    if request.rung.is_for_clear_stones() && !material.is_clear() {
+        let (choice, reason) = by_material(object, scene, request);
+        return (choice, format!("{} was asked for, which is for clear stones, but {reason}", request.rung));
+    }
+    if request.rung != Rung::ByMaterial {
+        return (Choice::Named(request.rung), "asked for".to_owned());
+    }
+    by_material(object, scene, request)
+}
+
+/// The rung or technique that an object's material calls for, and why.
+fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
+    let material = &object.material;
+    if material.scatters() {
+        return scattering(object, scene, request);
+    }
+    let (technique, reason) = if material.transmission == 0.0 {
+        (Technique::Opaque, "opaque: transmission 0, and nothing inside scatters".to_owned())
+    } else if material.thickness == 0.0 {
+        let reason = format!("clear: transmission {}, and a thin wall: thickness 0", material.transmission);
+        (Technique::ThinWall, reason)
+    } else {
+        let (technique, shape) = clear(Shape::of(&object.mesh));
+        (technique, format!("clear: transmission {}, thickness {}; {shape}", material.transmission, material.thickness))
+    };
+    (Choice::By(technique), reason)
+}
+
+/// The technique for a clear body with an inside, and why. The proxy is none of them: no ladder has it near the stone that is there.
+fn clear(shape: Shape) -> (Technique, &'static str) {
+    match shape {
+        Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets' planes"),
+        Shape::Concave => (Technique::Concave, "closed, not convex: rays inside meet its triangles"),
+        Shape::Open => (
+            Technique::Concave,
+            "not closed: rays inside meet its triangles, and go straight on into the environment where there are none",
+        ),
+    }
+}
+
+/// The rung or technique for a body that scatters light, and why.
+fn scattering(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
+    if let (Some(solver), None) = (object.material.solver, request.scattering) {
+        return (Choice::Named(solver.into()), "extras.lapidary.solver names it".to_owned());
+    }
+    let (technique, reason) = by_thickness(object, scene, request);
+    (Choice::By(technique), reason)
+}
+
+/// Whether light comes through a body that scatters it, and why.
+fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Technique, String) {
+    let Some(medium) = &object.material.medium else {
+        let reason = "sigma0 alone: no scattering and absorption to follow light through it by";
+        return (Technique::Cdrf, reason.to_owned());
+    };
+    if let Some(asked) = request.scattering {
+        let technique = if asked == Scattering::Cdrf { Technique::Cdrf } else { Technique::OpticalPath };
+        return (technique, "asked for, whatever its thickness".to_owned());
+    }
+    if scene.lights.is_empty() {
+        return (Technique::Cdrf, "no light but the environment, which goes no way through bodies".to_owned());
+    }
+    let thickness = Thickness::of(object, medium);
+    if thickness.thickness == 0.0 {
+        return (Technique::Cdrf, "its mesh has no inside whose thickness could be measured".to_owned());
+    }
+    let free = thickness.mean_free_path;
+    if free.is_infinite() {
+        let reason = "somewhere a colour is neither scattered nor absorbed: light comes through the body";
+        return (Technique::OpticalPath, reason.to_owned());
+    }
+    let paths = thickness.mean_free_paths();
+    let most = super::thickness::MOST_MEAN_FREE_PATHS;
+    let source = if thickness.is_given { "given" } else { "measured" };
+    let compared = format!(
+        "{source} thickness {} is {} mean free paths of {}",
+        short(thickness.thickness),
+        short(paths),
+        short(free)
+    );
+    if thickness.shows_through() {
+        return (Technique::OpticalPath, format!("{compared}, at most {most}: light comes through the body"));
+    }
+    let reason = format!("{compared}, above {most}: light stays near the surface, whose curvature says how it spreads");
+    (Technique::Cdrf, reason)
+}

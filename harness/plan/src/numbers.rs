@@ -1,0 +1,19 @@
+//! Numbers in reasons.
+
+use glam::Vec3;
+
+/// Three digits.
+pub(super) fn short(value: f32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A colour's three, or one where they are the same.
+pub(super) fn triple(value: Vec3) -> String {
+    let [red, green, blue] = value.to_array().map(short);
+    if red == green && green == blue { red } else { format!("({red}, {green}, {blue})") }
+}
