@@ -1,9 +1,11 @@
 //! `wgsl/absorption.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, ABSORPTION_DARKEST, ABSORPTION_FARTHEST, ABSORPTION_NEAREST, oracle};
 use glam::Vec3;
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "absorption";
 
@@ -63,9 +65,13 @@ fn benign_color(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(draws.between(0.01, 0.9), draws.between(0.01, 0.9), draws.between(0.01, 0.9))
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     let nearly_clear = 1.0f32.next_down();
     // -ln(1 - h) with h = 2^-24.
     let clear_depth = 2f64.powi(-24) + 2f64.powi(-49);

@@ -1,12 +1,14 @@
 //! `wgsl/bvh_trace.wgsl`.
 
+mod outside;
+
 use crate::{
     self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceObjectRay, BvhTraceRay,
     oracle,
 };
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
@@ -320,9 +322,13 @@ fn any_box(draws: &mut Draws<'_>) -> BoxCase {
     (mirror::ray(origin, toward, lower.min(origin), upper.max(origin)), lower, upper, nearest)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     let all = [vec![to_object_formula()], ray_formulas(), box_formulas(), triangle_formulas()];
     all.into_iter().flatten().collect()
 }

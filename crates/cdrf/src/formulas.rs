@@ -1,9 +1,11 @@
 //! `wgsl/cdrf.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, CdrfTexels, oracle};
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -126,9 +128,13 @@ fn darker(reflectance: f32, turned: f32, bound: f64) -> Result<(), String> {
     if rise <= 2.0 * bound { Ok(()) } else { Err(format!("rises by {rise:e} to {turned}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [widths(), helpers(), rungs(), accurate(), others(), tables()].into_iter().flatten().collect()
 }
 

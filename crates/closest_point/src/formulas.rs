@@ -1,9 +1,11 @@
 //! `wgsl/closest_point.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, CLOSEST_POINT_REGULARISATION, oracle};
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "closest_point";
 
@@ -128,9 +130,13 @@ fn extent(vertices: [Vec3; 3]) -> f64 {
     (b - a).length().max((c - a).length()).max((c - b).length())
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [vector_formulas(), line_formulas(), fallback_formulas(), centre_formulas(), paper_formulas()]
         .into_iter()
         .flatten()

@@ -1,9 +1,11 @@
 //! `wgsl/convex_trace.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit, oracle};
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles as _};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, ConvexTraceHit { distance, face });
@@ -208,9 +210,13 @@ fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
     (position, direction, distance, plane)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     // From the far side, at 30 degrees to the plane's normal.
     let (across, direction, way) = (Vec3::Z * -1e4, Vec3::new(0.5, 0.0, 0.866_025_4), 11_547.813f32);
     vec![

@@ -1,9 +1,11 @@
 //! `wgsl/curvature.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, CURVATURE_EDGE_ON, CURVATURE_SMALLEST, CurvatureFrame, CurvaturePixel, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Builder, Formula, formula, near};
+use lapidary_assay::formula::{Builder, Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 use lapidary_assay::value::Value;
 
@@ -184,9 +186,13 @@ fn lit_by((p_x, p_y, n_x, n_y): Derivatives, light: Vec3) -> Lit {
     (p_x, p_y, n_x, n_y, light)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [input_formulas(), mean_formulas(), gaussian_formulas(), towards_formulas()].into_iter().flatten().collect()
 }
 

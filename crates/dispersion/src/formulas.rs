@@ -1,9 +1,11 @@
 //! `wgsl/dispersion.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, DispersionSellmeier, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 use lapidary_refraction::formulas::{cosine_near_critical, incidence, relative_index};
 
@@ -18,9 +20,13 @@ const UNIT: f64 = 16.0 / (1 << 24) as f64;
 /// Diamond's index at the d line.
 const DIAMOND: f32 = 2.41749;
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     vec![
         sellmeier(),
         cauchy(),

@@ -1,9 +1,11 @@
 //! `wgsl/environment.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, EnvironmentHarmonics, EnvironmentTexels, oracle};
 use glam::{DVec2, UVec2, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 use std::f64::consts::PI;
 
@@ -120,9 +122,13 @@ fn within(what: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(format!("{what} is {value}, outside [{low}, {high}]")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [angle_formulas(), coordinate_formulas(), texel_formulas(), light_formulas()].into_iter().flatten().collect()
 }
 

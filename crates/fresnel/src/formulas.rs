@@ -1,8 +1,10 @@
 //! `wgsl/fresnel.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, oracle};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "fresnel";
 
@@ -50,9 +52,13 @@ fn in_unit_range(reflectance: f32) -> Result<(), String> {
     if (0.0..=1.0).contains(&reflectance) { Ok(()) } else { Err(format!("reflectance {reflectance}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     vec![exact(), textbook(), normal_incidence(), schlick()]
 }
 

@@ -1,9 +1,11 @@
 //! `wgsl/microfacet.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use std::f64::consts::PI;
 
 const M: &str = "microfacet";
@@ -115,9 +117,13 @@ fn within(what: &str, value: f32, most: f64) -> Result<(), String> {
     if (0.0..=most * ROUNDED).contains(&f64::from(value)) { Ok(()) } else { Err(format!("{what} {value} of {most}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     vec![distribution(), distribution_naive(), visibility(), visibility_naive(), half(), half_naive(), reflectance()]
 }
 

@@ -1,9 +1,11 @@
 //! `wgsl/optical_path.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, OPTICAL_PATH_DARKEST, OPTICAL_PATH_DEEPEST, OPTICAL_PATH_UNREACHED, oracle};
 use glam::{Vec3, Vec3Swizzles as _};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "optical_path";
 
@@ -100,9 +102,13 @@ fn rise_within_bounds((least, slowness): (Vec3, f32), cost: f32) -> Result<(), S
     }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [on_graphs(), on_grids(), of_light()].into_iter().flatten().collect()
 }
 

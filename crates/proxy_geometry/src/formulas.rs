@@ -1,12 +1,14 @@
 //! `wgsl/proxy_geometry.wgsl`.
 
+mod outside;
+
 use crate::{
     self as mirror, PROXY_GEOMETRY_PARALLEL, ProxyGeometryCell, ProxyGeometryFacet, ProxyGeometryHit,
     ProxyGeometryPlane, oracle,
 };
 use glam::{DVec3, IVec2, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, ProxyGeometryPlane { origin, edge_first, edge_second });
@@ -189,9 +191,13 @@ fn ordinary_tile(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     (centre, tile.0, tile.1, tile.2)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [plane_formulas(), normal_formulas(), intersection_formulas(), lattice_formulas()].into_iter().flatten().collect()
 }
 

@@ -1,9 +1,11 @@
 //! `wgsl/random_walk.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, RandomWalkBasis, RandomWalkCrossing, oracle};
 use glam::{DVec3, UVec4, Vec2, Vec3, Vec4};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -111,9 +113,13 @@ fn unit(vector: Vec3) -> Result<(), String> {
     near("length", vector.as_dvec3().length(), 1.0, UNIT)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [numbers(), paths(), scattering(), directions(), surfaces()].into_iter().flatten().collect()
 }
 

@@ -1,9 +1,11 @@
 //! `wgsl/reflective_shadow_map.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, ReflectiveShadowMapBasis, ReflectiveShadowMapView, oracle};
 use glam::{Vec3, Vec4};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, ReflectiveShadowMapView { origin, lamp, axis, extent, near, far });
@@ -87,9 +89,13 @@ fn square(basis: &ReflectiveShadowMapBasis, axis: Vec3) -> Result<(), String> {
     near("right x up . axis", right.cross(up).dot(axis), 1.0, SQUARE)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     vec![basis(), basis_naive(), clip(), texel(), cosine(), height(), height_naive()]
 }
 

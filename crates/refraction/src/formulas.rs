@@ -1,9 +1,11 @@
 //! `wgsl/refraction.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, RefractionHit, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, RefractionHit { direction, total });
@@ -78,9 +80,13 @@ fn squared_sine_transmitted(incident: Vec3, normal: Vec3, index: f32) -> f64 {
     (1.0 - cosine * cosine) / f64::from(index).powi(2)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     const M: &str = "refraction";
     let grazing = |cosine: f32| {
         let cosine = f64::from(cosine);

@@ -1,9 +1,11 @@
 //! `wgsl/srgb.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, oracle};
 use glam::Vec3;
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "srgb";
 
@@ -52,9 +54,13 @@ fn radiance(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [encoding_formulas(), decoding_formulas(), tone_formulas()].into_iter().flatten().collect()
 }
 

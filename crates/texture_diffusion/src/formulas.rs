@@ -1,9 +1,11 @@
 //! `wgsl/texture_diffusion.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, TEXTURE_DIFFUSION_REACH, TextureDiffusionTap, oracle};
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, TextureDiffusionTap { offset, weight });
@@ -110,9 +112,13 @@ fn step(draws: &mut Draws<'_>) -> Vec2 {
     Vec2::new(draws.below(5) as f32 - 2.0, draws.below(5) as f32 - 2.0)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [places(), widths(), taps(), means()].into_iter().flatten().collect()
 }
 

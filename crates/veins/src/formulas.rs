@@ -1,9 +1,11 @@
 //! `wgsl/veins.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, VeinsCell, VeinsPattern, oracle};
 use glam::{IVec3, UVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, VeinsCell { corner, offset });
@@ -65,9 +67,13 @@ fn whole(x: f32) -> bool {
     x.fract() == 0.0
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [cells(), noises(), folds()].into_iter().flatten().collect()
 }
 

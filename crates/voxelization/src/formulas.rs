@@ -1,9 +1,11 @@
 //! `wgsl/voxelization.wgsl`.
 
+mod outside;
+
 use crate::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
 use glam::{DVec3, UVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::formula::{Formula, formula, near};
+use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, VoxelizationGrid { origin, spacing, cells });
@@ -143,9 +145,13 @@ fn exact_triangle((a, b, c): Triangle) -> [DVec3; 3] {
     [a, b, c].map(Vec3::as_dvec3)
 }
 
-/// Every function of the module, bound to its mirror and its oracle.
+/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
+    with_promises(functions(), outside::promises())
+}
+
+fn functions() -> Vec<Formula> {
     [grid_formulas(), column_formulas(), row_formulas(), surface_formulas()].into_iter().flatten().collect()
 }
 

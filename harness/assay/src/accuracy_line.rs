@@ -53,6 +53,27 @@ impl Accuracy {
         Ok(Self::Bounded { lavapipe: parse_bounds(lavapipe)?, portable: parse_bounds(portable)? })
     }
 
+    /// What the comment over `fn name` in a WGSL `source` states: the text after its `Accuracy:`, to the comment's end.
+    ///
+    /// # Errors
+    /// Where there is no such function or no such line, or the line is broken.
+    pub fn of_function(source: &str, name: &str) -> Result<Accuracy, String> {
+        let lines: Vec<&str> = source.lines().collect();
+        let is_function = |line: &&str| {
+            let named = line.strip_prefix("fn ").and_then(|rest| rest.split('(').next());
+            named.is_some_and(|found| found.trim() == name)
+        };
+        let at =
+            lines.iter().position(is_function).ok_or_else(|| format!("{name}: the source has no such function"))?;
+        let start = lines[..at].iter().rposition(|line| !line.starts_with("//")).map_or(0, |line| line + 1);
+        let comment: Vec<&str> = lines[start..at].iter().map(|line| line.trim_start_matches('/').trim()).collect();
+        let comment = comment.join(" ");
+        let (_, accuracy) = comment
+            .split_once("Accuracy:")
+            .ok_or_else(|| format!("{name}: its comment has no line `Accuracy: lavapipe BOUNDS; portable BOUNDS`"))?;
+        Self::parse(accuracy).map_err(|fault| format!("{name}: Accuracy: {fault}"))
+    }
+
     /// The bounds for a device, and none for a naive form.
     pub fn bounds(&self, lavapipe: bool) -> Option<&[FieldBound]> {
         match self {
@@ -169,6 +190,17 @@ mod tests {
             "lavapipe 0.000001 abs; portable 0.001 rel",
         ] {
             assert_eq!(Accuracy::parse(line).expect(line).to_string(), line);
+        }
+    }
+
+    #[test]
+    fn a_functions_line_is_read_from_its_comment() {
+        let source = "/// Half.\n/// Accuracy: lavapipe 0 ulp;\n/// portable 1 ulp\nfn half(x: f32) -> f32 { return 0.5f * x; }\n\nfn bare() {}\n";
+        let stated = Accuracy::of_function(source, "half").expect("a line");
+        assert_eq!(stated.to_string(), "lavapipe 0 ulp; portable 1 ulp");
+        for (name, said) in [("bare", "no line `Accuracy:"), ("missing", "no such function")] {
+            let fault = Accuracy::of_function(source, name).expect_err(name);
+            assert!(fault.starts_with(name) && fault.contains(said), "{fault}");
         }
     }
 

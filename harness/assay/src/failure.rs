@@ -47,6 +47,22 @@ pub struct Field {
     pub backward_ulp: f64,
 }
 
+/// The call and its result, what was expected, and how far the result may be off, a line each, to be pasted.
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "  {} = {}\n  expected {}", self.wgsl, self.got, self.expected)?;
+        for field in &self.fields {
+            let name = if field.field.is_empty() { String::new() } else { format!("{} ", field.field) };
+            write!(f, "  allowed {name}± {:.3e}", field.allowed)?;
+            if field.backward_ulp > 0.0 {
+                write!(f, ", and what {} ulp of the input explain", field.backward_ulp)?;
+            }
+            writeln!(f)?;
+        }
+        writeln!(f, "  in Rust: {} = {}, the shader {}", self.rust, self.mirror_rust, self.got_rust)
+    }
+}
+
 impl Failure {
     /// Runs the three at one input.
     pub fn at(

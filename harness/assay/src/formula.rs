@@ -2,6 +2,7 @@
 //! must reach, its invariants, and its hard cases. One file of `formulas/` per module declares them.
 
 use crate::draws::{Domain, Draws};
+use crate::outside::Promise;
 use crate::shape::Shape;
 use crate::tolerance::number;
 use crate::value::{Arguments, Exact, Function, Value};
@@ -91,6 +92,8 @@ pub struct Formula {
     pub hard_cases: Vec<HardCase>,
     /// For a naive form, the relative error that it keeps on its benign domain.
     pub benign: Option<f64>,
+    /// What it promises outside of its domain.
+    pub promises: Vec<Promise>,
 }
 
 impl std::fmt::Debug for Formula {
@@ -159,6 +162,7 @@ where
             pairs: Vec::new(),
             hard_cases: Vec::new(),
             benign: None,
+            promises: Vec::new(),
         },
         cases: Vec::new(),
         types: std::marker::PhantomData,
@@ -187,6 +191,7 @@ pub(crate) fn of_parts<A: Arguments<u32> + 'static, R: Value + 'static>(
             pairs: Vec::new(),
             hard_cases: Vec::new(),
             benign: None,
+            promises: Vec::new(),
         },
         cases: Vec::new(),
         types: std::marker::PhantomData,
@@ -305,6 +310,25 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
     pub fn build(self) -> Formula {
         self.formula
     }
+}
+
+/// The formulas with their functions' promises outside of their domains.
+///
+/// # Panics
+/// Where a promise is of another function, or made for other arguments: a slip in a module's formulas, found by the first test that runs.
+#[must_use]
+pub fn with_promises(mut formulas: Vec<Formula>, promises: Vec<Promise>) -> Vec<Formula> {
+    for promise in promises {
+        let function = promise.function;
+        let formula = formulas.iter_mut().find(|formula| formula.function == function);
+        let formula = formula.unwrap_or_else(|| panic!("{promise:?}: no function `{function}`"));
+        assert!(
+            !promise.is_tested() || promise.arguments == formula.arguments,
+            "{promise:?}: made for other arguments"
+        );
+        formula.promises.push(promise);
+    }
+    formulas
 }
 
 /// Passes where `value` lies within `bound` of `wanted`; the message says by how much it does not.

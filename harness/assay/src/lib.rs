@@ -7,6 +7,10 @@ pub mod accuracy_line;
 #[cfg(feature = "gpu")]
 pub mod dispatch;
 pub mod draws;
+#[cfg(feature = "gpu")]
+mod environment;
+#[cfg(feature = "gpu")]
+pub mod examination;
 pub mod extremum;
 #[cfg(feature = "gpu")]
 pub mod failure;
@@ -15,9 +19,10 @@ pub mod golden_section;
 #[cfg(feature = "gpu")]
 pub mod interpreter;
 pub mod literal;
+#[cfg(feature = "trials")]
+pub mod module;
 #[cfg(feature = "gpu")]
-pub mod mutation;
-#[cfg(feature = "gpu")]
+pub mod mutate;
 pub mod outside;
 #[cfg(feature = "gpu")]
 pub mod property;
@@ -30,4 +35,6 @@ pub mod value;
 mod wgsl;
 
 #[cfg(feature = "gpu")]
-pub use wgsl::{Failure, Mirrored, Outcome, SEED_VARIABLE, Source, Test, WITHOUT_ADAPTER_VARIABLE, wgsl};
+pub use environment::{SEED_VARIABLE, WITHOUT_ADAPTER_VARIABLE};
+#[cfg(feature = "gpu")]
+pub use wgsl::{Failure, Mirrored, Outcome, Source, Test, wgsl};

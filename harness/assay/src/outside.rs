@@ -1,22 +1,16 @@
-//! What a function promises outside of its domain, as its `Outside:` line says it, tested: hostile inputs, and what must hold of
-//! the results there. The promises stand in `formulas/outside/`.
+//! What a function promises outside of its domain: hostile inputs, and what must hold of the results there.
 
-use crate::dispatch::{DispatchError, Kernel};
 use crate::draws::{Domain, Draws};
-use crate::formula::{Formula, Words};
-use crate::literal::{self, Language};
-use crate::shape::{Scalar, Shape};
-use crate::tolerance::{Tolerance, number};
+use crate::formula::{Words, near};
+use crate::shape::Shape;
 use crate::value::{Arguments, Value};
-
-/// Inputs tried for each promise.
-const CASES: u64 = 2_048;
+use glam::{UVec2, UVec3, Vec3};
 
 type Predicate = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
 type Transform = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
 
 /// What is promised of the results.
-enum Claim {
+pub(crate) enum Claim {
     /// They are finite.
     Finite,
     /// The `Accuracy:` line holds there too.
@@ -38,8 +32,8 @@ pub struct Promise {
     /// Shapes that the inputs were made for; empty for any.
     pub arguments: Vec<Shape>,
     /// The inputs; none where nothing is promised.
-    inputs: Option<Domain<Words>>,
-    claim: Claim,
+    pub(crate) inputs: Option<Domain<Words>>,
+    pub(crate) claim: Claim,
 }
 
 impl std::fmt::Debug for Promise {
@@ -134,74 +128,52 @@ pub fn any_bits(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Runs the promises of `formula`; a line for each that does not hold, with the first input at which it does not.
-pub fn broken(
-    kernel: &mut Kernel<'_>,
-    formula: &Formula,
-    tolerance: &Tolerance,
-    promises: &[Promise],
-    seed: u64,
-) -> Result<Vec<String>, DispatchError> {
-    let mut faults = Vec::new();
-    for promise in promises.iter().filter(|promise| promise.function == formula.function) {
-        let Some(inputs) = &promise.inputs else { continue };
-        let rows: Vec<Words> = (0..CASES).map(|row| inputs.row(seed, row)).collect();
-        let mut results = Words::new();
-        kernel.run(&rows.concat(), &mut results)?;
-        let mut others = Words::new();
-        if let Claim::Like(transform) = &promise.claim {
-            let mut inside = Words::new();
-            rows.iter().for_each(|row| transform(row, &mut inside));
-            kernel.run(&inside, &mut others)?;
-        }
-        let width = kernel.result_words();
-        let fault = rows.iter().enumerate().find_map(|(index, row)| {
-            let range = index * width..(index + 1) * width;
-            let result = &results[range.clone()];
-            let verdict = match &promise.claim {
-                Claim::Finite => all_finite(formula, result),
-                Claim::Accuracy => within_accuracy(formula, tolerance, row, result),
-                Claim::Like(_) => same_bits(formula, result, &others[range]),
-                Claim::Holds(predicate) => predicate(row, result),
-                Claim::Nothing => Ok(()),
-            };
-            verdict.err().map(|why| (row, why))
-        });
-        if let Some((row, why)) = fault {
-            faults.push(format!(
-                "outside of its domain it promises `{}`; at {}: {why}",
-                promise.says,
-                literal::call(Language::Wgsl, formula, row)
-            ));
-        }
-    }
-    Ok(faults)
+/// A vector of any finite components.
+pub fn any_vector(draws: &mut Draws<'_>) -> Vec3 {
+    Vec3::new(any_finite(draws), any_finite(draws), any_finite(draws))
 }
 
-fn all_finite(formula: &Formula, result: &[u32]) -> Result<(), String> {
-    let bad = result
-        .iter()
-        .zip(formula.result.scalars())
-        .find(|(word, scalar)| *scalar == Scalar::F32 && !f32::from_bits(**word).is_finite());
-    bad.map_or(Ok(()), |(word, _)| Err(format!("the result holds {}", f32::from_bits(*word))))
+/// A vector with components 0 or of magnitudes up to 2^`high`.
+pub fn vector_up_to(draws: &mut Draws<'_>, high: i32) -> Vec3 {
+    let mut component = || if draws.below(6) == 0 { 0.0 } else { draws.signed(-126, high - 1) };
+    Vec3::new(component(), component(), component())
 }
 
-fn same_bits(formula: &Formula, result: &[u32], other: &[u32]) -> Result<(), String> {
-    // 0 and -0 are one number; a NaN is none.
-    let differ = |(word, other): (&u32, &u32), scalar: Scalar| match scalar {
-        Scalar::F32 => f32::from_bits(*word) != f32::from_bits(*other),
-        _ => word != other,
-    };
-    let scalars = formula.result.scalars();
-    match result.iter().zip(other).zip(&scalars).find(|(words, scalar)| differ(*words, **scalar)) {
-        None => Ok(()),
-        Some(((word, other), scalar)) => {
-            Err(format!("the result holds {}, inside {}", number(*scalar, *word), number(*scalar, *other)))
-        }
+/// A direction of any length between 2^`low` and 2^`high`.
+pub fn of_length(draws: &mut Draws<'_>, low: i32, high: i32) -> Vec3 {
+    draws.magnitude(low, high - 1) * draws.unit_vector()
+}
+
+/// Whole numbers: small ones, the ends, any.
+pub fn any_number(draws: &mut Draws<'_>) -> u32 {
+    match draws.below(3) {
+        0 => draws.pick(&[0, 1, 2, u32::MAX, u32::MAX - 1, 1 << 31]),
+        1 => draws.below(100),
+        _ => draws.bits(),
     }
 }
 
-fn within_accuracy(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32]) -> Result<(), String> {
-    let verdict = tolerance.judge(row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle);
-    if verdict.holds() { Ok(()) } else { Err(format!("off by {:.2} times the allowed error", verdict.ratio)) }
+/// Three of them.
+pub fn any_numbers(draws: &mut Draws<'_>) -> UVec3 {
+    UVec3::new(any_number(draws), any_number(draws), any_number(draws))
+}
+
+/// A texture's size, 1 to 64 either way.
+pub fn small_size(draws: &mut Draws<'_>) -> UVec2 {
+    UVec2::new(1 + draws.below(64), 1 + draws.below(64))
+}
+
+/// Passes where `right`; `what` says what is not.
+pub fn that(right: bool, what: impl FnOnce() -> String) -> Result<(), String> {
+    if right { Ok(()) } else { Err(what()) }
+}
+
+/// Passes where every component of `value` is within `bound` of `wanted`; a NaN never is.
+pub fn close(value: &[f32], wanted: &[f64], bound: f64) -> Result<(), String> {
+    value.iter().zip(wanted).try_for_each(|(value, wanted)| near("a component", f64::from(*value), *wanted, bound))
+}
+
+/// Passes where all are finite.
+pub fn finite_values(values: &[f32]) -> Result<(), String> {
+    that(values.iter().all(|value| value.is_finite()), || format!("the result is {values:?}"))
 }

@@ -1,24 +1,23 @@
 //! A property test of one WGSL function, for `cargo test`: [`wgsl`] names the function, the methods after it say what it is held to, and
 //! [`Test::run`] answers.
 
-use crate::accuracy_line::{Bound, FieldBound, parse_bounds};
-use crate::dispatch::{self, Kernel};
+use crate::accuracy_line::{Bound, FieldBound, check_fields, parse_bounds};
+use crate::dispatch::{self, DispatchError, Kernel, KernelModule};
 use crate::draws::{Domain, Draws};
-use crate::failure::Failure as FailureAt;
+use crate::environment::{self, SEED_VARIABLE};
+use crate::examination::examine;
 use crate::formula::{self, Builder, Formula, Words};
-use crate::property::{Check, Report, Settings};
+use crate::mutate::{self, Judge, Score};
+use crate::property::Settings;
 use crate::shape::Shape;
 use crate::tolerance::{Tolerance, number, word};
 use crate::value::{Arguments, Exact, Function, Value};
-use lapidary_gpu::{AdapterChoice, Gpu};
+use lapidary_gpu::Gpu;
 use proptest::strategy::Strategy;
-use std::fmt::{self, Write as _};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::fmt;
 
-/// Overrides the seed: a whole number, as a failure prints it.
-pub const SEED_VARIABLE: &str = "ASSAY_SEED";
-/// Set to `skip`, tests pass without an adapter, and say so.
-pub const WITHOUT_ADAPTER_VARIABLE: &str = "ASSAY_WITHOUT_ADAPTER";
+/// What messages call the source.
+const PATH: &str = "the source";
 
 /// What a `#[test]` returns.
 pub type Outcome = Result<(), Failure>;
@@ -199,6 +198,38 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     /// Where a result is wrong, with the simplest input found; where the source is not valid or its signature another; where there is no adapter,
     /// unless `ASSAY_WITHOUT_ADAPTER=skip`.
     pub fn run(self) -> Outcome {
+        let Some(Ready { gpu, text, formula, cases, tolerance, settings }) = self.ready()? else { return Ok(()) };
+        let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
+        let mut kernel = Kernel::of_function(gpu, &text, PATH, formula.function).map_err(fail)?;
+        let found = examine(&formula, &text, &mut kernel, &tolerance, settings, &cases).map_err(fail)?;
+        if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula, SEED_VARIABLE))) }
+    }
+
+    /// Changes one operator, comparison or constant of the function at a time, and says which changes this test does not notice: an equivalent
+    /// mutant, or a gap in the inputs, the invariants or the bounds. Functions that this one calls are not changed. Takes a fraction of a second a mutant.
+    ///
+    /// # Errors
+    /// As [`Test::run`], and where the test fails on the function as it is. Without an adapter, where that may be skipped, there are no mutants.
+    pub fn mutate(self) -> Result<Score, Failure> {
+        let Some(Ready { gpu, text, formula, tolerance, .. }) = self.ready()? else {
+            return Ok(Score { mutants: 0, survivors: Vec::new() });
+        };
+        let fail = |what: &dyn fmt::Display| Failure(format!("{}: {what}", formula.function));
+        let kernel = KernelModule::reflect(&text, PATH, formula.function).map_err(|error| fail(&error))?;
+        let kernel = mutate::compacted(kernel);
+        let mut mutants = mutate::mutants(&text, formula.function, &kernel);
+        mutants.retain(|mutant| mutate::apply(&kernel, mutant).is_some());
+        let judge = Judge::new(gpu, &formula, (&text, PATH), tolerance).map_err(|error| fail(&error))?;
+        if judge.rejects_unchanged() {
+            return Err(fail(&"does not pass its own test, so nothing can be said of its mutants"));
+        }
+        let count = mutants.len();
+        mutants.retain(|mutant| !judge.catches(mutant));
+        Ok(Score { mutants: count, survivors: mutants })
+    }
+
+    /// Everything that a run needs; none where there is no adapter and tests may be skipped.
+    fn ready(self) -> Result<Option<Ready>, Failure> {
         let Self { text, formula, bounds, mut settings } = self;
         let (formula, cases) = formula.build_with_cases();
         let function = formula.function;
@@ -207,36 +238,25 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
             Some(text) => parse_bounds(&text).map_err(|fault| fail(&format!("within: {fault}")))?,
             None => exact(&formula.result),
         };
-        if let Some(seed) = std::env::var_os(SEED_VARIABLE) {
-            let seed = seed.to_str().and_then(|seed| seed.parse().ok());
-            settings.seed = seed.ok_or_else(|| fail(&format!("{SEED_VARIABLE} is no whole number")))?;
-        }
-        let gpu = match Gpu::shared(&AdapterChoice::from_environment()) {
-            Ok(gpu) => gpu,
-            Err(_) if std::env::var_os(WITHOUT_ADAPTER_VARIABLE).is_some_and(|value| value == "skip") => {
-                static SKIPPED: AtomicUsize = AtomicUsize::new(0);
-                let number = SKIPPED.fetch_add(1, Ordering::Relaxed) + 1;
-                eprintln!(
-                    "assay: {function} was not tested: no adapter, and {WITHOUT_ADAPTER_VARIABLE}=skip ({number} so far)"
-                );
-                return Ok(());
-            }
-            Err(error) => return Err(fail(&error)),
-        };
-        dispatch::examine(&text, "the source", function).map_err(|error| fail(&error))?;
-        let mut kernel = Kernel::of_function(gpu, &text, "the source", function).map_err(|error| fail(&error))?;
-        let signature = kernel.signature();
+        settings.seed = environment::seed().map_err(|fault| fail(&fault))?.unwrap_or(settings.seed);
+        let Some(gpu) = environment::gpu(function).map_err(|error| fail(&error))? else { return Ok(None) };
+        dispatch::examine(&text, PATH, function).map_err(|error| fail(&error))?;
+        let signature = KernelModule::reflect(&text, PATH, function).map_err(|error| fail(&error))?.signature;
         signature.expect(&formula.arguments, &formula.result).map_err(|error| Failure(error.to_string()))?;
-        crate::accuracy_line::check_fields(&bounds, &formula.result)
-            .map_err(|fault| fail(&format!("within: {fault}")))?;
+        check_fields(&bounds, &formula.result).map_err(|fault| fail(&format!("within: {fault}")))?;
         let tolerance = Tolerance::new(&formula.arguments, &formula.result, &bounds);
-        let report = Check { formula: &formula, kernel: &mut kernel, tolerance: &tolerance }
-            .run(settings, &cases)
-            .map_err(|error| fail(&error))?;
-        let Some(shrunk) = &report.shrunk else { return edges(&formula, &report, settings) };
-        let at = FailureAt::at(&formula, &mut kernel, &tolerance, shrunk).map_err(|error| fail(&error))?;
-        Err(Failure(describe(&formula, &report, &at, settings)))
+        Ok(Some(Ready { gpu, text, formula, cases, tolerance, settings }))
     }
+}
+
+/// A test whose parts fit each other.
+struct Ready {
+    gpu: &'static Gpu,
+    text: String,
+    formula: Formula,
+    cases: Vec<Words>,
+    tolerance: Tolerance,
+    settings: Settings,
 }
 
 /// No error at all, in any field.
@@ -246,40 +266,4 @@ fn exact(result: &Shape) -> Vec<FieldBound> {
         Shape::Struct(_, fields) => fields.iter().map(|(name, _)| none(Some(name.clone()))).collect(),
         _ => vec![none(None)],
     }
-}
-
-/// Whether all edges were reached, in a run of the default size or more.
-fn edges(formula: &Formula, report: &Report, settings: Settings) -> Outcome {
-    let missed: Vec<&str> = report.missed_edges().collect();
-    if settings.cases < Settings::default().cases || missed.is_empty() {
-        return Ok(());
-    }
-    let missed = missed.join("`, `");
-    Err(Failure(format!("{}: no input reached `{missed}`; mend the inputs, or the edge", formula.function)))
-}
-
-fn describe(formula: &Formula, report: &Report, at: &FailureAt, settings: Settings) -> String {
-    let mut text = format!(
-        "{}: {} of {} inputs failed; {}\n  {} = {}\n  expected {}\n",
-        formula.function,
-        report.failed,
-        report.cases,
-        report.reason.as_deref().unwrap_or("the worst"),
-        at.wgsl,
-        at.got,
-        at.expected
-    );
-    for field in &at.fields {
-        let name = if field.field.is_empty() { String::new() } else { format!("{} ", field.field) };
-        let backward = if field.backward_ulp > 0.0 {
-            format!(", and what {} ulp of the input explain", field.backward_ulp)
-        } else {
-            String::new()
-        };
-        let _ = writeln!(text, "  allowed {name}± {:.3e}{backward}", field.allowed);
-    }
-    let _ = writeln!(text, "  in Rust: {} = {}, the shader {}", at.rust, at.mirror_rust, at.got_rust);
-    let Settings { cases, seed } = settings;
-    let _ = write!(text, "  seed {seed}, {cases} inputs; again with {SEED_VARIABLE}={seed}");
-    text
 }

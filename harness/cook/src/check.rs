@@ -7,14 +7,13 @@ pub mod user_file;
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
 use lapidary_assay::dispatch::{self, DispatchError, Kernel};
-use lapidary_assay::extremum::largest;
+use lapidary_assay::examination::{Examination, examine};
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
-use lapidary_assay::outside;
+use lapidary_assay::property::Settings;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};
-use lapidary_assay::property::{Check, DEFAULT_CASES, Report, Settings, seams};
-use lapidary_assay::shape::{Scalar, Shape};
-use lapidary_assay::tolerance::{Tolerance, number};
+use lapidary_assay::shape::Scalar;
+use lapidary_assay::tolerance::Tolerance;
 use lapidary_gpu::Gpu;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -120,12 +119,6 @@ impl Row {
     pub fn passed(&self) -> bool {
         self.passed
     }
-
-    fn judge(&self) -> bool {
-        let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        let beside = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
-        self.failed == 0 && edges && beside.into_iter().all(Vec::is_empty)
-    }
 }
 
 /// The source that a check runs on.
@@ -214,52 +207,22 @@ pub fn run_keeping(
     regressions: Option<&Regressions>,
 ) -> Result<Row, CheckError> {
     let mut kernel = kernel(gpu, formula, source)?;
-    let mut replayed = match (source, regressions) {
+    let replayed = match (source, regressions) {
         (Source::Cookbook, Some(regressions)) => regressions.load(formula.function, kernel.argument_words())?,
         _ => Vec::new(),
     };
-    replayed.extend(formula.hard_cases.iter().map(|case| case.arguments.clone()));
     let tolerance = tolerance(gpu, formula);
-    let in_function = |error| CheckError::Dispatch { path: formula.function.to_owned(), error };
-    let report =
-        Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &replayed).map_err(in_function)?;
-    // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
-    let mut hard_cases = Vec::new();
-    for case in &formula.hard_cases {
-        let distance =
-            distance_from_limit(&mut kernel, &case.arguments, &case.limit, &formula.result).map_err(in_function)?;
-        if kernel.any_stopped() {
-            hard_cases.push(format!("{}: {}", case.name, kernel.why_stopped()));
-        } else if distance.is_nan() || distance > case.bound {
-            // A NaN is no distance within the bound.
-            hard_cases.push(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound));
+    let (_, text) = located(formula, source);
+    let found = examine(formula, text, &mut kernel, &tolerance, settings, &replayed)
+        .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+    let kept_in = match (regressions, &found.report.shrunk) {
+        (Some(regressions), Some(shrunk)) => {
+            let reason = found.report.reason.as_deref().unwrap_or_default();
+            Some(regressions.store(formula.function, shrunk, reason)?.display().to_string())
         }
-    }
-    let failure = match &report.shrunk {
-        None => None,
-        Some(shrunk) => Some(Failure::at(formula, &mut kernel, &tolerance, shrunk).map_err(in_function)?),
+        _ => None,
     };
-    let promises = outside::broken(&mut kernel, formula, &tolerance, formulas::outside::all(), settings.seed)
-        .map_err(in_function)?;
-    // A function whose loops do not end takes as long on the CPU, and has failed.
-    let branches = if report.stopped > 0 {
-        Ok(Vec::new())
-    } else {
-        seams::of_source(located(formula, source).1, formula, &mut kernel, &tolerance, settings.seed)
-            .map_err(in_function)?
-    };
-    let (branches, branches_untested) = match branches {
-        Ok(faults) => (faults.iter().map(ToString::to_string).collect(), None),
-        Err(stopped) => (Vec::new(), Some(stopped.to_string())),
-    };
-    let reproduce = reproduce(formula, source, settings);
-    let broken = Broken { hard_cases, promises, branches, branches_untested };
-    let mut row = row(formula, &report, broken, failure, reproduce);
-    if let (Some(regressions), Some(shrunk)) = (regressions, &report.shrunk) {
-        let file = regressions.store(formula.function, shrunk, report.reason.as_deref().unwrap_or_default())?;
-        row.kept_in = Some(file.display().to_string());
-    }
-    Ok(row)
+    Ok(Row { kept_in, ..row(formula, found, reproduce(formula, source, settings)) })
 }
 
 /// A source's path, for messages, and its text.
@@ -273,23 +236,6 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
     }
 }
 
-/// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
-pub fn distance_from_limit(
-    kernel: &mut Kernel<'_>,
-    arguments: &Words,
-    limit: &[f64],
-    result: &Shape,
-) -> Result<f64, DispatchError> {
-    let mut words = Words::new();
-    kernel.run(arguments, &mut words)?;
-    let distances = words
-        .iter()
-        .zip(result.scalars())
-        .zip(limit)
-        .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
-    Ok(largest(distances))
-}
-
 /// The command that runs the same inputs again.
 fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> String {
     let copy = match source {
@@ -300,18 +246,11 @@ fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> Strin
     format!("./cook check {}::{}{copy} --seed {seed} --cases {cases}", formula.module, formula.function)
 }
 
-/// What does not hold besides the random inputs.
-struct Broken {
-    hard_cases: Vec<String>,
-    promises: Vec<String>,
-    branches: Vec<String>,
-    /// Why branches were not looked at, where they were not.
-    branches_untested: Option<String>,
-}
-
-fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failure>, reproduce: String) -> Row {
-    let mut row = Row {
-        passed: false,
+fn row(formula: &Formula, found: Examination, reproduce: String) -> Row {
+    let passed = found.holds();
+    let Examination { report, failure, hard_cases, broken_hard_cases, broken_promises, broken_branches, .. } = found;
+    Row {
+        passed,
         module: formula.module.to_owned(),
         function: formula.function.to_owned(),
         cases: report.cases,
@@ -325,23 +264,21 @@ fn row(formula: &Formula, report: &Report, broken: Broken, failure: Option<Failu
         worst_ratio: report.worst_ratio.min(f64::MAX),
         worst_input: spell(formula, &report.worst),
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
-        reason: report.reason.clone(),
-        failure,
-        hard_cases: formula.hard_cases.len(),
-        held_hard_cases: formula.hard_cases.len() - broken.hard_cases.len(),
-        broken_hard_cases: broken.hard_cases,
-        broken_promises: broken.promises,
-        broken_branches: broken.branches,
-        branches_untested: broken.branches_untested,
         missed_edges: report.missed_edges().collect(),
+        reason: report.reason,
+        failure,
+        hard_cases,
+        held_hard_cases: hard_cases - broken_hard_cases.len(),
+        broken_hard_cases,
+        broken_promises,
+        broken_branches,
+        branches_untested: found.branches_untested,
         release: None,
         changed_since: Vec::new(),
         kept_in: None,
         seconds: report.seconds,
         reproduce,
-    };
-    row.passed = row.judge();
-    row
+    }
 }
 
 /// The input as a person reads it: shortest decimals that name the f32 exactly, vectors in parentheses.

@@ -8,16 +8,12 @@
 //! All mutants take minutes. `LAPIDARY_MUTANTS=sample` judges one in ten, chosen by the suite's seed, so that another change meets
 //! others; `listed` those that are listed; `all` all. Without it a run that names a module or function judges all of its mutants, any other run a sample.
 
-use lapidary_assay::dispatch::{Kernel, KernelModule};
-use lapidary_assay::formula::{Formula, Words};
-use lapidary_assay::mutation::{self, Mutant};
-use lapidary_assay::outside;
-use lapidary_assay::property::{Check, Settings};
-use lapidary_assay::tolerance::Tolerance;
+use lapidary_assay::dispatch::KernelModule;
+use lapidary_assay::formula::Formula;
+use lapidary_assay::mutate::{self, Judge, Mutant};
 use lapidary_cook::seed::SuiteSeed;
 use lapidary_cook::{check, cookbook, formulas};
 use lapidary_gpu::{AdapterChoice, Gpu};
-use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
@@ -39,14 +35,6 @@ const START_LIMIT: Duration = Duration::from_secs(120);
 const WORKERS: usize = 2;
 /// Most mutants that may be listed as equivalent.
 const MOST_EQUIVALENT: f64 = 0.05;
-/// Of the rows, always the same: what is listed as equivalent must not depend on the commit.
-const SEED: u64 = 0x1a91_da21;
-/// Rows that are compared first: a loop that ends only where the driver ends it is soon over with them, and mostly wrong.
-const FIRST_ROWS: usize = 256;
-/// Rows whose right results a worker keeps.
-const KEPT_ROWS: u64 = 8_192;
-/// Rows for what those do not tell apart.
-const MORE_ROWS: u64 = 131_072;
 /// The argument that makes this program a worker.
 const WORKER: &str = "--worker";
 
@@ -114,10 +102,10 @@ const READY: &str = "ready";
 fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
     let kernel = KernelModule::reflect(module.source, module.name, formula.function);
-    let kernel = mutation::compacted(kernel.expect("the cookbook's WGSL is valid"));
-    let all = mutation::mutants(module.source, formula.function, &kernel);
+    let kernel = mutate::compacted(kernel.expect("the cookbook's WGSL is valid"));
+    let all = mutate::mutants(module.source, formula.function, &kernel);
     let (valid, invalid): (Vec<_>, Vec<_>) =
-        all.into_iter().partition(|mutant| mutation::apply(&kernel, mutant).is_some());
+        all.into_iter().partition(|mutant| mutate::apply(&kernel, mutant).is_some());
     (valid, invalid.len())
 }
 
@@ -336,31 +324,18 @@ fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdic
     Verdict::Caught
 }
 
-/// Inputs of a formula with their right results, computed once for all of its mutants.
-struct Kept<'gpu> {
-    formula: &'static Formula,
-    kernel: KernelModule,
-    tolerance: Tolerance,
-    arguments: Words,
-    mirrored: Vec<Words>,
-    exact: Vec<Vec<f64>>,
-    /// The kernel that says where it computes an infinity or a NaN, and where the right one does; made when first asked for.
-    watched: OnceCell<(KernelModule, Vec<bool>)>,
-    gpu: &'gpu Gpu,
-}
-
 fn worker() {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("an adapter");
     println!("{READY}");
-    let mut kept: BTreeMap<&'static str, Kept<'static>> = BTreeMap::new();
+    let mut kept: BTreeMap<&'static str, Judge<'static>> = BTreeMap::new();
     let mut listed: BTreeMap<usize, Vec<Mutant>> = BTreeMap::new();
     for line in std::io::stdin().lines().map_while(Result::ok) {
         let mut numbers = line.split(' ').map(|number| number.parse::<usize>().expect("the coordinator's numbers"));
         let (index, position) = (numbers.next().expect("two numbers"), numbers.next().expect("two numbers"));
         let formula = &formulas::all()[index];
         if position == UNCHANGED {
-            let kept = kept.entry(formula.function).or_insert_with(|| Kept::new(gpu, formula));
-            println!("{}", if kept.notices(kept.kernel.clone()) { "caught" } else { "survived" });
+            let kept = kept.entry(formula.function).or_insert_with(|| judge_of(gpu, formula));
+            println!("{}", if kept.rejects_unchanged() { "caught" } else { "survived" });
             continue;
         }
         let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula).0)[position];
@@ -370,85 +345,14 @@ fn worker() {
         judges.sort_by_key(|other| other.function != formula.function);
         let caught = judges
             .into_iter()
-            .any(|judge| kept.entry(judge.function).or_insert_with(|| Kept::new(gpu, judge)).catches(mutant));
+            .any(|judge| kept.entry(judge.function).or_insert_with(|| judge_of(gpu, judge)).catches(mutant));
         println!("{}", if caught { "caught" } else { "survived" });
     }
 }
 
-impl<'gpu> Kept<'gpu> {
-    fn new(gpu: &'gpu Gpu, formula: &'static Formula) -> Self {
-        let module = cookbook::module(formula.module).expect("a formula's module exists");
-        let kernel =
-            KernelModule::reflect(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid");
-        let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(SEED, row));
-        let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
-        let (mirrored, exact) = rows.iter().map(|row| (formula.mirrored(row), formula.exact(row))).unzip();
-        let tolerance = check::tolerance(gpu, formula);
-        Kept {
-            formula,
-            kernel: mutation::compacted(kernel),
-            tolerance,
-            arguments: rows.concat(),
-            mirrored,
-            exact,
-            watched: OnceCell::new(),
-            gpu,
-        }
-    }
-
-    fn catches(&self, mutant: &Mutant) -> bool {
-        mutation::apply(&self.kernel, mutant)
-            .is_some_and(|mutated| self.notices(mutated) || self.computes_more_infinities(mutant))
-    }
-
-    /// Whether the mutant computes an infinity or a NaN where the function computes none: what comes of it is left to each device,
-    /// even where this one makes the right result of it.
-    fn computes_more_infinities(&self, mutant: &Mutant) -> bool {
-        let nonfinite = |kernel: KernelModule| -> Option<Vec<bool>> {
-            let mut kernel = Kernel::new(self.gpu, kernel.watched()).ok()?;
-            let mut results = Words::new();
-            kernel.run(&self.arguments, &mut results).ok()?;
-            Some(results.chunks_exact(kernel.result_words()).map(|row| row.last() == Some(&1)).collect())
-        };
-        let (kernel, right) = self.watched.get_or_init(|| {
-            let module = cookbook::module(self.formula.module).expect("a formula's module exists");
-            let kernel = KernelModule::reflect_watched(module.source, module.name, self.formula.function);
-            let kernel = mutation::compacted(kernel.expect("the cookbook's WGSL is valid"));
-            let right = nonfinite(kernel.clone()).expect("the cookbook's kernel runs");
-            (kernel, right)
-        });
-        let Some(found) = mutation::apply(kernel, mutant).and_then(nonfinite) else { return false };
-        found.iter().zip(right).any(|(found, right)| *found && !right)
-    }
-
-    /// Whether the property tests tell this kernel from the right one.
-    fn notices(&self, mutated: KernelModule) -> bool {
-        let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
-        let (width, all) = (kernel.argument_words(), self.mirrored.len());
-        for (first, last) in [(0, FIRST_ROWS.min(all)), (FIRST_ROWS.min(all), all)] {
-            let arguments = &self.arguments[first * width..last * width];
-            let mut results = Words::new();
-            if kernel.run(arguments, &mut results).is_err() {
-                return true;
-            }
-            let rows = arguments.chunks_exact(width).zip(results.chunks_exact(kernel.result_words()));
-            let right = self.mirrored[first..last].iter().zip(&self.exact[first..last]);
-            let broken = rows.zip(right).any(|((arguments, result), (mirrored, exact))| {
-                !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
-                    || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
-            });
-            if broken {
-                return true;
-            }
-        }
-        let promises = formulas::outside::all();
-        let broken = outside::broken(&mut kernel, self.formula, &self.tolerance, promises, SEED);
-        if broken.is_ok_and(|broken| !broken.is_empty()) {
-            return true;
-        }
-        let settings = Settings { cases: MORE_ROWS, seed: SEED + 1 };
-        let report =
-            Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
-        report.map_or(true, |report| report.failed > 0)
-    }
+/// The tests of a formula, kept for all of the mutants that they judge.
+fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
+    let module = cookbook::module(formula.module).expect("a formula's module exists");
+    let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula));
+    judge.expect("the cookbook's WGSL is valid")
 }

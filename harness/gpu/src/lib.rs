@@ -5,6 +5,7 @@ mod device;
 
 pub use device::{ComputePass, Device, Encoder, RenderPass};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Which adapter to run on (`--adapter`).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,6 +126,12 @@ pub struct Gpu {
     /// What the device is, for reports.
     pub info: wgpu::AdapterInfo,
     chosen: AdapterChoice,
+    id: u64,
+}
+
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 static SHARED: OnceLock<Gpu> = OnceLock::new();
@@ -149,7 +156,7 @@ impl Gpu {
     pub fn without_hardware() -> Self {
         let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let info = device.adapter_info();
-        Self { device: Device(device), queue, info, chosen: AdapterChoice::Any }
+        Self { device: Device(device), queue, info, chosen: AdapterChoice::Any, id: next_id() }
     }
 
     fn open(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
@@ -171,7 +178,12 @@ impl Gpu {
                 ..wgpu::DeviceDescriptor::default()
             }))
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        Ok(Gpu { device: Device(device), queue, info, chosen: choice.clone() })
+        Ok(Gpu { device: Device(device), queue, info, chosen: choice.clone(), id: next_id() })
+    }
+
+    /// A number that no other device of this process has: what is made on one device must not be used on another.
+    pub fn id(&self) -> u64 {
+        self.id
     }
 
     /// Whether this is lavapipe, whose accuracy bounds are tighter than the portable ones.

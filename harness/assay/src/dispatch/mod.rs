@@ -135,8 +135,8 @@ struct Turns {
     alone: Option<wgpu::ComputePipeline>,
 }
 
-/// The kernels of this process, by source and function: it has one device.
-static COMPILED: Mutex<BTreeMap<(String, String), Compiled>> = Mutex::new(BTreeMap::new());
+/// The kernels of this process, by device, source and function.
+static COMPILED: Mutex<BTreeMap<(u64, String, String), Compiled>> = Mutex::new(BTreeMap::new());
 
 /// A compiled kernel: rows of argument words in, rows of result words out.
 #[derive(Debug)]
@@ -156,7 +156,7 @@ impl<'gpu> Kernel<'gpu> {
         path: &str,
         function: &str,
     ) -> Result<Kernel<'gpu>, DispatchError> {
-        let key = (source.to_owned(), function.to_owned());
+        let key = (gpu.id(), source.to_owned(), function.to_owned());
         let mut known = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
         let compiled = match known.get(&key) {
             Some(compiled) => compiled.clone(),

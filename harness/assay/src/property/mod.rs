@@ -2,6 +2,7 @@
 
 pub mod histogram;
 pub mod persistence;
+pub mod promises;
 pub mod seams;
 pub mod slack;
 

@@ -1,6 +1,4 @@
-//! Every formula of the cookbook, by module, and what functions promise outside of their domains.
-
-pub mod outside;
+//! Every formula of the cookbook, by module.
 
 use lapidary_assay::formula::Formula;
 use std::sync::OnceLock;

@@ -1,8 +1,9 @@
 //! The catalogue of hard cases, on both sides: the stable form holds its limit, and the naive form fails there by as much as is
 //! stated. Where nothing fails, it is no hard case.
 
+use lapidary_assay::examination::distance_from_limit;
 use lapidary_assay::shape::{Scalar, Shape};
-use lapidary_cook::check::{self, Source, distance_from_limit};
+use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
 
 #[test]
@@ -15,8 +16,7 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
             count += 1;
             let name = format!("{}: {}", formula.function, case.name);
             let mut stable = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
-            let distance =
-                distance_from_limit(&mut stable, &case.arguments, &case.limit, &formula.result).expect("runs");
+            let distance = distance_from_limit(&mut stable, formula, &case.arguments, &case.limit).expect("runs");
             // A NaN does not hold.
             if distance.is_nan() || distance > case.bound {
                 faults.push(format!("{name}: the stable form is off by {distance:e}, at most {:e}", case.bound));
@@ -25,8 +25,7 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
                 formulas::of_function(case.naive).unwrap_or_else(|| panic!("{name}: no formula `{}`", case.naive));
             assert!(naive.benign.is_some(), "{name}: `{}` is not a naive form", case.naive);
             let mut kernel = check::kernel(gpu, naive, Source::Cookbook).expect("the cookbook's WGSL compiles");
-            let error =
-                distance_from_limit(&mut kernel, &case.naive_arguments, &case.limit, &naive.result).expect("runs");
+            let error = distance_from_limit(&mut kernel, naive, &case.naive_arguments, &case.limit).expect("runs");
             let fails = if case.naive_error.is_infinite() {
                 !error.is_finite()
             } else {

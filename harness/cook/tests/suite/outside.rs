@@ -2,7 +2,8 @@
 //! is noticed.
 
 use lapidary_assay::accuracy_line::Accuracy;
-use lapidary_assay::outside::{self, Promise, accurate, any_bits, finite, holds, like};
+use lapidary_assay::outside::{Promise, accurate, any_bits, finite, holds, like};
+use lapidary_assay::property::promises::broken;
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::{cookbook, formulas};
 
@@ -14,8 +15,7 @@ fn every_promise_holds() {
     for formula in formulas::all() {
         let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
         let tolerance = check::tolerance(gpu, formula);
-        let promises = formulas::outside::all();
-        let broken = outside::broken(&mut kernel, formula, &tolerance, promises, seed).expect("runs");
+        let broken = broken(&mut kernel, formula, &tolerance, &formula.promises, seed).expect("runs");
         faults.extend(broken.into_iter().map(|fault| format!("{}: {fault}", formula.function)));
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
@@ -28,7 +28,7 @@ fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
     for module in cookbook::modules() {
         for function in module.functions.iter().filter(|function| !matches!(function.accuracy, Accuracy::Naive)) {
             let mut promises: Vec<&Promise> =
-                formulas::outside::all().iter().filter(|promise| promise.function == function.name).collect();
+                formulas::of_function(&function.name).expect("a formula").promises.iter().collect();
             tested += promises.iter().filter(|promise| promise.is_tested()).count();
             // The longer ones first: `finite` may be a part of another.
             promises.sort_by_key(|promise| std::cmp::Reverse(promise.says.len()));
@@ -55,17 +55,6 @@ fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
     assert!(tested >= 140, "{tested}");
 }
 
-#[test]
-fn promises_are_made_for_functions_as_they_are() {
-    for promise in formulas::outside::all() {
-        let formula = formulas::of_function(promise.function);
-        let formula = formula.unwrap_or_else(|| panic!("no function `{}`", promise.function));
-        if promise.is_tested() {
-            assert_eq!(promise.arguments, formula.arguments, "{promise:?}");
-        }
-    }
-}
-
 /// One of each kind, all false.
 #[test]
 fn a_promise_that_does_not_hold_is_noticed() {
@@ -77,23 +66,23 @@ fn a_promise_that_does_not_hold_is_noticed() {
     let root = formulas::of_function("refraction_relative_index").expect("a formula");
     let mut quotient = check::kernel(gpu, root, Source::Cookbook).expect("compiles");
     let of_quotient = check::tolerance(gpu, root);
-    let mut broken = |promise: Promise| {
+    let mut faults_of = |promise: Promise| {
         let found = if promise.function == FUNCTION {
-            outside::broken(&mut kernel, formula, &tolerance, &[promise], 1)
+            broken(&mut kernel, formula, &tolerance, &[promise], 1)
         } else {
-            outside::broken(&mut quotient, root, &of_quotient, &[promise], 1)
+            broken(&mut quotient, root, &of_quotient, &[promise], 1)
         };
         found.expect("runs")
     };
-    let faults = broken(finite(root.function, "finite", |_| (0.0f32, 1.0f32)));
+    let faults = faults_of(finite(root.function, "finite", |_| (0.0f32, 1.0f32)));
     assert_eq!(faults.len(), 1);
     assert!(
         faults[0].contains("`finite`") && faults[0].contains("refraction_relative_index(0.0f, 1.0f)"),
         "{faults:?}"
     );
-    assert_eq!(broken(accurate(root.function, "accurate", |draws| (any_bits(draws), any_bits(draws)))).len(), 1);
+    assert_eq!(faults_of(accurate(root.function, "accurate", |draws| (any_bits(draws), any_bits(draws)))).len(), 1);
     let shifted = like(FUNCTION, "like", |draws| (draws.between(0.1, 0.5),), |(cosine,): (f32,)| (cosine + 0.1,));
-    assert_eq!(broken(shifted).len(), 1);
+    assert_eq!(faults_of(shifted).len(), 1);
     let wrong = holds(
         FUNCTION,
         "holds",
@@ -102,7 +91,7 @@ fn a_promise_that_does_not_hold_is_noticed() {
             if result > cosine { Ok(()) } else { Err("no".to_owned()) }
         },
     );
-    assert_eq!(broken(wrong).len(), 1);
+    assert_eq!(faults_of(wrong).len(), 1);
     // And one of them true.
-    assert!(broken(finite(FUNCTION, "finite", |draws| (draws.between(0.1, 0.5),))).is_empty());
+    assert!(faults_of(finite(FUNCTION, "finite", |draws| (draws.between(0.1, 0.5),))).is_empty());
 }

@@ -1,15 +1,16 @@
-//! Of light that arrives: environment, srgb, reflective_shadow_map.
+//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
 
-use super::{any_vector, close, finite_values, of_length, that, vector_up_to};
-use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
+use crate::EnvironmentTexels;
+use glam::{DVec3, UVec2, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::outside::{Promise, accurate, any_finite, finite, holds, like, nothing};
-use lapidary_environment::EnvironmentTexels;
-use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
+use lapidary_assay::outside::{
+    Promise, accurate, any_finite, close, finite, holds, like, nothing, of_length, small_size, that, vector_up_to,
+};
 use std::f64::consts::{PI, TAU};
 
+/// Every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
-    [directions(), lights(), colors(), shadow_maps()].into_iter().flatten().collect()
+    [directions(), lights()].into_iter().flatten().collect()
 }
 
 /// Any number, subnormal ones too.
@@ -20,10 +21,6 @@ fn subnormal_or_any(draws: &mut Draws<'_>) -> f32 {
 /// The same below 2^127.
 fn subnormal_or_less(draws: &mut Draws<'_>) -> f32 {
     if draws.below(2) == 0 { subnormal_or_any(draws).clamp(-1.0, 1.0) } else { draws.signed(-126, 126) }
-}
-
-fn size(draws: &mut Draws<'_>) -> UVec2 {
-    UVec2::new(1 + draws.below(64), 1 + draws.below(64))
 }
 
 fn directions() -> Vec<Promise> {
@@ -77,7 +74,7 @@ fn directions() -> Vec<Promise> {
         holds(
             TEXELS,
             "u of either sign repeats, less exactly below 0, as long as it is finite",
-            |draws| (Vec2::new(any_finite(draws), draws.between(0.0, 1.0)), size(draws)),
+            |draws| (Vec2::new(any_finite(draws), draws.between(0.0, 1.0)), small_size(draws)),
             |(_, size): (Vec2, UVec2), texels: EnvironmentTexels| {
                 let inside = texels.lower.cmplt(size).all() && texels.upper.cmplt(size).all();
                 let weights = texels.weight.cmpge(Vec2::ZERO).all() && texels.weight.cmple(Vec2::ONE).all();
@@ -87,7 +84,7 @@ fn directions() -> Vec<Promise> {
         like(
             TEXELS,
             "v is clamped",
-            |draws| (Vec2::new(draws.between(0.0, 1.0), any_finite(draws)), size(draws)),
+            |draws| (Vec2::new(draws.between(0.0, 1.0), any_finite(draws)), small_size(draws)),
             |(uv, size): (Vec2, UVec2)| (Vec2::new(uv.x, uv.y.clamp(0.0, 1.0)), size),
         ),
     ]
@@ -138,81 +135,5 @@ fn lights() -> Vec<Promise> {
             },
         ),
         finite(STUDIO, "the dome extrapolates", |draws| (of_length(draws, -30, 30),)),
-    ]
-}
-
-fn colors() -> Vec<Promise> {
-    const NOTHING: &str = "nothing is outside";
-    vec![
-        accurate("srgb_encode", NOTHING, |draws| (any_finite(draws),)),
-        accurate("srgb_encode_gamma", NOTHING, |draws| (any_finite(draws),)),
-        accurate("srgb_decode", NOTHING, |draws| (any_finite(draws),)),
-        accurate("srgb_encode_color", NOTHING, |draws| (any_vector(draws),)),
-        accurate("srgb_decode_color", NOTHING, |draws| (any_vector(draws),)),
-        holds(
-            "srgb_luminance",
-            "the same weighted sum, in which channels of opposite sign cancel",
-            |draws| (Vec3::new(draws.signed(-40, 100), draws.signed(-40, 100), draws.signed(-40, 100)),),
-            |(color,): (Vec3,), luminance: f32| {
-                let weights = DVec3::new(0.2126, 0.7152, 0.0722);
-                let sum = weights.dot(color.as_dvec3());
-                close(&[luminance], &[sum], 1e-6 * weights.dot(color.as_dvec3().abs()))
-            },
-        ),
-        nothing("srgb_tone_curve", "products may overflow"),
-    ]
-}
-
-fn shadow_maps() -> Vec<Promise> {
-    const TEXEL: &str = "reflective_shadow_map_texel";
-    const SQUARED: &str = "finite as long as the squared length of the normal is";
-    vec![
-        finite("reflective_shadow_map_basis", "finite for a length up to 1e18", |draws| (of_length(draws, -126, 59),)),
-        nothing("reflective_shadow_map_basis", "the vectors are neither unit nor square"),
-        finite("reflective_shadow_map_clip", "finite as long as products of coordinates and 1 / extent are", |draws| {
-            let near = draws.magnitude(-10, 10);
-            let view = ReflectiveShadowMapView {
-                origin: vector_up_to(draws, 60),
-                lamp: draws.below(2),
-                axis: draws.unit_vector(),
-                extent: draws.magnitude(-40, 40),
-                near,
-                far: near * draws.between(1.5, 1e4),
-            };
-            (view, vector_up_to(draws, 60))
-        }),
-        holds(
-            TEXEL,
-            "beside the map for what the map does not cover",
-            |draws| {
-                let w = draws.magnitude(-30, 30);
-                let outside = draws.pick(&[1.0, -1.0]) * draws.between(1.001, 1e6);
-                let inside = draws.between(-1.0, 1.0);
-                let (x, y) = if draws.below(2) == 0 { (outside, inside) } else { (inside, outside) };
-                let w = if draws.below(4) == 0 { -w } else { w };
-                (Vec4::new(x * w, y * w, 0.5 * w, w), 1.0 + draws.below(4096) as f32)
-            },
-            |(clip, size): (Vec4, f32), texel: Vec2| {
-                if clip.w <= 0.0 {
-                    return that(texel == Vec2::splat(REFLECTIVE_SHADOW_MAP_NOTHING), || {
-                        format!("the texel is {texel}")
-                    });
-                }
-                let beside = texel.cmplt(Vec2::ZERO).any() || texel.cmpgt(Vec2::splat(size)).any();
-                that(beside && texel.is_finite(), || format!("the texel is {texel} of {size}"))
-            },
-        ),
-        holds(
-            "reflective_shadow_map_cosine",
-            SQUARED,
-            |draws| (of_length(draws, -126, 62), draws.unit_vector()),
-            |_: (Vec3, Vec3), cosine: f32| that((0.0..=1.0).contains(&cosine), || format!("the cosine is {cosine}")),
-        ),
-        holds(
-            "reflective_shadow_map_height",
-            SQUARED,
-            |draws| (1e6 * draws.in_cube(), 1e6 * draws.in_cube(), of_length(draws, -126, 62)),
-            |_: (Vec3, Vec3, Vec3), height: f32| finite_values(&[height]),
-        ),
     ]
 }

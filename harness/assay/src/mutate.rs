@@ -1,5 +1,9 @@
-//! Mutation of a module's functions on naga's IR: one operator, comparison or constant changed at a time. A suite that
-//! lets a mutant pass does not test what was changed.
+//! Mutation of a WGSL function on naga's IR: one operator, comparison or constant changed at a time. Tests that let a mutant pass do not test
+//! what was changed. [`Test::mutate`](crate::Test::mutate) judges all mutants of a function by its own test.
+
+mod judge;
+
+pub use judge::Judge;
 
 use crate::dispatch::KernelModule;
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
@@ -48,6 +52,22 @@ impl fmt::Display for Mutant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} | {} | {}", self.owner, self.line, self.change)?;
         if self.occurrence > 1 { write!(f, " | {}", self.occurrence) } else { Ok(()) }
+    }
+}
+
+/// How many mutants a function's tests catch, and which they do not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Score {
+    /// Mutants in all, those of the consts that the function uses too.
+    pub mutants: usize,
+    /// Those that no test notices.
+    pub survivors: Vec<Mutant>,
+}
+
+impl fmt::Display for Score {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {} mutants caught", self.mutants - self.survivors.len(), self.mutants)?;
+        self.survivors.iter().try_for_each(|survivor| write!(f, "\n  survived: {survivor}"))
     }
 }
 

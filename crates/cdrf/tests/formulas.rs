@@ -1,0 +1,5 @@
+//! `wgsl/cdrf.wgsl`, function by function, on the device: `cargo test -p lapidary-cdrf`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(include_str!("../../../wgsl/cdrf.wgsl"), lapidary_cdrf::formulas::formulas())
+}

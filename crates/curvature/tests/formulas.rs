@@ -1,0 +1,5 @@
+//! `wgsl/curvature.wgsl`, function by function, on the device: `cargo test -p lapidary-curvature`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(include_str!("../../../wgsl/curvature.wgsl"), lapidary_curvature::formulas::formulas())
+}

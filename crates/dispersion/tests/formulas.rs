@@ -1,0 +1,8 @@
+//! `wgsl/dispersion.wgsl`, function by function, on the device: `cargo test -p lapidary-dispersion`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/dispersion.wgsl"),
+        lapidary_dispersion::formulas::formulas(),
+    )
+}

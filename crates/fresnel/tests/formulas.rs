@@ -1,0 +1,5 @@
+//! `wgsl/fresnel.wgsl`, function by function, on the device: `cargo test -p lapidary-fresnel`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(include_str!("../../../wgsl/fresnel.wgsl"), lapidary_fresnel::formulas::formulas())
+}

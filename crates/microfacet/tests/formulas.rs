@@ -1,0 +1,8 @@
+//! `wgsl/microfacet.wgsl`, function by function, on the device: `cargo test -p lapidary-microfacet`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/microfacet.wgsl"),
+        lapidary_microfacet::formulas::formulas(),
+    )
+}

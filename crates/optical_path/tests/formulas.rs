@@ -1,0 +1,8 @@
+//! `wgsl/optical_path.wgsl`, function by function, on the device: `cargo test -p lapidary-optical_path`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/optical_path.wgsl"),
+        lapidary_optical_path::formulas::formulas(),
+    )
+}

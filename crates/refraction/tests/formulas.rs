@@ -1,0 +1,8 @@
+//! `wgsl/refraction.wgsl`, function by function, on the device: `cargo test -p lapidary-refraction`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/refraction.wgsl"),
+        lapidary_refraction::formulas::formulas(),
+    )
+}

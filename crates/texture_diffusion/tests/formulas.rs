@@ -1,0 +1,8 @@
+//! `wgsl/texture_diffusion.wgsl`, function by function, on the device: `cargo test -p lapidary-texture_diffusion`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/texture_diffusion.wgsl"),
+        lapidary_texture_diffusion::formulas::formulas(),
+    )
+}

@@ -1,0 +1,8 @@
+//! `wgsl/voxelization.wgsl`, function by function, on the device: `cargo test -p lapidary-voxelization`.
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(
+        include_str!("../../../wgsl/voxelization.wgsl"),
+        lapidary_voxelization::formulas::formulas(),
+    )
+}

@@ -1,0 +1,32 @@
+//! What the environment says of a run: its seed, and its device.
+
+use lapidary_gpu::{AdapterChoice, Gpu, GpuError};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Overrides the seed: a whole number, as a failure prints it.
+pub const SEED_VARIABLE: &str = "ASSAY_SEED";
+/// Set to `skip`, tests pass without an adapter, and say so.
+pub const WITHOUT_ADAPTER_VARIABLE: &str = "ASSAY_WITHOUT_ADAPTER";
+
+/// The seed that the environment names.
+pub(crate) fn seed() -> Result<Option<u64>, String> {
+    let Some(seed) = std::env::var_os(SEED_VARIABLE) else { return Ok(None) };
+    let seed = seed.to_str().and_then(|seed| seed.parse().ok());
+    seed.map(Some).ok_or_else(|| format!("{SEED_VARIABLE} is no whole number"))
+}
+
+/// The device that the environment names; none where there is no adapter and tests may be skipped, which is counted on standard error.
+pub(crate) fn gpu(function: &str) -> Result<Option<&'static Gpu>, GpuError> {
+    static SKIPPED: AtomicUsize = AtomicUsize::new(0);
+    match Gpu::shared(&AdapterChoice::from_environment()) {
+        Ok(gpu) => Ok(Some(gpu)),
+        Err(_) if std::env::var_os(WITHOUT_ADAPTER_VARIABLE).is_some_and(|value| value == "skip") => {
+            let number = SKIPPED.fetch_add(1, Ordering::Relaxed) + 1;
+            eprintln!(
+                "assay: {function} was not tested: no adapter, and {WITHOUT_ADAPTER_VARIABLE}=skip ({number} so far)"
+            );
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}

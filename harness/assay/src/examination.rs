@@ -1,0 +1,144 @@
+//! Everything that is tested of a WGSL function: random inputs, hard cases, promises outside of its domain, the inputs beside its branches.
+
+use crate::dispatch::{DispatchError, Kernel};
+use crate::extremum::largest;
+use crate::failure::Failure;
+use crate::formula::{Formula, HardCase, Words};
+use crate::property::{Check, DEFAULT_CASES, Report, Settings, promises, seams};
+use crate::tolerance::{Tolerance, number};
+use std::fmt::Write as _;
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Examination {
+    /// The random inputs.
+    pub report: Report,
+    /// The results at the simplest failing input.
+    pub failure: Option<Failure>,
+    /// The number of hard cases.
+    pub hard_cases: usize,
+    /// Hard cases that do not hold, by name, with the distance from the limit.
+    pub broken_hard_cases: Vec<String>,
+    /// Promises outside of the domain that do not hold, with an input.
+    pub broken_promises: Vec<String>,
+    /// Branches with a wrong result one float to either side, with the input.
+    pub broken_branches: Vec<String>,
+    /// Why branches were not looked at, where the interpreter cannot run the function.
+    pub branches_untested: Option<String>,
+    settings: Settings,
+}
+
+impl Examination {
+    /// Whether all of it holds. Edges count from the default number of cases on: a shorter run may well miss some.
+    pub fn holds(&self) -> bool {
+        let edges = self.settings.cases < DEFAULT_CASES || self.report.missed_edges().next().is_none();
+        let others = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
+        self.report.failed == 0 && edges && others.into_iter().all(Vec::is_empty)
+    }
+
+    /// What does not hold, a line each, and how to run it again with the seed in the environment variable `seed_variable`.
+    pub fn describe(&self, formula: &Formula, seed_variable: &str) -> String {
+        let Settings { cases, seed } = self.settings;
+        let mut text = String::new();
+        if self.report.failed > 0 {
+            let reason = self.report.reason.as_deref().unwrap_or("the worst");
+            let _ = writeln!(text, "{} of {} inputs failed; {reason}", self.report.failed, self.report.cases);
+        }
+        if let Some(failure) = &self.failure {
+            text.push_str(&failure.to_string());
+        }
+        for fault in self.broken_hard_cases.iter().map(|fault| format!("hard case: {fault}")) {
+            let _ = writeln!(text, "{fault}");
+        }
+        for fault in self.broken_promises.iter().chain(&self.broken_branches) {
+            let _ = writeln!(text, "{fault}");
+        }
+        let missed: Vec<&str> = self.report.missed_edges().collect();
+        if cases >= DEFAULT_CASES && !missed.is_empty() {
+            let _ = writeln!(text, "no input reached `{}`; mend the inputs, or the edge", missed.join("`, `"));
+        }
+        let _ = write!(text, "  seed {seed}, {cases} inputs; again with {seed_variable}={seed}");
+        format!("{}: {text}", formula.function)
+    }
+}
+
+/// Examines the function of `formula` in `source`, which `kernel` was made of. `replayed` inputs and the hard cases' go first.
+///
+/// # Errors
+/// Where the device refuses.
+pub fn examine(
+    formula: &Formula,
+    source: &str,
+    kernel: &mut Kernel<'_>,
+    tolerance: &Tolerance,
+    settings: Settings,
+    replayed: &[Words],
+) -> Result<Examination, DispatchError> {
+    let first: Vec<Words> =
+        replayed.iter().chain(formula.hard_cases.iter().map(|case| &case.arguments)).cloned().collect();
+    let report = Check { formula, kernel: &mut *kernel, tolerance }.run(settings, &first)?;
+    let failure = match &report.shrunk {
+        None => None,
+        Some(shrunk) => Some(Failure::at(formula, kernel, tolerance, shrunk)?),
+    };
+    // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
+    let mut broken_hard_cases = Vec::new();
+    for case in &formula.hard_cases {
+        broken_hard_cases.extend(broken(case, formula, kernel)?);
+    }
+    let broken_promises = promises::broken(kernel, formula, tolerance, &formula.promises, settings.seed)?;
+    // A function whose loops do not end takes as long on the CPU, and has failed.
+    let branches = if report.stopped > 0 {
+        Ok(Vec::new())
+    } else {
+        seams::of_source(source, formula, kernel, tolerance, settings.seed)?
+    };
+    let (broken_branches, branches_untested) = match branches {
+        Ok(faults) => (faults.iter().map(ToString::to_string).collect(), None),
+        Err(stopped) => (Vec::new(), Some(stopped.to_string())),
+    };
+    let hard_cases = formula.hard_cases.len();
+    Ok(Examination {
+        report,
+        failure,
+        hard_cases,
+        broken_hard_cases,
+        broken_promises,
+        broken_branches,
+        branches_untested,
+        settings,
+    })
+}
+
+/// What is wrong at a hard case.
+fn broken(case: &HardCase, formula: &Formula, kernel: &mut Kernel<'_>) -> Result<Option<String>, DispatchError> {
+    let distance = distance_from_limit(kernel, formula, &case.arguments, &case.limit)?;
+    Ok(if kernel.any_stopped() {
+        Some(format!("{}: {}", case.name, kernel.why_stopped()))
+    } else if distance.is_nan() || distance > case.bound {
+        // A NaN is no distance within the bound.
+        Some(format!("{}: off the limit by {distance:e}, at most {:e}", case.name, case.bound))
+    } else {
+        None
+    })
+}
+
+/// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
+///
+/// # Errors
+/// Where the device refuses.
+pub fn distance_from_limit(
+    kernel: &mut Kernel<'_>,
+    formula: &Formula,
+    arguments: &Words,
+    limit: &[f64],
+) -> Result<f64, DispatchError> {
+    let mut words = Words::new();
+    kernel.run(arguments, &mut words)?;
+    let distances = words
+        .iter()
+        .zip(formula.result.scalars())
+        .zip(limit)
+        .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
+    Ok(largest(distances))
+}

@@ -1,0 +1,67 @@
+//! The tests of a module of WGSL functions, for `cargo test`: one for each formula, filtered by name as cargo's users expect.
+//!
+//! In the module's `tests/formulas.rs`, whose `[[test]]` has `harness = false`:
+//!
+//! ```ignore
+//! fn main() -> std::process::ExitCode {
+//!     lapidary_assay::module::test(include_str!("../refraction.wgsl"), formulas())
+//! }
+//! ```
+
+use crate::accuracy_line::Accuracy;
+use crate::dispatch::{DispatchError, Kernel};
+use crate::environment::{self, SEED_VARIABLE};
+use crate::examination::{Examination, examine};
+use crate::formula::Formula;
+use crate::property::{DEFAULT_CASES, Settings};
+use crate::tolerance::Tolerance;
+use lapidary_gpu::Gpu;
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
+use std::process::ExitCode;
+
+/// How many times as many inputs a run has that has missed a rare edge.
+const MORE: u64 = 16;
+
+/// Tests each formula's function in `source`, whose comment states its bounds in an `Accuracy:` line: random inputs, hard cases, promises outside
+/// of the domain and the inputs beside branches. Takes libtest's arguments.
+pub fn test(source: &'static str, formulas: Vec<Formula>) -> ExitCode {
+    let trial = |formula: Formula| {
+        let kind = if formula.benign.is_some() { "naive" } else { "" };
+        Trial::ignorable_test(formula.function, move || completion(source, &formula)).with_kind(kind)
+    };
+    libtest_mimic::run(&Arguments::from_args(), formulas.into_iter().map(trial).collect()).exit_code()
+}
+
+/// Ignored, and counted so, where there is no adapter and the environment allows that.
+fn completion(source: &str, formula: &Formula) -> Result<Completion, Failed> {
+    let gpu = environment::gpu(formula.function).map_err(|error| Failed::from(error.to_string()))?;
+    let Some(gpu) = gpu else { return Ok(Completion::ignored_with("no adapter")) };
+    let seed = environment::seed()?.unwrap_or(Settings::default().seed);
+    let mut found = examined(gpu, source, formula, Settings { cases: DEFAULT_CASES, seed })?;
+    if found.report.failed == 0 && found.report.missed_edges().next().is_some() {
+        // A rare edge, which a seed may miss by chance.
+        found = examined(gpu, source, formula, Settings { cases: MORE * DEFAULT_CASES, seed })?;
+    }
+    if found.holds() { Ok(Completion::Completed) } else { Err(found.describe(formula, SEED_VARIABLE).into()) }
+}
+
+fn examined(gpu: &Gpu, source: &str, formula: &Formula, settings: Settings) -> Result<Examination, String> {
+    let name = formula.module;
+    let tolerance = tolerance(gpu, source, formula)?;
+    let fail = |error: DispatchError| format!("{}: {error}", formula.function);
+    let mut kernel = Kernel::of_function(gpu, source, name, formula.function).map_err(fail)?;
+    kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| error.to_string())?;
+    examine(formula, source, &mut kernel, &tolerance, settings, &[]).map_err(fail)
+}
+
+/// What the function's comment promises of this device; of a naive form, what it keeps on its benign domain.
+fn tolerance(gpu: &Gpu, source: &str, formula: &Formula) -> Result<Tolerance, String> {
+    if let Some(relative) = formula.benign {
+        return Ok(Tolerance::of_benign(&formula.arguments, &formula.result, relative));
+    }
+    let accuracy = Accuracy::of_function(source, formula.function)?;
+    accuracy.check_fields(&formula.result).map_err(|fault| format!("{}: Accuracy: {fault}", formula.function))?;
+    let bounds = accuracy.bounds(gpu.is_lavapipe());
+    let bounds = bounds.ok_or_else(|| format!("{}: naive, but its formula has no benign domain", formula.function))?;
+    Ok(Tolerance::new(&formula.arguments, &formula.result, bounds))
+}

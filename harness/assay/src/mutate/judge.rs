@@ -1,0 +1,120 @@
+//! Whether a function's tests notice a mutant.
+
+use super::{Mutant, apply, compacted};
+use crate::dispatch::{DispatchError, Kernel, KernelModule};
+use crate::formula::{Formula, Words};
+use crate::property::{Check, Settings, promises};
+use crate::tolerance::Tolerance;
+use lapidary_gpu::Gpu;
+use std::cell::OnceCell;
+
+/// Of the rows, always the same: what is known to be equivalent must not depend on a run's seed.
+const SEED: u64 = 0x1a91_da21;
+/// Rows that are compared first: a loop that ends only where the driver ends it is soon over with them, and mostly wrong.
+const FIRST_ROWS: usize = 256;
+/// Rows whose right results are kept.
+const KEPT_ROWS: u64 = 8_192;
+/// Rows for what those do not tell apart.
+const MORE_ROWS: u64 = 131_072;
+
+/// A function with its tests and the right results of its first inputs, computed once for all mutants.
+pub struct Judge<'a> {
+    gpu: &'a Gpu,
+    formula: &'a Formula,
+    source: &'a str,
+    path: &'a str,
+    kernel: KernelModule,
+    tolerance: Tolerance,
+    arguments: Words,
+    mirrored: Vec<Words>,
+    exact: Vec<Vec<f64>>,
+    /// The kernel that says where it computes an infinity or a NaN, and where the right one does; made when first asked for.
+    watched: OnceCell<(KernelModule, Vec<bool>)>,
+}
+
+impl std::fmt::Debug for Judge<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Judge").field("function", &self.formula.function).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Judge<'a> {
+    /// The tests of `formula` on `source`; `path` is for messages.
+    ///
+    /// # Errors
+    /// Where the source is not valid, or has no such function.
+    pub fn new(
+        gpu: &'a Gpu,
+        formula: &'a Formula,
+        (source, path): (&'a str, &'a str),
+        tolerance: Tolerance,
+    ) -> Result<Self, DispatchError> {
+        let kernel = compacted(KernelModule::reflect(source, path, formula.function)?);
+        let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(SEED, row));
+        let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
+        let (mirrored, exact) = rows.iter().map(|row| (formula.mirrored(row), formula.exact(row))).unzip();
+        let arguments = rows.concat();
+        let watched = OnceCell::new();
+        Ok(Self { gpu, formula, source, path, kernel, tolerance, arguments, mirrored, exact, watched })
+    }
+
+    /// Whether a test fails on the function as it is, so that nothing could be said of its mutants.
+    pub fn rejects_unchanged(&self) -> bool {
+        self.notices(self.kernel.clone())
+    }
+
+    /// Whether a test fails on the mutant. One that makes no valid program, or that this function does not reach, is not noticed.
+    pub fn catches(&self, mutant: &Mutant) -> bool {
+        apply(&self.kernel, mutant)
+            .is_some_and(|mutated| self.notices(mutated) || self.computes_more_infinities(mutant))
+    }
+
+    /// Whether the mutant computes an infinity or a NaN where the function computes none: what comes of it is left to each device,
+    /// even where this one makes the right result of it.
+    fn computes_more_infinities(&self, mutant: &Mutant) -> bool {
+        let nonfinite = |kernel: KernelModule| -> Option<Vec<bool>> {
+            let mut kernel = Kernel::new(self.gpu, kernel.watched()).ok()?;
+            let mut results = Words::new();
+            kernel.run(&self.arguments, &mut results).ok()?;
+            Some(results.chunks_exact(kernel.result_words()).map(|row| row.last() == Some(&1)).collect())
+        };
+        let (kernel, right) = self.watched.get_or_init(|| {
+            let kernel = KernelModule::reflect_watched(self.source, self.path, self.formula.function);
+            let kernel = compacted(kernel.expect("valid, since it was reflected before"));
+            let right = nonfinite(kernel.clone()).unwrap_or_default();
+            (kernel, right)
+        });
+        let Some(found) = apply(kernel, mutant).and_then(nonfinite) else { return false };
+        found.iter().zip(right).any(|(found, right)| *found && !right)
+    }
+
+    /// Whether the property tests tell this kernel from the right one.
+    fn notices(&self, mutated: KernelModule) -> bool {
+        let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
+        let (width, all) = (kernel.argument_words(), self.mirrored.len());
+        for (first, last) in [(0, FIRST_ROWS.min(all)), (FIRST_ROWS.min(all), all)] {
+            let arguments = &self.arguments[first * width..last * width];
+            let mut results = Words::new();
+            if kernel.run(arguments, &mut results).is_err() {
+                return true;
+            }
+            let rows = arguments.chunks_exact(width).zip(results.chunks_exact(kernel.result_words()));
+            let right = self.mirrored[first..last].iter().zip(&self.exact[first..last]);
+            let broken = rows.zip(right).any(|((arguments, result), (mirrored, exact))| {
+                !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
+                    || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
+            });
+            if broken {
+                return true;
+            }
+        }
+        let broken = promises::broken(&mut kernel, self.formula, &self.tolerance, &self.formula.promises, SEED);
+        if broken.is_ok_and(|broken| !broken.is_empty()) {
+            return true;
+        }
+        let settings = Settings { cases: MORE_ROWS, seed: SEED + 1 };
+        let report =
+            Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
+        report.map_or(true, |report| report.failed > 0)
+    }
+}
