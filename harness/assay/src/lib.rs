@@ -18,6 +18,8 @@ pub mod formula;
 pub mod golden_section;
 #[cfg(feature = "gpu")]
 pub mod interpreter;
+#[cfg(feature = "gpu")]
+mod kernel;
 pub mod literal;
 #[cfg(feature = "trials")]
 pub mod module;
@@ -36,5 +38,7 @@ mod wgsl;
 
 #[cfg(feature = "gpu")]
 pub use environment::{SEED_VARIABLE, WITHOUT_ADAPTER_VARIABLE};
+#[cfg(feature = "gpu")]
+pub use kernel::{Buffer, Buffers, KernelMirror, KernelSource, KernelTest, Type, kernel};
 #[cfg(feature = "gpu")]
 pub use wgsl::{Failure, Mirrored, Outcome, Source, Test, wgsl};

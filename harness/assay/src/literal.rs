@@ -35,6 +35,12 @@ pub fn value(language: Language, formula: &Formula, words: &[u32]) -> String {
     write(language, formula.module, &formula.result, &mut rest)
 }
 
+/// A value of a shape; structs by their names alone.
+pub fn of_shape(language: Language, shape: &Shape, words: &[u32]) -> String {
+    let mut rest = words;
+    write(language, "", shape, &mut rest)
+}
+
 /// Takes the value's words off the front.
 fn write(language: Language, module: &str, shape: &Shape, words: &mut &[u32]) -> String {
     use Language::{Rust, Wgsl};

@@ -195,14 +195,23 @@ tuples!(A B C D E G);
 tuples!(A B C D E G H);
 tuples!(A B C D E G H I);
 
-/// Declares a mirror's struct and its oracle's twin, one line each pair: their members by name, the types inferred. The
-/// names and the order are checked against the WGSL struct's.
+/// Declares structs that stand for a WGSL struct of the same name: their members by name, the types inferred. Names and order are checked
+/// against the WGSL struct's.
 ///
 /// ```ignore
-/// mirror_struct!(lapidary_refraction, RefractionHit { direction, total });
+/// mirror_struct!(Hit { direction, total });                          // of a mirror
+/// mirror_struct!(Hit, exact oracle::Hit { direction, total });       // of a mirror and its oracle
+/// mirror_struct!(lapidary_refraction, RefractionHit { direction, total }); // both of a crate, the oracle's in its `oracle`
 /// ```
 #[macro_export]
 macro_rules! mirror_struct {
+    ($name:ident { $($field:ident),* $(,)? }) => {
+        $crate::mirror_struct!(@one Value, u32, $name, $name { $($field),* });
+    };
+    ($name:ident, exact $exact:path { $($field:ident),* $(,)? }) => {
+        $crate::mirror_struct!(@one Value, u32, $name, $name { $($field),* });
+        $crate::mirror_struct!(@one Exact, f64, $exact, $name { $($field),* });
+    };
     ($krate:ident, $name:ident { $($field:ident),* $(,)? }) => {
         $crate::mirror_struct!(@one Value, u32, $krate::$name, $name { $($field),* });
         $crate::mirror_struct!(@one Exact, f64, $krate::oracle::$name, $name { $($field),* });

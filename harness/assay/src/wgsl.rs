@@ -26,6 +26,12 @@ pub type Outcome = Result<(), Failure>;
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure(String);
 
+impl Failure {
+    pub(crate) fn new(message: String) -> Self {
+        Self(message)
+    }
+}
+
 impl fmt::Debug for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
@@ -260,7 +266,7 @@ struct Ready {
 }
 
 /// No error at all, in any field.
-fn exact(result: &Shape) -> Vec<FieldBound> {
+pub(crate) fn exact(result: &Shape) -> Vec<FieldBound> {
     let none = |field| FieldBound { field, bound: Bound::default() };
     match result {
         Shape::Struct(_, fields) => fields.iter().map(|(name, _)| none(Some(name.clone()))).collect(),

@@ -4,120 +4,75 @@ use lapidary_scene::nearest::suggest;
 use std::fmt;
 use std::str::FromStr;
 
-/// What a material or a scene may call for, and what else is neither compiled, nor bound, nor dispatched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Effect {
-    /// Light through a clear stone, by a proxy of its inside.
-    ProxyGeometry,
-    /// Light through a convex clear stone, by its facets' planes.
-    ConvexTrace,
-    /// Light through any clear stone, by its triangles.
-    BvhTrace,
-    /// The environment behind a clear wall without an inside.
-    ThinWall,
-    /// Light is absorbed inside a clear stone.
-    Absorption,
-    /// The refractive index differs from colour to colour.
-    Dispersion,
-    /// Light that crosses below the surface from the lit side to the dark one, by curvature.
-    Cdrf,
-    /// The same by a blur of the light that arrives.
-    TextureDiffusion,
-    /// Light that comes through a body, along the way that costs it least.
-    OpticalPath,
-    /// Voxels that the surface touches, beside those whose centre is inside.
-    Surface,
-    /// A way's cost differs from colour to colour.
-    Color,
-    /// Matter is denser here than there.
-    ExtinctionPerVoxel,
-    /// Bodies keep a light from one another and from themselves.
-    Shadow,
-    /// Diffuse light from all around.
-    Environment,
-    /// The environment is an image.
-    EnvironmentMap,
-    /// The lights' highlights on a rough surface.
-    Microfacet,
-    /// The environment in a polished surface.
-    Reflection,
-    /// Lights that shine into a cone.
-    Spot,
+/// Declares the effects: variant, name, and the recipes' override, which is the name in capitals.
+macro_rules! effects {
+    ($($(#[$doc:meta])* $effect:ident = $name:literal, $override:literal;)*) => {
+        /// What a material or a scene may call for, and what else is neither compiled, nor bound, nor dispatched.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Effect {
+            $($(#[$doc])* $effect,)*
+        }
+
+        impl Effect {
+            /// Every effect, each once.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$effect),*];
+
+            /// Its name in plans and on the command line: a module's, where it is one module.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$effect => $name,)*
+                }
+            }
+
+            /// The recipes' override that compiles it.
+            #[must_use]
+            pub const fn override_name(self) -> &'static str {
+                match self {
+                    $(Self::$effect => $override,)*
+                }
+            }
+        }
+    };
 }
 
-impl Effect {
-    /// Every effect, each once.
-    pub const ALL: [Self; 18] = [
-        Self::ProxyGeometry,
-        Self::ConvexTrace,
-        Self::BvhTrace,
-        Self::ThinWall,
-        Self::Absorption,
-        Self::Dispersion,
-        Self::Cdrf,
-        Self::TextureDiffusion,
-        Self::OpticalPath,
-        Self::Surface,
-        Self::Color,
-        Self::ExtinctionPerVoxel,
-        Self::Shadow,
-        Self::Environment,
-        Self::EnvironmentMap,
-        Self::Microfacet,
-        Self::Reflection,
-        Self::Spot,
-    ];
-
-    /// Its name in plans and on the command line: a module's, where it is one module.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        // The override's, in small letters.
-        match self {
-            Self::ProxyGeometry => "proxy_geometry",
-            Self::ConvexTrace => "convex_trace",
-            Self::BvhTrace => "bvh_trace",
-            Self::ThinWall => "thin_wall",
-            Self::Absorption => "absorption",
-            Self::Dispersion => "dispersion",
-            Self::Cdrf => "cdrf",
-            Self::TextureDiffusion => "texture_diffusion",
-            Self::OpticalPath => "optical_path",
-            Self::Surface => "surface",
-            Self::Color => "color",
-            Self::ExtinctionPerVoxel => "extinction_per_voxel",
-            Self::Shadow => "shadow",
-            Self::Environment => "environment",
-            Self::EnvironmentMap => "environment_map",
-            Self::Microfacet => "microfacet",
-            Self::Reflection => "reflection",
-            Self::Spot => "spot",
-        }
-    }
-
-    /// The recipes' override that compiles it.
-    #[must_use]
-    pub const fn override_name(self) -> &'static str {
-        match self {
-            Self::ProxyGeometry => "EFFECT_PROXY_GEOMETRY",
-            Self::ConvexTrace => "EFFECT_CONVEX_TRACE",
-            Self::BvhTrace => "EFFECT_BVH_TRACE",
-            Self::ThinWall => "EFFECT_THIN_WALL",
-            Self::Absorption => "EFFECT_ABSORPTION",
-            Self::Dispersion => "EFFECT_DISPERSION",
-            Self::Cdrf => "EFFECT_CDRF",
-            Self::TextureDiffusion => "EFFECT_TEXTURE_DIFFUSION",
-            Self::OpticalPath => "EFFECT_OPTICAL_PATH",
-            Self::Surface => "EFFECT_SURFACE",
-            Self::Color => "EFFECT_COLOR",
-            Self::ExtinctionPerVoxel => "EFFECT_EXTINCTION_PER_VOXEL",
-            Self::Shadow => "EFFECT_SHADOW",
-            Self::Environment => "EFFECT_ENVIRONMENT",
-            Self::EnvironmentMap => "EFFECT_ENVIRONMENT_MAP",
-            Self::Microfacet => "EFFECT_MICROFACET",
-            Self::Reflection => "EFFECT_REFLECTION",
-            Self::Spot => "EFFECT_SPOT",
-        }
-    }
+effects! {
+    /// Light through a clear stone, by a proxy of its inside.
+    ProxyGeometry = "proxy_geometry", "EFFECT_PROXY_GEOMETRY";
+    /// Light through a convex clear stone, by its facets' planes.
+    ConvexTrace = "convex_trace", "EFFECT_CONVEX_TRACE";
+    /// Light through any clear stone, by its triangles.
+    BvhTrace = "bvh_trace", "EFFECT_BVH_TRACE";
+    /// The environment behind a clear wall without an inside.
+    ThinWall = "thin_wall", "EFFECT_THIN_WALL";
+    /// Light is absorbed inside a clear stone.
+    Absorption = "absorption", "EFFECT_ABSORPTION";
+    /// The refractive index differs from colour to colour.
+    Dispersion = "dispersion", "EFFECT_DISPERSION";
+    /// Light that crosses below the surface from the lit side to the dark one, by curvature.
+    Cdrf = "cdrf", "EFFECT_CDRF";
+    /// The same by a blur of the light that arrives.
+    TextureDiffusion = "texture_diffusion", "EFFECT_TEXTURE_DIFFUSION";
+    /// Light that comes through a body, along the way that costs it least.
+    OpticalPath = "optical_path", "EFFECT_OPTICAL_PATH";
+    /// Voxels that the surface touches, beside those whose centre is inside.
+    Surface = "surface", "EFFECT_SURFACE";
+    /// A way's cost differs from colour to colour.
+    Color = "color", "EFFECT_COLOR";
+    /// Matter is denser here than there.
+    ExtinctionPerVoxel = "extinction_per_voxel", "EFFECT_EXTINCTION_PER_VOXEL";
+    /// Bodies keep a light from one another and from themselves.
+    Shadow = "shadow", "EFFECT_SHADOW";
+    /// Diffuse light from all around.
+    Environment = "environment", "EFFECT_ENVIRONMENT";
+    /// The environment is an image.
+    EnvironmentMap = "environment_map", "EFFECT_ENVIRONMENT_MAP";
+    /// The lights' highlights on a rough surface.
+    Microfacet = "microfacet", "EFFECT_MICROFACET";
+    /// The environment in a polished surface.
+    Reflection = "reflection", "EFFECT_REFLECTION";
+    /// Lights that shine into a cone.
+    Spot = "spot", "EFFECT_SPOT";
 }
 
 impl fmt::Display for Effect {

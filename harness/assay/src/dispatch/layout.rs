@@ -15,14 +15,25 @@ impl Layout {
     /// # Panics
     /// Where the module has no such struct: the caller has just generated it.
     pub fn of_struct(module: &naga::Module, name: &str) -> Layout {
-        let (handle, ty) =
+        let (handle, _) =
             module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("a generated struct");
+        Self::of_type(module, handle)
+    }
+
+    /// The layout of a type whose shape is known; of the elements where it is a runtime-sized array.
+    ///
+    /// # Panics
+    /// Where the module is not valid.
+    pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Layout {
+        let mut offsets = Vec::new();
+        if let naga::TypeInner::Array { base, size: naga::ArraySize::Dynamic, stride } = module.types[ty].inner {
+            collect(module, base, 0, &mut offsets);
+            return Layout { stride: stride as usize, offsets };
+        }
         let mut layouter = naga::proc::Layouter::default();
         layouter.update(module.to_ctx()).expect("a validated module has layouts");
-        let naga::TypeInner::Struct { .. } = ty.inner else { unreachable!("`{name}` is declared as a struct") };
-        let mut offsets = Vec::new();
-        collect(module, handle, 0, &mut offsets);
-        Layout { stride: layouter[handle].to_stride() as usize, offsets }
+        collect(module, ty, 0, &mut offsets);
+        Layout { stride: layouter[ty].to_stride() as usize, offsets }
     }
 
     /// Spreads rows of words over the bytes of a buffer.
@@ -50,7 +61,7 @@ impl Layout {
 
 fn collect(module: &naga::Module, ty: naga::Handle<naga::Type>, base: usize, offsets: &mut Vec<usize>) {
     match &module.types[ty].inner {
-        naga::TypeInner::Scalar(_) => offsets.push(base),
+        naga::TypeInner::Scalar(_) | naga::TypeInner::Atomic(_) => offsets.push(base),
         naga::TypeInner::Vector { size, .. } => {
             offsets.extend((0..*size as usize).map(|index| base + 4 * index));
         }

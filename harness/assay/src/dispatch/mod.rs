@@ -2,7 +2,7 @@
 
 mod batch;
 mod kernel;
-mod layout;
+pub(crate) mod layout;
 mod nonfinite;
 pub mod reach;
 pub mod signature;

@@ -173,7 +173,8 @@ pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Result<Sh
         _ => Err(format!("{scalar:?} is not a 32-bit scalar")),
     };
     match &module.types[ty].inner {
-        naga::TypeInner::Scalar(inner) => Ok(Shape::Scalar(scalar(*inner)?)),
+        // Read and written as the integer that it is.
+        naga::TypeInner::Scalar(inner) | naga::TypeInner::Atomic(inner) => Ok(Shape::Scalar(scalar(*inner)?)),
         naga::TypeInner::Vector { size, scalar: inner } => Ok(Shape::Vector(*size as u8, scalar(*inner)?)),
         naga::TypeInner::Matrix { columns, rows, scalar: inner } => match scalar(*inner)? {
             Scalar::F32 => Ok(Shape::Matrix(*columns as u8, *rows as u8)),

@@ -13,6 +13,9 @@ pub(super) struct Arguments {
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
+    /// The modules as a table of the README.
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
 }
 
 #[derive(Serialize)]
@@ -25,6 +28,14 @@ struct Row {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.markdown {
+        output::line("| module | what it computes |\n|---|---|")?;
+        for module in cookbook::modules() {
+            let purpose = module.header.purpose.trim_end_matches('.');
+            output::line(&format!("| [{0}](docs/{0}.md) | {purpose} |", module.name))?;
+        }
+        return Ok(Outcome::Passed);
+    }
     let mut rows = Vec::new();
     for module in cookbook::modules() {
         let (ir, _) = dispatch::parse(module.source, module.name)?;

@@ -7,6 +7,7 @@ mod copy;
 mod cost;
 mod gallery;
 mod list;
+mod new;
 mod number;
 mod output;
 mod plan;
@@ -56,6 +57,7 @@ enum Command {
     Test(test::Arguments),
     Check(check::Arguments),
     List(list::Arguments),
+    New(new::Arguments),
     Copy(copy::Arguments),
     Cost(cost::Arguments),
     Plan(plan::Arguments),
@@ -92,6 +94,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Test(arguments) => test::run(&context, &arguments),
         Command::Check(arguments) => check::run(&context, &arguments),
         Command::List(arguments) => list::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Copy(arguments) => copy::run(&arguments),
         Command::Cost(arguments) => cost::run(&context, &arguments),
         Command::Plan(arguments) => plan::run(&arguments),

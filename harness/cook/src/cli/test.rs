@@ -14,16 +14,30 @@ use std::process::Command;
 pub(super) struct Arguments {
     /// Run the tests whose names hold this.
     filter: Option<String>,
-    /// Leave out the mutation tests, which take minutes.
+    /// Leave out the mutation tests, and the slow ones of the suite.
     #[arg(long)]
     quick: bool,
-    /// Judge every mutant, not the sample of one in ten that the seed chooses.
+    /// Judge every mutant, not only those of the modules that changed since the record.
     #[arg(long, conflicts_with = "quick")]
     all_mutants: bool,
+    /// Write anew what is generated from the modules: releases and version lines, signatures, README's table, docs/check.md.
+    /// With --all-mutants: judge them alone, and record the score.
+    #[arg(long, conflicts_with_all = ["filter", "quick"])]
+    refresh: bool,
     /// Show what the tests measure, too.
     #[arg(long)]
     show: bool,
 }
+
+/// What makes tests write instead of compare.
+const REFRESHING: [(&str, &str); 4] = [
+    ("LAPIDARY_REFRESH_RELEASE", "1"),
+    ("LAPIDARY_REFRESH_PAGES", "1"),
+    ("INSTA_UPDATE", "always"),
+    ("INSTA_FORCE_PASS", "1"),
+];
+/// The tests that can.
+const GENERATED: [&str; 3] = ["releases::", "text::", "user_file::the_page_shows"];
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     // Says at once what is missing, before minutes of building.
@@ -35,7 +49,13 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
         &["--package", "lapidary-cook", "--test", "mutation"],
     ];
-    let parts = if arguments.quick { &parts[..1] } else { &parts[..] };
+    let refreshing: [&[&str]; 1] = [&["--package", "lapidary-cook", "--test", "suite"]];
+    let parts = match arguments {
+        Arguments { refresh: true, all_mutants: true, .. } => &parts[1..],
+        Arguments { refresh: true, .. } => &refreshing[..],
+        Arguments { quick: true, .. } => &parts[..1],
+        _ => &parts[..],
+    };
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut outcome = Outcome::Passed;
     for part in parts {
@@ -46,9 +66,12 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         // The same for all parts, whatever changes in the tree meanwhile.
         command.env(SEED_VARIABLE, seed.value.to_string());
         if arguments.all_mutants {
-            command.env("LAPIDARY_MUTANTS", "all");
+            command.env("LAPIDARY_MUTANTS", if arguments.refresh { "record" } else { "all" });
         }
         command.arg("--").args(&arguments.filter);
+        if arguments.refresh && !arguments.all_mutants {
+            command.envs(REFRESHING).args(GENERATED);
+        }
         if arguments.show {
             command.arg("--nocapture");
         }

@@ -1,7 +1,7 @@
 //! Releases: every module states which it is, the tables hold what the modules are, the changelog names what changed, and
 //! an old copy is recognised however it was pasted.
 //!
-//! After a change to a module: `LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-cook --test suite -- releases`.
+//! After a change to a module: `./cook test --refresh`.
 
 use crate::program::{cook, folder, succeeds};
 use lapidary_assay::tokens::{items, tokens};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Where it is set, the lines and the table are written instead of compared.
 const REFRESH: &str = "LAPIDARY_REFRESH_RELEASE";
-const COMMAND: &str = "LAPIDARY_REFRESH_RELEASE=1 cargo test -p lapidary-cook --test suite -- releases";
+const COMMAND: &str = "./cook test --refresh";
 
 fn history() -> &'static History {
     History::of_cookbook()
@@ -62,15 +62,18 @@ fn the_tables_are_those_in_the_folder_and_end_with_this_release() {
     assert_eq!(history().releases.last().map(|release| release.release.as_str()), Some(CURRENT));
 }
 
-/// The functions that differ between two releases.
+/// The functions that differ between two releases, and the modules that are new.
 fn changed(before: &Release, after: &Release) -> BTreeSet<String> {
+    let is_new = |module: &&String| !before.modules.contains_key(*module);
+    let new: BTreeSet<String> = after.modules.keys().filter(is_new).cloned().collect();
     let of = |release: &Release| -> BTreeMap<String, String> {
-        let functions = release.modules.values().flat_map(|hashes| hashes.functions.clone());
-        functions.collect()
+        let known = release.modules.iter().filter(|(module, _)| !new.contains(*module));
+        known.flat_map(|(_, hashes)| hashes.functions.clone()).collect()
     };
     let (before, after) = (of(before), of(after));
     let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
-    names.into_iter().filter(|name| before.get(*name) != after.get(*name)).cloned().collect()
+    let functions = names.into_iter().filter(|name| before.get(*name) != after.get(*name)).cloned();
+    functions.chain(new.iter().cloned()).collect()
 }
 
 #[test]
@@ -90,8 +93,8 @@ fn the_changelog_names_every_function_that_changed() {
     let known: BTreeSet<&str> = history()
         .releases
         .iter()
-        .flat_map(|release| release.modules.values())
-        .flat_map(|hashes| hashes.functions.keys().map(String::as_str))
+        .flat_map(|release| &release.modules)
+        .flat_map(|(module, hashes)| hashes.functions.keys().chain([module]).map(String::as_str))
         .collect();
     for change in &history().changes {
         assert!(history().releases.iter().any(|release| release.release == change.release), "{change:?}");
@@ -110,6 +113,9 @@ fn a_changed_or_new_function_is_noticed() {
     assert_eq!(changed(&release(source), &release(source)), none);
     let other = source.replace("2.0f * dot", "2.1f * dot");
     assert_eq!(changed(&release(source), &release(&other)), ["refraction_reflect".to_owned()].into());
+    // A new module counts by its name.
+    let nothing = Release { release: String::new(), modules: BTreeMap::new() };
+    assert_eq!(changed(&nothing, &release(source)), ["refraction".to_owned()].into());
     // A struct counts with each function that uses it; a comment does not count.
     let struct_changed = source.replace("    total: bool,", "    is_total: bool,");
     assert!(changed(&release(source), &release(&struct_changed)).contains("refraction_refract"));

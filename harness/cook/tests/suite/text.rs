@@ -1,6 +1,7 @@
 //! What users rely on in text: every signature and every promised accuracy. A change of either is a change of the cookbook's
-//! interface, and is to be seen in review. `INSTA_UPDATE=always ./cook test text` accepts it.
+//! interface, and is to be seen in review. `./cook test --refresh` accepts it.
 
+use crate::program::succeeds;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::cookbook;
@@ -23,4 +24,20 @@ fn signatures_and_accuracies_are_as_they_were() {
             insta::assert_snapshot!(module.name, text);
         }
     });
+}
+
+/// The README's table is what `./cook list --markdown` prints. `./cook test --refresh` writes it anew.
+#[test]
+fn the_readme_lists_the_modules() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
+    let page = std::fs::read_to_string(&path).expect("the page");
+    let (before, rest) = page.split_once("<!-- generated: modules -->\n").expect("a place");
+    let (shown, after) = rest.split_once("<!-- end -->").expect("an end");
+    let table = succeeds(std::path::Path::new("."), &["list", "--markdown"]).stdout;
+    if shown == table {
+        return;
+    }
+    assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "README.md: ./cook test --refresh\n{table}");
+    let page = format!("{before}<!-- generated: modules -->\n{table}<!-- end -->{after}");
+    std::fs::write(&path, page).expect("the page is written");
 }

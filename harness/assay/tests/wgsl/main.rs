@@ -1,5 +1,9 @@
 //! The library as its README has it: a function of nobody's cookbook, tested by a plain `cargo test`; and what a broken one says.
 
+mod kernels;
+mod mutants;
+mod readme;
+
 use glam::Vec2;
 use lapidary_assay::{Outcome, wgsl};
 

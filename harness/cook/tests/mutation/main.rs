@@ -3,10 +3,14 @@
 //!
 //! Mutants run in child processes (this same program, as a worker), two at a time. One that gives no answer in time is asked once
 //! more, alone in a fresh worker and for longer; if it still gives none it has timed out, which is not to be caught: it fails. A
-//! mutant that no input can tell from the original is listed, with the reason, in `equivalent_mutants.txt`; at most 5 % may be.
+//! mutant that no input can tell from the original is listed, with the reason, in `equivalent.txt`; at most 5 % may be.
 //!
-//! All mutants take minutes. `LAPIDARY_MUTANTS=sample` judges one in ten, chosen by the suite's seed, so that another change meets
-//! others; `listed` those that are listed; `all` all. Without it a run that names a module or function judges all of its mutants, any other run a sample.
+//! All mutants take minutes. A run judges what a change touches: all mutants of each module that is not as it was when the record was
+//! made (`docs/measurements/lavapipe/mutation.json`, which holds a hash of all that a score depends on); where the engine has changed, one in ten of the
+//! others, chosen by the suite's seed, so that another change meets others. It says what it does not judge. A run that names a module or function judges all of
+//! its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all and writes the record, `sample` one in ten, `listed` those that are listed.
+
+mod record;
 
 use lapidary_assay::dispatch::KernelModule;
 use lapidary_assay::formula::Formula;
@@ -14,6 +18,7 @@ use lapidary_assay::mutate::{self, Judge, Mutant};
 use lapidary_cook::seed::SuiteSeed;
 use lapidary_cook::{check, cookbook, formulas};
 use lapidary_gpu::{AdapterChoice, Gpu};
+use record::Record;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
@@ -53,12 +58,12 @@ fn main() -> ExitCode {
     let filter = if filter == "mutation" { "" } else { &filter };
     let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
     let choice = match std::env::var(MUTANTS_VARIABLE).ok().as_deref() {
-        Some("all") => Choice::All,
+        Some("all" | "record") => Choice::All,
         Some("listed") => Choice::Listed(equivalent_mutants()),
         Some("sample") => Choice::Sample(seed.value),
-        None if filter.is_empty() => Choice::Sample(seed.value),
+        None if filter.is_empty() => Choice::Touched(seed.value),
         None => Choice::All,
-        Some(other) => panic!("{MUTANTS_VARIABLE}={other}: expected all, listed or sample"),
+        Some(other) => panic!("{MUTANTS_VARIABLE}={other}: expected all, record, listed or sample"),
     };
     println!("seed {}, {}", seed.value, seed.origin);
     coordinate(filter, &choice)
@@ -71,14 +76,48 @@ enum Choice {
     Listed(BTreeMap<String, String>),
     /// One in ten, by this seed.
     Sample(u64),
+    /// What has changed since the record; where the engine has, one in ten of the rest by this seed.
+    Touched(u64),
+}
+
+/// How a module's mutants are judged.
+enum Share {
+    All,
+    Listed(BTreeMap<String, String>),
+    Sample(u64),
+    /// Not at all: they are as they were recorded.
+    Recorded(usize),
 }
 
 impl Choice {
+    fn of_module(&self, module: &str, now: &Record, then: &Record) -> Share {
+        match self {
+            Self::All => Share::All,
+            Self::Listed(listed) => Share::Listed(listed.clone()),
+            Self::Sample(seed) => Share::Sample(*seed),
+            Self::Touched(_) if !now.agrees(then, module) => Share::All,
+            Self::Touched(seed) if !now.is_of_the_engine_of(then) => Share::Sample(*seed),
+            Self::Touched(_) => Share::Recorded(then.modules.get(module).map_or(0, |module| module.mutants)),
+        }
+    }
+}
+
+impl Share {
     fn holds(&self, name: &str) -> bool {
         match self {
-            Choice::All => true,
-            Choice::Listed(listed) => listed.contains_key(name),
-            Choice::Sample(seed) => in_sample(*seed, name),
+            Self::All => true,
+            Self::Listed(listed) => listed.contains_key(name),
+            Self::Sample(seed) => in_sample(*seed, name),
+            Self::Recorded(_) => false,
+        }
+    }
+
+    fn describe(&self) -> String {
+        match self {
+            Self::All => "all".to_owned(),
+            Self::Listed(_) => "those that are listed".to_owned(),
+            Self::Sample(_) => format!("one in {SAMPLE}"),
+            Self::Recorded(mutants) => format!("none: {mutants} as recorded, nothing that they depend on has changed"),
         }
     }
 }
@@ -111,9 +150,17 @@ fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
 
 fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
     let start = Instant::now();
+    let gpu = Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"));
+    let modules: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
+    let listed = listed_by_module(&modules);
+    let mut now = Record::of_sources(gpu, &modules, &listed);
+    let then = Record::committed();
+    let shares: BTreeMap<&str, Share> =
+        modules.iter().map(|module| (*module, choice.of_module(module, &now, &then))).collect();
     let mut jobs: Vec<(usize, usize, String)> = Vec::new();
     let mut constants = Vec::new();
     let mut invalid = 0;
+    let listed_names = equivalent_mutants();
     for (index, formula) in formulas::all().iter().enumerate() {
         let (mutants, dropped) = mutants_of(formula);
         invalid += dropped;
@@ -127,15 +174,21 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
             if constant {
                 constants.push(name.clone());
             }
-            if !choice.holds(&name) {
-                continue;
+            if let Some(module) = now.modules.get_mut(formula.module) {
+                module.mutants += 1;
+                module.listed += usize::from(listed_names.contains_key(&name));
             }
-            jobs.push((index, position, name));
+            if shares[formula.module].holds(&name) {
+                jobs.push((index, position, name));
+            }
         }
     }
     let total = jobs.len();
     let judged: BTreeSet<String> = jobs.iter().map(|(.., name)| name.clone()).collect();
-    if total == 0 {
+    for (module, share) in shares.iter().filter(|_| matches!(choice, Choice::Touched(_))) {
+        println!("{module}: {}", share.describe());
+    }
+    if total == 0 && !filter.is_empty() {
         // A filter for other tests.
         println!("\ntest result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 1 filtered out\n");
         return ExitCode::SUCCESS;
@@ -174,11 +227,14 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
         println!("BROKEN: the unchanged `{name}` does not pass its own tests in a worker");
     }
     println!("{invalid} changes make no valid program and are no mutants");
-    if let Choice::Sample(seed) = choice {
-        println!("a sample of one in {SAMPLE} by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
+    if let Choice::Sample(seed) | Choice::Touched(seed) = choice {
+        println!("samples are by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
     }
     let whole = filter.is_empty() && matches!(choice, Choice::All);
     let passed = report(whole, &judged, total, &survived, &timed_out, start.elapsed()) && broken.is_empty();
+    if passed && whole && std::env::var(MUTANTS_VARIABLE).is_ok_and(|value| value == "record") {
+        now.write();
+    }
     println!(
         "\ntest result: {}. {} passed; {} failed; 0 ignored; 0 measured; 0 filtered out\n",
         if passed { "ok" } else { "FAILED" },
@@ -226,9 +282,22 @@ fn report(
     missed.is_empty() && stale.is_empty() && timed_out.is_empty() && (!whole || share <= MOST_EQUIVALENT)
 }
 
+/// The lines of each module's listed mutants with their reasons.
+fn listed_by_module<'a>(modules: &[&'a str]) -> BTreeMap<&'a str, String> {
+    let mut texts: BTreeMap<&str, String> = BTreeMap::new();
+    for (name, reason) in equivalent_mutants() {
+        // A function begins with its module's name, a const with that in capitals; of two that fit, the longer.
+        let lower = name.to_lowercase();
+        let fits = modules.iter().filter(|module| lower.starts_with(&format!("{module}_")));
+        let module = fits.max_by_key(|module| module.len()).unwrap_or_else(|| panic!("`{name}` is of no module"));
+        texts.entry(module).or_default().push_str(&format!("{name}\n{reason}\n"));
+    }
+    texts
+}
+
 /// Name and reason of each listed mutant.
 fn equivalent_mutants() -> BTreeMap<String, String> {
-    let text = include_str!("equivalent_mutants.txt");
+    let text = include_str!("equivalent.txt");
     let mut listed = BTreeMap::new();
     let mut reason = String::new();
     let mut continues = false;
@@ -244,7 +313,7 @@ fn equivalent_mutants() -> BTreeMap<String, String> {
             Some(comment) if !first => reason = format!("{reason} {}", comment.trim()),
             Some(comment) => comment.trim().clone_into(&mut reason),
             None => {
-                assert!(!reason.is_empty(), "equivalent_mutants.txt: `{line}` has no reason");
+                assert!(!reason.is_empty(), "equivalent.txt: `{line}` has no reason");
                 listed.insert(line.to_owned(), reason.clone());
             }
         }

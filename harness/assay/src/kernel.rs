@@ -1,0 +1,317 @@
+//! A property test of a compute entry point, whole buffers against whole buffers: [`kernel`] names it, the methods after it say what it is held
+//! to, and [`KernelTest::run`] answers.
+
+mod buffers;
+mod program;
+
+pub use buffers::{Buffer, Buffers, Type};
+
+use crate::accuracy_line::{FieldBound, check_fields, parse_bounds};
+use crate::draws::{Domain, Draws};
+use crate::environment::{self, SEED_VARIABLE};
+use crate::formula::Words;
+use crate::literal::{self, Language};
+use crate::property::Settings;
+use crate::tolerance::{Tolerance, number};
+use crate::wgsl::{Failure, Outcome, exact};
+use program::{Binding, Program};
+use proptest::strategy::Strategy;
+use std::fmt::{self, Write as _};
+
+/// Random inputs, where no other number is asked for.
+const DEFAULT_CASES: u64 = 256;
+/// Dispatches spent on shrinking an input at most.
+const MOST_SHRINKS: usize = 2_000;
+
+/// Begins a test of the compute entry point `entry` in `source`, a WGSL text that is valid by itself.
+pub fn kernel(source: impl Into<String>, entry: &'static str) -> KernelSource {
+    KernelSource { text: source.into(), entry, constants: Vec::new() }
+}
+
+/// A compute entry point without a mirror.
+#[derive(Clone, Debug)]
+pub struct KernelSource {
+    text: String,
+    entry: &'static str,
+    constants: Vec<(&'static str, f64)>,
+}
+
+impl KernelSource {
+    /// A value for an `override`; a bool is 0 or 1.
+    #[must_use]
+    pub fn constant(mut self, name: &'static str, value: f64) -> Self {
+        self.constants.push((name, value));
+        self
+    }
+
+    /// What the kernel does to its buffers, in Rust. They are a tuple in the order of groups and bindings, of those that the entry point uses:
+    /// a `Vec` for a runtime-sized array, a value for anything else, an integer for an atomic. Their types are checked against the shader's.
+    pub fn mirror<B: Buffers>(self, mirror: impl Fn(&mut B) + 'static) -> KernelMirror<B> {
+        KernelMirror { source: self, mirror: Box::new(mirror) }
+    }
+}
+
+type Mirror<B> = Box<dyn Fn(&mut B)>;
+type Workgroups<B> = Box<dyn Fn(&B) -> [u32; 3]>;
+
+/// A compute entry point with its mirror.
+pub struct KernelMirror<B> {
+    source: KernelSource,
+    mirror: Mirror<B>,
+}
+
+impl<B: Buffers + fmt::Debug + 'static> KernelMirror<B> {
+    /// Buffers from a proptest strategy, which also shrinks those that fail. Those that are only written count too: their length is the kernel's.
+    pub fn inputs(self, strategy: impl Strategy<Value = B> + Send + Sync + 'static) -> KernelTest<B> {
+        self.over(Domain::of_strategy(strategy.prop_map(|buffers| buffers.words())))
+    }
+
+    /// Buffers from draws: what a generator guarantees holds of every shrunk input as well.
+    pub fn draws(self, generate: impl Fn(&mut Draws<'_>) -> B + Send + Sync + 'static) -> KernelTest<B> {
+        self.over(Domain::new(move |draws| generate(draws).words()))
+    }
+
+    fn over(self, domain: Domain<Vec<Words>>) -> KernelTest<B> {
+        let Self { source, mirror } = self;
+        let settings = Settings { cases: DEFAULT_CASES, ..Settings::default() };
+        KernelTest { source, mirror, domain, workgroups: Box::new(|_| [1, 1, 1]), bounds: Vec::new(), settings }
+    }
+}
+
+/// A property test of a kernel, ready to run.
+#[must_use = "a test says nothing until it is run"]
+pub struct KernelTest<B> {
+    source: KernelSource,
+    mirror: Mirror<B>,
+    domain: Domain<Vec<Words>>,
+    workgroups: Workgroups<B>,
+    bounds: Vec<(&'static str, String)>,
+    settings: Settings,
+}
+
+/// The worst place of a run.
+struct Worst {
+    buffer: usize,
+    element: usize,
+    ratio: f64,
+    got: Words,
+    expected: Words,
+}
+
+impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
+    /// How many workgroups are dispatched for these buffers; one otherwise.
+    pub fn workgroups(mut self, workgroups: impl Fn(&B) -> [u32; 3] + 'static) -> Self {
+        self.workgroups = Box::new(workgroups);
+        self
+    }
+
+    /// How far an element of the named buffer may be from the mirror's: a sum of `ulp`, `abs` and `rel`, of a struct for each field. Other
+    /// buffers are to be the mirror's to the bit.
+    pub fn within(mut self, buffer: &'static str, bounds: &str) -> Self {
+        self.bounds.push((buffer, bounds.to_owned()));
+        self
+    }
+
+    /// How many random inputs; 256 otherwise.
+    pub fn cases(mut self, cases: u64) -> Self {
+        self.settings.cases = cases;
+        self
+    }
+
+    /// From which seed, where the environment's `ASSAY_SEED` names none.
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.settings.seed = seed;
+        self
+    }
+
+    /// Runs the kernel on the device that `LAPIDARY_ADAPTER` names. A loop without an end is not ended here: the driver's limits hold.
+    ///
+    /// # Errors
+    /// Where a buffer is wrong, with the simplest input found; where the source is not valid or its buffers are others; where there is no
+    /// adapter, unless `ASSAY_WITHOUT_ADAPTER=skip`.
+    pub fn run(mut self) -> Outcome {
+        let entry = self.source.entry;
+        let fail = |what: String| Failure::new(format!("{entry}: {what}"));
+        self.settings.seed = environment::seed().map_err(fail)?.unwrap_or(self.settings.seed);
+        let gpu = environment::gpu(entry).map_err(|error| fail(error.to_string()))?;
+        let Some(gpu) = gpu else { return Ok(()) };
+        let program = Program::new(gpu, &self.source.text, entry, &self.source.constants).map_err(fail)?;
+        expect(&program.bindings, &B::types()).map_err(fail)?;
+        let tolerances = self.tolerances(&program.bindings).map_err(fail)?;
+        let Settings { cases, seed } = self.settings;
+        let (mut failed, mut worst): (u64, Option<(u64, Worst)>) = (0, None);
+        for row in 0..cases {
+            let found = self.judge(&program, &tolerances, &self.domain.row(seed, row)).map_err(fail)?;
+            let Some(found) = found.filter(|found| found.ratio > 1.0) else { continue };
+            failed += 1;
+            if worst.as_ref().is_none_or(|(_, worst)| found.ratio > worst.ratio) {
+                worst = Some((row, found));
+            }
+        }
+        let Some((row, worst)) = worst else { return Ok(()) };
+        let (buffers, worst) = self.shrink(&program, &tolerances, row, worst).map_err(fail)?;
+        Err(fail(self.describe(&program, &tolerances, &buffers, &worst, failed)))
+    }
+
+    /// One tolerance for each buffer.
+    fn tolerances(&self, bindings: &[Binding]) -> Result<Vec<Tolerance>, String> {
+        if let Some((name, _)) = self.bounds.iter().find(|(name, _)| !bindings.iter().any(|b| b.name == *name)) {
+            return Err(format!("within: the entry point uses no buffer `{name}`"));
+        }
+        let of = |binding: &Binding| {
+            let stated = self.bounds.iter().find(|(name, _)| *name == binding.name);
+            let bounds = match stated {
+                Some((_, text)) => {
+                    bounds(text, binding).map_err(|fault| format!("within `{}`: {fault}", binding.name))?
+                }
+                None => exact(&binding.ty.shape),
+            };
+            Ok(Tolerance::new(&[], &binding.ty.shape, &bounds))
+        };
+        bindings.iter().map(of).collect()
+    }
+
+    /// The element that is farthest off; none where every one is the mirror's.
+    fn judge(
+        &self,
+        program: &Program<'_>,
+        tolerances: &[Tolerance],
+        before: &[Words],
+    ) -> Result<Option<Worst>, String> {
+        let mut mirrored = B::of_words(before);
+        let got = program.run(before, (self.workgroups)(&mirrored))?;
+        (self.mirror)(&mut mirrored);
+        let expected = mirrored.words();
+        let mut worst: Option<Worst> = None;
+        for (buffer, binding) in program.bindings.iter().enumerate() {
+            let (got, expected) = (&got[buffer], &expected[buffer]);
+            if got.len() != expected.len() {
+                return Err(format!("the mirror changes the length of `{}`, which no kernel can", binding.name));
+            }
+            if !binding.is_written && got != expected {
+                return Err(format!("the mirror changes `{}`, which the kernel cannot", binding.name));
+            }
+            let width = binding.ty.shape.words();
+            let scalars = binding.ty.shape.scalars();
+            for (element, (got, expected)) in got.chunks_exact(width).zip(expected.chunks_exact(width)).enumerate() {
+                let exact: Vec<f64> =
+                    expected.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
+                let verdict = tolerances[buffer].judge(&[], got, expected, &exact, &|_, _| {});
+                if worst.as_ref().is_none_or(|worst| verdict.ratio > worst.ratio) {
+                    let (got, expected) = (got.to_vec(), expected.to_vec());
+                    worst = Some(Worst { buffer, element, ratio: verdict.ratio, got, expected });
+                }
+            }
+        }
+        Ok(worst)
+    }
+
+    /// The simplest buffers found that fail half as badly.
+    fn shrink(
+        &self,
+        program: &Program<'_>,
+        tolerances: &[Tolerance],
+        row: u64,
+        mut worst: Worst,
+    ) -> Result<(Vec<Words>, Worst), String> {
+        let enough = if worst.ratio.is_finite() { (0.5 * worst.ratio).max(1.0) } else { 1.0 };
+        let mut tree = self.domain.tree(self.settings.seed, row);
+        let mut buffers = tree.current();
+        let mut steps = 0;
+        while steps < MOST_SHRINKS && tree.simplify() {
+            steps += 1;
+            let simpler = tree.current();
+            match self.judge(program, tolerances, &simpler)?.filter(|found| found.ratio > enough) {
+                Some(found) => (buffers, worst) = (simpler, found),
+                None if tree.complicate() => {}
+                None => break,
+            }
+        }
+        Ok((buffers, worst))
+    }
+
+    fn describe(
+        &self,
+        program: &Program<'_>,
+        tolerances: &[Tolerance],
+        buffers: &[Words],
+        worst: &Worst,
+        failed: u64,
+    ) -> String {
+        let Settings { cases, seed } = self.settings;
+        let binding = &program.bindings[worst.buffer];
+        let shape = &binding.ty.shape;
+        let place = if binding.ty.is_runtime_sized {
+            format!("{}[{}]", binding.name, worst.element)
+        } else {
+            binding.name.clone()
+        };
+        let exact: Vec<f64> =
+            worst.expected.iter().zip(shape.scalars()).map(|(word, scalar)| number(scalar, *word)).collect();
+        let mut text = format!(
+            "{failed} of {cases} inputs failed; `{place}` is off by {} times the allowed error\n  {place} = {}\n  expected {}\n",
+            worst.ratio,
+            literal::of_shape(Language::Wgsl, shape, &worst.got),
+            literal::of_shape(Language::Wgsl, shape, &worst.expected)
+        );
+        for part in tolerances[worst.buffer].allowed(&exact) {
+            let name = if part.leaf.path.is_empty() { String::new() } else { format!("{} ", part.leaf.path) };
+            let _ = writeln!(text, "  allowed {name}± {:.3e}", part.allowed);
+        }
+        for (binding, words) in program.bindings.iter().zip(buffers) {
+            let _ = writeln!(text, "  {} = {}", binding.name, spell(Language::Wgsl, &binding.ty, words));
+        }
+        let rust: Vec<String> = program
+            .bindings
+            .iter()
+            .zip(buffers)
+            .map(|(binding, words)| spell(Language::Rust, &binding.ty, words))
+            .collect();
+        let [x, y, z] = (self.workgroups)(&B::of_words(buffers));
+        let _ = write!(
+            text,
+            "  in Rust: ({}), {x} x {y} x {z} workgroups\n  seed {seed}, {cases} inputs; again with {SEED_VARIABLE}={seed}",
+            rust.join(", ")
+        );
+        text
+    }
+}
+
+fn bounds(text: &str, binding: &Binding) -> Result<Vec<FieldBound>, String> {
+    let bounds = parse_bounds(text)?;
+    check_fields(&bounds, &binding.ty.shape)?;
+    if bounds.iter().any(|bound| bound.bound.backward > 0.0) {
+        return Err("a whole buffer has no backward error; give ulp, abs or rel".to_owned());
+    }
+    Ok(bounds)
+}
+
+/// Refuses a mirror of other buffers than the entry point's.
+fn expect(bindings: &[Binding], types: &[Type]) -> Result<(), String> {
+    if bindings.len() != types.len() {
+        let names: Vec<String> = bindings.iter().map(|binding| format!("`{}`", binding.name)).collect();
+        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        return Err(format!(
+            "the mirror has {} buffers, the entry point uses {}: {names}",
+            types.len(),
+            bindings.len()
+        ));
+    }
+    match bindings.iter().zip(types).find(|(binding, ty)| binding.ty != **ty) {
+        None => Ok(()),
+        Some((binding, ty)) => Err(format!("buffer `{}`: expected {ty}, found {}", binding.name, binding.ty)),
+    }
+}
+
+/// A buffer as a literal.
+fn spell(language: Language, ty: &Type, words: &[u32]) -> String {
+    if !ty.is_runtime_sized {
+        return literal::of_shape(language, &ty.shape, words);
+    }
+    let elements: Vec<String> =
+        words.chunks_exact(ty.shape.words()).map(|element| literal::of_shape(language, &ty.shape, element)).collect();
+    match language {
+        Language::Wgsl => format!("array<{}, {}>({})", ty.shape, elements.len(), elements.join(", ")),
+        Language::Rust => format!("vec![{}]", elements.join(", ")),
+    }
+}

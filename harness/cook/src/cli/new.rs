@@ -1,0 +1,146 @@
+//! `cook new`.
+
+use super::{Failure, Outcome, output};
+use std::path::{Path, PathBuf};
+
+/// The files of a new technique, with a function to replace; they pass the tests as they are. What to do with them: CONTRIBUTING.md.
+#[derive(clap::Args)]
+#[command(after_help = "Example: ./cook new thin_film")]
+pub(super) struct Arguments {
+    /// Its name: small letters, digits and single underscores, as `thin_film`.
+    name: String,
+    /// The cookbook's folder, where it is not the one that this program was built from.
+    #[arg(long = "in", value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+/// The technique's files, and what they hold, with `NAME` for the name.
+const FILES: [(&str, &str); 7] = [
+    ("wgsl/NAME.wgsl", include_str!("new/module.wgsl")),
+    ("crates/NAME/Cargo.toml", include_str!("new/manifest.toml")),
+    ("crates/NAME/src/lib.rs", include_str!("new/lib.rs.txt")),
+    ("crates/NAME/src/oracle.rs", include_str!("new/oracle.rs.txt")),
+    ("crates/NAME/src/formulas.rs", include_str!("new/formulas.rs.txt")),
+    ("crates/NAME/tests/formulas.rs", include_str!("new/tests.rs.txt")),
+    ("docs/NAME.md", include_str!("new/page.md")),
+];
+
+/// The manifests that cargo needs a line in, each after the line before it in the order of names, and the line.
+const MANIFESTS: [(&str, &str); 2] = [
+    ("Cargo.toml", "lapidary-NAME = { path = \"crates/NAME\" }"),
+    ("harness/cook/Cargo.toml", "lapidary-NAME = { workspace = true, features = [\"formulas\"] }"),
+];
+
+/// The changelog, and the heading below which a new module is named.
+const CHANGELOG: (&str, &str) = ("CHANGELOG.md", "### New\n\n");
+
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let name = arguments.name.as_str();
+    check_name(name).map_err(Failure)?;
+    let root = match &arguments.folder {
+        Some(folder) => folder.clone(),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."),
+    };
+    let changes = changes(&root, name).map_err(Failure)?;
+    write(&changes).map_err(Failure)?;
+    for Change { path, is_new, .. } in &changes {
+        let path = path.strip_prefix(&root).unwrap_or(path).display();
+        output::line(&format!("{} {path}", if *is_new { "new    " } else { "changed" }))?;
+    }
+    output::line(&format!("next: cargo test -p lapidary-{name}; then CONTRIBUTING.md, from \"The WGSL\" on"))?;
+    Ok(Outcome::Passed)
+}
+
+/// A file to be written whole.
+struct Change {
+    path: PathBuf,
+    text: String,
+    /// Not there yet; otherwise changed.
+    is_new: bool,
+}
+
+/// Refuses what cannot name a module.
+fn check_name(name: &str) -> Result<(), String> {
+    let fault =
+        |what: &str| Err(format!("`{name}` {what}; choose a name of small letters, digits and single underscores"));
+    if !name.starts_with(|first: char| first.is_ascii_lowercase()) {
+        return fault("does not begin with a small letter");
+    }
+    if !name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_') {
+        return fault("has other characters than a to z, 0 to 9 and _");
+    }
+    if name.contains("__") || name.ends_with('_') {
+        return fault("has two underscores in a row, or one at its end, which naga_oil does not allow");
+    }
+    if lapidary_wgsl::RECIPES.iter().any(|recipe| recipe.name == name) {
+        return Err(format!("`{name}` is a recipe; choose another name"));
+    }
+    Ok(())
+}
+
+/// Everything to be written; nothing is yet.
+fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
+    let named = |text: &str| text.replace("NAME", name);
+    let mut changes = Vec::new();
+    for (path, text) in FILES {
+        let path = root.join(named(path));
+        if path.exists() {
+            return Err(format!("{}: is there already; choose another name, or delete it", path.display()));
+        }
+        changes.push(Change { path, text: named(text), is_new: true });
+    }
+    for (path, line) in MANIFESTS {
+        let path = root.join(path);
+        let text = with_line(&read(&path)?, &named(line)).ok_or_else(|| {
+            format!("{}: has no line of a module, `lapidary-…`; is {} the cookbook?", path.display(), root.display())
+        })?;
+        changes.push(Change { path, text, is_new: false });
+    }
+    let (path, heading) = (root.join(CHANGELOG.0), CHANGELOG.1);
+    let text = read(&path)?;
+    let Some((before, after)) = text.split_once(heading) else {
+        return Err(format!("{}: has no heading `{}` to name the module below", path.display(), heading.trim()));
+    };
+    let text = format!("{before}{heading}- `{name}`: a new module.\n{after}");
+    changes.push(Change { path, text, is_new: false });
+    Ok(changes)
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: cannot be read: {error}", path.display()))
+}
+
+/// The manifest with a dependency's line among those of the modules, which are in order; none where there are none.
+fn with_line(manifest: &str, line: &str) -> Option<String> {
+    // Those of the same form: up to the name, and from the name on.
+    let form =
+        |line: &str| line.starts_with("lapidary-") && (line.contains("crates/") || line.contains("\"formulas\""));
+    let lines: Vec<&str> = manifest.lines().collect();
+    let first = lines.iter().position(|line| form(line))?;
+    let last = lines.iter().rposition(|line| form(line))?;
+    let at = (first..=last).find(|at| form(lines[*at]) && lines[*at] > line).unwrap_or(last + 1);
+    let (before, after) = lines.split_at(at);
+    Some([before, &[line], after].concat().join("\n") + "\n")
+}
+
+/// Writes all files, or takes back what is written.
+fn write(changes: &[Change]) -> Result<(), String> {
+    let mut written: Vec<(&Path, Option<String>)> = Vec::new();
+    for Change { path, text, is_new } in changes {
+        let before = if *is_new { None } else { Some(read(path)?) };
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let result = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(path, text));
+        written.push((path, before));
+        if let Err(error) = result {
+            for (path, before) in written {
+                // What cannot be taken back either is what the message is about.
+                let _ = match before {
+                    Some(text) => std::fs::write(path, text),
+                    None => std::fs::remove_file(path),
+                };
+            }
+            return Err(format!("{}: cannot be written: {error}", path.display()));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! The record of the last whole run: for each module a hash of all that its score depends on. Where it is the same, the score is the same.
+
+use lapidary_cook::cookbook::release::text_hash;
+use lapidary_gpu::Gpu;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What the score depends on, besides a module's own: the engine, this program, the versions of everything.
+const ENGINE: [&str; 5] = [
+    "harness/assay/src",
+    "harness/gpu/src",
+    "harness/specialise/src",
+    "harness/cook/tests/mutation/main.rs",
+    "Cargo.lock",
+];
+
+/// A whole run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// The device.
+    pub(crate) adapter: String,
+    /// The hash of the engine's sources.
+    pub(crate) engine: String,
+    /// The modules by name.
+    pub(crate) modules: BTreeMap<String, Module>,
+}
+
+/// A module of a whole run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Module {
+    /// The hash of its WGSL, its crate and those of its formulas, and of what is listed of it.
+    pub(crate) hash: String,
+    /// Its mutants.
+    pub(crate) mutants: usize,
+    /// Those that are listed as equivalent.
+    pub(crate) listed: usize,
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn file() -> PathBuf {
+    root().join("docs/measurements/lavapipe/mutation.json")
+}
+
+impl Record {
+    /// The committed one; an empty one where there is none.
+    pub(crate) fn committed() -> Self {
+        let Ok(text) = std::fs::read_to_string(file()) else { return Self::default() };
+        serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file().display()))
+    }
+
+    /// What a whole run would record now, but for the counts; `listed` are the equivalent mutants' lines of each module.
+    pub(crate) fn of_sources(gpu: &Gpu, modules: &[&str], listed: &BTreeMap<&str, String>) -> Self {
+        let engine = hash(&ENGINE.map(|path| root().join(path)));
+        let module = |name: &&str| {
+            let own = crates_of(name);
+            let mut texts = vec![root().join(format!("wgsl/{name}.wgsl"))];
+            texts.extend(own.iter().map(|name| root().join("crates").join(name).join("src")));
+            let hash = text_hash(&(hash(&texts) + listed.get(name).map_or("", String::as_str)));
+            ((*name).to_owned(), Module { hash, mutants: 0, listed: 0 })
+        };
+        Self { adapter: gpu.describe(), engine, modules: modules.iter().map(module).collect() }
+    }
+
+    /// Whether the engine and the device are those of `other`.
+    pub(crate) fn is_of_the_engine_of(&self, other: &Self) -> bool {
+        self.adapter == other.adapter && self.engine == other.engine
+    }
+
+    /// Whether a module's own part is that of `other`.
+    pub(crate) fn agrees(&self, other: &Self, module: &str) -> bool {
+        let hash = |record: &Self| record.modules.get(module).map(|module| module.hash.clone());
+        hash(self).is_some() && hash(self) == hash(other)
+    }
+
+    pub(crate) fn write(&self) {
+        let text = serde_json::to_string_pretty(self).expect("plain data") + "\n";
+        std::fs::write(file(), text).unwrap_or_else(|error| panic!("{}: {error}", file().display()));
+        println!("recorded in {}", file().display());
+    }
+}
+
+/// The module's crate, and those that its formulas need.
+fn crates_of(module: &str) -> Vec<String> {
+    let manifest = root().join("crates").join(module).join("Cargo.toml");
+    let text = std::fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{}: {error}", manifest.display()));
+    let is_crate = |name: &&str| root().join("crates").join(name).is_dir();
+    let needed = text.lines().filter_map(|line| line.strip_prefix("lapidary-")?.split([' ', '.']).next());
+    let mut crates: Vec<String> = needed.filter(is_crate).chain([module]).map(str::to_owned).collect();
+    crates.sort();
+    crates.dedup();
+    crates
+}
+
+/// One hash of all files below these paths, with their names.
+fn hash(paths: &[PathBuf]) -> String {
+    let mut text = String::new();
+    paths.iter().for_each(|path| collect(path, &mut text));
+    text_hash(&text)
+}
+
+fn collect(path: &Path, text: &mut String) {
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let mut entries: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        entries.sort();
+        entries.iter().for_each(|entry| collect(entry, text));
+        return;
+    }
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    text.push_str(&name);
+    text.push('\n');
+    text.push_str(&std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())));
+}
