@@ -8,7 +8,7 @@ pub mod strip;
 mod walked;
 
 pub(crate) use comparison::flip;
-pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare};
+pub use comparison::{Comparison, MOST_FLIP, MOST_HIGH_FLIP, MOST_RMSE, compare, compare_linear};
 use lapidary_gpu::Gpu;
 use lapidary_render as render;
 use lapidary_render::{Picture, RenderError, Settings, file};
@@ -71,6 +71,17 @@ impl Committed {
             Self::Shot(shot) => render_shot(gpu, shot),
             Self::Strip => strip::render(gpu),
             Self::BesideWalks => beside_walks::render(gpu),
+        }
+    }
+
+    /// The second of them alone: a quarter of the work.
+    ///
+    /// # Errors
+    /// As [`Committed::render`].
+    pub fn render_linear(self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
+        match self {
+            Self::Shot(shot) => Ok(render::render(gpu, &shot.open()?, &shot.settings(EXR_SIDE))?),
+            Self::Strip | Self::BesideWalks => self.render(gpu).map(|[_, linear]| linear),
         }
     }
 }

@@ -14,9 +14,12 @@ use std::process::Command;
 pub(super) struct Arguments {
     /// Run the tests whose names hold this.
     filter: Option<String>,
-    /// Leave out the mutation tests, and the slow ones of the suite.
+    /// Leave out the mutation tests and what takes long of the others: about a minute.
     #[arg(long)]
     quick: bool,
+    /// Leave nothing to samples: every picture as it is seen, every rung.
+    #[arg(long, conflicts_with = "quick")]
+    whole: bool,
     /// Judge every mutant, not only those of the modules that changed since the record.
     #[arg(long, conflicts_with = "quick")]
     all_mutants: bool,
@@ -28,6 +31,36 @@ pub(super) struct Arguments {
     #[arg(long)]
     show: bool,
 }
+
+/// What a quick run leaves out: the tests with one of these in their names.
+const SLOW: [&str; 26] = [
+    "antialiasing::",
+    "cdrf_shading::",
+    "chromium::",
+    "cost::",
+    "deferred::",
+    "dispatch::random",
+    "effects_off::",
+    "formulas::every",
+    "gem::",
+    "optical_path::",
+    "optical_path_shading::",
+    "parity::",
+    "plan::every_subset",
+    "plan::what_is_drawn",
+    "random_walk::",
+    "reference::",
+    "restraint::",
+    "rewrites::",
+    "seams::",
+    "shadows::",
+    "slack::",
+    "snapshots::",
+    "specialise::",
+    "user_file::odd",
+    "voxelization::turned",
+    "walked_references::",
+];
 
 /// What makes tests write instead of compare.
 const REFRESHING: [(&str, &str); 4] = [
@@ -45,6 +78,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     // The mutation tests last and apart: cargo stops at the first target that fails.
+    if arguments.quick {
+        eprintln!("left out: mutants, and the tests named {}", SLOW.join(", "));
+    }
     let parts: [&[&str]; 2] = [
         &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
         &["--package", "lapidary-cook", "--test", "mutation"],
@@ -65,12 +101,18 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
         // The same for all parts, whatever changes in the tree meanwhile.
         command.env(SEED_VARIABLE, seed.value.to_string());
+        if arguments.whole {
+            command.env("LAPIDARY_WHOLE", "1");
+        }
         if arguments.all_mutants {
             command.env("LAPIDARY_MUTANTS", if arguments.refresh { "record" } else { "all" });
         }
         command.arg("--").args(&arguments.filter);
         if arguments.refresh && !arguments.all_mutants {
             command.envs(REFRESHING).args(GENERATED);
+        }
+        if arguments.quick {
+            command.args(SLOW.iter().flat_map(|name| ["--skip", name]));
         }
         if arguments.show {
             command.arg("--nocapture");

@@ -48,21 +48,12 @@ impl Comparison {
 /// Where a reference is missing, unreadable or of another size, or a pixel of either is not finite.
 pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
     let png = folder.join(format!("{name}.png"));
-    let exr = folder.join(format!("{name}.exr"));
     let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
-    let reference_linear = read(&exr, (linear.width, linear.height))?.into_rgba32f();
-    let reference_linear: Vec<[f32; 4]> = reference_linear.pixels().map(|pixel| pixel.0).collect();
-    require_finite(&exr.display().to_string(), linear.width, &reference_linear)?;
-    for picture in [seen, linear] {
-        require_finite(&format!("the new picture {name}"), picture.width, &picture.linear)?;
-    }
+    let rmse = linear_rmse(name, linear, folder)?;
+    require_finite(&format!("the new picture {name}"), seen.width, &seen.linear)?;
     let map = flip_map(seen, reference.as_raw());
     let mut each = map.to_vec();
-    let comparison = Comparison {
-        flip: nv_flip::FlipPool::from_image(&map).mean(),
-        high_flip: high(&mut each),
-        rmse: relative_rmse(&linear.linear, &reference_linear),
-    };
+    let comparison = Comparison { flip: nv_flip::FlipPool::from_image(&map).mean(), high_flip: high(&mut each), rmse };
     let beside = ["new", "difference"].map(|kind| folder.join(format!("{name}.{kind}.png")));
     if comparison.holds() {
         // What an earlier failure left is out of date.
@@ -78,6 +69,28 @@ pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Resu
         file::replace(&beside[1], &bytes)?;
     }
     Ok(comparison)
+}
+
+/// The RMSE of linear RGB over the root mean square of the reference called `name` in `folder`. Where it is above [`MOST_RMSE`], the new
+/// picture is left beside the reference, as `<name>.new.png`.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_linear(name: &str, linear: &Picture, folder: &Path) -> Result<f32, SnapshotError> {
+    let rmse = linear_rmse(name, linear, folder)?;
+    if rmse > MOST_RMSE || rmse.is_nan() {
+        file::write(linear, &folder.join(format!("{name}.new.png")))?;
+    }
+    Ok(rmse)
+}
+
+fn linear_rmse(name: &str, linear: &Picture, folder: &Path) -> Result<f32, SnapshotError> {
+    let exr = folder.join(format!("{name}.exr"));
+    let reference = read(&exr, (linear.width, linear.height))?.into_rgba32f();
+    let reference: Vec<[f32; 4]> = reference.pixels().map(|pixel| pixel.0).collect();
+    require_finite(&exr.display().to_string(), linear.width, &reference)?;
+    require_finite(&format!("the new picture {name}"), linear.width, &linear.linear)?;
+    Ok(relative_rmse(&linear.linear, &reference))
 }
 
 /// Refuses a picture with a pixel that is no number, or that an EXR cannot hold.

@@ -51,11 +51,12 @@ const MOST_STEPS: f64 = 0.25;
 
 #[test]
 fn bright_edges_are_no_staircases() {
-    for (name, rung, exposure) in [
+    let scenes = [
         ("brilliant", "convex-8+tracker", 1.0),
         ("chandelier", "proxy-2+tracker", 1.0),
         ("vitrine", "by-material", 0.5),
-    ] {
+    ];
+    for (name, rung, exposure) in super::sampled(scenes, 3) {
         let scene = Scene::named(name).expect("built in");
         let rung = rung.parse().expect("a rung");
         let settings = |samples| Settings { rung, exposure, samples, ..Settings::of_size(384, 384) };

@@ -29,12 +29,13 @@ fn moved(scene: &Scene, scale: f32, offset: Vec3) -> Scene {
 
 #[test]
 fn size_does_not_matter() {
-    for (name, rung) in [
+    let cases = [
         ("brilliant", "proxy-4+tracker"),
         ("sapphire", "convex-8+tracker"),
         ("brilliant", "bvh-8"),
         ("brilliant", "triangles-2"),
-    ] {
+    ];
+    for (name, rung) in super::sampled(cases, 4) {
         let scene = Scene::named(name).expect("built in");
         let expected = picture(&scene, rung);
         for scale in [1e-4, 1e4] {

@@ -41,6 +41,7 @@ mod slack;
 mod snapshots;
 mod specialise;
 mod structure;
+mod technique;
 mod text;
 mod texture_diffusion;
 mod user_file;
@@ -48,6 +49,7 @@ mod vitrine;
 mod voxelization;
 mod walked_references;
 
+use lapidary_assay::draws::mix;
 use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::{AdapterChoice, Gpu};
 
@@ -56,6 +58,29 @@ fn seed() -> u64 {
     let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     seed.value
+}
+
+/// Set, the suite leaves nothing to samples; `./cook test --whole` and `.ci/full` set it.
+const WHOLE_VARIABLE: &str = "LAPIDARY_WHOLE";
+
+/// Whether the suite leaves nothing to samples.
+fn whole() -> bool {
+    std::env::var_os(WHOLE_VARIABLE).is_some()
+}
+
+/// Of what takes long one item in so many, chosen by the suite's seed, so that another change meets others; at least one, and all where the
+/// suite is run whole. The test's output says which.
+fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
+    let items: Vec<T> = items.into_iter().collect();
+    if whole() {
+        return items;
+    }
+    let (count, seed) = (items.len(), seed());
+    let certain = usize::try_from(seed % count.max(1) as u64).unwrap_or_default();
+    let is_chosen = |index: &usize| *index == certain || mix(seed ^ mix(*index as u64)).is_multiple_of(one_in);
+    let chosen: Vec<usize> = (0..count).filter(is_chosen).collect();
+    println!("of {count}, numbers {chosen:?}; all with {WHOLE_VARIABLE}=1");
+    items.into_iter().enumerate().filter(|(index, _)| chosen.contains(index)).map(|(_, item)| item).collect()
 }
 
 /// The process's one device. A missing adapter fails the test: a suite that skips itself checks nothing.

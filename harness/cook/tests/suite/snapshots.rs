@@ -6,6 +6,9 @@ use lapidary_render::Picture;
 use lapidary_scene::Scene;
 use std::path::Path;
 
+/// One picture in so many is compared as it is seen, or spoilt, where the suite is not run whole.
+const ONE_IN: u64 = 8;
+
 fn source() -> String {
     brilliant().source()
 }
@@ -27,14 +30,26 @@ fn copy_of(folder: &Path) -> tempfile::TempDir {
     copy
 }
 
+/// What is seen takes longer to draw than linear radiance, of which every other is compared below.
 #[test]
-fn every_picture_is_as_it_was() {
-    for committed in Committed::all() {
+fn pictures_are_as_they_were() {
+    for committed in super::sampled(Committed::all(), ONE_IN) {
         let name = committed.name();
         let pictures = committed.render(super::gpu()).expect("rendered");
         let comparison = snapshot::compare(name, &pictures, &committed.folder()).expect(name);
         println!("{name:28} {comparison:?}");
         assert!(comparison.holds(), "{name}: {comparison:?}; see the new picture and the difference beside it");
+    }
+}
+
+#[test]
+fn linear_radiance_is_as_it_was() {
+    for committed in super::sampled(Committed::all(), 2) {
+        let name = committed.name();
+        let picture = committed.render_linear(super::gpu()).expect("rendered");
+        let rmse = snapshot::compare_linear(name, &picture, &committed.folder()).expect(name);
+        println!("{name:28} {rmse}");
+        assert!(rmse <= snapshot::MOST_RMSE, "{name}: {rmse}; see the new picture beside it");
     }
 }
 
@@ -121,7 +136,7 @@ fn brightest(picture: &Picture, side: usize) -> (usize, usize) {
 /// What the eye cannot miss: a hole in what is seen, though it is a 256th of the picture and its linear radiance has none.
 #[test]
 fn a_black_square_is_seen() {
-    for picture in Committed::all() {
+    for picture in super::sampled(Committed::all(), ONE_IN) {
         let (name, folder) = (picture.name(), picture.folder());
         let comparison = spoilt(name, &folder, |[seen, _]| {
             let ((left, top), width) = (brightest(seen, 32), seen.width as usize);
@@ -162,7 +177,7 @@ fn what_is_no_number_is_refused() {
 /// Coverage is 1 where the body is dark: with it in the reference's power, light of the wrong strength hardly counted.
 #[test]
 fn dim_light_is_compared_by_itself() {
-    for picture in Committed::all() {
+    for picture in super::sampled(Committed::all(), ONE_IN) {
         let (name, folder) = (picture.name(), picture.folder());
         let comparison = spoilt(name, &folder, |[_, linear]| {
             linear.linear.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|value| *value *= 0.95);
@@ -175,7 +190,7 @@ fn dim_light_is_compared_by_itself() {
 /// In every picture, of what is seen and of linear radiance alone. A picture without colour has none to swap.
 #[test]
 fn channels_are_told_apart() {
-    for picture in Committed::all() {
+    for picture in super::sampled(Committed::all(), ONE_IN) {
         let (name, folder) = (picture.name(), picture.folder());
         let seen = spoilt(name, &folder, |[seen, _]| seen.encoded.iter_mut().for_each(|pixel| pixel.swap(0, 2)));
         let linear = spoilt(name, &folder, |[_, linear]| linear.linear.iter_mut().for_each(|pixel| pixel.swap(0, 2)));
@@ -192,7 +207,7 @@ fn another_drivers_samples_pass() {
     // The rungs with the most edges for a pixel, and one of each other recipe.
     let chosen =
         ["brilliant", "brilliant_separate", "exact_separate", "bunny_stone", "prism", "skin_bunny", "jade", "bunny"];
-    for shot in SHOTS.iter().filter(|shot| chosen.contains(&shot.name)) {
+    for shot in super::sampled(SHOTS.iter().filter(|shot| chosen.contains(&shot.name)), ONE_IN) {
         let mut scene = shot.open().expect("built in");
         let per_sample = scene.camera.vertical_fov / (snapshot::EXR_SIDE * shot.samples) as f32;
         let turn = glam::Quat::from_axis_angle(glam::Vec3::new(0.6, 0.64, 0.48).normalize(), per_sample / 256.0);

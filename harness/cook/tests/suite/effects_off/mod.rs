@@ -84,8 +84,8 @@ impl Left {
         Left { bindings, entries: entries.collect() }
     }
 
-    fn specialised(source: &str, values: &[(String, f64)], pass: &[String]) -> Left {
-        let (module, info) = specialised(source, values, pass);
+    fn specialised(module: &Module, values: &[(String, f64)], pass: &[String]) -> Left {
+        let (module, info) = specialised(module, values, pass);
         Left::of(&module, &info)
     }
 
@@ -99,12 +99,11 @@ impl Left {
 }
 
 /// The shader with those of `values` that it declares.
-fn specialised(source: &str, values: &[(String, f64)], pass: &[String]) -> (Module, ModuleInfo) {
-    let module = parse(source);
+fn specialised(module: &Module, values: &[(String, f64)], pass: &[String]) -> (Module, ModuleInfo) {
     let values: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let values = lapidary_specialise::declared(&module, &values);
+    let values = lapidary_specialise::declared(module, &values);
     let pass: Vec<&str> = pass.iter().map(String::as_str).collect();
-    specialise(module, &values, &pass).unwrap_or_else(|error| panic!("{pass:?} with {values:?}: {error}"))
+    specialise(module.clone(), &values, &pass).unwrap_or_else(|error| panic!("{pass:?} with {values:?}: {error}"))
 }
 
 /// `values` with an effect's own set to off.
@@ -116,12 +115,12 @@ fn with_off(values: &[(String, f64)], effect: &str) -> Vec<(String, f64)> {
 
 /// The differences between a recipe with an effect off and its text without the effect.
 fn differences(whole: &str, without: &str, effect: &str) -> Vec<String> {
-    let module = parse(whole);
+    let modules = [whole, without].map(parse);
     let mut found = Vec::new();
-    for pass in passes(&module) {
-        for values in choices(&module) {
+    for pass in passes(&modules[0]) {
+        for values in choices(&modules[0]) {
             let values = with_off(&values, effect);
-            let [off, cut] = [whole, without].map(|source| Left::specialised(source, &values, &pass));
+            let [off, cut] = modules.each_ref().map(|module| Left::specialised(module, &values, &pass));
             found.extend(off.difference(&cut).map(|difference| format!("{pass:?} with {values:?}: {difference}")));
         }
     }
@@ -176,7 +175,7 @@ fn with_all_effects_off_no_more_is_left_than_of_the_text_without_any() {
         assert!(!bare.contains("EFFECT_"), "{}", recipe.name);
         let off: Vec<(String, f64)> = effects.iter().map(|effect| (override_of(effect), 0.0)).collect();
         for pass in passes(&parse(&source)) {
-            let (module, info) = specialised(&source, &off, &pass);
+            let (module, info) = specialised(&parse(&source), &off, &pass);
             let (plain, plain_info) = by_naga(&bare, &pass);
             let [left, plain_left] = [Left::of(&module, &info), Left::of(&plain, &plain_info)];
             let name = format!("{} {pass:?}", recipe.name);
@@ -232,10 +231,10 @@ fn a_binding_that_is_kept_is_seen() {
     let source = lapidary_wgsl::recipe_source("gem");
     let values = vec![("EFFECT_ENVIRONMENT_MAP".to_owned(), 0.0)];
     let pass = ["gem_vertex", "gem_fragment"].map(str::to_owned);
-    let cut = Left::specialised(&cut(&source, &["environment_map"]), &values, &pass);
-    let (mut module, info) = specialised(&source, &values, &pass);
+    let cut = Left::specialised(&parse(&cut(&source, &["environment_map"])), &values, &pass);
+    let (mut module, info) = specialised(&parse(&source), &values, &pass);
     assert_eq!(Left::of(&module, &info).difference(&cut), None);
-    let (whole, _) = specialised(&source, &[("EFFECT_ENVIRONMENT_MAP".to_owned(), 1.0)], &pass);
+    let (whole, _) = specialised(&parse(&source), &[("EFFECT_ENVIRONMENT_MAP".to_owned(), 1.0)], &pass);
     let is_map = |variable: &&naga::GlobalVariable| variable.name.as_deref() == Some("environment_map");
     let map = whole.global_variables.iter().map(|(_, variable)| variable).find(is_map).expect("the map's binding");
     let ty = module.types.insert(whole.types[map.ty].clone(), naga::Span::UNDEFINED);
@@ -248,7 +247,7 @@ fn a_binding_that_is_kept_is_seen() {
 /// Ids and the order of declarations do not matter; everything else does.
 #[test]
 fn the_canonical_form_forgets_the_order_of_declarations_alone() {
-    let left = |source: &str| Left::specialised(source, &[], &["main".to_owned()]);
+    let left = |source: &str| Left::specialised(&parse(source), &[], &["main".to_owned()]);
     let parts =
         ["struct A { x: f32, y: u32 }", "struct B { z: vec3f, a: A }", "const T = array<f32, 3>(1.0, 2.0, 4.0);"];
     let body = "

@@ -10,6 +10,7 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Light, Medium, Scene};
 
 /// A scene and a rung, and effects of their recipe, each of which is left out in turn.
+#[derive(Debug)]
 struct Case {
     scene: &'static str,
     rung: &'static str,
@@ -69,7 +70,8 @@ fn settings(case: &Case) -> Settings {
 #[test]
 fn a_picture_without_an_effect_is_the_one_by_the_text_without_it() {
     let mut seen = Effects::NONE;
-    for case in &CASES {
+    // The text is proven to be the same for every effect and recipe; here the device is asked.
+    for case in crate::sampled(&CASES, 3) {
         let Case { scene: name, rung, effects } = case;
         let scene = scene(name);
         let called = Decisions::of(&scene.objects[0], &scene, &settings(case).request());
@@ -97,7 +99,7 @@ fn a_picture_without_an_effect_is_the_one_by_the_text_without_it() {
         }
     }
     // Surface is the voxels' recipe's, which has no picture: the suite's SPIR-V and voxels speak for it.
-    for effect in Effect::ALL.into_iter().filter(|effect| *effect != Effect::Surface) {
+    for effect in Effect::ALL.into_iter().filter(|effect| *effect != Effect::Surface && crate::whole()) {
         assert!(seen.has(effect), "{effect} is left out nowhere");
     }
 }
