@@ -1,5 +1,7 @@
 //! `wgsl/veins.wgsl`, function by function, on the device: `cargo test -p lapidary-veins`.
 
+use lapidary_veins::formulas::formulas;
+
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/veins.wgsl"), lapidary_veins::formulas::formulas())
+    lapidary_assay::module::test(include_str!("../../../wgsl/veins.wgsl"), formulas())
 }

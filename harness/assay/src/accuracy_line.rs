@@ -1,4 +1,4 @@
-//! The `Accuracy:` line of a function: the tolerance that its tests apply. Grammar in `docs/contract.md`.
+//! The `Accuracy:` line of a function: the tolerance that its tests apply. Grammar at [`Accuracy::parse`].
 
 use crate::shape::Shape;
 use std::fmt;
@@ -40,7 +40,8 @@ pub struct Bound {
 }
 
 impl Accuracy {
-    /// Parses the text after `Accuracy:`.
+    /// Parses the text after `Accuracy:`: `naive`, or `lavapipe BOUNDS; portable BOUNDS`, where BOUNDS are one bound for each field of the result,
+    /// with commas between, and a bound is `[field] NUMBER UNIT {+ NUMBER UNIT}` in `ulp`, `abs`, `rel` and `backward`.
     pub fn parse(text: &str) -> Result<Accuracy, String> {
         let text = text.trim();
         if text == "naive" {

@@ -184,6 +184,12 @@ impl<T> Domain<T> {
         (0..count).map(|_| again.bits()).collect()
     }
 
+    /// Whether its values are a strategy's, so that its draws say nothing of them.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn is_of_strategy(&self) -> bool {
+        self.tree.is_some()
+    }
+
     /// The value of these draws.
     pub fn of_draws(&self, draws: &[u32]) -> T {
         (self.generate)(&mut Draws::replay(draws))

@@ -1,6 +1,7 @@
 //! What the environment says of a run: its seed, and its device.
 
 use lapidary_gpu::{AdapterChoice, Gpu, GpuError};
+use std::io::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Overrides the seed: a whole number, as a failure prints it.
@@ -20,9 +21,13 @@ pub(crate) fn gpu(function: &str) -> Result<Option<&'static Gpu>, GpuError> {
     static SKIPPED: AtomicUsize = AtomicUsize::new(0);
     match Gpu::shared(&AdapterChoice::from_environment()) {
         Ok(gpu) => Ok(Some(gpu)),
-        Err(_) if std::env::var_os(WITHOUT_ADAPTER_VARIABLE).is_some_and(|value| value == "skip") => {
+        Err(GpuError::NoAdapter { .. })
+            if std::env::var_os(WITHOUT_ADAPTER_VARIABLE).is_some_and(|value| value == "skip") =>
+        {
             let number = SKIPPED.fetch_add(1, Ordering::Relaxed) + 1;
-            eprintln!(
+            // To the stream itself: what a passing test prints is not shown.
+            let _ = writeln!(
+                std::io::stderr(),
                 "assay: {function} was not tested: no adapter, and {WITHOUT_ADAPTER_VARIABLE}=skip ({number} so far)"
             );
             Ok(None)

@@ -45,13 +45,17 @@ impl Examination {
             let _ = writeln!(text, "{} of {} inputs failed; {reason}", self.report.failed, self.report.cases);
         }
         if let Some(failure) = &self.failure {
-            text.push_str(&failure.to_string());
+            let comma = if formula.arguments.len() == 1 { "," } else { "" };
+            let _ = writeln!(text, "{failure}  to keep it: .case(({}{comma}))", failure.arguments_rust);
         }
         for fault in self.broken_hard_cases.iter().map(|fault| format!("hard case: {fault}")) {
             let _ = writeln!(text, "{fault}");
         }
         for fault in self.broken_promises.iter().chain(&self.broken_branches) {
             let _ = writeln!(text, "{fault}");
+        }
+        if let Some(why) = &self.branches_untested {
+            let _ = writeln!(text, "  inputs beside branches were not looked for: {why}");
         }
         let missed: Vec<&str> = self.report.missed_edges().collect();
         if cases >= DEFAULT_CASES && !missed.is_empty() {

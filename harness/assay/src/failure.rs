@@ -2,7 +2,7 @@
 
 use crate::dispatch::{DispatchError, Kernel};
 use crate::formula::{Formula, Words};
-use crate::literal::{Language, call, value};
+use crate::literal::{Language, call, value, values};
 use crate::tolerance::{Allowed, Tolerance, number, word};
 
 /// A failing input and its results, as literals and as numbers.
@@ -13,17 +13,19 @@ pub struct Failure {
     pub wgsl: String,
     /// The call of the mirror in Rust.
     pub rust: String,
+    /// The arguments alone, in Rust.
+    pub arguments_rust: String,
     /// The shader's result as a WGSL literal.
     pub got: String,
     /// The oracle's, rounded to f32, as a WGSL literal.
     pub expected: String,
     /// The mirror's as a WGSL literal.
     pub mirror: String,
-    /// The same in Rust.
+    /// The shader's result in Rust.
     pub got_rust: String,
-    /// The same in Rust.
+    /// The oracle's result in Rust.
     pub expected_rust: String,
-    /// The same in Rust.
+    /// The mirror's result in Rust.
     pub mirror_rust: String,
     /// The numbers, one entry per scalar, vector or matrix column of the result.
     pub fields: Vec<Field>,
@@ -97,6 +99,7 @@ impl Failure {
         Ok(Failure {
             wgsl: call(wgsl, formula, arguments),
             rust: call(rust, formula, arguments),
+            arguments_rust: values(rust, formula, arguments),
             got: value(wgsl, formula, &got),
             expected: value(wgsl, formula, &rounded),
             mirror: value(wgsl, formula, &mirrored),

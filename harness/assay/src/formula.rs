@@ -1,5 +1,7 @@
 //! What a formula is: a WGSL function with its mirror, its oracle, the domain of its inputs and the edges that the domain
-//! must reach, its invariants, and its hard cases. One file of `formulas/` per module declares them.
+//! must reach, its invariants, its hard cases, and what it promises outside of the domain.
+
+pub use crate::near::near;
 
 use crate::draws::{Domain, Draws};
 use crate::outside::Promise;
@@ -329,10 +331,4 @@ pub fn with_promises(mut formulas: Vec<Formula>, promises: Vec<Promise>) -> Vec<
         formula.promises.push(promise);
     }
     formulas
-}
-
-/// Passes where `value` lies within `bound` of `wanted`; the message says by how much it does not.
-pub fn near(what: &str, value: f64, wanted: f64, bound: f64) -> Result<(), String> {
-    // Written so that a NaN does not pass.
-    if (value - wanted).abs() <= bound { Ok(()) } else { Err(format!("{what} is {value}, not {wanted} ± {bound:e}")) }
 }

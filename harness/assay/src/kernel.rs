@@ -7,13 +7,14 @@ mod program;
 pub use buffers::{Buffer, Buffers, Type};
 
 use crate::accuracy_line::{FieldBound, check_fields, parse_bounds};
+use crate::dispatch::signature::difference;
 use crate::draws::{Domain, Draws};
 use crate::environment::{self, SEED_VARIABLE};
 use crate::formula::Words;
 use crate::literal::{self, Language};
 use crate::property::Settings;
 use crate::tolerance::{Tolerance, number};
-use crate::wgsl::{Failure, Outcome, exact};
+use crate::wgsl::{Failure, Outcome};
 use program::{Binding, Program};
 use proptest::strategy::Strategy;
 use std::fmt::{self, Write as _};
@@ -53,6 +54,9 @@ impl KernelSource {
 
 type Mirror<B> = Box<dyn Fn(&mut B)>;
 type Workgroups<B> = Box<dyn Fn(&B) -> [u32; 3]>;
+type Reached<B> = Box<dyn Fn(&B) -> bool>;
+/// Of each buffer, where it has one.
+type Tolerances = Vec<Option<Tolerance>>;
 
 /// A compute entry point with its mirror.
 pub struct KernelMirror<B> {
@@ -61,7 +65,7 @@ pub struct KernelMirror<B> {
 }
 
 impl<B: Buffers + fmt::Debug + 'static> KernelMirror<B> {
-    /// Buffers from a proptest strategy, which also shrinks those that fail. Those that are only written count too: their length is the kernel's.
+    /// Buffers from a proptest strategy, which also shrinks those that fail. Output buffers are among them: their length is what the kernel sees.
     pub fn inputs(self, strategy: impl Strategy<Value = B> + Send + Sync + 'static) -> KernelTest<B> {
         self.over(Domain::of_strategy(strategy.prop_map(|buffers| buffers.words())))
     }
@@ -74,7 +78,17 @@ impl<B: Buffers + fmt::Debug + 'static> KernelMirror<B> {
     fn over(self, domain: Domain<Vec<Words>>) -> KernelTest<B> {
         let Self { source, mirror } = self;
         let settings = Settings { cases: DEFAULT_CASES, ..Settings::default() };
-        KernelTest { source, mirror, domain, workgroups: Box::new(|_| [1, 1, 1]), bounds: Vec::new(), settings }
+        let workgroups = Box::new(|_: &B| [1, 1, 1]);
+        KernelTest {
+            source,
+            mirror,
+            domain,
+            workgroups,
+            bounds: Vec::new(),
+            kept: Vec::new(),
+            edges: Vec::new(),
+            settings,
+        }
     }
 }
 
@@ -86,6 +100,9 @@ pub struct KernelTest<B> {
     domain: Domain<Vec<Words>>,
     workgroups: Workgroups<B>,
     bounds: Vec<(&'static str, String)>,
+    /// Inputs that are tested always.
+    kept: Vec<Vec<Words>>,
+    edges: Vec<(&'static str, Reached<B>)>,
     settings: Settings,
 }
 
@@ -105,10 +122,22 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         self
     }
 
-    /// How far an element of the named buffer may be from the mirror's: a sum of `ulp`, `abs` and `rel`, of a struct for each field. Other
-    /// buffers are to be the mirror's to the bit.
+    /// Tolerance of the named buffer's elements: a sum of `ulp`, `abs` and `rel`, for structs one for each field. Without it a buffer is to be
+    /// the mirror's to the bit.
     pub fn within(mut self, buffer: &'static str, bounds: &str) -> Self {
         self.bounds.push((buffer, bounds.to_owned()));
+        self
+    }
+
+    /// A part of the inputs that a run must reach.
+    pub fn edge(mut self, name: &'static str, reached: impl Fn(&B) -> bool + 'static) -> Self {
+        self.edges.push((name, Box::new(reached)));
+        self
+    }
+
+    /// Buffers that are tested always, such as those of a failure: the tuple that it prints `in Rust`.
+    pub fn case(mut self, buffers: B) -> Self {
+        self.kept.push(buffers.words());
         self
     }
 
@@ -118,7 +147,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         self
     }
 
-    /// From which seed, where the environment's `ASSAY_SEED` names none.
+    /// Sets the seed; `ASSAY_SEED` overrides it.
     pub fn seed(mut self, seed: u64) -> Self {
         self.settings.seed = seed;
         self
@@ -132,6 +161,9 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
     pub fn run(mut self) -> Outcome {
         let entry = self.source.entry;
         let fail = |what: String| Failure::new(format!("{entry}: {what}"));
+        if self.settings.cases == 0 && self.kept.is_empty() {
+            return Err(fail("no cases: nothing would be tested".to_owned()));
+        }
         self.settings.seed = environment::seed().map_err(fail)?.unwrap_or(self.settings.seed);
         let gpu = environment::gpu(entry).map_err(|error| fail(error.to_string()))?;
         let Some(gpu) = gpu else { return Ok(()) };
@@ -139,45 +171,53 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         expect(&program.bindings, &B::types()).map_err(fail)?;
         let tolerances = self.tolerances(&program.bindings).map_err(fail)?;
         let Settings { cases, seed } = self.settings;
+        for kept in &self.kept {
+            let found = self.judge(&program, &tolerances, kept).map_err(fail)?;
+            if let Some(found) = found.filter(|found| found.ratio > 1.0) {
+                return Err(fail(self.describe(&program, &tolerances, kept, &found, 1)));
+            }
+        }
         let (mut failed, mut worst): (u64, Option<(u64, Worst)>) = (0, None);
+        let mut missed: Vec<&(&str, Reached<B>)> = self.edges.iter().collect();
         for row in 0..cases {
-            let found = self.judge(&program, &tolerances, &self.domain.row(seed, row)).map_err(fail)?;
+            let buffers = self.domain.row(seed, row);
+            missed.retain(|(_, reached)| !reached(&B::of_words(&buffers)));
+            let found = self.judge(&program, &tolerances, &buffers).map_err(fail)?;
             let Some(found) = found.filter(|found| found.ratio > 1.0) else { continue };
             failed += 1;
             if worst.as_ref().is_none_or(|(_, worst)| found.ratio > worst.ratio) {
                 worst = Some((row, found));
             }
         }
-        let Some((row, worst)) = worst else { return Ok(()) };
+        let Some((row, worst)) = worst else {
+            let missed: Vec<&str> = missed.iter().map(|(name, _)| *name).collect();
+            return match missed.as_slice() {
+                [] => Ok(()),
+                missed => {
+                    Err(fail(format!("no input reached `{}`; mend the inputs, or the edge", missed.join("`, `"))))
+                }
+            };
+        };
         let (buffers, worst) = self.shrink(&program, &tolerances, row, worst).map_err(fail)?;
         Err(fail(self.describe(&program, &tolerances, &buffers, &worst, failed)))
     }
 
-    /// One tolerance for each buffer.
-    fn tolerances(&self, bindings: &[Binding]) -> Result<Vec<Tolerance>, String> {
+    /// One tolerance for each buffer that has bounds.
+    fn tolerances(&self, bindings: &[Binding]) -> Result<Tolerances, String> {
         if let Some((name, _)) = self.bounds.iter().find(|(name, _)| !bindings.iter().any(|b| b.name == *name)) {
             return Err(format!("within: the entry point uses no buffer `{name}`"));
         }
         let of = |binding: &Binding| {
             let stated = self.bounds.iter().find(|(name, _)| *name == binding.name);
-            let bounds = match stated {
-                Some((_, text)) => {
-                    bounds(text, binding).map_err(|fault| format!("within `{}`: {fault}", binding.name))?
-                }
-                None => exact(&binding.ty.shape),
-            };
-            Ok(Tolerance::new(&[], &binding.ty.shape, &bounds))
+            let Some((_, text)) = stated else { return Ok(None) };
+            let bounds = bounds(text, binding).map_err(|fault| format!("within `{}`: {fault}", binding.name))?;
+            Ok(Some(Tolerance::new(&[], &binding.ty.shape, &bounds)))
         };
         bindings.iter().map(of).collect()
     }
 
     /// The element that is farthest off; none where every one is the mirror's.
-    fn judge(
-        &self,
-        program: &Program<'_>,
-        tolerances: &[Tolerance],
-        before: &[Words],
-    ) -> Result<Option<Worst>, String> {
+    fn judge(&self, program: &Program<'_>, tolerances: &Tolerances, before: &[Words]) -> Result<Option<Worst>, String> {
         let mut mirrored = B::of_words(before);
         let got = program.run(before, (self.workgroups)(&mirrored))?;
         (self.mirror)(&mut mirrored);
@@ -193,13 +233,19 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
             }
             let width = binding.ty.shape.words();
             let scalars = binding.ty.shape.scalars();
-            for (element, (got, expected)) in got.chunks_exact(width).zip(expected.chunks_exact(width)).enumerate() {
-                let exact: Vec<f64> =
-                    expected.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
-                let verdict = tolerances[buffer].judge(&[], got, expected, &exact, &|_, _| {});
-                if worst.as_ref().is_none_or(|worst| verdict.ratio > worst.ratio) {
-                    let (got, expected) = (got.to_vec(), expected.to_vec());
-                    worst = Some(Worst { buffer, element, ratio: verdict.ratio, got, expected });
+            let elements = got.chunks_exact(width).zip(expected.chunks_exact(width)).enumerate();
+            // What is the mirror's to the bit is right, an infinity too.
+            for (element, (got, expected)) in elements.filter(|(_, (got, expected))| got != expected) {
+                let ratio = match &tolerances[buffer] {
+                    None => f64::INFINITY,
+                    Some(tolerance) => {
+                        let exact: Vec<f64> =
+                            expected.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
+                        tolerance.judge(&[], got, expected, &exact, &|_, _| {}).ratio
+                    }
+                };
+                if worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
+                    worst = Some(Worst { buffer, element, ratio, got: got.to_vec(), expected: expected.to_vec() });
                 }
             }
         }
@@ -210,7 +256,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
     fn shrink(
         &self,
         program: &Program<'_>,
-        tolerances: &[Tolerance],
+        tolerances: &Tolerances,
         row: u64,
         mut worst: Worst,
     ) -> Result<(Vec<Words>, Worst), String> {
@@ -218,13 +264,17 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         let mut tree = self.domain.tree(self.settings.seed, row);
         let mut buffers = tree.current();
         let mut steps = 0;
-        while steps < MOST_SHRINKS && tree.simplify() {
+        let mut fails = true;
+        // As proptest's own runner: what a step back leads to is tested as well.
+        while steps < MOST_SHRINKS && (if fails { tree.simplify() } else { tree.complicate() }) {
             steps += 1;
             let simpler = tree.current();
-            match self.judge(program, tolerances, &simpler)?.filter(|found| found.ratio > enough) {
-                Some(found) => (buffers, worst) = (simpler, found),
-                None if tree.complicate() => {}
-                None => break,
+            fails = simpler == buffers;
+            if fails {
+                continue;
+            }
+            if let Some(found) = self.judge(program, tolerances, &simpler)?.filter(|found| found.ratio > enough) {
+                (buffers, worst, fails) = (simpler, found, true);
             }
         }
         Ok((buffers, worst))
@@ -233,7 +283,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
     fn describe(
         &self,
         program: &Program<'_>,
-        tolerances: &[Tolerance],
+        tolerances: &Tolerances,
         buffers: &[Words],
         worst: &Worst,
         failed: u64,
@@ -254,7 +304,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
             literal::of_shape(Language::Wgsl, shape, &worst.got),
             literal::of_shape(Language::Wgsl, shape, &worst.expected)
         );
-        for part in tolerances[worst.buffer].allowed(&exact) {
+        for part in tolerances[worst.buffer].iter().flat_map(|tolerance| tolerance.allowed(&exact)) {
             let name = if part.leaf.path.is_empty() { String::new() } else { format!("{} ", part.leaf.path) };
             let _ = writeln!(text, "  allowed {name}± {:.3e}", part.allowed);
         }
@@ -299,7 +349,12 @@ fn expect(bindings: &[Binding], types: &[Type]) -> Result<(), String> {
     }
     match bindings.iter().zip(types).find(|(binding, ty)| binding.ty != **ty) {
         None => Ok(()),
-        Some((binding, ty)) => Err(format!("buffer `{}`: expected {ty}, found {}", binding.name, binding.ty)),
+        Some((binding, ty)) => {
+            // Of structs of one name, down to the member.
+            let inner = difference(&ty.shape, &binding.ty.shape).filter(|_| ty.to_string() == binding.ty.to_string());
+            let (expected, found) = inner.unwrap_or_else(|| (ty.to_string(), binding.ty.to_string()));
+            Err(format!("buffer `{}`: expected {expected}, found {found}", binding.name))
+        }
     }
 }
 

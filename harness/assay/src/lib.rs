@@ -1,7 +1,48 @@
-//! Property tests of WGSL functions on a GPU: any function is reflected and run as a compute kernel, compared with a function in Rust over random,
-//! hard and shrunk inputs, under a tolerance in ulp, absolute, relative or backward error.
+//! Property tests of WGSL functions and kernels on a GPU, in a plain `cargo test`: any function is reflected and run as a compute kernel, compared with a
+//! function in Rust over random, hard and shrunk inputs, under a tolerance in ulp, absolute, relative or backward error.
 //!
-//! Without the feature `gpu`, what needs no device is left: random inputs, shapes and values, tolerances.
+//! A function: [`wgsl`] → `mirror` → perhaps `oracle` → `inputs` or `draws` → [the rest](Test) → [`run`](Test::run) or [`mutate`](Test::mutate).
+//!
+//! ```no_run
+//! use lapidary_assay::{Outcome, wgsl};
+//!
+//! const FADE: &str = "fn fade(t: f32) -> f32 { return t * t * (3.0 - 2.0 * t); }";
+//!
+//! # #[cfg(feature = "gpu")]
+//! fn fades() -> Outcome {
+//!     wgsl(FADE, "fade")
+//!         .mirror(|t: f32| t * t * (3.0 - 2.0 * t))
+//!         .draws(|draws| (draws.between(0.0, 1.0),))
+//!         .edge("near an end", |(t,)| t < 0.001)
+//!         .within("4 ulp")
+//!         .run()
+//! }
+//! ```
+//!
+//! A compute entry point, whole buffers against whole buffers: [`kernel`] → perhaps `constant` → `mirror` → `inputs` or `draws` → [the rest](KernelTest) →
+//! [`run`](KernelTest::run).
+//!
+//! ```no_run
+//! use lapidary_assay::{Outcome, kernel};
+//!
+//! const DOUBLE: &str = "
+//! @group(0) @binding(0) var<storage, read_write> values: array<f32>;
+//! @compute @workgroup_size(64)
+//! fn double(@builtin(global_invocation_id) id: vec3u) {
+//!     if (id.x < arrayLength(&values)) { values[id.x] *= 2.0; }
+//! }";
+//!
+//! # #[cfg(feature = "gpu")]
+//! fn doubles() -> Outcome {
+//!     kernel(DOUBLE, "double")
+//!         .mirror(|(values,): &mut (Vec<f32>,)| values.iter_mut().for_each(|value| *value *= 2.0))
+//!         .draws(|draws| ((0..=draws.below(200)).map(|_| draws.between(-1.0, 1.0)).collect(),))
+//!         .workgroups(|(values,)| [values.len().div_ceil(64) as u32, 1, 1])
+//!         .run()
+//! }
+//! ```
+//!
+//! Without the feature `gpu`, what needs no device is left: random inputs ([`draws`]), shapes and values, tolerances.
 
 pub mod accuracy_line;
 #[cfg(feature = "gpu")]
@@ -25,6 +66,7 @@ pub mod literal;
 pub mod module;
 #[cfg(feature = "gpu")]
 pub mod mutate;
+mod near;
 pub mod outside;
 #[cfg(feature = "gpu")]
 pub mod property;

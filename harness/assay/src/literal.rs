@@ -23,10 +23,15 @@ pub fn call(language: Language, formula: &Formula, arguments: &[u32]) -> String 
             format!("{}{name}", path(formula.module))
         }
     };
+    format!("{name}({})", values(language, formula, arguments))
+}
+
+/// A row of arguments, with commas between.
+pub fn values(language: Language, formula: &Formula, arguments: &[u32]) -> String {
     let mut rest = arguments;
     let values: Vec<String> =
         formula.arguments.iter().map(|shape| write(language, formula.module, shape, &mut rest)).collect();
-    format!("{name}({})", values.join(", "))
+    values.join(", ")
 }
 
 /// A value of a formula's result.

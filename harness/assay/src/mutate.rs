@@ -18,8 +18,8 @@ enum Edit {
     Binary(BinaryOperator),
     /// `-x` instead of `x * s` or `s * x` of a vector `x` and a scalar, for which there is no quotient.
     Negate(Handle<Expression>),
-    /// `x` instead of `-x`.
-    Keep,
+    /// `x` instead of `-x`, of this kind.
+    Keep(ScalarKind),
     Literal(Literal),
 }
 
@@ -96,12 +96,13 @@ pub fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutan
     let ir = &kernel.module;
     let info = lapidary_specialise::validate(ir).expect("a kernel is valid");
     for (owner, found) in ir.functions.iter().filter(|(_, found)| found.name.as_deref() == Some(function)) {
-        let is_vector = |handle: Handle<Expression>| {
-            matches!(info[owner][handle].ty.inner_with(&ir.types), naga::TypeInner::Vector { .. })
+        let operands = Operands {
+            is_vector: &|handle| matches!(info[owner][handle].ty.inner_with(&ir.types), naga::TypeInner::Vector { .. }),
+            kind: &|handle| info[owner][handle].ty.inner_with(&ir.types).scalar_kind(),
         };
         for (handle, expression) in found.expressions.iter() {
             let span = found.expressions.get_span(handle);
-            for (change, edit) in edits(&is_vector, expression) {
+            for (change, edit) in edits(&operands, expression) {
                 add(function, span, Site::Expression(handle.index()), change, edit);
             }
         }
@@ -119,7 +120,9 @@ pub fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutan
     for (_, constant) in ir.constants.iter().filter(|(handle, _)| read.contains(handle)) {
         let Some(name) = constant.name.as_deref() else { continue };
         // A const holds a literal.
-        for (change, edit) in edits(&|_| false, &ir.global_expressions[constant.init]) {
+        for (change, edit) in
+            edits(&Operands { is_vector: &|_| false, kind: &|_| None }, &ir.global_expressions[constant.init])
+        {
             add(name, ir.global_expressions.get_span(constant.init), Site::Constant, change, edit);
         }
     }
@@ -155,9 +158,9 @@ fn edit(expression: &mut Expression, edit: &Edit) {
         (Expression::Binary { .. }, Edit::Negate(vector)) => {
             Expression::Unary { op: UnaryOperator::Negate, expr: *vector }
         }
-        (Expression::Unary { expr, .. }, Edit::Keep) => {
-            // A conversion of f32 to f32, since an expression cannot stand for another.
-            Expression::As { expr: *expr, kind: ScalarKind::Float, convert: Some(4) }
+        (Expression::Unary { expr, .. }, Edit::Keep(kind)) => {
+            // A conversion to its own type, since an expression cannot stand for another.
+            Expression::As { expr: *expr, kind: *kind, convert: Some(4) }
         }
         (Expression::Literal(_), Edit::Literal(literal)) => Expression::Literal(*literal),
         (other, edit) => unreachable!("{edit:?} was made for another expression than {other:?}"),
@@ -165,22 +168,30 @@ fn edit(expression: &mut Expression, edit: &Edit) {
     *expression = replacement;
 }
 
-/// The changes to an expression; `is_vector` tells the type of its operands.
-fn edits(is_vector: &dyn Fn(Handle<Expression>) -> bool, expression: &Expression) -> Vec<(String, Edit)> {
+/// What is known of an expression's operands.
+struct Operands<'a> {
+    is_vector: &'a dyn Fn(Handle<Expression>) -> bool,
+    kind: &'a dyn Fn(Handle<Expression>) -> Option<ScalarKind>,
+}
+
+/// The changes to an expression.
+fn edits(operands: &Operands<'_>, expression: &Expression) -> Vec<(String, Edit)> {
     match expression {
         Expression::Binary { op, left, right } => {
             operators(*op)
                 .iter()
                 .map(|other| {
                     // Only a vector times a scalar mixes types.
-                    match mixed_vector(is_vector, *left, *right).filter(|_| *other == BinaryOperator::Divide) {
+                    match mixed_vector(operands.is_vector, *left, *right).filter(|_| *other == BinaryOperator::Divide) {
                         Some(vector) => (format!("{op:?} -> negated vector"), Edit::Negate(vector)),
                         None => (format!("{op:?} -> {other:?}"), Edit::Binary(*other)),
                     }
                 })
                 .collect()
         }
-        Expression::Unary { op: UnaryOperator::Negate, .. } => vec![("Negate -> nothing".to_owned(), Edit::Keep)],
+        Expression::Unary { op: UnaryOperator::Negate, expr } => {
+            (operands.kind)(*expr).map(|kind| ("Negate -> nothing".to_owned(), Edit::Keep(kind))).into_iter().collect()
+        }
         Expression::Literal(literal) => literals(*literal)
             .into_iter()
             .map(|other| (format!("{} -> {}", spell(*literal), spell(other)), Edit::Literal(other)))

@@ -1,13 +1,13 @@
 //! What a function promises outside of its domain: hostile inputs, and what must hold of the results there.
 
 use crate::draws::{Domain, Draws};
-use crate::formula::{Words, near};
+use crate::near::near;
 use crate::shape::Shape;
 use crate::value::{Arguments, Value};
 use glam::{UVec2, UVec3, Vec3};
 
 type Predicate = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
-type Transform = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
+type Transform = Box<dyn Fn(&[u32], &mut Vec<u32>) + Send + Sync>;
 
 /// What is promised of the results.
 pub(crate) enum Claim {
@@ -32,7 +32,7 @@ pub struct Promise {
     /// Shapes that the inputs were made for; empty for any.
     pub arguments: Vec<Shape>,
     /// The inputs; none where nothing is promised.
-    pub(crate) inputs: Option<Domain<Words>>,
+    pub(crate) inputs: Option<Domain<Vec<u32>>>,
     pub(crate) claim: Claim,
 }
 
@@ -50,7 +50,7 @@ impl Promise {
         claim: Claim,
     ) -> Self {
         let inputs = Domain::new(move |draws| {
-            let mut words = Words::new();
+            let mut words = Vec::new();
             inputs(draws).write(&mut words);
             words
         });
@@ -93,7 +93,7 @@ pub fn like<A: Arguments<u32> + 'static>(
     inputs: impl Fn(&mut Draws<'_>) -> A + Send + Sync + 'static,
     inside: impl Fn(A) -> A + Send + Sync + 'static,
 ) -> Promise {
-    let transform = Box::new(move |mut words: &[u32], other: &mut Words| inside(A::read(&mut words)).write(other));
+    let transform = Box::new(move |mut words: &[u32], other: &mut Vec<u32>| inside(A::read(&mut words)).write(other));
     Promise::new(function, says, inputs, Claim::Like(transform))
 }
 

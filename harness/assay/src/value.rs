@@ -195,14 +195,31 @@ tuples!(A B C D E G);
 tuples!(A B C D E G H);
 tuples!(A B C D E G H I);
 
-/// Declares structs that stand for a WGSL struct of the same name: their members by name, the types inferred. Names and order are checked
-/// against the WGSL struct's.
+/// Lets a struct of yours stand for the WGSL struct of the same name: its members by name in the WGSL struct's order, their types inferred and
+/// checked against naga's reflection. The struct must be of the crate that calls this; a library's is wrapped in one of its name.
 ///
-/// ```ignore
-/// mirror_struct!(Hit { direction, total });                          // of a mirror
-/// mirror_struct!(Hit, exact oracle::Hit { direction, total });       // of a mirror and its oracle
-/// mirror_struct!(lapidary_refraction, RefractionHit { direction, total }); // both of a crate, the oracle's in its `oracle`
 /// ```
+/// use glam::{DVec3, Vec3};
+/// use lapidary_assay::mirror_struct;
+///
+/// #[derive(Clone, Debug)]
+/// struct Hit {
+///     direction: Vec3,
+///     total: bool,
+/// }
+/// mirror_struct!(Hit { direction, total });
+///
+/// // A mirror's struct with its oracle's.
+/// struct Ray {
+///     origin: Vec3,
+/// }
+/// struct ExactRay {
+///     origin: DVec3,
+/// }
+/// mirror_struct!(Ray, exact ExactRay { origin });
+/// ```
+///
+/// `mirror_struct!(crate, Hit { … })` is both for `crate::Hit` and `crate::oracle::Hit`.
 #[macro_export]
 macro_rules! mirror_struct {
     ($name:ident { $($field:ident),* $(,)? }) => {

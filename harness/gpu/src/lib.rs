@@ -77,9 +77,9 @@ pub enum GpuError {
     #[error(
         "no adapter matches `{choice}`; this system offers {offered}. {}",
         if *choice == AdapterChoice::Lavapipe {
-            "Install lavapipe (Debian, Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1), or choose another with --adapter NAME|any"
+            "Install lavapipe (Debian, Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1), or choose another with LAPIDARY_ADAPTER=any, or part of its name (cook: --adapter any)"
         } else {
-            "Choose one of them with --adapter NAME"
+            "Choose one of them with LAPIDARY_ADAPTER, by part of its name (cook: --adapter NAME)"
         }
     )]
     NoAdapter {
@@ -97,9 +97,7 @@ pub enum GpuError {
         reason: String,
     },
     /// The process holds a device already, and holds one only.
-    #[error(
-        "this process already runs on adapter `{opened}`; `{choice}` would be a second device; choose one --adapter for all"
-    )]
+    #[error("this process already runs on adapter `{opened}`; `{choice}` would be a second device; choose one for all")]
     AlreadyOpen {
         /// The name of the open adapter.
         opened: String,

@@ -224,7 +224,7 @@ impl<'gpu> Kernel<'gpu> {
         let (reason, remedy) = if self.gpu.is_lavapipe() {
             (
                 format!("; lavapipe itself would end them without a word after {}", turns::LAVAPIPE_ENDS_AT),
-                format!("; a GPU (--adapter NAME) follows up to {}", turns::LIMIT),
+                format!("; a GPU (LAPIDARY_ADAPTER; cook: --adapter NAME) follows up to {}", turns::LIMIT),
             )
         } else {
             (String::new(), String::new())

@@ -103,7 +103,7 @@ impl fmt::Display for Signature {
 }
 
 /// The first difference between two shapes, spelled out down to the member.
-fn difference(expected: &Shape, found: &Shape) -> Option<(String, String)> {
+pub(crate) fn difference(expected: &Shape, found: &Shape) -> Option<(String, String)> {
     if expected == found {
         return None;
     }

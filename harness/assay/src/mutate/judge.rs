@@ -39,7 +39,7 @@ impl std::fmt::Debug for Judge<'_> {
 }
 
 impl<'a> Judge<'a> {
-    /// The tests of `formula` on `source`; `path` is for messages.
+    /// The tests of `formula` on `source`, and the inputs that are tested always; `path` is for messages.
     ///
     /// # Errors
     /// Where the source is not valid, or has no such function.
@@ -48,10 +48,12 @@ impl<'a> Judge<'a> {
         formula: &'a Formula,
         (source, path): (&'a str, &'a str),
         tolerance: Tolerance,
+        cases: &[Words],
     ) -> Result<Self, DispatchError> {
         let kernel = compacted(KernelModule::reflect(source, path, formula.function)?);
         let rows = (0..KEPT_ROWS).map(|row| formula.domain.row(SEED, row));
-        let rows: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).chain(rows).collect();
+        let first = cases.iter().chain(formula.hard_cases.iter().map(|case| &case.arguments)).cloned();
+        let rows: Vec<Words> = first.chain(rows).collect();
         let (mirrored, exact) = rows.iter().map(|row| (formula.mirrored(row), formula.exact(row))).unzip();
         let arguments = rows.concat();
         let watched = OnceCell::new();

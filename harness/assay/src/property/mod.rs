@@ -270,17 +270,19 @@ impl Check<'_, '_> {
         let mut simplest = tree.current();
         // Half the worst, so that the search does not end on the tolerance's edge; still failing in any case.
         let enough = (worst / 2.0).min(f64::MAX);
+        let mut fails = true;
         for _ in 0..MOST_SHRINKS {
-            if !tree.simplify() {
+            // As proptest's own runner: what a step back leads to is tested as well.
+            if !(if fails { tree.simplify() } else { tree.complicate() }) {
                 break;
             }
             let candidate = tree.current();
-            let batch = self.judge(&candidate)?;
-            let badness = batch[0].badness();
-            if badness >= enough && badness > 1.0 {
+            fails = candidate == simplest || {
+                let badness = self.judge(&candidate)?[0].badness();
+                badness >= enough && badness > 1.0
+            };
+            if fails {
                 simplest = candidate;
-            } else {
-                tree.complicate();
             }
         }
         Ok(simplest)

@@ -63,6 +63,8 @@ pub fn find(program: &Program, formula: &Formula, seed: u64) -> Result<Vec<Seam>
     let search = Finder { program, formula, scalars };
     let found: Vec<Option<Seam>> = (0..attempts)
         .into_par_iter()
+        // The draws of a strategy's value are its generator's seed, half of which leads nowhere.
+        .filter(|attempt| attempt % 4 == 0 || !formula.domain.is_of_strategy())
         .map(|attempt| if attempt % 4 == 0 { search.nudge(seed, attempt) } else { search.halve(seed, attempt) })
         .collect::<Result<_, _>>()?;
     let mut kept: BTreeMap<Site, usize> = BTreeMap::new();

@@ -85,6 +85,7 @@ fn a_blur_is_its_mirrors() -> Outcome {
         .mirror(|(source, target): &mut (Vec<f32>, Vec<f32>)| blurred(source, 2, target))
         .inputs(signals())
         .workgroups(|(source, _)| groups_of_64(source.len()))
+        .edge("more than a workgroup", |(source, _)| source.len() > 64)
         // Five terms of at most 1: four sums and a quotient of 2.5 ulp.
         .within("target_values", "1e-6 abs")
         .run()
@@ -171,6 +172,14 @@ fn what_cannot_be_tested_is_said_in_a_line() {
         assert!(message.contains(part), "`{part}` is not in: {message}");
         assert_eq!(message.lines().count(), 1, "{message}");
     }
+    let never = kernel(KERNELS, "count")
+        .mirror(|(numbers, counts): &mut (Vec<u32>, Vec<u32>)| {
+            let bins = counts.len();
+            numbers.iter().for_each(|number| counts[*number as usize % bins] += 1);
+        })
+        .draws(|draws| (vec![draws.bits()], vec![0; 3]));
+    let message = never.edge("two numbers", |(numbers, _)| numbers.len() > 1).run().expect_err("never").to_string();
+    assert!(message.contains("no input reached `two numbers`"), "{message}");
     let three = kernel(KERNELS, "blur").mirror(|_: &mut (Vec<f32>, Vec<f32>, u32)| {}).inputs((
         prop::collection::vec(0.0f32..1.0, 1..3),
         prop::collection::vec(0.0f32..1.0, 1..3),

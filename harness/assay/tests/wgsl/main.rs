@@ -3,6 +3,7 @@
 mod kernels;
 mod mutants;
 mod readme;
+mod shrinking;
 
 use glam::Vec2;
 use lapidary_assay::{Outcome, wgsl};

@@ -3,7 +3,7 @@
 use super::{Failure, Outcome, output};
 use std::path::{Path, PathBuf};
 
-/// The files of a new technique, with a function to replace; they pass the tests as they are. What to do with them: CONTRIBUTING.md.
+/// The files of a new technique, with functions to replace; they pass every test as they are. What to do with them: CONTRIBUTING.md.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook new thin_film")]
 pub(super) struct Arguments {
@@ -91,7 +91,12 @@ fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
     }
     for (path, line) in MANIFESTS {
         let path = root.join(path);
-        let text = with_line(&read(&path)?, &named(line)).ok_or_else(|| {
+        let manifest = read(&path)?;
+        let package = format!("lapidary-{name}");
+        if name == "cook" || manifest.lines().any(|line| line.split([' ', '.']).next() == Some(package.as_str())) {
+            return Err(format!("`{name}`: there is a crate `{package}` already; choose another name"));
+        }
+        let text = with_line(&manifest, &named(line)).ok_or_else(|| {
             format!("{}: has no line of a module, `lapidary-…`; is {} the cookbook?", path.display(), root.display())
         })?;
         changes.push(Change { path, text, is_new: false });
@@ -123,24 +128,27 @@ fn with_line(manifest: &str, line: &str) -> Option<String> {
     Some([before, &[line], after].concat().join("\n") + "\n")
 }
 
-/// Writes all files, or takes back what is written.
+/// Writes all files, or none.
 fn write(changes: &[Change]) -> Result<(), String> {
-    let mut written: Vec<(&Path, Option<String>)> = Vec::new();
-    for Change { path, text, is_new } in changes {
-        let before = if *is_new { None } else { Some(read(path)?) };
-        let folder = path.parent().unwrap_or(Path::new("."));
-        let result = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(path, text));
-        written.push((path, before));
-        if let Err(error) = result {
-            for (path, before) in written {
-                // What cannot be taken back either is what the message is about.
-                let _ = match before {
-                    Some(text) => std::fs::write(path, text),
-                    None => std::fs::remove_file(path),
-                };
-            }
-            return Err(format!("{}: cannot be written: {error}", path.display()));
+    // First all of it beside its places; what is renamed then needs no more room.
+    let beside = |path: &Path| path.with_extension("cook-new");
+    let made = |path: &Path, text: &str| {
+        std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+        std::fs::write(beside(path), text)
+    };
+    let result = changes.iter().try_for_each(|Change { path, text, .. }| {
+        made(path, text).map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+    });
+    if result.is_err() {
+        for Change { path, .. } in changes {
+            // What cannot be removed either is what the message is about; a folder that holds something stays.
+            let _ = std::fs::remove_file(beside(path));
+            let _ = path.parent().map(std::fs::remove_dir);
+            let _ = path.parent().and_then(Path::parent).map(std::fs::remove_dir);
         }
+        return result;
     }
-    Ok(())
+    changes.iter().try_for_each(|Change { path, .. }| {
+        std::fs::rename(beside(path), path).map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+    })
 }

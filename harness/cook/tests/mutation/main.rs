@@ -5,10 +5,10 @@
 //! more, alone in a fresh worker and for longer; if it still gives none it has timed out, which is not to be caught: it fails. A
 //! mutant that no input can tell from the original is listed, with the reason, in `equivalent.txt`; at most 5 % may be.
 //!
-//! All mutants take minutes. A run judges what a change touches: all mutants of each module that is not as it was when the record was
-//! made (`docs/measurements/lavapipe/mutation.json`, which holds a hash of all that a score depends on); where the engine has changed, one in ten of the
-//! others, chosen by the suite's seed, so that another change meets others. It says what it does not judge. A run that names a module or function judges all of
-//! its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all and writes the record, `sample` one in ten, `listed` those that are listed.
+//! A run judges what a change touches: all mutants of each module that is not as it was when the record was made
+//! (`docs/measurements/lavapipe/mutation.json`, which holds a hash of all that a score depends on), and all mutants of all where the engine or the device has
+//! changed. It says what it does not judge. A run that names a module or function judges all of its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all
+//! and writes the record, `sample` one in ten by the suite's seed, `listed` those that are listed.
 
 mod record;
 
@@ -61,7 +61,7 @@ fn main() -> ExitCode {
         Some("all" | "record") => Choice::All,
         Some("listed") => Choice::Listed(equivalent_mutants()),
         Some("sample") => Choice::Sample(seed.value),
-        None if filter.is_empty() => Choice::Touched(seed.value),
+        None if filter.is_empty() => Choice::Touched,
         None => Choice::All,
         Some(other) => panic!("{MUTANTS_VARIABLE}={other}: expected all, record, listed or sample"),
     };
@@ -76,8 +76,8 @@ enum Choice {
     Listed(BTreeMap<String, String>),
     /// One in ten, by this seed.
     Sample(u64),
-    /// What has changed since the record; where the engine has, one in ten of the rest by this seed.
-    Touched(u64),
+    /// What has changed since the record.
+    Touched,
 }
 
 /// How a module's mutants are judged.
@@ -95,9 +95,8 @@ impl Choice {
             Self::All => Share::All,
             Self::Listed(listed) => Share::Listed(listed.clone()),
             Self::Sample(seed) => Share::Sample(*seed),
-            Self::Touched(_) if !now.agrees(then, module) => Share::All,
-            Self::Touched(seed) if !now.is_of_the_engine_of(then) => Share::Sample(*seed),
-            Self::Touched(_) => Share::Recorded(then.modules.get(module).map_or(0, |module| module.mutants)),
+            Self::Touched if !now.is_of_the_engine_of(then) || !now.agrees(then, module) => Share::All,
+            Self::Touched => Share::Recorded(then.modules.get(module).map_or(0, |module| module.mutants)),
         }
     }
 }
@@ -185,7 +184,7 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
     }
     let total = jobs.len();
     let judged: BTreeSet<String> = jobs.iter().map(|(.., name)| name.clone()).collect();
-    for (module, share) in shares.iter().filter(|_| matches!(choice, Choice::Touched(_))) {
+    for (module, share) in shares.iter().filter(|_| matches!(choice, Choice::Touched)) {
         println!("{module}: {}", share.describe());
     }
     if total == 0 && !filter.is_empty() {
@@ -227,8 +226,8 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
         println!("BROKEN: the unchanged `{name}` does not pass its own tests in a worker");
     }
     println!("{invalid} changes make no valid program and are no mutants");
-    if let Choice::Sample(seed) | Choice::Touched(seed) = choice {
-        println!("samples are by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
+    if let Choice::Sample(seed) = choice {
+        println!("a sample of one in {SAMPLE} by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
     }
     let whole = filter.is_empty() && matches!(choice, Choice::All);
     let passed = report(whole, &judged, total, &survived, &timed_out, start.elapsed()) && broken.is_empty();
@@ -422,6 +421,6 @@ fn worker() {
 /// The tests of a formula, kept for all of the mutants that they judge.
 fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula));
+    let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula), &[]);
     judge.expect("the cookbook's WGSL is valid")
 }

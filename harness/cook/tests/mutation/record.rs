@@ -7,12 +7,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What the score depends on, besides a module's own: the engine, this program, the versions of everything.
-const ENGINE: [&str; 5] = [
-    "harness/assay/src",
-    "harness/gpu/src",
-    "harness/specialise/src",
-    "harness/cook/tests/mutation/main.rs",
+const ENGINE: [&str; 12] = [
     "Cargo.lock",
+    "Cargo.toml",
+    "harness/assay/Cargo.toml",
+    "harness/assay/src",
+    "harness/cook/src/check.rs",
+    "harness/cook/src/cookbook",
+    "harness/cook/tests/mutation/main.rs",
+    "harness/cook/tests/mutation/record.rs",
+    "harness/gpu/Cargo.toml",
+    "harness/gpu/src",
+    "harness/specialise/Cargo.toml",
+    "harness/specialise/src",
 ];
 
 /// A whole run.
@@ -58,7 +65,9 @@ impl Record {
         let module = |name: &&str| {
             let own = crates_of(name);
             let mut texts = vec![root().join(format!("wgsl/{name}.wgsl"))];
-            texts.extend(own.iter().map(|name| root().join("crates").join(name).join("src")));
+            let of_crate =
+                |name: &String| ["Cargo.toml", "src"].map(|part| root().join("crates").join(name).join(part));
+            texts.extend(own.iter().flat_map(of_crate));
             let hash = text_hash(&(hash(&texts) + listed.get(name).map_or("", String::as_str)));
             ((*name).to_owned(), Module { hash, mutants: 0, listed: 0 })
         };
@@ -78,7 +87,9 @@ impl Record {
 
     pub(crate) fn write(&self) {
         let text = serde_json::to_string_pretty(self).expect("plain data") + "\n";
-        std::fs::write(file(), text).unwrap_or_else(|error| panic!("{}: {error}", file().display()));
+        let beside = file().with_extension("new");
+        let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, file()));
+        written.unwrap_or_else(|error| panic!("{}: {error}", file().display()));
         println!("recorded in {}", file().display());
     }
 }

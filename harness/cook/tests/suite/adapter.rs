@@ -13,7 +13,7 @@ fn an_unknown_adapter_is_named_with_what_there_is() {
     assert_eq!(answer.stderr.trim_end().lines().count(), 1, "{answer:?}");
     assert!(answer.stderr.starts_with("cook: no adapter matches `nonsense`; this system offers `"), "{answer:?}");
     assert!(answer.stderr.contains(&gpu().info.name), "{answer:?}");
-    assert!(answer.stderr.contains("Choose one of them with --adapter"), "{answer:?}");
+    assert!(answer.stderr.contains("Choose one of them with LAPIDARY_ADAPTER"), "{answer:?}");
 }
 
 #[test]

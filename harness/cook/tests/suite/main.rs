@@ -52,6 +52,7 @@ mod walked_references;
 use lapidary_assay::draws::mix;
 use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::{AdapterChoice, Gpu};
+use std::io::Write as _;
 
 /// The seed of the property tests. What it is stands in the output of every test that uses it and fails.
 fn seed() -> u64 {
@@ -69,7 +70,7 @@ fn whole() -> bool {
 }
 
 /// Of what takes long one item in so many, chosen by the suite's seed, so that another change meets others; at least one, and all where the
-/// suite is run whole. The test's output says which.
+/// suite is run whole. Standard error says which.
 fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
     let items: Vec<T> = items.into_iter().collect();
     if whole() {
@@ -79,7 +80,9 @@ fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
     let certain = usize::try_from(seed % count.max(1) as u64).unwrap_or_default();
     let is_chosen = |index: &usize| *index == certain || mix(seed ^ mix(*index as u64)).is_multiple_of(one_in);
     let chosen: Vec<usize> = (0..count).filter(is_chosen).collect();
-    println!("of {count}, numbers {chosen:?}; all with {WHOLE_VARIABLE}=1");
+    // To the stream itself: what a passing test prints is not shown.
+    let name = std::thread::current().name().unwrap_or_default().to_owned();
+    let _ = writeln!(std::io::stderr(), "{name}: of {count} cases numbers {chosen:?}; all with {WHOLE_VARIABLE}=1");
     items.into_iter().enumerate().filter(|(index, _)| chosen.contains(index)).map(|(_, item)| item).collect()
 }
 

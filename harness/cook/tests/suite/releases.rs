@@ -22,13 +22,18 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../wgsl")
 }
 
+/// The table is being written: what is compiled in is the one before, so that nothing can be said of it until the next build.
+fn is_refreshing() -> bool {
+    std::env::var_os(REFRESH).is_some()
+}
+
 /// Compares a file with what it ought to hold, or writes it.
 fn holds(path: &Path, wanted: &str) {
     let found = std::fs::read_to_string(path).unwrap_or_default();
     if found == wanted {
         return;
     }
-    if std::env::var_os(REFRESH).is_some() {
+    if is_refreshing() {
         std::fs::write(path, wanted).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         return;
     }
@@ -78,6 +83,9 @@ fn changed(before: &Release, after: &Release) -> BTreeSet<String> {
 
 #[test]
 fn the_changelog_names_every_function_that_changed() {
+    if is_refreshing() {
+        return;
+    }
     for pair in history().releases.windows(2) {
         let named: BTreeSet<&str> = history()
             .changes
@@ -291,6 +299,9 @@ fn a_current_copy_is_told_and_a_changed_one() {
 
 #[test]
 fn every_function_of_a_module_is_in_its_table() {
+    if is_refreshing() {
+        return;
+    }
     let current = history().releases.last().expect("a release");
     for module in modules() {
         let code = tokens(module.source);

@@ -69,26 +69,90 @@ fn mirrors_stand_on_glam_alone() {
     }
 }
 
-/// In every crate, of two folders at the root of its sources at most one names the other.
+/// In every crate, the folders at the root of its sources can be put in an order in which each names only earlier ones.
 #[test]
 fn no_circles_among_folders() {
     for (name, _) in ARROWS {
         let sources = root().join("harness").join(name).join("src");
         let all = folders(&sources);
-        let mut arrows: BTreeSet<(String, String)> = BTreeSet::new();
+        let mut arrows: BTreeMap<&String, BTreeSet<&String>> = BTreeMap::new();
         for folder in &all {
             let mut texts = texts(&sources.join(folder));
             texts.extend(std::fs::read_to_string(sources.join(folder).with_extension("rs")));
-            for other in all.iter().filter(|other| *other != folder) {
-                let named = [format!("crate::{other}::"), format!("crate::{other};"), format!("crate::{{{other}")];
-                if texts.iter().any(|text| named.iter().any(|name| text.contains(name))) {
-                    arrows.insert((folder.clone(), other.clone()));
+            let named: BTreeSet<String> = texts.iter().flat_map(|text| named(text)).collect();
+            arrows.insert(folder, all.iter().filter(|other| *other != folder && named.contains(*other)).collect());
+        }
+        while let Some(free) = arrows.iter().find(|(_, needs)| needs.is_empty()).map(|(folder, _)| *folder) {
+            arrows.remove(free);
+            arrows.values_mut().for_each(|needs| {
+                needs.remove(free);
+            });
+        }
+        assert!(arrows.is_empty(), "{name}: these need each other: {arrows:?}");
+    }
+}
+
+/// The modules at the crate's root that a source names: `crate::a::…`, and all of `crate::{a::…, b::{…}, c}`.
+fn named(source: &str) -> Vec<String> {
+    let identifier = |text: &str| -> String {
+        text.trim_start().chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect()
+    };
+    let mut found = Vec::new();
+    for rest in source.split("crate::").skip(1) {
+        let Some(list) = rest.strip_prefix('{') else {
+            found.push(identifier(rest));
+            continue;
+        };
+        let (mut depth, mut start) = (0, 0);
+        for (at, letter) in list.char_indices() {
+            match letter {
+                '{' => depth += 1,
+                '}' | ',' if depth == 0 => {
+                    found.push(identifier(&list[start..at]));
+                    start = at + 1;
+                    if letter == '}' {
+                        break;
+                    }
                 }
+                '}' => depth -= 1,
+                _ => {}
             }
         }
-        for (one, other) in &arrows {
-            assert!(!arrows.contains(&(other.clone(), one.clone())), "{name}: {one} and {other} need each other");
-        }
+    }
+    found
+}
+
+#[test]
+fn names_are_read_from_lists_too() {
+    let source = "use crate::{a, b::{c, d}, e::F};\nuse crate::g::h;\nfn f() { crate::i() }";
+    assert_eq!(named(source), ["a", "b", "e", "g", "i"]);
+}
+
+/// The packages that one is built from, without its tests; `edges` as `cargo tree` has them.
+fn packages(package: &str, features: &[&str], edges: &str) -> BTreeSet<String> {
+    let mut command = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(["tree", "--package", package, "--edges", edges, "--prefix", "none", "--format", "{p}"]);
+    let output = command.args(["--offline", "--locked"]).args(features).current_dir(root()).output();
+    let output = output.expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let names = text.lines().filter_map(|line| line.split(" (").next()).filter(|line| !line.is_empty());
+    names.map(str::to_owned).collect()
+}
+
+/// What a stranger takes on with the libraries: no more packages than their READMEs state, and nothing that a C or C++ compiler builds.
+#[test]
+fn the_libraries_stay_small() {
+    for (package, features, most) in [
+        ("lapidary-assay", &[][..], 80),
+        ("lapidary-assay", &["--no-default-features"], 2),
+        ("lapidary-specialise", &[], 32),
+    ] {
+        let needed = packages(package, features, "normal");
+        assert!(needed.len() <= most, "{package} {features:?}: {} packages: {needed:?}", needed.len());
+        let built = packages(package, features, "normal,build");
+        let compilers = ["cc v", "cmake v", "bindgen v", "nv-flip"];
+        assert!(!built.iter().any(|name| compilers.iter().any(|one| name.starts_with(one))), "{built:?}");
     }
 }
 

@@ -45,20 +45,19 @@ fn a_new_technique_keeps_the_contract_and_is_known_to_cargo() {
     let findings = lint("thin_film", &source);
     assert!(findings.is_empty(), "{}", findings.iter().map(ToString::to_string).collect::<String>());
     assert_eq!(parse_header(&source).expect("a header").name, "thin_film");
-    assert_eq!(parse_functions(&source).expect("comments").len(), 1);
-    for (file, line, before) in [
-        ("Cargo.toml", "lapidary-thin_film = { path = \"crates/thin_film\" }", "lapidary-veins"),
-        (
-            "harness/cook/Cargo.toml",
-            "lapidary-thin_film = { workspace = true, features = [\"formulas\"] }",
-            "lapidary-veins",
-        ),
-        ("CHANGELOG.md", "- `thin_film`: a new module.", "- `curvature_frame`"),
+    assert_eq!(parse_functions(&source).expect("comments").len(), 2);
+    for (file, line) in [
+        ("Cargo.toml", "lapidary-thin_film = { path = \"crates/thin_film\" }"),
+        ("harness/cook/Cargo.toml", "lapidary-thin_film = { workspace = true, features = [\"formulas\"] }"),
     ] {
         let text = read(file);
-        let at = text.find(line).unwrap_or_else(|| panic!("{file}:\n{text}"));
-        assert!(text[at..].lines().nth(1).is_some_and(|next| next.starts_with(before)), "{file}:\n{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        let at = lines.iter().position(|found| *found == line).unwrap_or_else(|| panic!("{file}:\n{text}"));
+        let name = |line: &str| line.split([' ', '.']).next().unwrap_or_default().to_owned();
+        assert!(name(lines[at - 1]) < name(line) && name(line) < name(lines[at + 1]), "{file}:\n{text}");
     }
+    let changes = read("CHANGELOG.md");
+    assert!(changes.contains("### New\n\n- `thin_film`: a new module.\n- `"), "{changes}");
     assert!(files(copy.path()).values().all(|text| !text.contains("NAME")), "a name is left open");
 }
 
@@ -74,6 +73,8 @@ fn what_cannot_be_a_technique_leaves_nothing_behind() {
         (&["new", "thin__film", "--in", "."], "two underscores in a row"),
         (&["new", "thin_", "--in", "."], "one at its end"),
         (&["new", "gem", "--in", "."], "is a recipe"),
+        (&["new", "scene", "--in", "."], "there is a crate `lapidary-scene` already"),
+        (&["new", "cook", "--in", "."], "there is a crate `lapidary-cook` already"),
         (&["new", "other", "--in", "nowhere"], "nowhere/Cargo.toml: cannot be read"),
         (&["new", "other", "--in", "harness"], "Cargo.toml: cannot be read"),
         (&["new"], "<NAME>"),
