@@ -182,8 +182,8 @@ fn functions() -> Vec<Formula> {
             .edge("grazing to the last ulp", |(r, n, _)| r.dot(n) != 0.0 && r.dot(n).abs() < 1e-30)
             .edge("into a denser medium", |(_, _, index)| index > 1.0)
             .invariant("unit length", |_, hit: RefractionHit| {
-                // Division by the least index, 1/4, magnifies the lengths' own error.
-                near("length", hit.direction.as_dvec3().length(), 1.0, 4.0 * UNIT)
+                // docs/refraction.md: 88 and 148 units of 2⁻²⁴ at the least index, 1/4.
+                near("length", hit.direction.as_dvec3().length(), 1.0, 148.0 / (1 << 24) as f64)
             })
             .invariant("Snell: n × r = n_relative n × r'", |(incident, normal, index), hit: RefractionHit| {
                 let across = |v: Vec3| normal.as_dvec3().cross(v.as_dvec3());
