@@ -2,6 +2,8 @@
 
 mod outside;
 
+pub use outside::linear;
+
 use crate::{self as mirror, RefractionHit, oracle};
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;

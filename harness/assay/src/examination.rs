@@ -1,11 +1,13 @@
 //! Everything that is tested of a WGSL function: random inputs, hard cases, promises outside of its domain, the inputs beside its branches.
 
+use crate::accuracy_line::Accuracy;
 use crate::dispatch::{DispatchError, Kernel};
+use crate::environment::SEED_VARIABLE;
 use crate::extremum::largest;
 use crate::failure::Failure;
 use crate::formula::{Formula, HardCase, Words};
 use crate::property::{Check, DEFAULT_CASES, Report, Settings, promises, seams};
-use crate::tolerance::{Tolerance, number};
+use crate::tolerance::{Tolerance, numbers};
 use std::fmt::Write as _;
 
 /// What was found.
@@ -15,8 +17,6 @@ pub struct Examination {
     pub report: Report,
     /// The results at the simplest failing input.
     pub failure: Option<Failure>,
-    /// The number of hard cases.
-    pub hard_cases: usize,
     /// Hard cases that do not hold, by name, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
     /// Promises outside of the domain that do not hold, with an input.
@@ -36,8 +36,8 @@ impl Examination {
         self.report.failed == 0 && edges && others.into_iter().all(Vec::is_empty)
     }
 
-    /// What does not hold, a line each, and how to run it again with the seed in the environment variable `seed_variable`.
-    pub fn describe(&self, formula: &Formula, seed_variable: &str) -> String {
+    /// What does not hold, a line each, and how to run it again.
+    pub fn describe(&self, formula: &Formula) -> String {
         let Settings { cases, seed } = self.settings;
         let mut text = String::new();
         if self.report.failed > 0 {
@@ -59,11 +59,29 @@ impl Examination {
         }
         let missed: Vec<&str> = self.report.missed_edges().collect();
         if cases >= DEFAULT_CASES && !missed.is_empty() {
-            let _ = writeln!(text, "no input reached `{}`; mend the inputs, or the edge", missed.join("`, `"));
+            let _ = writeln!(text, "{}", not_reached(&missed));
         }
-        let _ = write!(text, "  seed {seed}, {cases} inputs; again with {seed_variable}={seed}");
+        let _ = write!(text, "  seed {seed}, {cases} inputs; again with {SEED_VARIABLE}={seed}");
         format!("{}: {text}", formula.function)
     }
+}
+
+/// What there is to say of edges that no input reached.
+pub(crate) fn not_reached(edges: &[&str]) -> String {
+    format!("no input reached `{}`; mend the inputs, or the edge", edges.join("`, `"))
+}
+
+/// What a formula's function is held to on this device: what its comment promises; of a naive form, what it keeps on its benign domain.
+///
+/// # Errors
+/// Where the comment calls it naive, and its formula has no benign domain.
+pub fn tolerance(formula: &Formula, accuracy: &Accuracy, lavapipe: bool) -> Result<Tolerance, String> {
+    if let Some(relative) = formula.benign {
+        return Ok(Tolerance::of_benign(&formula.arguments, &formula.result, relative));
+    }
+    let bounds = accuracy.bounds(lavapipe);
+    let bounds = bounds.ok_or_else(|| format!("{}: naive, but its formula has no benign domain", formula.function))?;
+    Ok(Tolerance::new(&formula.arguments, &formula.result, bounds))
 }
 
 /// Examines the function of `formula` in `source`, which `kernel` was made of. `replayed` inputs and the hard cases' go first.
@@ -101,11 +119,9 @@ pub fn examine(
         Ok(faults) => (faults.iter().map(ToString::to_string).collect(), None),
         Err(stopped) => (Vec::new(), Some(stopped.to_string())),
     };
-    let hard_cases = formula.hard_cases.len();
     Ok(Examination {
         report,
         failure,
-        hard_cases,
         broken_hard_cases,
         broken_promises,
         broken_branches,
@@ -139,10 +155,6 @@ pub fn distance_from_limit(
 ) -> Result<f64, DispatchError> {
     let mut words = Words::new();
     kernel.run(arguments, &mut words)?;
-    let distances = words
-        .iter()
-        .zip(formula.result.scalars())
-        .zip(limit)
-        .map(|((word, scalar), limit)| (number(scalar, *word) - limit).abs());
-    Ok(largest(distances))
+    let found = numbers(&formula.result, &words);
+    Ok(largest(found.iter().zip(limit).map(|(found, limit)| (found - limit).abs())))
 }

@@ -10,10 +10,11 @@ use crate::accuracy_line::{FieldBound, check_fields, parse_bounds};
 use crate::dispatch::signature::difference;
 use crate::draws::{Domain, Draws};
 use crate::environment::{self, SEED_VARIABLE};
+use crate::examination::not_reached;
 use crate::formula::Words;
 use crate::literal::{self, Language};
 use crate::property::Settings;
-use crate::tolerance::{Tolerance, number};
+use crate::tolerance::{Tolerance, numbers};
 use crate::wgsl::{Failure, Outcome};
 use program::{Binding, Program};
 use proptest::strategy::Strategy;
@@ -191,12 +192,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         }
         let Some((row, worst)) = worst else {
             let missed: Vec<&str> = missed.iter().map(|(name, _)| *name).collect();
-            return match missed.as_slice() {
-                [] => Ok(()),
-                missed => {
-                    Err(fail(format!("no input reached `{}`; mend the inputs, or the edge", missed.join("`, `"))))
-                }
-            };
+            return if missed.is_empty() { Ok(()) } else { Err(fail(not_reached(&missed))) };
         };
         let (buffers, worst) = self.shrink(&program, &tolerances, row, worst).map_err(fail)?;
         Err(fail(self.describe(&program, &tolerances, &buffers, &worst, failed)))
@@ -232,15 +228,13 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
                 return Err(format!("the mirror changes `{}`, which the kernel cannot", binding.name));
             }
             let width = binding.ty.shape.words();
-            let scalars = binding.ty.shape.scalars();
             let elements = got.chunks_exact(width).zip(expected.chunks_exact(width)).enumerate();
             // What is the mirror's to the bit is right, an infinity too.
             for (element, (got, expected)) in elements.filter(|(_, (got, expected))| got != expected) {
                 let ratio = match &tolerances[buffer] {
                     None => f64::INFINITY,
                     Some(tolerance) => {
-                        let exact: Vec<f64> =
-                            expected.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)).collect();
+                        let exact = numbers(&binding.ty.shape, expected);
                         tolerance.judge(&[], got, expected, &exact, &|_, _| {}).ratio
                     }
                 };
@@ -296,8 +290,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         } else {
             binding.name.clone()
         };
-        let exact: Vec<f64> =
-            worst.expected.iter().zip(shape.scalars()).map(|(word, scalar)| number(scalar, *word)).collect();
+        let exact = numbers(shape, &worst.expected);
         let mut text = format!(
             "{failed} of {cases} inputs failed; `{place}` is off by {} times the allowed error\n  {place} = {}\n  expected {}\n",
             worst.ratio,

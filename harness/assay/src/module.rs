@@ -10,11 +10,10 @@
 
 use crate::accuracy_line::Accuracy;
 use crate::dispatch::{DispatchError, Kernel};
-use crate::environment::{self, SEED_VARIABLE};
-use crate::examination::{Examination, examine};
+use crate::environment;
+use crate::examination::{Examination, examine, tolerance};
 use crate::formula::Formula;
 use crate::property::{DEFAULT_CASES, Settings};
-use crate::tolerance::Tolerance;
 use lapidary_gpu::Gpu;
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use std::process::ExitCode;
@@ -42,26 +41,16 @@ fn completion(source: &str, formula: &Formula) -> Result<Completion, Failed> {
         // A rare edge, which a seed may miss by chance.
         found = examined(gpu, source, formula, Settings { cases: MORE * DEFAULT_CASES, seed })?;
     }
-    if found.holds() { Ok(Completion::Completed) } else { Err(found.describe(formula, SEED_VARIABLE).into()) }
+    if found.holds() { Ok(Completion::Completed) } else { Err(found.describe(formula).into()) }
 }
 
 fn examined(gpu: &Gpu, source: &str, formula: &Formula, settings: Settings) -> Result<Examination, String> {
-    let name = formula.module;
-    let tolerance = tolerance(gpu, source, formula)?;
-    let fail = |error: DispatchError| format!("{}: {error}", formula.function);
-    let mut kernel = Kernel::of_function(gpu, source, name, formula.function).map_err(fail)?;
+    let function = formula.function;
+    let accuracy = Accuracy::of_function(source, function)?;
+    accuracy.check_fields(&formula.result).map_err(|fault| format!("{function}: Accuracy: {fault}"))?;
+    let tolerance = tolerance(formula, &accuracy, gpu.is_lavapipe())?;
+    let fail = |error: DispatchError| format!("{function}: {error}");
+    let mut kernel = Kernel::of_function(gpu, source, formula.module, function).map_err(fail)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| error.to_string())?;
     examine(formula, source, &mut kernel, &tolerance, settings, &[]).map_err(fail)
-}
-
-/// What the function's comment promises of this device; of a naive form, what it keeps on its benign domain.
-fn tolerance(gpu: &Gpu, source: &str, formula: &Formula) -> Result<Tolerance, String> {
-    if let Some(relative) = formula.benign {
-        return Ok(Tolerance::of_benign(&formula.arguments, &formula.result, relative));
-    }
-    let accuracy = Accuracy::of_function(source, formula.function)?;
-    accuracy.check_fields(&formula.result).map_err(|fault| format!("{}: Accuracy: {fault}", formula.function))?;
-    let bounds = accuracy.bounds(gpu.is_lavapipe());
-    let bounds = bounds.ok_or_else(|| format!("{}: naive, but its formula has no benign domain", formula.function))?;
-    Ok(Tolerance::new(&formula.arguments, &formula.result, bounds))
 }

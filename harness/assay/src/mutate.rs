@@ -5,7 +5,7 @@ mod judge;
 
 pub use judge::Judge;
 
-use crate::dispatch::KernelModule;
+use crate::dispatch::{DispatchError, KernelModule};
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
 use std::fmt;
 
@@ -71,19 +71,35 @@ impl fmt::Display for Score {
     }
 }
 
+/// The mutants of a function.
+#[derive(Clone, Debug)]
+pub struct Mutants {
+    /// In their order, the same in every run.
+    pub valid: Vec<Mutant>,
+    /// How many changes more make no valid program.
+    pub invalid: usize,
+}
+
+/// Every mutant of the named function of `source`, and of the consts that it uses; `path` is for messages.
+///
+/// # Errors
+/// Where the source is not valid, or has no such function.
+pub fn of_function(source: &str, path: &str, function: &str) -> Result<Mutants, DispatchError> {
+    let kernel = compacted(KernelModule::reflect(source, path, function)?);
+    let (valid, invalid): (Vec<_>, Vec<_>) =
+        mutants(source, function, &kernel).into_iter().partition(|mutant| apply(&kernel, mutant).is_some());
+    Ok(Mutants { valid, invalid: invalid.len() })
+}
+
 /// A kernel with nothing in it that its function does not use, so that every expression is live.
-pub fn compacted(mut kernel: KernelModule) -> KernelModule {
+fn compacted(mut kernel: KernelModule) -> KernelModule {
     naga::compact::compact(&mut kernel.module, naga::compact::KeepUnused::No);
     kernel
 }
 
-/// Every mutant of the named function of `source`, and of the consts that it uses.
-///
-/// `kernel` is the function's own, compacted.
-///
-/// # Panics
-/// Where `kernel` is not valid, which [`KernelModule::reflect`] has made sure of.
-pub fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
+/// Every change to the named function of `source`, and to the consts that it uses; `kernel` is the function's own, compacted. One may make no valid
+/// program.
+fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
     let mut mutants: Vec<Mutant> = Vec::new();
     let mut add = |owner: &str, span: naga::Span, site: Site, change: String, edit: Edit| {
         let start = span.to_range().map_or(0, |range| range.start);
@@ -130,7 +146,7 @@ pub fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutan
 }
 
 /// The kernel with one change; none where the kernel does not hold the site, or where the change makes no valid program.
-pub fn apply(kernel: &KernelModule, mutant: &Mutant) -> Option<KernelModule> {
+fn apply(kernel: &KernelModule, mutant: &Mutant) -> Option<KernelModule> {
     let mut mutated = kernel.clone();
     let ir = &mut mutated.module;
     match mutant.site {

@@ -263,6 +263,11 @@ pub fn number(scalar: Scalar, word: u32) -> f64 {
     }
 }
 
+/// A value's words as the numbers that they stand for.
+pub fn numbers(shape: &Shape, words: &[u32]) -> Vec<f64> {
+    words.iter().zip(shape.scalars()).map(|(word, scalar)| number(scalar, *word)).collect()
+}
+
 /// The word nearest to a number.
 pub fn word(kind: Scalar, number: f64) -> u32 {
     match kind {

@@ -4,7 +4,7 @@
 use crate::accuracy_line::{Bound, FieldBound, check_fields, parse_bounds};
 use crate::dispatch::{self, DispatchError, Kernel, KernelModule};
 use crate::draws::{Domain, Draws};
-use crate::environment::{self, SEED_VARIABLE};
+use crate::environment;
 use crate::examination::examine;
 use crate::formula::{self, Builder, Formula, Words};
 use crate::mutate::{self, Judge, Score};
@@ -217,7 +217,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
         let mut kernel = Kernel::of_function(gpu, &text, PATH, formula.function).map_err(fail)?;
         let found = examine(&formula, &text, &mut kernel, &tolerance, settings, &cases).map_err(fail)?;
-        if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula, SEED_VARIABLE))) }
+        if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 
     /// Changes one operator, comparison or constant of the function at a time, and says which changes this test does not notice: an equivalent
@@ -232,10 +232,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
             return Ok(Score { mutants: 0, survivors: Vec::new() });
         };
         let fail = |what: &dyn fmt::Display| Failure(format!("{}: {what}", formula.function));
-        let kernel = KernelModule::reflect(&text, PATH, formula.function).map_err(|error| fail(&error))?;
-        let kernel = mutate::compacted(kernel);
-        let mut mutants = mutate::mutants(&text, formula.function, &kernel);
-        mutants.retain(|mutant| mutate::apply(&kernel, mutant).is_some());
+        let mut mutants = mutate::of_function(&text, PATH, formula.function).map_err(|error| fail(&error))?.valid;
         let judge = Judge::new(gpu, &formula, (&text, PATH), tolerance, &cases).map_err(|error| fail(&error))?;
         if judge.rejects_unchanged() {
             return Err(fail(&"does not pass its own test, so nothing can be said of its mutants"));
@@ -283,7 +280,7 @@ struct Ready {
 }
 
 /// No error at all, in any field.
-pub(crate) fn exact(result: &Shape) -> Vec<FieldBound> {
+fn exact(result: &Shape) -> Vec<FieldBound> {
     let none = |field| FieldBound { field, bound: Bound::default() };
     match result {
         Shape::Struct(_, fields) => fields.iter().map(|(name, _)| none(Some(name.clone()))).collect(),

@@ -7,7 +7,7 @@ pub mod user_file;
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
 use lapidary_assay::dispatch::{self, DispatchError, Kernel};
-use lapidary_assay::examination::{Examination, examine};
+use lapidary_assay::examination::{self, Examination, examine};
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::property::Settings;
@@ -166,14 +166,12 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
 }
 
 /// The tolerance of a formula on this device: that of its `Accuracy:` line, or of its benign domain for a naive form.
+///
+/// # Panics
+/// Where a naive form has no benign domain, which a test forbids.
 pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
-    match formula.benign {
-        Some(relative) => Tolerance::of_benign(&formula.arguments, &formula.result, relative),
-        None => {
-            let bounds = documentation(formula).accuracy.bounds(gpu.is_lavapipe()).unwrap_or_default();
-            Tolerance::new(&formula.arguments, &formula.result, bounds)
-        }
-    }
+    let promised = examination::tolerance(formula, &documentation(formula).accuracy, gpu.is_lavapipe());
+    promised.unwrap_or_else(|fault| panic!("{fault}"))
 }
 
 /// Reflects, checks the signature against the mirror's, and compiles.
@@ -248,7 +246,8 @@ fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> Strin
 
 fn row(formula: &Formula, found: Examination, reproduce: String) -> Row {
     let passed = found.holds();
-    let Examination { report, failure, hard_cases, broken_hard_cases, broken_promises, broken_branches, .. } = found;
+    let hard_cases = formula.hard_cases.len();
+    let Examination { report, failure, broken_hard_cases, broken_promises, broken_branches, .. } = found;
     Row {
         passed,
         module: formula.module.to_owned(),

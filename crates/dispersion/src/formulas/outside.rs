@@ -4,6 +4,7 @@ use crate::{DispersionSellmeier, oracle as dispersion};
 use glam::Vec3;
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, close, finite, holds, nothing, of_length};
+use lapidary_refraction::formulas::linear;
 
 /// Every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
@@ -116,11 +117,4 @@ pub(super) fn promises() -> Vec<Promise> {
             },
         ),
     ]
-}
-
-/// A reflection's linear map, of vectors of any length.
-fn linear(vector: Vec3, normal: Vec3, reflected: Vec3) -> Result<(), String> {
-    let (r, n) = (vector.as_dvec3(), normal.as_dvec3());
-    let wanted = r - 2.0 * n.dot(r) * n;
-    close(&reflected.to_array(), &wanted.to_array(), 2e-6 * r.length() * (1.0 + 2.0 * n.length_squared()))
 }

@@ -6,7 +6,7 @@ use lapidary_assay::outside::{Promise, close, finite, finite_values, holds, of_l
 
 /// r - 2 (n . r) n, in f64.
 /// A reflection's linear map, of vectors of any length.
-fn linear(vector: Vec3, normal: Vec3, reflected: Vec3) -> Result<(), String> {
+pub fn linear(vector: Vec3, normal: Vec3, reflected: Vec3) -> Result<(), String> {
     let (r, n) = (vector.as_dvec3(), normal.as_dvec3());
     let wanted = r - 2.0 * n.dot(r) * n;
     close(&reflected.to_array(), &wanted.to_array(), 2e-6 * r.length() * (1.0 + 2.0 * n.length_squared()))

@@ -85,12 +85,12 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     context.gpu()?;
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
-    // The mutation tests last and apart: cargo stops at the first target that fails.
     // Whoever names tests gets them.
     let is_short = arguments.quick && arguments.filter.is_none();
     if is_short {
         eprintln!("left out: mutants, and the tests named {}", SLOW.join(", "));
     }
+    // The mutation tests last and apart: cargo stops at the first target that fails.
     let parts: [&[&str]; 2] = [
         &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
         &["--package", "lapidary-cook", "--test", "mutation"],

@@ -13,6 +13,9 @@ const BEGIN: &str = "<!-- generated: ";
 /// ... and after it.
 const END: &str = "<!-- end -->";
 
+/// The name of the README's table of modules, which is no report's.
+pub const MODULES: &str = "modules";
+
 /// A table's name and what makes it of a report.
 pub type Table<R> = (&'static str, fn(&R) -> String);
 
@@ -29,13 +32,13 @@ pub trait Tables: Sized + 'static {
     fn whole(&self) -> Result<(), String>;
 }
 
-/// The names of all reports' tables.
+/// The names of all tables.
 fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
     let paths = of::<OpticalPathReport>().chain(of::<RestraintReport>()).chain(of::<EffectsReport>());
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(paths).collect()
+    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(paths).chain([MODULES]).collect()
 }
 
 /// Whether a page's marks are sound.
@@ -55,6 +58,15 @@ pub fn check(page: &str) -> Result<(), String> {
 pub fn fill<R: Tables>(page: &str, report: &R) -> Result<String, String> {
     report.whole()?;
     remake(page, report)
+}
+
+/// `page` with `table` in the place of the one that is called `name`.
+///
+/// # Errors
+///
+/// As [`check`].
+pub fn with_table(page: &str, name: &str, table: &str) -> Result<String, String> {
+    with_tables(page, |marked| (marked == name).then(|| format!("\n{table}")))
 }
 
 fn remake<R: Tables>(page: &str, report: &R) -> Result<String, String> {

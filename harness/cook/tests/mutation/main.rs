@@ -12,9 +12,8 @@
 
 mod record;
 
-use lapidary_assay::dispatch::KernelModule;
 use lapidary_assay::formula::Formula;
-use lapidary_assay::mutate::{self, Judge, Mutant};
+use lapidary_assay::mutate::{self, Judge, Mutant, Mutants};
 use lapidary_cook::seed::SuiteSeed;
 use lapidary_cook::{check, cookbook, formulas};
 use lapidary_gpu::{AdapterChoice, Gpu};
@@ -22,8 +21,8 @@ use record::Record;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
-use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// How long to wait for an answer: at first, where a machine under load may be slow, and the second time.
@@ -57,44 +56,44 @@ fn main() -> ExitCode {
     let filter = arguments.iter().find(|argument| !argument.starts_with('-')).cloned().unwrap_or_default();
     let filter = if filter == "mutation" { "" } else { &filter };
     let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
-    let choice = match std::env::var(MUTANTS_VARIABLE).ok().as_deref() {
-        Some("all" | "record") => Choice::All,
-        Some("listed") => Choice::Listed(equivalent_mutants()),
-        Some("sample") => Choice::Sample(seed.value),
+    let asked = std::env::var(MUTANTS_VARIABLE).ok();
+    let choice = match asked.as_deref() {
+        Some("all" | "record") => Choice::Same(Share::All),
+        Some("listed") => Choice::Same(Share::Listed),
+        Some("sample") => Choice::Same(Share::Sample(seed.value)),
         None if filter.is_empty() => Choice::Touched,
-        None => Choice::All,
+        None => Choice::Same(Share::All),
         Some(other) => panic!("{MUTANTS_VARIABLE}={other}: expected all, record, listed or sample"),
     };
     println!("seed {}, {}", seed.value, seed.origin);
-    coordinate(filter, &choice)
+    coordinate(filter, choice, asked.as_deref() == Some("record"))
 }
 
 /// Which mutants are judged.
+#[derive(Clone, Copy)]
 enum Choice {
-    All,
-    /// Those that are listed as equivalent.
-    Listed(BTreeMap<String, String>),
-    /// One in ten, by this seed.
-    Sample(u64),
+    /// The same share of every module's.
+    Same(Share),
     /// What has changed since the record.
     Touched,
 }
 
-/// How a module's mutants are judged.
+/// How many of a module's mutants are judged.
+#[derive(Clone, Copy)]
 enum Share {
     All,
-    Listed(BTreeMap<String, String>),
+    /// Those that are listed as equivalent.
+    Listed,
+    /// One in ten, by this seed.
     Sample(u64),
-    /// Not at all: they are as they were recorded.
+    /// None: so many are as they were recorded.
     Recorded(usize),
 }
 
 impl Choice {
-    fn of_module(&self, module: &str, now: &Record, then: &Record) -> Share {
+    fn of_module(self, module: &str, now: &Record, then: &Record) -> Share {
         match self {
-            Self::All => Share::All,
-            Self::Listed(listed) => Share::Listed(listed.clone()),
-            Self::Sample(seed) => Share::Sample(*seed),
+            Self::Same(share) => share,
             Self::Touched if !now.is_of_the_engine_of(then) || !now.agrees(then, module) => Share::All,
             Self::Touched => Share::Recorded(then.modules.get(module).map_or(0, |module| module.mutants)),
         }
@@ -102,21 +101,12 @@ impl Choice {
 }
 
 impl Share {
-    fn holds(&self, name: &str) -> bool {
+    fn holds(self, name: &str) -> bool {
         match self {
             Self::All => true,
-            Self::Listed(listed) => listed.contains_key(name),
-            Self::Sample(seed) => in_sample(*seed, name),
+            Self::Listed => equivalent_mutants().contains_key(name),
+            Self::Sample(seed) => in_sample(seed, name),
             Self::Recorded(_) => false,
-        }
-    }
-
-    fn describe(&self) -> String {
-        match self {
-            Self::All => "all".to_owned(),
-            Self::Listed(_) => "those that are listed".to_owned(),
-            Self::Sample(_) => format!("one in {SAMPLE}"),
-            Self::Recorded(mutants) => format!("none: {mutants} as recorded, nothing that they depend on has changed"),
         }
     }
 }
@@ -136,18 +126,13 @@ const UNCHANGED: usize = usize::MAX;
 /// What a worker says once it has its device.
 const READY: &str = "ready";
 
-/// A function's mutants in their order, the same in coordinator and workers, and how many more make no valid program.
-fn mutants_of(formula: &Formula) -> (Vec<Mutant>, usize) {
+/// A function's mutants, the same in coordinator and workers.
+fn mutants_of(formula: &Formula) -> Mutants {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    let kernel = KernelModule::reflect(module.source, module.name, formula.function);
-    let kernel = mutate::compacted(kernel.expect("the cookbook's WGSL is valid"));
-    let all = mutate::mutants(module.source, formula.function, &kernel);
-    let (valid, invalid): (Vec<_>, Vec<_>) =
-        all.into_iter().partition(|mutant| mutate::apply(&kernel, mutant).is_some());
-    (valid, invalid.len())
+    mutate::of_function(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid")
 }
 
-fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
+fn coordinate(filter: &str, choice: Choice, is_recorded: bool) -> ExitCode {
     let start = Instant::now();
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"));
     let modules: Vec<&str> = cookbook::modules().iter().map(|module| module.name).collect();
@@ -159,11 +144,10 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
     let mut jobs: Vec<(usize, usize, String)> = Vec::new();
     let mut constants = Vec::new();
     let mut invalid = 0;
-    let listed_names = equivalent_mutants();
     for (index, formula) in formulas::all().iter().enumerate() {
-        let (mutants, dropped) = mutants_of(formula);
-        invalid += dropped;
-        for (position, mutant) in mutants.iter().enumerate() {
+        let mutants = mutants_of(formula);
+        invalid += mutants.invalid;
+        for (position, mutant) in mutants.valid.iter().enumerate() {
             let name = mutant.to_string();
             // A const is met again with every function that uses it, and judged by all of them at the first.
             let constant = mutant.owner != formula.function;
@@ -175,7 +159,7 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
             }
             if let Some(module) = now.modules.get_mut(formula.module) {
                 module.mutants += 1;
-                module.listed += usize::from(listed_names.contains_key(&name));
+                module.listed += usize::from(equivalent_mutants().contains_key(&name));
             }
             if shares[formula.module].holds(&name) {
                 jobs.push((index, position, name));
@@ -185,7 +169,12 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
     let total = jobs.len();
     let judged: BTreeSet<String> = jobs.iter().map(|(.., name)| name.clone()).collect();
     for (module, share) in shares.iter().filter(|_| matches!(choice, Choice::Touched)) {
-        println!("{module}: {}", share.describe());
+        match share {
+            Share::Recorded(mutants) => {
+                println!("{module}: none: {mutants} as recorded, nothing that they depend on has changed");
+            }
+            _ => println!("{module}: all"),
+        }
     }
     if total == 0 && !filter.is_empty() {
         // A filter for other tests.
@@ -226,12 +215,12 @@ fn coordinate(filter: &str, choice: &Choice) -> ExitCode {
         println!("BROKEN: the unchanged `{name}` does not pass its own tests in a worker");
     }
     println!("{invalid} changes make no valid program and are no mutants");
-    if let Choice::Sample(seed) = choice {
+    if let Choice::Same(Share::Sample(seed)) = choice {
         println!("a sample of one in {SAMPLE} by seed {seed}; all of them with {MUTANTS_VARIABLE}=all");
     }
-    let whole = filter.is_empty() && matches!(choice, Choice::All);
+    let whole = filter.is_empty() && matches!(choice, Choice::Same(Share::All));
     let passed = report(whole, &judged, total, &survived, &timed_out, start.elapsed()) && broken.is_empty();
-    if passed && whole && std::env::var(MUTANTS_VARIABLE).is_ok_and(|value| value == "record") {
+    if passed && whole && is_recorded {
         now.write();
     }
     println!(
@@ -295,8 +284,12 @@ fn listed_by_module<'a>(modules: &[&'a str]) -> BTreeMap<&'a str, String> {
 }
 
 /// Name and reason of each listed mutant.
-fn equivalent_mutants() -> BTreeMap<String, String> {
-    let text = include_str!("equivalent.txt");
+fn equivalent_mutants() -> &'static BTreeMap<String, String> {
+    static LISTED: OnceLock<BTreeMap<String, String>> = OnceLock::new();
+    LISTED.get_or_init(|| parsed(include_str!("equivalent.txt")))
+}
+
+fn parsed(text: &str) -> BTreeMap<String, String> {
     let mut listed = BTreeMap::new();
     let mut reason = String::new();
     let mut continues = false;
@@ -406,7 +399,7 @@ fn worker() {
             println!("{}", if kept.rejects_unchanged() { "caught" } else { "survived" });
             continue;
         }
-        let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula).0)[position];
+        let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula).valid)[position];
         // The function's own tests first, then those of the functions that call it.
         let mut judges: Vec<&'static Formula> =
             formulas::all().iter().filter(|other| other.module == formula.module).collect();
