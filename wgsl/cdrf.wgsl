@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash c78f057683600125
+// Version: 0.2.0, hash a4161b7bb522f175
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
@@ -82,7 +82,7 @@ fn cdrf_arcsine(sine: f32) -> f32 {
 // Returns: x / sigma, within [-12, 12]; 0 at the terminator, for sigma = 0 as well.
 // Units: x and sigma in radians.
 // Domain: x in [-pi/2, pi/2], sigma >= 0.
-// Outside: finite; a negative sigma counts as 0.
+// Outside: finite while the quotient is; a negative sigma counts as 0.
 // Accuracy: lavapipe 2 ulp; portable 5 ulp
 fn cdrf_deviations(x: f32, sigma: f32) -> f32 {
     return clamp(x / max(sigma, CDRF_SMALLEST), -12.0f, 12.0f);
@@ -132,7 +132,7 @@ fn cdrf_lambert(cosine: f32) -> f32 {
 fn cdrf_wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = clamp(0.5f * sigma, 0.0f, 1.0f);
     let spread = 1.0f + wrap;
-    return max(min(cosine, 1.0f) + wrap, 0.0f) / (spread * spread);
+    return min(max(min(cosine, 1.0f) + wrap, 0.0f) / (spread * spread), 1.0f);
 }
 
 // Fourier series of the convolution, cut off. On the whole line the clamped cosine is periodic, and a Gaussian
@@ -188,7 +188,7 @@ fn cdrf_edge(cosine: f32, sigma: f32) -> f32 {
     let carried = 1.0f - (q + 2.0f * v) / 6.0f + fourth / 120.0f - sixth / 5040.0f;
     // e^(-v/2) by its series, which is exactly 1 at 0; the last coefficient, 1/48 there, takes on what is left, to 3e-8.
     let decay = 1.0f - v * (0.5f - v * (0.125f - v * 0.02064f));
-    return max(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f);
+    return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
 // The same to first order, with the quotient as it stands.
@@ -253,7 +253,7 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
 //   sigma = 0.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; any sigma, negative ones count as 0.
-// Outside: the formula goes on: off by rounding where the cosine is; finite up to 1e3.
+// Outside: the formula goes on: off by rounding where the cosine is; finite up to 10.
 // Accuracy: lavapipe 1.5e-5 abs; portable 1.7e-5 abs
 fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let c = cosine;
@@ -281,7 +281,7 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let even = weight * (0.21220659f * y + weight_cubed * (0.04244132f * y_second
         + weight_fifth * (0.018189136f * y_third + weight_fifth * weight_squared * (0.010105076f * y_fourth))));
     let wide = 0.31830987f + decay * (0.5f * c) - even;
-    return abs(select(wide, narrow, s < CDRF_CHEAP_SWITCH));
+    return min(abs(select(wide, narrow, s < CDRF_CHEAP_SWITCH)), 1.0f);
 }
 
 // The accurate convolution for a material whose channels scatter differently far.
@@ -320,7 +320,7 @@ fn cdrf_sine(turns: f32) -> f32 {
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma clamped to [2^-120, 8].
 // Outside: none is.
-// Accuracy: lavapipe 2e-6 abs; portable 4e-6 abs
+// Accuracy: lavapipe 2e-6 abs; portable 3.5e-5 abs
 fn cdrf_quadrature(cosine: f32, sigma: f32) -> f32 {
     let s = clamp(sigma, 7.5231638e-37f, CDRF_WIDEST);
     let x = cdrf_arcsine(cosine);
@@ -360,7 +360,7 @@ fn cdrf_spherical_edge(cosine: f32, sigma: f32) -> f32 {
     let v = s * s;
     let decay = 1.0f - v * (1.0f - 0.5f * v);
     let carried = 1.0f - x * x / 6.0f - 0.5833333f * v;
-    return max(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f);
+    return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
 // The energy-conserving choice: the clamped cosine diffused over the sphere of directions, not over a circle.
@@ -426,10 +426,10 @@ fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma up to 1e36, negative ones count as 0.
 // Outside: none is.
-// Accuracy: lavapipe 3 ulp + 1 backward; portable 4 ulp + 1 backward
+// Accuracy: lavapipe 3 ulp + 1 backward; portable 5 ulp + 1 backward
 fn cdrf_table_coordinates(cosine: f32, sigma: f32) -> vec2f {
-    let s = max(sigma, 0.0f);
-    return vec2f(0.5f + 0.5f * clamp(cosine, -1.0f, 1.0f), s / (1.0f + s));
+    let s = clamp(sigma, 0.0f, 1e36f);
+    return vec2f(0.5f + 0.5f * clamp(cosine, -1.0f, 1.0f), min(s / (1.0f + s), 1.0f));
 }
 
 // Value of a texel of the table, one sigma for all of a material's channels: `tint` holds each channel's sigma0 as a share of the
@@ -494,7 +494,8 @@ struct CdrfTexels {
 fn cdrf_texels(coordinates: vec2f, size: vec2u) -> CdrfTexels {
     let at = clamp(coordinates, vec2f(0.0f), vec2f(1.0f)) * (vec2f(size) - 1.0f);
     let lower = vec2u(at);
-    return CdrfTexels(lower, min(lower + 1u, size - 1u), at - floor(at));
+    // Of a product that is fused into the difference the floor need not be the floor.
+    return CdrfTexels(lower, min(lower + 1u, size - 1u), max(at - floor(at), vec2f(0.0f)));
 }
 
 // Blends four texels.

@@ -1,6 +1,6 @@
 // environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 4387b5b98215a23b
+// Version: 0.2.0, hash 9de70ddc764d6fc3
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the map; the convention is
 // that of Khronos's glTF Sample Renderer and three.js: +Y up, u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
 //
@@ -19,10 +19,8 @@
 fn environment_turns(y: f32, x: f32) -> f32 {
     let longer = max(abs(x), abs(y));
     let shorter = min(abs(x), abs(y));
-    var ratio = 0.0f;
-    if longer > 0.0f {
-        ratio = shorter / longer;
-    }
+    // Of the least that no device flushes, so that the origin has an angle, too.
+    let ratio = shorter / max(longer, 1.1754944e-38f);
     let s = ratio * ratio;
     var turns = ratio * (0.15915492f - s * (0.053049512f - s * (0.031782802f - s * (0.022312697f
         - s * (0.015779087f - s * (0.009467554f - s * (0.0038598904f - s * 0.00074695825f)))))));
@@ -43,10 +41,7 @@ fn environment_turns(y: f32, x: f32) -> f32 {
 // Accuracy: lavapipe 3 ulp; portable 12 ulp
 fn environment_hypot(a: f32, b: f32) -> f32 {
     let longer = max(abs(a), abs(b));
-    var ratio = 0.0f;
-    if longer > 0.0f {
-        ratio = min(abs(a), abs(b)) / longer;
-    }
+    let ratio = min(abs(a), abs(b)) / max(longer, 1.1754944e-38f);
     return longer * sqrt(1.0f + ratio * ratio);
 }
 
@@ -130,7 +125,7 @@ struct EnvironmentTexels {
 fn environment_texels(uv: vec2f, size: vec2u) -> EnvironmentTexels {
     // A texel's value sits in its middle, half a texel from its edge.
     let column = (uv.x - floor(uv.x)) * f32(size.x) - 0.5f;
-    let row = clamp(uv.y * f32(size.y) - 0.5f, 0.0f, f32(size.y) - 1.0f);
+    let row = clamp(clamp(uv.y, 0.0f, 1.0f) * f32(size.y) - 0.5f, 0.0f, f32(size.y) - 1.0f);
     // Left of the first middle the column is -1: one width more makes it the last.
     let left = u32(floor(column) + f32(size.x)) % size.x;
     let top = u32(floor(row));
@@ -170,7 +165,7 @@ struct EnvironmentHarmonics {
 // Units: none.
 // Domain: |direction| = 1.
 // Outside: finite for components up to 1e9.
-// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs; portable zeroth 1 ulp, first 1.5 ulp, second 6e-7 abs, fourth 3e-6 abs
+// Accuracy: lavapipe zeroth 1 ulp, first 1.5 ulp, second 4e-7 abs, fourth 2e-6 abs; portable zeroth 1 ulp, first 2 ulp, second 6e-7 abs, fourth 3e-6 abs
 fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
     let x = direction.x;
     let y = direction.y;

@@ -1,6 +1,6 @@
 // fresnel: the share of unpolarised light that an interface between two dielectrics reflects.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 742f7687bfaf6d5b
+// Version: 0.2.0, hash 7a831c11a54f9a07
 // Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as docs/fresnel.md shows.
 //   Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, eq. (15).
 
@@ -34,7 +34,8 @@ fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
     let p_root = n_squared * c + g;
     let p_numerator = m * (nc_squared - sine_squared);
     let p = p_numerator / max(p_root * p_root, abs(p_numerator));
-    return 0.5f * (s * s + p * p);
+    // WGSL lets a quotient of equals exceed 1.
+    return min(0.5f * (s * s + p * p), 1.0f);
 }
 
 // The same reflectance as textbooks and most shaders write it: quotients of cosines, with the cosine of refraction from
@@ -62,7 +63,7 @@ fn fresnel_dielectric_textbook(cosine: f32, relative_index: f32) -> f32 {
 // Accuracy: lavapipe 6 ulp; portable 20 ulp
 fn fresnel_normal_incidence(relative_index: f32) -> f32 {
     let amplitude = (relative_index - 1.0f) / (relative_index + 1.0f);
-    return amplitude * amplitude;
+    return min(amplitude * amplitude, 1.0f);
 }
 
 // Schlick's approximation, the cheap rung: a fifth power joins the exact value at normal incidence to 1 at grazing
@@ -82,5 +83,5 @@ fn fresnel_schlick(cosine: f32, relative_index: f32) -> f32 {
     let rest = 1.0f - min(c, cosine_transmitted);
     let rest_squared = rest * rest;
     let normal_incidence = fresnel_normal_incidence(relative_index);
-    return normal_incidence + (1.0f - normal_incidence) * (rest_squared * rest_squared * rest);
+    return min(normal_incidence + (1.0f - normal_incidence) * (rest_squared * rest_squared * rest), 1.0f);
 }

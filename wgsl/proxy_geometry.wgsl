@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 0c23652cce081c8b
+// Version: 0.2.0, hash ade7e5b1f566dbaf
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
@@ -147,7 +147,7 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
 
 // Coordinates of a point of plane P on the lattice: point = origin + x edge_first + y edge_second. By cross products,
 // which keep their digits on slivers, where the usual Gram determinant cancels; scaled to the longest edge against overflow.
-// Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-30 of the longest edge squared).
+// Returns: the two coordinates; zero for a degenerate triangle (|edge_first × edge_second| below 2^-18 of the longest edge squared).
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-27, 1e27], distance of the point at most 100 of it, sine of the angle times the ratio of the edges at least 1e-4.
 // Outside: finite; ill-conditioned.
@@ -163,8 +163,8 @@ fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, ed
     let second = edge_second / size;
     let perpendicular = cross(first, second);
     let squared = dot(perpendicular, perpendicular);
-    // 2^-60, the square of the limit stated above.
-    if (squared < 8.673617379884035e-19f) {
+    // 2^-36, the square of the limit stated above: what rounding leaves of two edges that are one is less.
+    if (squared < 1.4551915228366852e-11f) {
         return vec2f(0.0f);
     }
     return vec2f(dot(cross(offset, second), perpendicular), dot(cross(first, offset), perpendicular)) / squared;
@@ -200,8 +200,9 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     let corner = floor(coordinates);
     let within = coordinates - corner;
     let short = (corner + 1.0f) - coordinates;
-    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits.
-    let turned = within.x > short.y || within.y > short.x;
+    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits: the one whose
+    // sides are smaller.
+    let turned = select(within.x > short.y, within.y > short.x, within.y + short.x < within.x + short.y);
     return ProxyGeometryCell(vec2i(corner), turned);
 }
 

@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 6ab07446bf46f94d
+// Version: 0.2.0, hash e26c2e610910ea85
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
@@ -66,7 +66,7 @@ fn random_walk_random(counter: vec4u) -> vec4f {
 // Returns: a length in [0, 1.7e31], exponentially distributed for a uniform u; 0 for u = 0.
 // Units: the inverse of the majorant's.
 // Domain: u in [0, 1), clamped to that; any majorant, one below 1e-30 counts as that.
-// Outside: none is.
+// Outside: none is; u below 2^-120 may count as 0.
 // Accuracy: lavapipe 9 ulp; portable 24 ulp
 fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
     let v = clamp(u, 0.0f, 0.99999994f);
@@ -97,18 +97,17 @@ fn random_walk_free_path_naive(u: f32, majorant: f32) -> f32 {
 // difference, which makes free paths right in matter of any density below it.
 // Returns: RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED or RANDOM_WALK_PASSED.
 // Units: coefficients per unit of length, all in the same.
-// Domain: u in [0, 1); scattering, absorption at least 0, their sum at most the majorant.
+// Domain: u in [0, 1); scattering, absorption at least 0, their sum at most the majorant, which is above 0.
 // Outside: where the sum exceeds the majorant never passes: the walk is biased.
 // Accuracy: lavapipe 2 backward; portable 2 backward
 fn random_walk_collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
-    if place < scattering {
-        return RANDOM_WALK_SCATTERED;
+    let sum = scattering + absorption;
+    // Where all of the majorant is matter, a place that is rounded up to it is in it, too.
+    if place >= sum && sum < majorant {
+        return RANDOM_WALK_PASSED;
     }
-    if place < scattering + absorption {
-        return RANDOM_WALK_ABSORBED;
-    }
-    return RANDOM_WALK_PASSED;
+    return select(RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED, place >= scattering && absorption > 0.0f);
 }
 
 // What a tentative collision leaves of a transmittance that is estimated by ratio tracking. The mean over walks is e to the minus the optical
@@ -284,7 +283,8 @@ fn random_walk_boundary(incident: vec3f, normal: vec3f, relative_index: f32, u: 
     let p_root = n_squared * c + g;
     let p_numerator = m * (nc_squared - sine_squared);
     let p = p_numerator / max(p_root * p_root, abs(p_numerator));
-    if u < 0.5f * (s * s + p * p) {
+    // Total, too, where WGSL lets a quotient of equals be less than 1.
+    if g == 0.0f || u < 0.5f * (s * s + p * p) {
         return RandomWalkCrossing(incident + 2.0f * c * normal, false);
     }
     return RandomWalkCrossing((incident - m / s_root * normal) / relative_index, true);

@@ -86,7 +86,7 @@ fn functions() -> Vec<Formula> {
                 (f32::MIN_POSITIVE / 2.0..f32::MIN_POSITIVE).contains(&transmittance) || transmittance == 1e-40
             })
             .invariant("not negative, 0 exactly where all passes", |(transmittance,), depth: f32| {
-                let right = if transmittance >= 1.0 { depth.to_bits() == 0 } else { depth > 0.0 };
+                let right = if transmittance >= 1.0 { depth == 0.0 } else { depth > 0.0 };
                 if right { Ok(()) } else { Err(format!("the depth is {depth:e}")) }
             })
             .build(),

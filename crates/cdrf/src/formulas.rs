@@ -239,7 +239,7 @@ fn rungs() -> Vec<Formula> {
             .edge("no blur", |(c, s)| s == 0.0 && c > 0.0)
             .edge("wrapped round", |(c, s)| s > 2.0 && c < -0.9)
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-            .invariant("Lambert's law without blur", lambert_at_zero)
+            .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
             .build(),
         formula(M, "cdrf_cheap", mirror::cheap, oracle::cheap, |draws| {
             let (cosine, sigma) = shading(draws);
@@ -249,7 +249,7 @@ fn rungs() -> Vec<Formula> {
         .edge("just below the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH.next_down())
         .edge("at the switch", |(_, s)| s == mirror::CDRF_CHEAP_SWITCH)
         .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-        .invariant("Lambert's law without blur", lambert_at_zero)
+        .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
         .build(),
         formula(M, "cdrf_quadrature", mirror::quadrature, oracle::quadrature, |draws| {
             let (cosine, sigma) = shading(draws);
@@ -277,7 +277,7 @@ fn accurate() -> Vec<Formula> {
             .edge("the terminator", |(c, s)| c == 0.0 && s > 0.0)
             .edge("a standard deviation into the dark", |(c, s)| s > 1e-20 && c < -0.9 * s && c > -1.1 * s)
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-            .invariant("Lambert's law without blur", lambert_at_zero)
+            .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
             .hard_case("no blur at the terminator", (0.0, 0.0), (&[0.0], 0.0), (FIRST_ORDER, f64::INFINITY))
             .hard_case(
                 "a sigma of 0.05 facing the light",
@@ -303,8 +303,8 @@ fn accurate() -> Vec<Formula> {
             .edge("facing away", |(c, _)| c == -1.0)
             .edge("beside the terminator", |(c, s)| c.abs() < 1e-30 && c != 0.0 && s > 0.0)
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-            .invariant("Lambert's law without blur", lambert_at_zero)
-            .invariant("the mean, 1/pi, at last", |(_, s), reflectance: f32| {
+            .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
+            .invariant_at_nearest("the mean, 1/pi, at last", |(_, s), reflectance: f32| {
                 if s >= 8.0 { near("reflectance", reflectance.into(), FRAC_1_PI, 1e-7) } else { Ok(()) }
             })
             .pair(
@@ -404,14 +404,14 @@ fn others() -> Vec<Formula> {
         })
         .edge("no blur", |(_, s)| s == 0.0)
         .edge("the terminator", |(c, s)| c == 0.0 && s > 0.0)
-        .invariant("Lambert's law without blur", lambert_at_zero)
+        .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
         .build(),
         formula(M, "cdrf_harmonic_weights", mirror::harmonic_weights, oracle::harmonic_weights, |draws| {
             (shading(draws).1,)
         })
         .edge("no blur", |(s,)| s == 0.0)
         .edge("huge", |(s,)| s > 1e18)
-        .invariant("more blur of higher degrees", |_, weights: Vec4| {
+        .invariant_at_nearest("more blur of higher degrees", |_, weights: Vec4| {
             let all = [PI, PI / 1.5, PI / 4.0, PI / 24.0].map(|weight| weight as f32);
             let shares = weights.abs() / Vec4::from_array(all);
             let falling = shares.to_array().windows(2).all(|pair| f64::from(pair[1]) <= f64::from(pair[0]) + 1e-6);
@@ -424,8 +424,8 @@ fn others() -> Vec<Formula> {
             .edge("at the switch", |(_, s)| s == mirror::CDRF_SPHERICAL_SWITCH)
             .edge("huge", |(_, s)| s > 1e18)
             .invariant("in [0, 1]", |_, reflectance: f32| in_unit_range(reflectance))
-            .invariant("Lambert's law without blur", lambert_at_zero)
-            .invariant("the sphere's mean, 1/4, at last", |(_, s), reflectance: f32| {
+            .invariant_at_nearest("Lambert's law without blur", lambert_at_zero)
+            .invariant_at_nearest("the sphere's mean, 1/4, at last", |(_, s), reflectance: f32| {
                 if s >= 8.0 { near("reflectance", reflectance.into(), 0.25, 1e-7) } else { Ok(()) }
             })
             .pair(
@@ -447,7 +447,7 @@ fn tables() -> Vec<Formula> {
         .edge("no blur", |(_, s)| s == 0.0)
         .edge("huge", |(_, s)| s > 1e18)
         .invariant("fractions", |_, at: Vec2| in_unit_range(at.x).and(in_unit_range(at.y)))
-        .invariant("the terminator in the middle", |(c, _), at: Vec2| {
+        .invariant_at_nearest("the terminator in the middle", |(c, _), at: Vec2| {
             if c == 0.0 { near("column", at.x.into(), 0.5, 0.0) } else { Ok(()) }
         })
         .build(),
@@ -495,7 +495,7 @@ fn tables() -> Vec<Formula> {
             .invariant("inside the table, neighbours", |(_, size), texels: CdrfTexels| {
                 let CdrfTexels { lower, upper, weight } = texels;
                 let inside = lower.cmplt(size).all() && upper == (lower + 1).min(size - 1);
-                let weights = weight.cmpge(Vec2::ZERO).all() && weight.cmplt(Vec2::ONE).all();
+                let weights = weight.cmpge(Vec2::ZERO).all() && weight.cmple(Vec2::ONE).all();
                 if inside && weights { Ok(()) } else { Err(format!("{texels:?} of {size}")) }
             })
             .build(),

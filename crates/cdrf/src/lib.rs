@@ -86,7 +86,7 @@ pub fn lambert(cosine: f32) -> f32 {
 pub fn wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = (0.5 * sigma).clamp(0.0, 1.0);
     let spread = 1.0 + wrap;
-    (cosine.min(1.0) + wrap).max(0.0) / (spread * spread)
+    ((cosine.min(1.0) + wrap).max(0.0) / (spread * spread)).min(1.0)
 }
 
 /// Fourier series of the convolution, cut off after `terms`.
@@ -126,7 +126,7 @@ pub fn edge(cosine: f32, sigma: f32) -> f32 {
     let fourth = q * q + v * (9.0 * q + 8.0 * v);
     let carried = 1.0 - (q + 2.0 * v) / 6.0 + fourth / 120.0 - sixth / 5040.0;
     let decay = 1.0 - v * (0.5 - v * (0.125 - v * 0.02064));
-    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).clamp(0.0, 1.0)
 }
 
 /// The same to first order, with the quotient as it stands; a naive form.
@@ -186,7 +186,7 @@ pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     let even = weight * (0.21220659 * y + weight_cubed * (0.04244132 * y_second
         + weight_fifth * (0.018189136 * y_third + weight_fifth * weight_squared * (0.010105076 * y_fourth))));
     let wide = 0.31830987 + decay * (0.5 * c) - even;
-    (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).abs()
+    (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).abs().min(1.0)
 }
 
 /// The accurate convolution for a material whose channels scatter differently far.
@@ -240,7 +240,7 @@ pub fn spherical_edge(cosine: f32, sigma: f32) -> f32 {
     let v = s * s;
     let decay = 1.0 - v * (1.0 - 0.5 * v);
     let carried = 1.0 - x * x / 6.0 - 0.5833333 * v;
-    (decay * c * normal_share(u) + s * normal_density(u) * carried).max(0.0)
+    (decay * c * normal_share(u) + s * normal_density(u) * carried).clamp(0.0, 1.0)
 }
 
 /// The energy-conserving choice: the clamped cosine diffused over the sphere of directions.
@@ -282,8 +282,8 @@ pub fn harmonic_weights(sigma: f32) -> Vec4 {
 
 /// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.
 pub fn table_coordinates(cosine: f32, sigma: f32) -> Vec2 {
-    let s = sigma.max(0.0);
-    Vec2::new(0.5 + 0.5 * cosine.clamp(-1.0, 1.0), s / (1.0 + s))
+    let s = sigma.clamp(0.0, 1e36);
+    Vec2::new(0.5 + 0.5 * cosine.clamp(-1.0, 1.0), (s / (1.0 + s)).min(1.0))
 }
 
 /// Value of a texel of the table; `tint` holds each channel's sigma0 as a share of the largest.
@@ -330,7 +330,7 @@ pub struct CdrfTexels {
 pub fn texels(coordinates: Vec2, size: UVec2) -> CdrfTexels {
     let at = coordinates.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0);
     let lower = at.as_uvec2();
-    CdrfTexels { lower, upper: (lower + 1).min(size - 1), weight: at - at.floor() }
+    CdrfTexels { lower, upper: (lower + 1).min(size - 1), weight: (at - at.floor()).max(Vec2::ZERO) }
 }
 
 /// Blends four texels.

@@ -22,8 +22,8 @@ pub fn largest_component(vector: Vec3) -> f32 {
 /// Direction of a vector of any size; 0 for the zero vector.
 pub fn direction(vector: Vec3) -> Vec3 {
     let size = largest_component(vector);
-    if size == 0.0 {
-        return vector;
+    if size < f32::MIN_POSITIVE {
+        return Vec3::ZERO;
     }
     let scaled = vector / size;
     scaled / scaled.length()

@@ -142,7 +142,7 @@ fn step_formula() -> Formula {
             let bound = 4.0 * ULP * (magnitude + distance) + FLUSHED;
             near("the height that it covers", distance * slope, height.max(0.0), bound)
         })
-        .invariant("the nearer plane, at a tie the one so far, parallel planes never", exact_choice)
+        .invariant_at_nearest("the nearer plane, at a tie the one so far, parallel planes never", exact_choice)
         .hard_case_with(
             "a stone of size 1e-4",
             (far, Vec3::ZERO, Vec3::X, right(5e-5), 7, none),

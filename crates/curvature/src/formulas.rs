@@ -253,7 +253,7 @@ fn input_formulas() -> Vec<Formula> {
         .edge("no width", |(x, _)| x == Vec3::ZERO)
         .edge("no height", |(_, y)| y == Vec3::ZERO)
         .edge("degenerate", |(x, _)| x != Vec3::ZERO && x.length() < 0.5)
-        .invariant("an orthonormal frame, or none", |_, frame: CurvatureFrame| {
+        .invariant_at_nearest("an orthonormal frame, or none", |_, frame: CurvatureFrame| {
             let [first, second] = [frame.first, frame.second].map(|vector| vector.as_dvec3());
             // The lengths' rounding, 4 ulp of each component.
             let bound = 16.0 * 2f64.powi(-24);

@@ -12,10 +12,7 @@ use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _};
 pub fn turns(y: f32, x: f32) -> f32 {
     let longer = x.abs().max(y.abs());
     let shorter = x.abs().min(y.abs());
-    let mut ratio = 0.0;
-    if longer > 0.0 {
-        ratio = shorter / longer;
-    }
+    let ratio = shorter / longer.max(f32::MIN_POSITIVE);
     let s = ratio * ratio;
     let mut turns = ratio * (0.15915492 - s * (0.053049512 - s * (0.031782802 - s * (0.022312697
         - s * (0.015779087 - s * (0.009467554 - s * (0.0038598904 - s * 0.00074695825)))))));
@@ -31,10 +28,7 @@ pub fn turns(y: f32, x: f32) -> f32 {
 /// Length of the vector (a, b), safe from overflow and underflow of the squares.
 pub fn hypot(a: f32, b: f32) -> f32 {
     let longer = a.abs().max(b.abs());
-    let mut ratio = 0.0;
-    if longer > 0.0 {
-        ratio = a.abs().min(b.abs()) / longer;
-    }
+    let ratio = a.abs().min(b.abs()) / longer.max(f32::MIN_POSITIVE);
     longer * (1.0 + ratio * ratio).sqrt()
 }
 
@@ -84,7 +78,7 @@ pub struct EnvironmentTexels {
 pub fn texels(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     // A texel's value sits in its middle, half a texel from its edge.
     let column = (uv.x - uv.x.floor()) * size.x as f32 - 0.5;
-    let row = (uv.y * size.y as f32 - 0.5).clamp(0.0, size.y as f32 - 1.0);
+    let row = (uv.y.clamp(0.0, 1.0) * size.y as f32 - 0.5).clamp(0.0, size.y as f32 - 1.0);
     // Left of the first middle the column is -1: one width more makes it the last.
     let left = (column.floor() + size.x as f32) as u32 % size.x;
     let top = row.floor() as u32;

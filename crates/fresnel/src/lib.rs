@@ -22,7 +22,7 @@ pub fn dielectric(cosine: f32, relative_index: f32) -> f32 {
     let p_root = n_squared * c + g;
     let p_numerator = m * (nc_squared - sine_squared);
     let p = p_numerator / (p_root * p_root).max(p_numerator.abs());
-    0.5 * (s * s + p * p)
+    (0.5 * (s * s + p * p)).min(1.0)
 }
 
 /// The same reflectance as textbooks write it, a naive form: quotients of cosines.
@@ -37,7 +37,7 @@ pub fn dielectric_textbook(cosine: f32, relative_index: f32) -> f32 {
 /// Reflectance at normal incidence, the F0 of shading models.
 pub fn normal_incidence(relative_index: f32) -> f32 {
     let amplitude = (relative_index - 1.0) / (relative_index + 1.0);
-    amplitude * amplitude
+    (amplitude * amplitude).min(1.0)
 }
 
 /// Schlick's approximation, the cheap rung, in the cosine of the optically thinner medium.
@@ -50,7 +50,7 @@ pub fn schlick(cosine: f32, relative_index: f32) -> f32 {
     let rest = 1.0 - c.min(cosine_transmitted);
     let rest_squared = rest * rest;
     let normal_incidence = normal_incidence(relative_index);
-    normal_incidence + (1.0 - normal_incidence) * (rest_squared * rest_squared * rest)
+    (normal_incidence + (1.0 - normal_incidence) * (rest_squared * rest_squared * rest)).min(1.0)
 }
 
 #[cfg(test)]

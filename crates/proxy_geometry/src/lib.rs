@@ -132,7 +132,7 @@ pub fn coordinates(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec
     let perpendicular = first.cross(second);
     let squared = perpendicular.dot(perpendicular);
     // 2^-60, the square of the limit stated above.
-    if squared < 8.673_617_379_884_035e-19 {
+    if squared < 1.455_191_522_836_685_2e-11 {
         return Vec2::ZERO;
     }
     Vec2::new(offset.cross(second).dot(perpendicular), first.cross(offset).dot(perpendicular)) / squared
@@ -157,8 +157,9 @@ pub fn cell(coordinates: Vec2) -> ProxyGeometryCell {
     let corner = coordinates.floor();
     let within = coordinates - corner;
     let short = (corner + 1.0) - coordinates;
-    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits.
-    let turned = within.x > short.y || within.y > short.x;
+    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits: the one whose
+    // sides are smaller.
+    let turned = if within.y + short.x < within.x + short.y { within.y > short.x } else { within.x > short.y };
     ProxyGeometryCell { steps: corner.as_ivec2(), turned }
 }
 

@@ -117,7 +117,7 @@ pub fn coordinates(point: DVec3, origin: DVec3, edge_first: DVec3, edge_second: 
     let flat = |v: DVec3| DVec2::new(v.dot(along), v.dot(across));
     let matrix = DMat2::from_cols(flat(first), flat(second));
     let area = matrix.determinant();
-    if area.abs() < 2f64.powi(-30) {
+    if area.abs() < 2f64.powi(-18) {
         return DVec2::ZERO;
     }
     let offset = flat(offset);

@@ -79,13 +79,11 @@ pub fn free_path_naive(u: f32, majorant: f32) -> f32 {
 /// What happens at a tentative collision: delta tracking.
 pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
-    if place < scattering {
-        return RANDOM_WALK_SCATTERED;
+    let sum = scattering + absorption;
+    if place >= sum && sum < majorant {
+        return RANDOM_WALK_PASSED;
     }
-    if place < scattering + absorption {
-        return RANDOM_WALK_ABSORBED;
-    }
-    RANDOM_WALK_PASSED
+    if place >= scattering && absorption > 0.0 { RANDOM_WALK_ABSORBED } else { RANDOM_WALK_SCATTERED }
 }
 
 /// What a tentative collision leaves of a transmittance: ratio tracking.
@@ -199,7 +197,7 @@ pub fn boundary(incident: Vec3, normal: Vec3, relative_index: f32, u: f32) -> Ra
     let p_root = n_squared * c + g;
     let p_numerator = m * (nc_squared - sine_squared);
     let p = p_numerator / (p_root * p_root).max(p_numerator.abs());
-    if u < 0.5 * (s * s + p * p) {
+    if g == 0.0 || u < 0.5 * (s * s + p * p) {
         return RandomWalkCrossing { direction: incident + 2.0 * c * normal, crosses: false };
     }
     RandomWalkCrossing { direction: (incident - m / s_root * normal) / relative_index, crosses: true }

@@ -173,7 +173,7 @@ fn tone_formulas() -> Vec<Formula> {
                 near("smallest", light.min_element().min(0.0).into(), 0.0, 0.0)?;
                 near("largest", light.max_element().max(1.0).into(), 1.0, 3e-6)
             })
-            .invariant("greys stay grey", |(c,), light: Vec3| {
+            .invariant_at_nearest("greys stay grey", |(c,), light: Vec3| {
                 if c.x == c.y && c.y == c.z {
                     near("spread", f64::from(light.max_element() - light.min_element()), 0.0, 0.0)
                 } else {

@@ -64,7 +64,7 @@ pub fn ratio(sigma0: Vec3) -> f32 {
     let sigma = sigma(sigma0);
     let widest = sigma.x.max(sigma.y).max(sigma.z);
     let narrowest = sigma.x.min(sigma.y).min(sigma.z);
-    (narrowest / widest.max(TEXTURE_DIFFUSION_SMALLEST)).max(TEXTURE_DIFFUSION_LEAST_RATIO)
+    (narrowest / widest.max(TEXTURE_DIFFUSION_SMALLEST)).clamp(TEXTURE_DIFFUSION_LEAST_RATIO, 1.0)
 }
 
 /// How many pairs of taps, beside the one in the middle, keep the blur's error below 1e-3.
@@ -101,7 +101,7 @@ pub fn tap(index: u32, pairs: u32, sigma0: Vec3) -> TextureDiffusionTap {
     let t = index.min(last) as f32 / last as f32;
     let bent = (1.0 - straight) * t * t;
     let apart = 1.0 - bent;
-    let offset = TEXTURE_DIFFUSION_REACH * straight * t / apart;
+    let offset = (TEXTURE_DIFFUSION_REACH * straight * t / apart).min(TEXTURE_DIFFUSION_REACH);
     let deviations = offset / relative;
     TextureDiffusionTap { offset, weight: (1.0 + bent) / (apart * apart) * (-0.5 * deviations * deviations).exp() }
 }

@@ -125,7 +125,7 @@ pub fn fractal(position: Vec3, octaves: u32, seed: u32) -> f32 {
 pub fn fold(value: f32, width: f32) -> f32 {
     let half = width.clamp(VEINS_NARROWEST, VEINS_WIDEST);
     let squared = half * half;
-    squared / (squared + value * value)
+    (squared / (squared + value * value)).min(1.0)
 }
 
 /// The vein by the absolute value, a naive form.

@@ -194,7 +194,7 @@ fn grid_formulas() -> Vec<Formula> {
             local.min_element() < 0.0 && local.max_element() > grid.cells as f32
         })
         .edge("on a face", |(grid, position)| mirror::local(grid, position).x.fract() == 0.0)
-        .invariant("on faces that f32 holds all is exact", |(grid, position), voxel: UVec3| {
+        .invariant_at_nearest("on faces that f32 holds all is exact", |(grid, position), voxel: UVec3| {
             if grid.origin.fract() != Vec3::ZERO {
                 return Ok(());
             }
@@ -260,7 +260,7 @@ fn column_formulas() -> Vec<Formula> {
                 p.y * q.z == p.z * q.y && p.y != q.y
             })
             .edge("across x", |(a, b, c, at)| a.x == b.x && b.x == c.x && mirror::column(a, b, c, at).inside)
-            .invariant("on a grid of steps the side is exact", |(a, b, c, at), found: VoxelizationColumn| {
+            .invariant_at_nearest("on a grid of steps the side is exact", |(a, b, c, at), found: VoxelizationColumn| {
                 if !all_steps(&[a, b, c]) || !all_steps(&[at.extend(0.0)]) {
                     return Ok(());
                 }

@@ -122,7 +122,8 @@ pub fn column_naive(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColu
 
 /// The first voxel of a row whose centre lies at a coordinate or beyond it; `cells` where there is none.
 pub fn first(coordinate: f32, cells: u32) -> u32 {
-    ((coordinate - 0.5).ceil().clamp(0.0, cells as f32) as u32).min(cells)
+    let near = coordinate.clamp(0.0, cells as f32);
+    ((near - 0.5).ceil() as u32).min(cells)
 }
 
 /// Bits that change at each bit that is set, the least first.

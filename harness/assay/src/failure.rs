@@ -1,8 +1,9 @@
 //! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
 
-use crate::dispatch::{DispatchError, Kernel};
+use crate::dispatch::DispatchError;
 use crate::formula::{Formula, Words};
 use crate::literal::{Language, call, value, values};
+use crate::runner::Runner;
 use crate::tolerance::{Allowed, Tolerance, number, word};
 
 /// A failing input and its results, as literals and as numbers.
@@ -69,12 +70,12 @@ impl Failure {
     /// Runs the three at one input.
     pub fn at(
         formula: &Formula,
-        kernel: &mut Kernel<'_>,
+        runner: &mut dyn Runner,
         tolerance: &Tolerance,
         arguments: &Words,
     ) -> Result<Failure, DispatchError> {
         let mut got = Words::new();
-        kernel.run(arguments, &mut got)?;
+        runner.run(arguments, &mut got)?;
         let (mirrored, exact) = (formula.mirrored(arguments), formula.exact(arguments));
         let rounded: Words =
             formula.result.scalars().iter().zip(&exact).map(|(kind, number)| word(*kind, *number)).collect();

@@ -37,6 +37,8 @@ pub struct Invariant {
     pub name: &'static str,
     /// Whether it holds.
     pub holds: Invariance,
+    /// Whether it is said only of devices that round to nearest.
+    pub at_nearest: bool,
 }
 
 /// Something that the mathematics says of the results at two inputs.
@@ -204,6 +206,7 @@ pub(crate) fn of_parts<A: Arguments<u32> + 'static, R: Value + 'static>(
 pub struct Builder<A, R> {
     formula: Formula,
     /// Inputs that are tested always.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "what tests them needs a device"))]
     cases: Vec<Words>,
     types: std::marker::PhantomData<fn(A) -> R>,
 }
@@ -217,14 +220,33 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
 
     /// What the mathematics says of every result; the message says by how much it is broken.
     pub fn invariant(
+        self,
+        name: &'static str,
+        holds: impl Fn(A, R) -> Result<(), String> + Send + Sync + 'static,
+    ) -> Self {
+        self.said(name, holds, false)
+    }
+
+    /// The same of devices that round sums, products, quotients and roots to nearest, as the mirrors do: that simple numbers give exact results, or a bound that rests on
+    /// such rounding. On other devices results are as near to it as the bounds say.
+    pub fn invariant_at_nearest(
+        self,
+        name: &'static str,
+        holds: impl Fn(A, R) -> Result<(), String> + Send + Sync + 'static,
+    ) -> Self {
+        self.said(name, holds, true)
+    }
+
+    fn said(
         mut self,
         name: &'static str,
         holds: impl Fn(A, R) -> Result<(), String> + Send + Sync + 'static,
+        at_nearest: bool,
     ) -> Self {
         let holds = Box::new(move |mut arguments: &[u32], mut result: &[u32]| {
             holds(A::read(&mut arguments), R::read(&mut result))
         });
-        self.formula.invariants.push(Invariant { name, holds });
+        self.formula.invariants.push(Invariant { name, holds, at_nearest });
         self
     }
 

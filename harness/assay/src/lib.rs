@@ -70,7 +70,11 @@ mod near;
 pub mod outside;
 #[cfg(feature = "gpu")]
 pub mod property;
+#[cfg(feature = "gpu")]
+pub mod runner;
 pub mod shape;
+#[cfg(feature = "gpu")]
+pub mod slack;
 #[cfg(feature = "gpu")]
 pub mod tokens;
 pub mod tolerance;

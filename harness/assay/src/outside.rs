@@ -34,6 +34,8 @@ pub struct Promise {
     /// The inputs; none where nothing is promised.
     pub(crate) inputs: Option<Domain<Vec<u32>>>,
     pub(crate) claim: Claim,
+    /// Whether it is said only of devices that round to nearest.
+    pub(crate) at_nearest: bool,
 }
 
 impl std::fmt::Debug for Promise {
@@ -54,7 +56,13 @@ impl Promise {
             inputs(draws).write(&mut words);
             words
         });
-        Self { function, says, arguments: A::shapes(), inputs: Some(inputs), claim }
+        Self { function, says, arguments: A::shapes(), inputs: Some(inputs), claim, at_nearest: false }
+    }
+
+    /// The same of devices that round sums, products, quotients and roots to nearest, as the mirrors do.
+    #[must_use]
+    pub fn at_nearest(self) -> Self {
+        Self { at_nearest: true, ..self }
     }
 
     /// Whether there is something to test.
@@ -65,7 +73,7 @@ impl Promise {
 
 /// The clause names what goes wrong, and promises nothing.
 pub fn nothing(function: &'static str, says: &'static str) -> Promise {
-    Promise { function, says, arguments: Vec::new(), inputs: None, claim: Claim::Nothing }
+    Promise { function, says, arguments: Vec::new(), inputs: None, claim: Claim::Nothing, at_nearest: false }
 }
 
 /// Results are finite.

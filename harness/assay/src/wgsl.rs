@@ -10,6 +10,7 @@ use crate::formula::{self, Builder, Formula, Words};
 use crate::mutate::{self, Judge, Score};
 use crate::property::Settings;
 use crate::shape::Shape;
+use crate::slack::{self, Reassociation};
 use crate::tolerance::{Tolerance, number, word};
 use crate::value::{Arguments, Exact, Function, Value};
 use lapidary_gpu::Gpu;
@@ -133,7 +134,14 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
     fn over(self, domain: Domain<Words>) -> Test<A, R> {
         let Source { text, function } = self.source;
         let formula = formula::of_parts(function, self.mirror, self.oracle, domain);
-        Test { text, formula, oracle_fault: self.oracle_fault, bounds: None, settings: Settings::default() }
+        Test {
+            text,
+            formula,
+            oracle_fault: self.oracle_fault,
+            bounds: None,
+            portable: None,
+            settings: Settings::default(),
+        }
     }
 }
 
@@ -150,15 +158,22 @@ pub struct Test<A, R> {
     formula: Builder<A, R>,
     oracle_fault: Option<String>,
     bounds: Option<String>,
+    portable: Option<String>,
     settings: Settings,
 }
 
 impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     /// Tolerance between shader, mirror and oracle, pairwise: a sum of `ulp`, `abs`, `rel` and `backward`, as `"4 ulp + 2 backward"`; for structs one
-    /// for each field in its order, as `"direction 12 ulp + 8 backward, total 0 ulp"`. Default: none but 2^-126, since WGSL lets a device flush subnormals. A
+    /// for each field in its order, as `"direction 12 ulp + 8 backward, total 0 ulp"`. Default: none but 2^-125, since WGSL lets a device flush subnormals. A
     /// result that is not finite fails.
     pub fn within(mut self, bounds: &str) -> Self {
         self.bounds = Some(bounds.to_owned());
+        self
+    }
+
+    /// The same for [`Test::run_anywhere`], where a device may err more than most do; that of [`Test::within`] otherwise.
+    pub fn within_anywhere(mut self, bounds: &str) -> Self {
+        self.portable = Some(bounds.to_owned());
         self
     }
 
@@ -213,10 +228,26 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     /// Where a result is wrong, with the simplest input found; where the source is not valid or its signature another; where there is no adapter,
     /// unless `ASSAY_WITHOUT_ADAPTER=skip`.
     pub fn run(self) -> Outcome {
-        let Some(Ready { gpu, text, formula, cases, tolerance, settings }) = self.ready()? else { return Ok(()) };
+        let Ready { text, formula, cases, tolerance, settings } = self.ready()?;
+        let Some(gpu) = gpu(&formula)? else { return Ok(()) };
         let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
         let mut kernel = Kernel::of_function(gpu, &text, PATH, formula.function).map_err(fail)?;
         let found = examine(&formula, &text, &mut kernel, &tolerance, settings, &cases).map_err(fail)?;
+        if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
+    }
+
+    /// Runs the function as any device may that conforms to WGSL, on the CPU: each row rounds either way, errs in quotients and built-in functions as far as the standard lets it, fuses
+    /// products with sums or does not, flushes subnormals or does not, ignores the sign of zeros, and makes anything of infinities and NaNs. Needs no adapter. Invariants hold there, too;
+    /// pairs are not asked, since both results are held to their bounds.
+    ///
+    /// # Errors
+    /// Where a result is wrong, with the simplest input found; where the source is not valid, its signature another, or the function does what the interpreter cannot.
+    pub fn run_anywhere(mut self) -> Outcome {
+        self.bounds = self.portable.take().or(self.bounds);
+        let Ready { text, formula, tolerance, settings, .. } = self.ready()?;
+        let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
+        let (found, _) =
+            slack::examine(&formula, (&text, PATH), &tolerance, settings, Reassociation::Written).map_err(fail)?;
         if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 
@@ -228,9 +259,8 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     /// # Errors
     /// As [`Test::run`], and where the test fails on the function as it is. Without an adapter, where that may be skipped, there are no mutants.
     pub fn mutate(self) -> Result<Score, Failure> {
-        let Some(Ready { gpu, text, formula, cases, tolerance, .. }) = self.ready()? else {
-            return Ok(Score { mutants: 0, survivors: Vec::new() });
-        };
+        let Ready { text, formula, cases, tolerance, .. } = self.ready()?;
+        let Some(gpu) = gpu(&formula)? else { return Ok(Score { mutants: 0, survivors: Vec::new() }) };
         let fail = |what: &dyn fmt::Display| Failure(format!("{}: {what}", formula.function));
         let mut mutants = mutate::of_function(&text, PATH, formula.function).map_err(|error| fail(&error))?.valid;
         let judge = Judge::new(gpu, &formula, (&text, PATH), tolerance, &cases).map_err(|error| fail(&error))?;
@@ -242,9 +272,9 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         Ok(Score { mutants: count, survivors: mutants })
     }
 
-    /// Everything that a run needs; none where there is no adapter and tests may be skipped.
-    fn ready(self) -> Result<Option<Ready>, Failure> {
-        let Self { text, formula, oracle_fault, bounds, mut settings } = self;
+    /// Everything that a run needs but the device.
+    fn ready(self) -> Result<Ready, Failure> {
+        let Self { text, formula, oracle_fault, bounds, mut settings, .. } = self;
         let (formula, cases) = formula.build_with_cases();
         let function = formula.function;
         let fail = |what: &dyn fmt::Display| Failure(format!("{function}: {what}"));
@@ -259,19 +289,22 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
             None => exact(&formula.result),
         };
         settings.seed = environment::seed().map_err(|fault| fail(&fault))?.unwrap_or(settings.seed);
-        let Some(gpu) = environment::gpu(function).map_err(|error| fail(&error))? else { return Ok(None) };
         dispatch::examine(&text, PATH, function).map_err(|error| fail(&error))?;
         let signature = KernelModule::reflect(&text, PATH, function).map_err(|error| fail(&error))?.signature;
         signature.expect(&formula.arguments, &formula.result).map_err(|error| Failure(error.to_string()))?;
         check_fields(&bounds, &formula.result).map_err(|fault| fail(&format!("within: {fault}")))?;
         let tolerance = Tolerance::new(&formula.arguments, &formula.result, &bounds);
-        Ok(Some(Ready { gpu, text, formula, cases, tolerance, settings }))
+        Ok(Ready { text, formula, cases, tolerance, settings })
     }
+}
+
+/// The device; none where there is no adapter and tests may be skipped.
+fn gpu(formula: &Formula) -> Result<Option<&'static Gpu>, Failure> {
+    environment::gpu(formula.function).map_err(|error| Failure(format!("{}: {error}", formula.function)))
 }
 
 /// A test whose parts fit each other.
 struct Ready {
-    gpu: &'static Gpu,
     text: String,
     formula: Formula,
     cases: Vec<Words>,

@@ -21,7 +21,7 @@ fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
     let tolerance = check::tolerance(gpu, formula);
     bencher.counter(divan::counter::ItemsCount::new(CASES)).bench_local(|| {
         let settings = Settings { cases: CASES, ..Settings::default() };
-        let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
+        let report = Check { formula, runner: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
         assert_eq!(report.failed, 0);
     });
 }

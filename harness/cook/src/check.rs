@@ -6,13 +6,16 @@ pub mod user_file;
 
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
+use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, DispatchError, Kernel};
 use lapidary_assay::examination::{self, Examination, examine};
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::property::Settings;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};
+use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::Scalar;
+use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
 use lapidary_gpu::Gpu;
 use serde::Serialize;
@@ -56,7 +59,7 @@ fn at_line(path: &str, error: &DispatchError) -> String {
 }
 
 /// A row of `cook check`'s table.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
     /// Whether the formula holds.
     pub passed: bool,
@@ -98,6 +101,10 @@ pub struct Row {
     pub broken_promises: Vec<String>,
     /// Branches beside which a result is wrong, one float to either side, with the input at which it is.
     pub broken_branches: Vec<String>,
+    /// An input that holds by chance, and not on the worst device that WGSL allows; null where there is none, or no such device was asked for.
+    pub worst_choices: Option<String>,
+    /// What was taken to hold where WGSL states no accuracy; empty on an adapter.
+    pub assumptions: Vec<String>,
     /// Why inputs beside branches were not tested: what the interpreter cannot run; null where they were.
     pub branches_untested: Option<String>,
     /// Edges of the domain that the run did not reach.
@@ -118,6 +125,21 @@ impl Row {
     /// Whether the formula holds. Edges count from the default number of cases on: a shorter run may well miss some.
     pub fn passed(&self) -> bool {
         self.passed
+    }
+}
+
+/// What a check runs on.
+#[derive(Clone, Copy, Debug)]
+pub enum On<'gpu> {
+    /// An adapter.
+    Adapter(&'gpu Gpu),
+    /// Devices that err as far as WGSL lets them: the interpreter, without an adapter.
+    Slack(Reassociation),
+}
+
+impl<'gpu> From<&'gpu Gpu> for On<'gpu> {
+    fn from(gpu: &'gpu Gpu) -> Self {
+        On::Adapter(gpu)
     }
 }
 
@@ -165,13 +187,33 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
     })
 }
 
-/// The tolerance of a formula on this device: that of its `Accuracy:` line, or of its benign domain for a naive form.
+/// The tolerance of a formula there: that of its `Accuracy:` line, or of its benign domain for a naive form.
 ///
 /// # Panics
 /// Where a naive form has no benign domain, which a test forbids.
-pub fn tolerance(gpu: &Gpu, formula: &Formula) -> Tolerance {
-    let promised = examination::tolerance(formula, &documentation(formula).accuracy, gpu.is_lavapipe());
+pub fn tolerance<'gpu>(on: impl Into<On<'gpu>>, formula: &Formula) -> Tolerance {
+    let lavapipe = matches!(on.into(), On::Adapter(gpu) if gpu.is_lavapipe());
+    let promised = examination::tolerance(formula, &documentation(formula).accuracy, lavapipe);
     promised.unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+/// Whether a check can begin: the source is valid, and the signature the mirror's. On an adapter the function is compiled.
+///
+/// # Errors
+/// Where it cannot.
+pub fn prepare(on: On<'_>, formula: &Formula, source: Source<'_>) -> Result<(), CheckError> {
+    match on {
+        On::Adapter(gpu) => kernel(gpu, formula, source).map(|_| ()),
+        On::Slack(_) => {
+            let (path, text) = located(formula, source);
+            let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
+            if let Source::Copy(..) = source {
+                dispatch::examine(text, &path, formula.function).map_err(in_path)?;
+            }
+            let signature = Signature::of_source(text, &path, formula.function).map_err(in_path)?;
+            signature.expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))
+        }
+    }
 }
 
 /// Reflects, checks the signature against the mirror's, and compiles.
@@ -188,39 +230,63 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
 
 /// Runs the property tests of one formula. Failing inputs of the cookbook's own are kept in the target folder, and go first
 /// in later runs; those of a user's copy are not kept.
-pub fn run(gpu: &Gpu, formula: &Formula, source: Source<'_>, settings: Settings) -> Result<Row, CheckError> {
+///
+/// # Errors
+/// Where the check cannot run.
+pub fn run<'gpu>(
+    on: impl Into<On<'gpu>>,
+    formula: &Formula,
+    source: Source<'_>,
+    settings: Settings,
+) -> Result<Row, CheckError> {
     match source {
-        Source::Cookbook => run_keeping(gpu, formula, source, settings, Some(&failures())),
-        Source::Copy(..) => run_keeping(gpu, formula, source, settings, None),
+        Source::Cookbook => run_keeping(on, formula, source, settings, Some(&failures())),
+        Source::Copy(..) => run_keeping(on, formula, source, settings, None),
     }
 }
 
 /// The same with another place for failing inputs, or none. What is kept there goes first where the cookbook's own is
-/// tested, never into the test of a user's copy. The inputs of the hard cases go first always.
-pub fn run_keeping(
-    gpu: &Gpu,
+/// tested, never into the test of a user's copy. The inputs of the hard cases go first always. Of devices that err as far as they may nothing is kept:
+/// a failing input fails again.
+///
+/// # Errors
+/// Where the check cannot run.
+pub fn run_keeping<'gpu>(
+    on: impl Into<On<'gpu>>,
     formula: &Formula,
     source: Source<'_>,
     settings: Settings,
     regressions: Option<&Regressions>,
 ) -> Result<Row, CheckError> {
-    let mut kernel = kernel(gpu, formula, source)?;
-    let replayed = match (source, regressions) {
-        (Source::Cookbook, Some(regressions)) => regressions.load(formula.function, kernel.argument_words())?,
-        _ => Vec::new(),
-    };
-    let tolerance = tolerance(gpu, formula);
-    let (_, text) = located(formula, source);
-    let found = examine(formula, text, &mut kernel, &tolerance, settings, &replayed)
-        .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
-    let kept_in = match (regressions, &found.report.shrunk) {
-        (Some(regressions), Some(shrunk)) => {
-            let reason = found.report.reason.as_deref().unwrap_or_default();
-            Some(regressions.store(formula.function, shrunk, reason)?.display().to_string())
+    let on = on.into();
+    let tolerance = tolerance(on, formula);
+    let (path, text) = located(formula, source);
+    let (row, found) = match on {
+        On::Adapter(gpu) => {
+            let mut kernel = kernel(gpu, formula, source)?;
+            let replayed = match (source, regressions) {
+                (Source::Cookbook, Some(regressions)) => regressions.load(formula.function, kernel.argument_words())?,
+                _ => Vec::new(),
+            };
+            let found = examine(formula, text, &mut kernel, &tolerance, settings, &replayed)
+                .map_err(|error| CheckError::Dispatch { path: formula.function.to_owned(), error })?;
+            let kept_in = match (regressions, &found.report.shrunk) {
+                (Some(regressions), Some(shrunk)) => {
+                    let reason = found.report.reason.as_deref().unwrap_or_default();
+                    Some(regressions.store(formula.function, shrunk, reason)?.display().to_string())
+                }
+                _ => None,
+            };
+            (Row { kept_in, ..Row::default() }, found)
         }
-        _ => None,
+        On::Slack(reassociation) => {
+            prepare(on, formula, source)?;
+            let (found, assumptions) = slack::examine(formula, (text, &path), &tolerance, settings, reassociation)
+                .map_err(|error| CheckError::Dispatch { path, error })?;
+            (Row { assumptions: assumptions.iter().map(ToString::to_string).collect(), ..Row::default() }, found)
+        }
     };
-    Ok(Row { kept_in, ..row(formula, found, reproduce(formula, source, settings)) })
+    Ok(filled(row, formula, found, reproduce(on, formula, source, settings)))
 }
 
 /// A source's path, for messages, and its text.
@@ -235,19 +301,24 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
 }
 
 /// The command that runs the same inputs again.
-fn reproduce(formula: &Formula, source: Source<'_>, settings: Settings) -> String {
+fn reproduce(on: On<'_>, formula: &Formula, source: Source<'_>, settings: Settings) -> String {
+    let portable = match on {
+        On::Adapter(_) => "",
+        On::Slack(Reassociation::Written) => " --portable",
+        On::Slack(Reassociation::Reordered) => " --portable --reassociate",
+    };
     let copy = match source {
         Source::Cookbook => String::new(),
         Source::Copy(path, _) => format!(" --wgsl {path}"),
     };
     let Settings { cases, seed } = settings;
-    format!("./cook check {}::{}{copy} --seed {seed} --cases {cases}", formula.module, formula.function)
+    format!("./cook check {}::{}{copy}{portable} --seed {seed} --cases {cases}", formula.module, formula.function)
 }
 
-fn row(formula: &Formula, found: Examination, reproduce: String) -> Row {
+fn filled(row: Row, formula: &Formula, found: Examination, reproduce: String) -> Row {
     let passed = found.holds();
     let hard_cases = formula.hard_cases.len();
-    let Examination { report, failure, broken_hard_cases, broken_promises, broken_branches, .. } = found;
+    let Examination { report, failure, broken_hard_cases, broken_promises, broken_branches, worst_choices, .. } = found;
     Row {
         passed,
         module: formula.module.to_owned(),
@@ -271,12 +342,11 @@ fn row(formula: &Formula, found: Examination, reproduce: String) -> Row {
         broken_hard_cases,
         broken_promises,
         broken_branches,
+        worst_choices,
         branches_untested: found.branches_untested,
-        release: None,
-        changed_since: Vec::new(),
-        kept_in: None,
         seconds: report.seconds,
         reproduce,
+        ..row
     }
 }
 

@@ -85,6 +85,7 @@ pub(super) fn promises() -> Vec<Promise> {
                 let bound = 1000.0 * 2f64.powi(-23) * wanted.abs().max_element().max(1.0) / fat.clamp(1e-3, 1.0);
                 close(&o.to_array(), &wanted.to_array(), bound)
             },
-        ),
+        )
+        .at_nearest(),
     ]
 }

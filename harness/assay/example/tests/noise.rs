@@ -37,9 +37,12 @@ fn corners_are_in_their_range() -> Outcome {
     wgsl(NOISE, "noise_corner")
         .mirror(corner)
         .inputs((any::<i32>(), any::<i32>()).prop_map(|(x, y)| (IVec2::new(x, y),)))
-        .invariant("in [0, 1)", |_, value: f32| {
-            if (0.0..1.0).contains(&value) { Ok(()) } else { Err(format!("{value}")) }
-        })
+        .invariant(
+            "in [0, 1)",
+            |_, value: f32| {
+                if (0.0..1.0).contains(&value) { Ok(()) } else { Err(format!("{value}")) }
+            },
+        )
         .run()
 }
 
@@ -55,6 +58,15 @@ fn noise_is_within_rounding() -> Outcome {
         .edge("near a corner", |(place,)| (place - place.round()).abs().max_element() < 0.01)
         .within(BOUNDS)
         .run()
+}
+
+#[test]
+fn noise_holds_on_every_device() -> Outcome {
+    wgsl(NOISE, "noise_sample")
+        .mirror(mirrored)
+        .inputs(places())
+        .within_anywhere("value 4e-6 abs, slope 1.6e-5 abs")
+        .run_anywhere()
 }
 
 #[test]

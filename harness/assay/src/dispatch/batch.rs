@@ -3,6 +3,7 @@
 use super::kernel::WORKGROUP_SIZE;
 use super::turns::{self, LAVAPIPE_ENDS_AT};
 use super::{DispatchError, Kernel};
+use crate::runner::Runner;
 
 /// Most workgroups along one axis that WebGPU promises.
 const MOST_WORKGROUPS: usize = 65_535;

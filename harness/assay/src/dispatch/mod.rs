@@ -10,6 +10,7 @@ mod turns;
 
 pub use kernel::{ENTRY_POINT, kernel_source};
 
+use crate::runner::Runner;
 use crate::tokens::{items, tokens};
 use crate::value::{Arguments, Value};
 use batch::Buffers;
@@ -188,38 +189,52 @@ impl<'gpu> Kernel<'gpu> {
         &self.compiled.signature
     }
 
-    /// Words in a row of arguments.
-    pub fn argument_words(&self) -> usize {
-        self.compiled.input.offsets.len()
-    }
-
-    /// Words in a row of results.
-    pub fn result_words(&self) -> usize {
-        self.compiled.output.offsets.len()
-    }
-
     /// Most turns that the function's loops may take together in one call; none where it has no loop. Beyond it the
     /// kernel ends them, and the row's result is not the function's.
     pub fn turn_limit(&self) -> Option<u32> {
         self.compiled.turns.as_ref().map(|turns| turns.limit)
     }
 
-    /// Whether the loops of that row of the last run were ended at the limit.
-    pub fn stopped(&self, row: usize) -> bool {
-        self.turns.get(row).is_some_and(|turns| self.is_over(*turns))
-    }
-
     fn is_over(&self, turns: u32) -> bool {
         self.turn_limit().is_some_and(|limit| turns > limit)
     }
+}
 
-    /// Whether those of any row of the last run were.
-    pub fn any_stopped(&self) -> bool {
+impl Runner for Kernel<'_> {
+    fn argument_words(&self) -> usize {
+        self.compiled.input.offsets.len()
+    }
+
+    fn result_words(&self) -> usize {
+        self.compiled.output.offsets.len()
+    }
+
+    fn run(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError> {
+        assert_eq!(arguments.len() % self.argument_words(), 0, "whole rows");
+        results.clear();
+        self.turns.clear();
+        let (mut part, mut turns) = (Vec::new(), Vec::new());
+        for rows in arguments.chunks(ROWS_PER_DISPATCH * self.argument_words()) {
+            self.batch(rows, &mut part, &mut turns)?;
+            results.extend_from_slice(&part);
+            self.turns.extend_from_slice(&turns);
+        }
+        Ok(())
+    }
+
+    fn loops(&self) -> bool {
+        self.compiled.turns.is_some()
+    }
+
+    fn stopped(&self, row: usize) -> bool {
+        self.turns.get(row).is_some_and(|turns| self.is_over(*turns))
+    }
+
+    fn any_stopped(&self) -> bool {
         self.turns.iter().any(|turns| self.is_over(*turns))
     }
 
-    /// What there is to say of a stopped row.
-    pub fn why_stopped(&self) -> String {
+    fn why_stopped(&self) -> String {
         let limit = self.turn_limit().unwrap_or_default();
         let (reason, remedy) = if self.gpu.is_lavapipe() {
             (
@@ -232,23 +247,6 @@ impl<'gpu> Kernel<'gpu> {
         format!(
             "took over {limit} turns of its loops and was stopped there{reason}: an endless loop, or one too long to be judged here{remedy}"
         )
-    }
-
-    /// Calls the function for each row of `arguments`; `results` then holds a row for each, in order.
-    ///
-    /// # Panics
-    /// Where `arguments` is not a whole number of rows.
-    pub fn run(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError> {
-        assert_eq!(arguments.len() % self.argument_words(), 0, "whole rows");
-        results.clear();
-        self.turns.clear();
-        let (mut part, mut turns) = (Vec::new(), Vec::new());
-        for rows in arguments.chunks(ROWS_PER_DISPATCH * self.argument_words()) {
-            self.batch(rows, &mut part, &mut turns)?;
-            results.extend_from_slice(&part);
-            self.turns.extend_from_slice(&turns);
-        }
-        Ok(())
     }
 }
 

@@ -165,6 +165,7 @@ fn test(
 mod tests {
     use super::*;
     use crate::dispatch::Kernel;
+    use crate::runner::Runner;
     use lapidary_gpu::{AdapterChoice, Gpu};
 
     const SOURCE: &str = "fn subject(x: f32, y: vec2f) -> f32 {\n    var sum = 0.0f;\n    if x > 1.0f {\n        \

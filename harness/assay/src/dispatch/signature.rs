@@ -15,6 +15,12 @@ pub struct Signature {
 }
 
 impl Signature {
+    /// Reads the signature of `function` in WGSL source; `path` is for messages.
+    pub fn of_source(source: &str, path: &str, function: &str) -> Result<Signature, super::DispatchError> {
+        let (module, _) = super::parse(source, path)?;
+        Ok(Signature::reflect(&module, function)?)
+    }
+
     /// Reads the signature of `function` off a naga module.
     pub fn reflect(module: &naga::Module, function: &str) -> Result<Signature, SignatureError> {
         let Some((_, found)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)) else {

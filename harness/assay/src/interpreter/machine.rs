@@ -1,4 +1,4 @@
-//! Machines to run on: one that rounds to nearest, one that notes every decision, one that errs as far as it may.
+//! Machines to run on: one that rounds to nearest, one that notes every decision.
 
 /// Where a decision is made: a function of the module and an expression of it, by their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,6 +18,39 @@ pub struct Decision {
     pub choice: u32,
 }
 
+/// The exact result of an operation on floats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exact {
+    /// The nearest f64.
+    pub value: f64,
+    /// What is left of a sum. Of other operations it is 0: products of two f32 are f64 numbers, and for quotients and functions the standard asks
+    /// for no correct rounding.
+    pub rest: f64,
+}
+
+impl From<f64> for Exact {
+    fn from(value: f64) -> Self {
+        Self { value, rest: 0.0 }
+    }
+}
+
+impl Exact {
+    /// a + b without an error (Knuth's two-sum).
+    #[inline(always)]
+    pub fn sum(a: f64, b: f64) -> Self {
+        let value = a + b;
+        let from_b = value - a;
+        let rest = (a - (value - from_b)) + (b - from_b);
+        Self { value, rest }
+    }
+
+    /// How far the result lies above `float`, the nearest f32 or next to it: its sign is right, however small the difference.
+    #[inline(always)]
+    pub fn above(self, float: f32) -> f64 {
+        (self.value - f64::from(float)) + self.rest
+    }
+}
+
 /// How far WGSL lets the result of an operation be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slack {
@@ -31,12 +64,77 @@ pub enum Slack {
     Root,
 }
 
+/// What is taken to hold where the standard states no accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Assumption {
+    /// A divisor beyond 2^±126: 2.5 ulp, as within.
+    Quotient,
+    /// A sine or a cosine beyond ±π: 2^-11, as within.
+    Wave,
+    /// sqrt(0) is 0.
+    Root,
+    /// pow(0, y) is 0 for y > 0.
+    Power,
+    /// atan2 where x is 0 or y is 0: 4096 ulp, as elsewhere.
+    Angle,
+}
+
+impl std::fmt::Display for Assumption {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(match self {
+            Assumption::Quotient => "a quotient is as accurate where the divisor lies beyond 2^-126 to 2^126",
+            Assumption::Wave => "sine and cosine are as accurate beyond -π to π",
+            Assumption::Root => "sqrt(0) is 0",
+            Assumption::Power => "pow(0, y) is 0",
+            Assumption::Angle => "atan2 is as accurate where x or y is 0 or beyond 2^-126 to 2^126",
+        })
+    }
+}
+
 /// What rounds, and what is told of decisions.
 pub trait Machine {
+    /// Whether it may fuse products with sums.
+    const FUSES: bool = false;
+
     /// The result of an operation whose exact one is `exact`.
-    fn round(&mut self, exact: f64, slack: Slack) -> f32;
+    fn round(&mut self, exact: Exact, slack: Slack) -> f32;
+
+    /// An operand as the operation sees it.
+    #[inline(always)]
+    fn operand(&mut self, operand: f32) -> f32 {
+        operand
+    }
+
+    /// A result that is a float from the start, such as an absolute value.
+    #[inline(always)]
+    fn kept(&mut self, result: f32) -> f32 {
+        result
+    }
+
+    /// A comparison's result.
+    #[inline(always)]
+    fn compared(&mut self, _operands: [f32; 2], holds: bool) -> bool {
+        holds
+    }
+
+    /// The result of `min`, `max` or `clamp`.
+    #[inline(always)]
+    fn bounded(&mut self, _operands: &[f32], result: f32) -> f32 {
+        result
+    }
+
+    /// The standard states nothing here.
+    #[inline(always)]
+    fn assumed(&mut self, _assumption: Assumption) {}
+
+    /// Which of a sum's operands, those that are products, comes in unrounded; `at` numbers the sum in the program.
+    #[inline(always)]
+    fn fused(&mut self, _at: usize, _products: [bool; 2]) -> Option<usize> {
+        None
+    }
 
     /// A branch was taken.
+    #[inline(always)]
     fn decided(&mut self, _site: Site, _choice: u32) {}
 }
 
@@ -45,8 +143,9 @@ pub trait Machine {
 pub struct Nearest;
 
 impl Machine for Nearest {
-    fn round(&mut self, exact: f64, _: Slack) -> f32 {
-        exact as f32
+    #[inline(always)]
+    fn round(&mut self, exact: Exact, _: Slack) -> f32 {
+        exact.value as f32
     }
 }
 
@@ -58,79 +157,12 @@ pub struct Traced {
 }
 
 impl Machine for Traced {
-    fn round(&mut self, exact: f64, _: Slack) -> f32 {
-        exact as f32
+    #[inline(always)]
+    fn round(&mut self, exact: Exact, _: Slack) -> f32 {
+        exact.value as f32
     }
 
     fn decided(&mut self, site: Site, choice: u32) {
         self.decisions.push(Decision { site, choice });
-    }
-}
-
-/// Errs in every operation by a share of what WGSL allows: from -1, all of it downwards, to 1.
-#[derive(Clone, Debug)]
-pub struct Slacking {
-    directions: Vec<f64>,
-    at: usize,
-}
-
-impl Slacking {
-    /// With these shares, operation by operation; the operations after them are rounded to nearest.
-    pub fn new(directions: Vec<f64>) -> Self {
-        Self { directions, at: 0 }
-    }
-
-    /// How many operations have been rounded.
-    pub fn operations(&self) -> usize {
-        self.at
-    }
-}
-
-impl Machine for Slacking {
-    fn round(&mut self, exact: f64, slack: Slack) -> f32 {
-        let direction = self.directions.get(self.at).copied().unwrap_or(0.0);
-        self.at += 1;
-        let nearest = exact as f32;
-        // What f32 holds is the result, where rounding is all that is allowed.
-        if direction == 0.0 || !nearest.is_finite() {
-            return nearest;
-        }
-        match slack {
-            Slack::Rounded => rounded(exact, direction),
-            // The units in the last place of 0 are subnormal: WGSL would let 0 / x be one, but no device is that odd.
-            Slack::Ulps(_) if exact == 0.0 => nearest,
-            Slack::Ulps(ulps) => within(exact, direction, ulps),
-            Slack::Absolute(most) => (exact + direction * most) as f32,
-            Slack::Root if exact == 0.0 => 0.0,
-            Slack::Root => within(1.0 / f64::from(within(1.0 / exact, -direction, 2.0)), direction, 2.5),
-        }
-    }
-}
-
-/// The neighbour of an exact result on one side, or the result itself where f32 holds it.
-fn rounded(exact: f64, direction: f64) -> f32 {
-    let nearest = exact as f32;
-    let off = exact - f64::from(nearest);
-    if direction > 0.0 && off > 0.0 {
-        nearest.next_up()
-    } else if direction < 0.0 && off < 0.0 {
-        nearest.next_down()
-    } else {
-        nearest
-    }
-}
-
-/// The float farthest off within so many ulp.
-fn within(exact: f64, direction: f64, ulps: f64) -> f32 {
-    let reach = direction * ulps * crate::tolerance::ulp_of(exact.abs());
-    let end = exact + reach;
-    let found = end as f32;
-    // Rounding may not carry it beyond.
-    if (f64::from(found) - exact).abs() <= reach.abs() {
-        found
-    } else if f64::from(found) > end {
-        found.next_down()
-    } else {
-        found.next_up()
     }
 }

@@ -3,7 +3,10 @@
 use super::{Mutant, apply, compacted};
 use crate::dispatch::{DispatchError, Kernel, KernelModule};
 use crate::formula::{Formula, Words};
+use crate::interpreter::Program;
 use crate::property::{Check, Settings, promises};
+use crate::runner::Runner;
+use crate::slack::Slackened;
 use crate::tolerance::Tolerance;
 use lapidary_gpu::Gpu;
 use std::cell::OnceCell;
@@ -17,6 +20,9 @@ const KEPT_ROWS: u64 = 8_192;
 /// Rows for what those do not tell apart.
 const MORE_ROWS: u64 = 131_072;
 
+/// Rows on devices that err as far as WGSL lets them, for what no other input tells apart.
+const ROWS_ANYWHERE: u64 = 16_384;
+
 /// A function with its tests and the right results of its first inputs, computed once for all mutants.
 pub struct Judge<'a> {
     gpu: &'a Gpu,
@@ -25,6 +31,8 @@ pub struct Judge<'a> {
     path: &'a str,
     kernel: KernelModule,
     tolerance: Tolerance,
+    /// What it is held to on any device that conforms to WGSL.
+    anywhere: Option<Tolerance>,
     arguments: Words,
     mirrored: Vec<Words>,
     exact: Vec<Vec<f64>>,
@@ -57,7 +65,14 @@ impl<'a> Judge<'a> {
         let (mirrored, exact) = rows.iter().map(|row| (formula.mirrored(row), formula.exact(row))).unzip();
         let arguments = rows.concat();
         let watched = OnceCell::new();
-        Ok(Self { gpu, formula, source, path, kernel, tolerance, arguments, mirrored, exact, watched })
+        let anywhere = None;
+        Ok(Self { gpu, formula, source, path, kernel, tolerance, anywhere, arguments, mirrored, exact, watched })
+    }
+
+    /// The same, and what the device forgives is tested on any that conforms to WGSL, to this tolerance.
+    #[must_use]
+    pub fn and_anywhere(self, tolerance: Tolerance) -> Self {
+        Self { anywhere: Some(tolerance), ..self }
     }
 
     /// Whether a test fails on the function as it is, so that nothing could be said of its mutants.
@@ -92,6 +107,7 @@ impl<'a> Judge<'a> {
 
     /// Whether the property tests tell this kernel from the right one.
     fn notices(&self, mutated: KernelModule) -> bool {
+        let (module, signature) = (mutated.module.clone(), mutated.signature.clone());
         let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
         let (width, all) = (kernel.argument_words(), self.mirrored.len());
         for (first, last) in [(0, FIRST_ROWS.min(all)), (FIRST_ROWS.min(all), all)] {
@@ -116,7 +132,17 @@ impl<'a> Judge<'a> {
         }
         let settings = Settings { cases: MORE_ROWS, seed: SEED + 1 };
         let report =
-            Check { formula: self.formula, kernel: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
-        report.map_or(true, |report| report.failed > 0)
+            Check { formula: self.formula, runner: &mut kernel, tolerance: &self.tolerance }.run(settings, &[]);
+        if report.map_or(true, |report| report.failed > 0) {
+            return true;
+        }
+        let Some(tolerance) = &self.anywhere else { return false };
+        let Some(program) = Program::of_module(module, self.formula.function) else { return true };
+        let mut runner = Slackened::of_program(program, &signature, SEED);
+        let promises = &self.formula.promises;
+        let settings = Settings { cases: ROWS_ANYWHERE, seed: SEED + 2 };
+        let report = Check { formula: self.formula, runner: &mut runner, tolerance }.run(settings, &[]);
+        let broken = promises::broken(&mut runner, self.formula, tolerance, promises, SEED);
+        report.map_or(true, |report| report.failed > 0) || broken.map_or(true, |broken| !broken.is_empty())
     }
 }

@@ -1,13 +1,14 @@
 //! Property testing on a GPU: batches of inputs a dispatch, every row compared, the worst one shrunk alone.
 
+pub(crate) mod alone;
 pub mod histogram;
 pub mod persistence;
 pub mod promises;
 pub mod seams;
-pub mod slack;
 
-use crate::dispatch::{DispatchError, Kernel, ROWS_PER_DISPATCH};
+use crate::dispatch::{DispatchError, ROWS_PER_DISPATCH};
 use crate::formula::{Formula, Words};
+use crate::runner::Runner;
 use crate::shape::Scalar;
 use crate::tolerance::{Tolerance, Verdict, number};
 use histogram::Histogram;
@@ -82,12 +83,12 @@ impl Report {
     }
 }
 
-/// A formula bound to a kernel and a tolerance, ready to run.
-pub struct Check<'a, 'gpu> {
+/// A formula bound to a runner and a tolerance, ready to run.
+pub struct Check<'a> {
     /// What is tested.
     pub formula: &'a Formula,
-    /// The shader.
-    pub kernel: &'a mut Kernel<'gpu>,
+    /// What runs the shader.
+    pub runner: &'a mut dyn Runner,
     /// What it is held to.
     pub tolerance: &'a Tolerance,
 }
@@ -117,7 +118,7 @@ impl Judged {
     }
 }
 
-impl Check<'_, '_> {
+impl Check<'_> {
     /// Tests `replayed` rows first, then `settings.cases` random ones, and shrinks the worst if any failed.
     pub fn run(&mut self, settings: Settings, replayed: &[Words]) -> Result<Report, DispatchError> {
         let start = Instant::now();
@@ -140,11 +141,11 @@ impl Check<'_, '_> {
         if !replayed.is_empty() {
             self.batch(&replayed.concat(), &mut report)?;
         }
-        let width = self.kernel.argument_words();
+        let width = self.runner.argument_words();
         let mut first = 0;
         // Where loops are ended at the limit the verdict is clear, and more rows of so many turns take long.
         while first < settings.cases && report.stopped == 0 {
-            let most = if self.kernel.turn_limit().is_some() && first == 0 { FIRST_ROWS } else { ROWS_PER_DISPATCH };
+            let most = if self.runner.loops() && first == 0 { FIRST_ROWS } else { ROWS_PER_DISPATCH };
             let rows = (settings.cases - first).min(most as u64) as usize;
             let mut arguments = vec![0; rows * width];
             let domain = &self.formula.domain;
@@ -177,7 +178,7 @@ impl Check<'_, '_> {
 
     /// Tests a batch and adds it to the report; returns the index of its worst row, and how badly that fails.
     fn batch(&mut self, arguments: &[u32], report: &mut Report) -> Result<(usize, f64), DispatchError> {
-        let width = self.kernel.argument_words();
+        let width = self.runner.argument_words();
         let batch = self.judge(arguments)?;
         let mut worst = (0, -1.0);
         for (index, row) in batch.iter().enumerate() {
@@ -204,25 +205,27 @@ impl Check<'_, '_> {
     /// What a row breaks; none where it holds.
     fn reason(&self, row: &Judged) -> Option<String> {
         if row.stopped {
-            return Some(self.kernel.why_stopped());
+            return Some(self.runner.why_stopped());
         }
         row.broken.clone().or_else(|| (!row.verdict.holds()).then(|| describe(&row.verdict)))
     }
 
     fn judge(&mut self, arguments: &[u32]) -> Result<Vec<Judged>, DispatchError> {
         let formula = self.formula;
-        let (width, result_width) = (self.kernel.argument_words(), self.kernel.result_words());
+        let (width, result_width) = (self.runner.argument_words(), self.runner.result_words());
         let rows = arguments.len() / width;
         let mut results = Words::new();
-        self.kernel.run(arguments, &mut results)?;
-        let mut stopped: Vec<bool> = (0..rows).map(|row| self.kernel.stopped(row)).collect();
-        let mut others = Vec::with_capacity(formula.pairs.len());
-        for pair in &formula.pairs {
+        self.runner.run(arguments, &mut results)?;
+        let mut stopped: Vec<bool> = (0..rows).map(|row| self.runner.stopped(row)).collect();
+        let mut others = Vec::new();
+        let is_slack = self.runner.is_slack();
+        let pairs = if is_slack { &[] } else { &formula.pairs[..] };
+        for pair in pairs {
             let mut transformed = Words::with_capacity(arguments.len());
             arguments.chunks_exact(width).for_each(|row| (pair.transform)(row, &mut transformed));
             let mut other = Words::new();
-            self.kernel.run(&transformed, &mut other)?;
-            stopped.iter_mut().enumerate().for_each(|(row, stopped)| *stopped |= self.kernel.stopped(row));
+            self.runner.run(&transformed, &mut other)?;
+            stopped.iter_mut().enumerate().for_each(|(row, stopped)| *stopped |= self.runner.stopped(row));
             others.push(other);
         }
         let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(crate::shape::Shape::scalars).collect();
@@ -231,18 +234,23 @@ impl Check<'_, '_> {
             let (mirrored, numbers, exact) = scratch;
             let arguments = &arguments[row * width..(row + 1) * width];
             let result = &results[row * result_width..(row + 1) * result_width];
-            mirrored.clear();
-            (formula.mirror)(arguments, mirrored);
-            numbers.clear();
-            numbers.extend(arguments.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)));
-            exact.clear();
-            (formula.oracle)(numbers, exact);
-            let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
-            let verdict = judge(tolerance, arguments, result, mirrored, exact, &*formula.oracle);
-            let invariants = formula.invariants.iter().map(|invariant| {
+            let verdict = if is_slack {
+                alone::verdict(formula, tolerance, arguments, result, thoroughly)
+            } else {
+                mirrored.clear();
+                (formula.mirror)(arguments, mirrored);
+                numbers.clear();
+                numbers.extend(arguments.iter().zip(&scalars).map(|(word, scalar)| number(*scalar, *word)));
+                exact.clear();
+                (formula.oracle)(numbers, exact);
+                let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
+                judge(tolerance, arguments, result, mirrored, exact, &*formula.oracle)
+            };
+            let said = formula.invariants.iter().filter(|invariant| !(is_slack && invariant.at_nearest));
+            let invariants = said.map(|invariant| {
                 (invariant.holds)(arguments, result).map_err(|why| format!("{}: {why}", invariant.name))
             });
-            let pairs = formula.pairs.iter().zip(&others).map(|(pair, other)| {
+            let pairs = pairs.iter().zip(&others).map(|(pair, other)| {
                 let other = &other[row * result_width..(row + 1) * result_width];
                 (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
             });

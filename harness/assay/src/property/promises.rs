@@ -1,18 +1,20 @@
 //! What a function promises outside of its domain, tested.
 
-use crate::dispatch::{DispatchError, Kernel};
+use super::alone;
+use crate::dispatch::DispatchError;
 use crate::formula::{Formula, Words};
 use crate::literal::{self, Language};
 use crate::outside::{Claim, Promise};
+use crate::runner::Runner;
 use crate::shape::Scalar;
-use crate::tolerance::{Tolerance, number};
+use crate::tolerance::{Tolerance, Verdict, number};
 
 /// Inputs tried for each promise.
 const CASES: u64 = 2_048;
 
 /// Runs `promises` of `formula`; a line for each that does not hold, with the first input at which it does not.
 pub fn broken(
-    kernel: &mut Kernel<'_>,
+    runner: &mut dyn Runner,
     formula: &Formula,
     tolerance: &Tolerance,
     promises: &[Promise],
@@ -20,24 +22,35 @@ pub fn broken(
 ) -> Result<Vec<String>, DispatchError> {
     let mut faults = Vec::new();
     for promise in promises {
-        let Some(inputs) = &promise.inputs else { continue };
+        let Some(inputs) = promise.inputs.as_ref().filter(|_| !(runner.is_slack() && promise.at_nearest)) else {
+            continue;
+        };
         let rows: Vec<Words> = (0..CASES).map(|row| inputs.row(seed, row)).collect();
         let mut results = Words::new();
-        kernel.run(&rows.concat(), &mut results)?;
+        runner.run(&rows.concat(), &mut results)?;
         let mut others = Words::new();
-        if let Claim::Like(transform) = &promise.claim {
+        let is_slack = runner.is_slack();
+        if let (Claim::Like(transform), false) = (&promise.claim, is_slack) {
             let mut inside = Words::new();
             rows.iter().for_each(|row| transform(row, &mut inside));
-            kernel.run(&inside, &mut others)?;
+            runner.run(&inside, &mut others)?;
         }
-        let width = kernel.result_words();
+        let width = runner.result_words();
         let fault = rows.iter().enumerate().find_map(|(index, row)| {
             let range = index * width..(index + 1) * width;
             let result = &results[range.clone()];
             let verdict = match &promise.claim {
-                Claim::Finite => all_finite(formula, result),
+                // Of infinities and NaNs the standard says nothing.
+                _ if is_slack && !alone::is_stated(formula, row) => Ok(()),
+                Claim::Accuracy if is_slack => ratio(alone::verdict(formula, tolerance, row, result, true)),
                 Claim::Accuracy => within_accuracy(formula, tolerance, row, result),
+                Claim::Like(transform) if is_slack => {
+                    let mut inside = Words::new();
+                    transform(row, &mut inside);
+                    ratio(alone::verdict(formula, tolerance, &inside, result, true))
+                }
                 Claim::Like(_) => same_bits(formula, result, &others[range]),
+                Claim::Finite => all_finite(formula, result),
                 Claim::Holds(predicate) => predicate(row, result),
                 Claim::Nothing => Ok(()),
             };
@@ -78,6 +91,9 @@ fn same_bits(formula: &Formula, result: &[u32], other: &[u32]) -> Result<(), Str
 }
 
 fn within_accuracy(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32]) -> Result<(), String> {
-    let verdict = tolerance.judge(row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle);
+    ratio(tolerance.judge(row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle))
+}
+
+fn ratio(verdict: Verdict) -> Result<(), String> {
     if verdict.holds() { Ok(()) } else { Err(format!("off by {:.2} times the allowed error", verdict.ratio)) }
 }

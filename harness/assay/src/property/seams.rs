@@ -5,19 +5,21 @@
 //! and then one float, down to neighbours. Both sides are held to the function's tolerance, like any input. Then they are within their bounds of
 //! each other as well, provided that the mathematics does not jump there ([`jump`]); and that is asked of the oracle, in the f64 between the two.
 
-use crate::dispatch::{DispatchError, Kernel};
+use super::alone;
+use crate::dispatch::DispatchError;
 use crate::draws::mix;
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Decision, Program, Site, Stopped, Traced};
 use crate::literal::{self, Language};
+use crate::runner::Runner;
 use crate::shape::{Scalar, Shape};
-use crate::tolerance::{OracleFn, Tolerance, Verdict, number, ulp_of};
+use crate::tolerance::{Tolerance, number, ulp_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Pairs of inputs that are tried, and fewer for a function that takes long: what that comes to in statements.
+/// Pairs of inputs that are tried, and fewer for a function that takes long: what that comes to in operations.
 const MOST_ATTEMPTS: u64 = 4_000;
-const MOST_STATEMENTS: u64 = 2_000_000;
+const MOST_OPERATIONS: u64 = 8_000_000;
 
 /// Runs of the function that finding one seam takes, about.
 const RUNS: u64 = 40;
@@ -58,8 +60,8 @@ pub struct Seam {
 /// Finds inputs on either side of as many branches as random inputs lead to.
 pub fn find(program: &Program, formula: &Formula, seed: u64) -> Result<Vec<Seam>, Stopped> {
     let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
-    let statements = program.run(&formula.domain.row(seed, 0), &mut Traced::default(), &mut Vec::new())?;
-    let attempts = (MOST_STATEMENTS / (RUNS * statements.max(1))).clamp(8, MOST_ATTEMPTS);
+    let operations = program.run(&formula.domain.row(seed, 0), &mut Traced::default(), &mut Vec::new())?;
+    let attempts = (MOST_OPERATIONS / (RUNS * operations.max(1))).clamp(8, MOST_ATTEMPTS);
     let search = Finder { program, formula, scalars };
     let found: Vec<Option<Seam>> = (0..attempts)
         .into_par_iter()
@@ -227,7 +229,7 @@ impl std::fmt::Display for Fault {
 pub fn faults(
     program: &Program,
     formula: &Formula,
-    kernel: &mut Kernel<'_>,
+    runner: &mut dyn Runner,
     tolerance: &Tolerance,
     seams: &[Seam],
     rows: impl Fn(&Seam) -> Vec<Words>,
@@ -239,15 +241,21 @@ pub fn faults(
         return Ok(faults);
     }
     let mut results = Words::new();
-    kernel.run(&rows.concat(), &mut results)?;
+    runner.run(&rows.concat(), &mut results)?;
     for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
         let (mirrored, exact) = (formula.mirrored(row), formula.exact(row));
-        let judge = |by: Judge| by(tolerance, row, result, &mirrored, &exact, &*formula.oracle);
+        let judge = |thoroughly: bool| {
+            if runner.is_slack() {
+                return alone::verdict(formula, tolerance, row, result, thoroughly);
+            }
+            let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
+            judge(tolerance, row, result, &mirrored, &exact, &*formula.oracle)
+        };
         // Of a function that is wrong everywhere a few faults are enough, and need no long search.
-        let quick = judge(Tolerance::judge);
-        let verdict =
-            if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(Tolerance::judge_thoroughly) };
-        let broken = formula.invariants.iter().find_map(|invariant| (invariant.holds)(row, result).err());
+        let quick = judge(false);
+        let verdict = if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(true) };
+        let mut said = formula.invariants.iter().filter(|invariant| !(runner.is_slack() && invariant.at_nearest));
+        let broken = said.find_map(|invariant| (invariant.holds)(row, result).err());
         let fault = match broken {
             Some(broken) => broken,
             None if verdict.nonfinite => "the result is not finite".to_owned(),
@@ -260,15 +268,12 @@ pub fn faults(
     Ok(faults)
 }
 
-/// [`Tolerance::judge`] or [`Tolerance::judge_thoroughly`].
-type Judge = fn(&Tolerance, &[u32], &[u32], &[u32], &[f64], OracleFn<'_>) -> Verdict;
-
 /// What `cook check` says of the branches of a formula's function in `source`: up to three faults, at inputs of the domain. Where the interpreter
 /// cannot run the function, why.
 pub fn of_source(
     source: &str,
     formula: &Formula,
-    kernel: &mut Kernel<'_>,
+    runner: &mut dyn Runner,
     tolerance: &Tolerance,
     seed: u64,
 ) -> Result<Result<Vec<Fault>, Stopped>, DispatchError> {
@@ -277,7 +282,7 @@ pub fn of_source(
         Ok(seams) => seams,
         Err(stopped) => return Ok(Err(stopped)),
     };
-    let mut found = faults(&program, formula, kernel, tolerance, &seams, |seam| seam.drawn.clone())?;
+    let mut found = faults(&program, formula, runner, tolerance, &seams, |seam| seam.drawn.clone())?;
     found.sort_by(|one, other| one.line.cmp(&other.line));
     found.dedup_by(|one, other| one.line == other.line);
     found.truncate(3);

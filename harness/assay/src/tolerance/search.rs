@@ -1,7 +1,7 @@
 //! The range of an oracle over inputs that are off by what `backward` allows: corners of the box about the input, places where a discrete
 //! result changes, and extrema.
 
-use super::{FLUSHED, OracleFn, largest, number, ulp_of};
+use super::{OracleFn, largest, number, ulp_of};
 use crate::draws::mix;
 use crate::golden_section::golden_section;
 use crate::shape::{Leaf, Scalar};
@@ -331,7 +331,7 @@ impl InputBox {
             let scale = largest(&values);
             // Zero is exact; a subnormal may be read as zero.
             let step = match leaf.scalar {
-                Scalar::F32 if scale >= FLUSHED => backward * ulp_of(scale),
+                Scalar::F32 if scale >= f64::from(f32::MIN_POSITIVE) => backward * ulp_of(scale),
                 Scalar::F32 => scale,
                 _ => 0.0,
             };

@@ -6,17 +6,17 @@ use super::{Context, Failure, Outcome, number, output};
 use lapidary_assay::formula::Formula;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
+use lapidary_assay::slack::Reassociation;
 use lapidary_cook::check::guard::{self, Stage};
 use lapidary_cook::check::user_file::{Contents, UserFile};
-use lapidary_cook::check::{self, CheckError, Row, Source};
+use lapidary_cook::check::{self, CheckError, On, Row, Source};
 use lapidary_cook::cookbook::release::Standing;
-use lapidary_gpu::Gpu;
 use std::path::PathBuf;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --wgsl my_engine/refraction.wgsl"
+    after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --portable\n  ./cook check refraction --wgsl my_engine/refraction.wgsl"
 )]
 pub(super) struct Arguments {
     /// A module, or one function of it as MODULE::FUNCTION; all where left out.
@@ -25,6 +25,12 @@ pub(super) struct Arguments {
     /// Test this file's functions instead of the cookbook's, to the cookbook's tolerance.
     #[arg(long, value_name = "FILE")]
     wgsl: Option<PathBuf>,
+    /// Test on devices that err in every operation as far as WGSL lets them, to the portable bounds; no adapter is needed.
+    #[arg(long, conflicts_with = "failures")]
+    portable: bool,
+    /// The same with sums of three and more terms, and products, in other orders, as WGSL lets a compiler take them.
+    #[arg(long, requires = "portable")]
+    reassociate: bool,
     /// Random inputs a function.
     #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=u64::MAX))]
     cases: u64,
@@ -85,21 +91,21 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         None => {
             let formulas = check::select(arguments.filter.as_deref())?;
             let formulas = Shard::share(arguments.shard, formulas);
-            let gpu = context.gpu()?;
+            let on = on(context, arguments)?;
             let regressions = arguments.failures.as_ref().map_or_else(check::failures, Regressions::in_folder);
-            let rows = all(gpu, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
+            let rows = all(on, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
             Checked { rows, ..Checked::default() }
         }
         Some(path) => {
             // What the command line alone can be wrong in goes before the file, and both before the device.
             check::select(arguments.filter.as_deref())?;
             let file = UserFile::read(path)?;
-            let gpu = context.gpu()?;
+            let on = on(context, arguments)?;
             let filter = arguments.filter.clone();
             let shard = arguments.shard;
             let regressions = arguments.failures.as_ref().map(Regressions::in_folder);
             let work = move |stage: &Stage| {
-                of_file(gpu, &file, (filter.as_deref(), shard), settings, regressions.as_ref(), stage)
+                of_file(on, &file, (filter.as_deref(), shard), settings, regressions.as_ref(), stage)
             };
             guard::watched(work).map_err(|error| Failure(format!("{}: {error}", path.display())))??
         }
@@ -112,14 +118,32 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
     } else {
         let style = text::Style::of_stdout();
-        output::bytes(text::report(&checked, &context.gpu()?.describe(), style).as_bytes())?;
+        output::bytes(text::report(&checked, &described(context, arguments)?, style).as_bytes())?;
     }
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
 
+/// What the check runs on.
+fn on(context: &Context, arguments: &Arguments) -> Result<On<'static>, Failure> {
+    Ok(match arguments {
+        Arguments { reassociate: true, .. } => On::Slack(Reassociation::Reordered),
+        Arguments { portable: true, .. } => On::Slack(Reassociation::Written),
+        _ => On::Adapter(context.gpu()?),
+    })
+}
+
+/// The same in words.
+fn described(context: &Context, arguments: &Arguments) -> Result<String, Failure> {
+    Ok(match on(context, arguments)? {
+        On::Adapter(gpu) => gpu.describe(),
+        On::Slack(Reassociation::Written) => "devices that err as far as WGSL lets them".to_owned(),
+        On::Slack(Reassociation::Reordered) => "such devices, sums and products in other orders,".to_owned(),
+    })
+}
+
 /// Checks a user's file.
 fn of_file(
-    gpu: &Gpu,
+    on: On<'_>,
     file: &UserFile,
     (filter, shard): (Option<&str>, Option<Shard>),
     settings: Settings,
@@ -129,7 +153,7 @@ fn of_file(
     let Contents { formulas, notes, releases } = file.contents(filter)?;
     let formulas = Shard::share(shard, formulas);
     let source = Source::Copy(&file.path, &file.text);
-    let mut rows = all(gpu, &formulas, source, settings, regressions, Some(stage))?;
+    let mut rows = all(on, &formulas, source, settings, regressions, Some(stage))?;
     for row in &mut rows {
         for standing in releases.iter().filter(|standing| standing.module == row.module) {
             if let Some(origin) = standing.origins.iter().find(|origin| origin.function == row.function) {
@@ -142,7 +166,7 @@ fn of_file(
 }
 
 fn all(
-    gpu: &Gpu,
+    on: On<'_>,
     formulas: &[&'static Formula],
     source: Source<'_>,
     settings: Settings,
@@ -154,7 +178,7 @@ fn all(
         if let Some(stage) = stage {
             stage.compiling(&format!("compiling `{}`", formula.function));
         }
-        check::kernel(gpu, formula, source)?;
+        check::prepare(on, formula, source)?;
     }
     let bar = super::progress::bar(formulas.len() as u64, "checking");
     let mut rows = Vec::new();
@@ -163,7 +187,7 @@ fn all(
             stage.running(&format!("running `{}`", formula.function));
         }
         bar.set_message(formula.function);
-        rows.push(check::run_keeping(gpu, formula, source, settings, regressions)?);
+        rows.push(check::run_keeping(on, formula, source, settings, regressions)?);
         bar.inc(1);
     }
     bar.finish_and_clear();

@@ -8,6 +8,7 @@ use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, Words, formula};
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Report, Settings};
+use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::{Tolerance, Verdict};
 use lapidary_cook::check::{self, Source};
@@ -346,7 +347,7 @@ const SETTINGS: Settings = Settings { cases: 4096, seed: 3 };
 fn run(formula: &Formula, settings: Settings, replayed: &[Words]) -> Report {
     let mut kernel = check::kernel(gpu(), formula, Source::Cookbook).unwrap_or_else(|error| panic!("{error}"));
     let tolerance = check::tolerance(gpu(), formula);
-    Check { formula, kernel: &mut kernel, tolerance: &tolerance }
+    Check { formula, runner: &mut kernel, tolerance: &tolerance }
         .run(settings, replayed)
         .unwrap_or_else(|error| panic!("{error}"))
 }

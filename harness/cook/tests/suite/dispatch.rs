@@ -6,6 +6,7 @@ use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, DispatchError, Kernel, KernelModule, ROWS_PER_DISPATCH};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::mirror_struct;
+use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::value::Value;
 use std::collections::BTreeSet;

@@ -57,7 +57,7 @@ fn every_formula_holds_over_its_domain_from_a_second_seed() {
         let mut kernel = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
         let tolerance = check::tolerance(gpu, formula);
         let settings = Settings { cases: DEFAULT_CASES, seed: second };
-        let report = Check { formula, kernel: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
+        let report = Check { formula, runner: &mut kernel, tolerance: &tolerance }.run(settings, &[]).expect("runs");
         if report.failed > 0 {
             let name = format!("{}::{}", formula.module, formula.function);
             faults.push(format!("{} failed: ./cook check {name} --seed {second}", report.failed));

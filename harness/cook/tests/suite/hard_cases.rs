@@ -2,6 +2,7 @@
 //! stated. Where nothing fails, it is no hard case.
 
 use lapidary_assay::examination::distance_from_limit;
+use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;

@@ -3,6 +3,7 @@
 use crate::program::{cook, succeeds};
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{Check, Settings};
+use lapidary_assay::runner::Runner;
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::{cookbook, formulas};
 use serde_json::Value;
@@ -62,7 +63,7 @@ fn inputs_that_were_once_wrong_are_right() {
         let tolerance = check::tolerance(crate::gpu(), formula);
         let rows = once_wrong.load(formula.function, kernel.argument_words()).expect("a file of inputs");
         inputs += rows.len();
-        let mut check = Check { formula, kernel: &mut kernel, tolerance: &tolerance };
+        let mut check = Check { formula, runner: &mut kernel, tolerance: &tolerance };
         for row in rows {
             let report = check.run(Settings { cases: 0, seed: 0 }, &[row]).expect("the check runs");
             if report.failed > 0 {

@@ -5,6 +5,7 @@ use anstyle::AnsiColor;
 use lapidary_assay::failure::Failure;
 use lapidary_cook::check::Row;
 use lapidary_cook::cookbook::release::Standing;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// Whether to colour.
@@ -75,6 +76,10 @@ pub(super) fn report(checked: &Checked, adapter: &str, style: Style) -> String {
     for row in &checked.rows {
         details(row, style, &mut text);
     }
+    let assumptions: BTreeSet<&String> = checked.rows.iter().flat_map(|row| &row.assumptions).collect();
+    for assumption in assumptions {
+        let _ = writeln!(text, "\nWGSL does not state, and it is taken to hold: {assumption}.");
+    }
     let failed = checked.rows.iter().filter(|row| !row.passed()).count();
     let held = checked.rows.len() - failed;
     let _ = writeln!(
@@ -111,7 +116,7 @@ fn details(row: &Row, style: Style, text: &mut String) {
     for case in &row.broken_hard_cases {
         let _ = writeln!(text, "  hard case {case}");
     }
-    for broken in row.broken_promises.iter().chain(&row.broken_branches) {
+    for broken in row.broken_promises.iter().chain(&row.broken_branches).chain(&row.worst_choices) {
         let _ = writeln!(text, "  {broken}");
     }
     if let Some(why) = &row.branches_untested {

@@ -8,6 +8,7 @@ pub(crate) use recipes::specialised_texts;
 use crate::gpu;
 use lapidary_assay::dispatch::{self, ENTRY_POINT, Kernel, KernelModule};
 use lapidary_assay::draws::Draws;
+use lapidary_assay::runner::Runner;
 use lapidary_specialise::specialise;
 use naga::back;
 use program::{random_constants, random_program};

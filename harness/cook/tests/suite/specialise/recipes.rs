@@ -7,6 +7,7 @@ use super::{ROWS, SEED, outcomes, specialised};
 use lapidary_assay::dispatch::signature::Signature;
 use lapidary_assay::dispatch::{self, KernelModule};
 use lapidary_assay::draws::Draws;
+use lapidary_assay::runner::Runner;
 use lapidary_specialise::specialise;
 use lapidary_wgsl::{RECIPES, Recipe};
 use naga::{Expression, Function, Handle, Literal, Module, Statement, back};

@@ -1,0 +1,127 @@
+//! Reassociation: sums of three and more terms, and products of three and more factors, in another order.
+//!
+//! Within an expression, `let` included, as the standard has it: (a + b) + c as a + (b + c), (a - b) + c as (a + c) - b, (a * b) / c as (a / c) * b. What passes through
+//! a `var` or a call keeps its order.
+
+use super::value::Value;
+use super::{Call, Compiler};
+use crate::draws::mix;
+use crate::interpreter::Stopped;
+use crate::interpreter::code::{Op, Register};
+use naga::{BinaryOperator, Expression, Handle, ScalarKind, UnaryOperator};
+
+/// Sums or products.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Sum,
+    Product,
+}
+
+/// An operand of a chain; inverse where it is subtracted, or divided by.
+struct Link {
+    handle: Handle<Expression>,
+    inverse: bool,
+}
+
+impl<'a> Compiler<'a> {
+    /// The value of a chain in the order that the seed gives; none where the expression is no chain, or there is no seed.
+    pub(super) fn reordered(
+        &mut self,
+        call: &mut Call<'a>,
+        handle: Handle<Expression>,
+    ) -> Result<Option<Value>, Stopped> {
+        let Some(order) = self.order else { return Ok(None) };
+        let Expression::Binary { op, left, right } = call.function.expressions[handle] else { return Ok(None) };
+        if [left, right].into_iter().any(|side| self.kind(call, side) != Some(ScalarKind::Float)) {
+            return Ok(None);
+        }
+        let kind = match op {
+            BinaryOperator::Add | BinaryOperator::Subtract => Kind::Sum,
+            BinaryOperator::Multiply | BinaryOperator::Divide => Kind::Product,
+            _ => return Ok(None),
+        };
+        let mut links = Vec::new();
+        self.links(call, kind, handle, false, &mut links);
+        if links.len() < 3 {
+            return Ok(None);
+        }
+        let mut operands = Vec::new();
+        for link in &links {
+            operands.push(self.value(call, link.handle)?.registers().to_vec());
+        }
+        let length = operands.iter().map(Vec::len).max().unwrap_or(0);
+        let site = call.site(handle);
+        let seed = mix(order ^ mix(u64::from(site.function) << 32 | u64::from(site.expression)));
+        // The same order for every component: a compiler sees vectors whole.
+        let components = (0..length).map(|index| {
+            let terms = operands.iter().zip(&links);
+            let terms = terms.map(|(registers, link)| (registers[index % registers.len()], link.inverse)).collect();
+            self.tree(kind, terms, seed)
+        });
+        Ok(Some(Value::Words(components.collect())))
+    }
+
+    /// The operands of the chain that an expression ends.
+    fn links(&self, call: &Call<'a>, kind: Kind, handle: Handle<Expression>, inverse: bool, links: &mut Vec<Link>) {
+        let is_float = self.kind(call, handle) == Some(ScalarKind::Float);
+        match (&call.function.expressions[handle], kind) {
+            (Expression::Binary { op: BinaryOperator::Add, left, right }, Kind::Sum)
+            | (Expression::Binary { op: BinaryOperator::Multiply, left, right }, Kind::Product)
+                if is_float =>
+            {
+                self.links(call, kind, *left, inverse, links);
+                self.links(call, kind, *right, inverse, links);
+            }
+            (Expression::Binary { op: BinaryOperator::Subtract, left, right }, Kind::Sum)
+            | (Expression::Binary { op: BinaryOperator::Divide, left, right }, Kind::Product)
+                if is_float =>
+            {
+                self.links(call, kind, *left, inverse, links);
+                self.links(call, kind, *right, !inverse, links);
+            }
+            (Expression::Unary { op: UnaryOperator::Negate, expr }, Kind::Sum) if is_float => {
+                self.links(call, kind, *expr, !inverse, links);
+            }
+            _ => links.push(Link { handle, inverse }),
+        }
+    }
+
+    /// The sum of `terms`: from the first to the last, or as the seed has it.
+    pub(super) fn sum_of(&mut self, terms: Vec<Register>) -> Register {
+        match self.order {
+            Some(order) => {
+                let place = mix(order ^ mix(self.here() as u64));
+                self.tree(Kind::Sum, terms.into_iter().map(|term| (term, false)).collect(), place)
+            }
+            None => terms.into_iter().reduce(|a, b| self.add(a, b)).expect("a vector has components"),
+        }
+    }
+
+    /// Joins two of the terms that are left, whichever the seed says, until one is left.
+    fn tree(&mut self, kind: Kind, mut terms: Vec<(Register, bool)>, mut seed: u64) -> Register {
+        while terms.len() > 1 {
+            seed = mix(seed);
+            let one = terms.swap_remove((seed % terms.len() as u64) as usize);
+            seed = mix(seed);
+            let other = terms.swap_remove((seed % terms.len() as u64) as usize);
+            let ((a, a_inverse), (b, b_inverse)) = (one, other);
+            let joined = match (kind, a_inverse, b_inverse) {
+                (Kind::Sum, false, true) => (self.subtract(a, b), false),
+                (Kind::Sum, true, false) => (self.subtract(b, a), false),
+                (Kind::Sum, inverse, _) => (self.add(a, b), inverse),
+                (Kind::Product, false, true) => (self.divide(a, b), false),
+                (Kind::Product, true, false) => (self.divide(b, a), false),
+                (Kind::Product, inverse, _) => (self.multiply(a, b), inverse),
+            };
+            terms.push(joined);
+        }
+        match (terms[0], kind) {
+            ((register, false), _) => register,
+            ((register, true), Kind::Sum) => self.result(|to| Op::Negate { to, from: register }),
+            ((register, true), Kind::Product) => {
+                let one = self.constant(1f32.to_bits());
+                self.divide(one, register)
+            }
+        }
+    }
+}

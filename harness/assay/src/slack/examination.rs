@@ -1,0 +1,53 @@
+//! Everything that is tested of a function, on devices that err as far as WGSL lets them.
+
+use super::{Reassociation, Slackened, climb};
+use crate::dispatch::DispatchError;
+use crate::examination::{self, Examination};
+use crate::formula::{Formula, Words};
+use crate::interpreter::{Assumption, Program};
+use crate::literal::{Language, call};
+use crate::property::Settings;
+use crate::tolerance::Tolerance;
+use std::collections::BTreeSet;
+
+/// Random inputs, and as many hard cases, whose worst choices are looked for.
+const CLIMBED: usize = 8;
+
+/// What was found, and what was taken to hold where the standard states nothing.
+pub type Found = (Examination, BTreeSet<Assumption>);
+
+/// Examines the function of `formula` in `source`; `path` is for messages. Random inputs, hard cases, promises outside of the domain and the inputs beside branches run on a
+/// device each; then the worst of the inputs, some hard cases and some others on the worst device that is found for them.
+///
+/// # Errors
+/// Where the source is not valid, or does what the interpreter cannot.
+pub fn examine(
+    formula: &Formula,
+    (source, path): (&str, &str),
+    tolerance: &Tolerance,
+    settings: Settings,
+    reassociation: Reassociation,
+) -> Result<Found, DispatchError> {
+    let mut runner = Slackened::new(source, path, formula.function, settings.seed, reassociation)?;
+    let mut found = examination::examine(formula, source, &mut runner, tolerance, settings, &[])?;
+    if reassociation == Reassociation::Written && found.report.failed == 0 {
+        let program = Program::new(source, path, formula.function)?;
+        let random = (0..settings.cases.min(CLIMBED as u64)).map(|row| formula.domain.row(settings.seed, row));
+        let hard = formula.hard_cases.iter().map(|case| case.arguments.clone()).take(CLIMBED);
+        let rows: Vec<Words> = std::iter::once(found.report.worst.clone()).chain(random).chain(hard).collect();
+        let worst = climb::worst(&program, formula, tolerance, settings.seed, &rows);
+        let worst = worst.map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })?;
+        if let Some(worst) = worst.filter(|worst| worst.ratio > found.report.worst_ratio) {
+            found.report.worst_ratio = worst.ratio;
+            if worst.ratio > 1.0 {
+                let input = call(Language::Wgsl, formula, &worst.arguments);
+                found.worst_choices = Some(format!(
+                    "on the worst device for it off by {:.2} times the allowed error: {input}",
+                    worst.ratio
+                ));
+            }
+            found.report.worst = worst.arguments;
+        }
+    }
+    Ok((found, runner.assumptions().clone()))
+}

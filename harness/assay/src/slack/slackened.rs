@@ -1,0 +1,160 @@
+//! Rows of a function on devices that err as far as WGSL lets them.
+
+use super::device::{Device, Mode};
+use crate::dispatch::DispatchError;
+use crate::dispatch::signature::Signature;
+use crate::draws::mix;
+use crate::interpreter::{Assumption, Program, Registers, Stopped};
+use crate::runner::Runner;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Rows that one thread takes at a time.
+const ROWS_PER_TASK: usize = 256;
+
+/// Orders in which chains of sums and products are taken, where they are.
+const ORDERS: u64 = 16;
+
+/// Whether chains of sums and of products keep their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reassociation {
+    /// As they are written.
+    Written,
+    /// In other orders.
+    Reordered,
+}
+
+/// A function whose every row runs on another device that WGSL allows. Which one is the row's own: the same row gives the same result.
+#[derive(Debug)]
+pub struct Slackened {
+    programs: Vec<Program>,
+    words: [usize; 2],
+    seed: u64,
+    mode: Option<Mode>,
+    assumptions: BTreeSet<Assumption>,
+    stopped: Vec<bool>,
+    why: Option<Stopped>,
+}
+
+/// What a task found of its rows.
+struct Part {
+    results: Vec<u32>,
+    stopped: Vec<bool>,
+    assumptions: BTreeSet<Assumption>,
+    why: Option<Stopped>,
+}
+
+impl Slackened {
+    /// The function of that name in WGSL source; `path` is for messages, `seed` for the devices' choices.
+    ///
+    /// # Errors
+    /// Where the source is not valid, or does what the interpreter cannot.
+    pub fn new(
+        source: &str,
+        path: &str,
+        function: &str,
+        seed: u64,
+        reassociation: Reassociation,
+    ) -> Result<Slackened, DispatchError> {
+        let program = Program::new(source, path, function)?;
+        let signature = Signature::of_source(source, path, function)?;
+        program.registers().map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })?;
+        let programs = match reassociation {
+            Reassociation::Written => vec![program],
+            Reassociation::Reordered => (0..ORDERS).map(|order| program.reassociated(mix(seed ^ order))).collect(),
+        };
+        Ok(Self::of_programs(programs, &signature, seed))
+    }
+
+    /// A function that is compiled, of that signature.
+    pub fn of_program(program: Program, signature: &Signature, seed: u64) -> Slackened {
+        Self::of_programs(vec![program], signature, seed)
+    }
+
+    fn of_programs(programs: Vec<Program>, signature: &Signature, seed: u64) -> Slackened {
+        let words = [signature.arguments.iter().map(|(_, shape)| shape.words()).sum(), signature.result.words()];
+        let (assumptions, stopped) = (BTreeSet::new(), Vec::new());
+        Slackened { programs, words, seed, mode: None, assumptions, stopped, why: None }
+    }
+
+    /// The same on devices of one kind.
+    #[must_use]
+    pub fn with_mode(self, mode: Mode) -> Slackened {
+        Slackened { mode: Some(mode), ..self }
+    }
+
+    /// What was taken to hold so far where the standard states nothing.
+    pub fn assumptions(&self) -> &BTreeSet<Assumption> {
+        &self.assumptions
+    }
+
+    /// A row's key, from its words: whoever runs it again gets the same device.
+    fn key(&self, row: &[u32]) -> u64 {
+        row.iter().fold(mix(self.seed), |key, word| mix(key ^ u64::from(*word)))
+    }
+
+    fn part(&self, registers: &mut [Registers], rows: &[u32]) -> Part {
+        let mut part = Part { results: Vec::new(), stopped: Vec::new(), assumptions: BTreeSet::new(), why: None };
+        for row in rows.chunks_exact(self.words[0]) {
+            let key = self.key(row);
+            let mut device = Device::new(self.mode.unwrap_or_else(|| Mode::of(key)), mix(key));
+            let order = (key >> 32) as usize % self.programs.len();
+            let before = part.results.len();
+            let ran = self.programs[order].run_in(&mut registers[order], row, &mut device, &mut part.results);
+            part.stopped.push(ran.is_err());
+            part.assumptions.extend(device.assumptions());
+            if let Err(why) = ran {
+                part.results.resize(before + self.words[1], 0);
+                part.why = Some(why);
+            }
+        }
+        part
+    }
+}
+
+impl Runner for Slackened {
+    fn argument_words(&self) -> usize {
+        self.words[0]
+    }
+
+    fn result_words(&self) -> usize {
+        self.words[1]
+    }
+
+    fn run(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError> {
+        let registers: Vec<Registers> = self.programs.iter().map_while(|program| program.registers().ok()).collect();
+        let parts: Vec<Part> = arguments
+            .par_chunks(ROWS_PER_TASK * self.words[0])
+            .map_init(|| registers.clone(), |registers, rows| self.part(registers, rows))
+            .collect();
+        results.clear();
+        self.stopped.clear();
+        for part in parts {
+            results.extend(part.results);
+            self.stopped.extend(part.stopped);
+            self.assumptions.extend(part.assumptions);
+            self.why = part.why.or(self.why.take());
+        }
+        Ok(())
+    }
+
+    fn is_slack(&self) -> bool {
+        true
+    }
+
+    fn loops(&self) -> bool {
+        false
+    }
+
+    fn stopped(&self, row: usize) -> bool {
+        self.stopped.get(row).copied().unwrap_or(false)
+    }
+
+    fn any_stopped(&self) -> bool {
+        self.stopped.contains(&true)
+    }
+
+    fn why_stopped(&self) -> String {
+        self.why.as_ref().map_or_else(String::new, ToString::to_string)
+    }
+}
