@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a4161b7bb522f175
+// Version: 0.2.0, hash bd4eeaa8b5f66bde
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
@@ -253,7 +253,7 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
 //   sigma = 0.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; any sigma, negative ones count as 0.
-// Outside: the formula goes on: off by rounding where the cosine is; finite up to 10.
+// Outside: the formula goes on, up to 1: off by rounding where the cosine is; finite up to 10.
 // Accuracy: lavapipe 1.5e-5 abs; portable 1.7e-5 abs
 fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let c = cosine;
@@ -494,7 +494,7 @@ struct CdrfTexels {
 fn cdrf_texels(coordinates: vec2f, size: vec2u) -> CdrfTexels {
     let at = clamp(coordinates, vec2f(0.0f), vec2f(1.0f)) * (vec2f(size) - 1.0f);
     let lower = vec2u(at);
-    // Of a product that is fused into the difference the floor need not be the floor.
+    // floor sees the rounded product, a fused difference the exact one, which may be below it.
     return CdrfTexels(lower, min(lower + 1u, size - 1u), max(at - floor(at), vec2f(0.0f)));
 }
 

@@ -1,6 +1,6 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e098661599126bd9
+// Version: 0.2.0, hash edd4d94f74ef34e4
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected after (A.6).
 //   The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the Regularization Method", 1963.
 
@@ -34,7 +34,7 @@ fn closest_point_largest_component(vector: vec3f) -> f32 {
 // Accuracy: lavapipe 4 ulp; portable 16 ulp
 fn closest_point_direction(vector: vec3f) -> vec3f {
     let size = closest_point_largest_component(vector);
-    // Below it a device may flush the size, and not the comparison's.
+    // Smaller numbers may be flushed: then 0 / 0.
     if size < 1.1754944e-38f {
         return vec3f(0.0f);
     }

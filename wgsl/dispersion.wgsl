@@ -1,6 +1,6 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 299dbe551b1edb41
+// Version: 0.2.0, hash ebfee976a7caa7e4
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
 //   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
 //   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile),
@@ -91,8 +91,8 @@ fn dispersion_sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
     // From nm² to µm².
     let squared = wavelength * wavelength * 1e-6f;
     let terms = squared / (squared - material.resonances);
-    // WGSL lets a root of 1 be less.
-    return max(sqrt(1.0f + material.constant + dot(material.strengths, terms)), 1.0f);
+    // At least 1 before the root and after it: WGSL's root of 1 may be less than 1.
+    return max(sqrt(max(1.0f + material.constant + dot(material.strengths, terms), 1.0f)), 1.0f);
 }
 
 // Index of refraction by Cauchy's formula, a + b / w^2 + c / w^4, enough for visible light far from any resonance.

@@ -1,6 +1,6 @@
 // environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 9de70ddc764d6fc3
+// Version: 0.2.0, hash 1a0ef7055a772b47
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the map; the convention is
 // that of Khronos's glTF Sample Renderer and three.js: +Y up, u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
 //
@@ -19,7 +19,7 @@
 fn environment_turns(y: f32, x: f32) -> f32 {
     let longer = max(abs(x), abs(y));
     let shorter = min(abs(x), abs(y));
-    // Of the least that no device flushes, so that the origin has an angle, too.
+    // Smaller numbers may be flushed: then 0 / 0.
     let ratio = shorter / max(longer, 1.1754944e-38f);
     let s = ratio * ratio;
     var turns = ratio * (0.15915492f - s * (0.053049512f - s * (0.031782802f - s * (0.022312697f

@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e26c2e610910ea85
+// Version: 0.2.0, hash 38fff672414d5615
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
@@ -97,14 +97,14 @@ fn random_walk_free_path_naive(u: f32, majorant: f32) -> f32 {
 // difference, which makes free paths right in matter of any density below it.
 // Returns: RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED or RANDOM_WALK_PASSED.
 // Units: coefficients per unit of length, all in the same.
-// Domain: u in [0, 1); scattering, absorption at least 0, their sum at most the majorant, which is above 0.
+// Domain: u in [0, 1); scattering, absorption at least 0, their sum at most the majorant.
 // Outside: where the sum exceeds the majorant never passes: the walk is biased.
 // Accuracy: lavapipe 2 backward; portable 2 backward
 fn random_walk_collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
     let sum = scattering + absorption;
     // Where all of the majorant is matter, a place that is rounded up to it is in it, too.
-    if place >= sum && sum < majorant {
+    if place >= sum && (sum < majorant || sum == 0.0f) {
         return RANDOM_WALK_PASSED;
     }
     return select(RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED, place >= scattering && absorption > 0.0f);

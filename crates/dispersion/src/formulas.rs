@@ -67,6 +67,10 @@ fn material(draws: &mut Draws<'_>) -> DispersionSellmeier {
             mirror::DISPERSION_STRONTIUM_TITANATE,
         ]);
     }
+    if draws.below(64) == 0 {
+        // The strongest of all beside the visible: what is under the root is negative.
+        return DispersionSellmeier { constant: 0.0, strengths: Vec3::splat(40.0), resonances: Vec3::splat(50.0) };
+    }
     // Without ultraviolet resonances the formula falls below 1.
     let infrared = draws.below(4) == 0;
     let mut resonance = || -> (f32, f32) {
@@ -98,6 +102,7 @@ fn sellmeier() -> Formula {
         material.resonances.to_array().iter().any(|resonance| (0.095..0.1).contains(resonance)) && at < 390.0
     })
     .edge("a constant", |(material, _)| material.constant > 0.0)
+    .edge("below 0 under the root", |(material, _)| material.strengths == Vec3::splat(40.0))
     .edge("held at 1", |(material, _)| material.constant == 0.0 && material.resonances.min_element() > 1.0)
     .edge("an end of the visible", |(_, wavelength)| wavelength == 380.0)
     .invariant("at least 1", |_, index: f32| near("lack", (1.0 - f64::from(index)).max(0.0), 0.0, 0.0))

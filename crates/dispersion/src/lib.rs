@@ -98,7 +98,7 @@ pub fn sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
     // From nm² to µm².
     let squared = wavelength * wavelength * 1e-6;
     let terms = squared / (squared - material.resonances);
-    (1.0 + material.constant + material.strengths.dot(terms)).sqrt().max(1.0)
+    (1.0 + material.constant + material.strengths.dot(terms)).max(1.0).sqrt().max(1.0)
 }
 
 /// Index of refraction by Cauchy's formula; wavelength in nm, coefficients for µm.

@@ -183,7 +183,8 @@ fn paths() -> Vec<Formula> {
         .benign(1e-5)
         .build(),
         formula(M, "random_walk_collision", mirror::collision, oracle::collision, |draws| {
-            let (u, majorant) = (uniform(draws), draws.magnitude(-40, 40));
+            let majorant = if draws.below(32) == 0 { 0.0 } else { draws.magnitude(-40, 40) };
+            let u = uniform(draws);
             let share = if draws.below(4) == 0 { draws.pick(&[0.0, 1.0]) } else { draws.between(0.0, 1.0) };
             let scattered = if draws.below(4) == 0 { draws.pick(&[0.0, 1.0]) } else { draws.between(0.0, 1.0) };
             let scattering = scattered * share * majorant;
@@ -192,12 +193,13 @@ fn paths() -> Vec<Formula> {
         .edge("no matter", |(_, s, a, _)| s == 0.0 && a == 0.0)
         .edge("no number and no scattering", |(u, s, a, _)| u == 0.0 && s == 0.0 && a > 0.0)
         .edge("no number and nothing", |(u, s, a, _)| u == 0.0 && s == 0.0 && a == 0.0)
-        .edge("as dense as the majorant", |(_, s, a, m)| s == m && a == 0.0)
+        .edge("nothing anywhere", |(_, _, _, m)| m == 0.0)
+        .edge("as dense as the majorant", |(_, s, a, m)| s == m && a == 0.0 && m > 0.0)
         .invariant("only what is there happens", |(u, s, a, m), event: u32| {
             let possible = match event {
                 mirror::RANDOM_WALK_SCATTERED => s > 0.0,
                 mirror::RANDOM_WALK_ABSORBED => a > 0.0,
-                _ => s < m || u >= 1.0,
+                _ => s < m || u >= 1.0 || m == 0.0,
             };
             if possible { Ok(()) } else { Err(format!("event {event}")) }
         })

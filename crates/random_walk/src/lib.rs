@@ -80,7 +80,7 @@ pub fn free_path_naive(u: f32, majorant: f32) -> f32 {
 pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
     let sum = scattering + absorption;
-    if place >= sum && sum < majorant {
+    if place >= sum && (sum < majorant || sum == 0.0) {
         return RANDOM_WALK_PASSED;
     }
     if place >= scattering && absorption > 0.0 { RANDOM_WALK_ABSORBED } else { RANDOM_WALK_SCATTERED }

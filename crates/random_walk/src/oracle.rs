@@ -63,7 +63,8 @@ pub fn free_path_naive(u: f64, majorant: f64) -> f64 {
 
 /// By shares of the majorant.
 pub fn collision(u: f64, scattering: f64, absorption: f64, majorant: f64) -> u32 {
-    let shares = [scattering / majorant, (scattering + absorption) / majorant];
+    // Where nothing can be, light passes.
+    let shares = [scattering, scattering + absorption].map(|sum| if majorant == 0.0 { 0.0 } else { sum / majorant });
     shares.iter().filter(|share| u >= **share).count() as u32
 }
 

@@ -1,4 +1,4 @@
-//! What calls a WGSL function for rows of argument words: a device, a browser, or the interpreter.
+//! What calls a WGSL function for rows of argument words: an adapter, or the interpreter.
 
 use crate::dispatch::DispatchError;
 

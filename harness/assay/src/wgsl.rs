@@ -244,10 +244,11 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     /// Where a result is wrong, with the simplest input found; where the source is not valid, its signature another, or the function does what the interpreter cannot.
     pub fn run_anywhere(mut self) -> Outcome {
         self.bounds = self.portable.take().or(self.bounds);
-        let Ready { text, formula, tolerance, settings, .. } = self.ready()?;
+        let Ready { text, formula, cases, tolerance, settings } = self.ready()?;
         let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
+        let source = (text.as_str(), PATH);
         let (found, _) =
-            slack::examine(&formula, (&text, PATH), &tolerance, settings, Reassociation::Written).map_err(fail)?;
+            slack::examine(&formula, source, &tolerance, settings, Reassociation::Written, &cases).map_err(fail)?;
         if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 

@@ -281,7 +281,7 @@ pub fn run_keeping<'gpu>(
         }
         On::Slack(reassociation) => {
             prepare(on, formula, source)?;
-            let (found, assumptions) = slack::examine(formula, (text, &path), &tolerance, settings, reassociation)
+            let (found, assumptions) = slack::examine(formula, (text, &path), &tolerance, settings, reassociation, &[])
                 .map_err(|error| CheckError::Dispatch { path, error })?;
             (Row { assumptions: assumptions.iter().map(ToString::to_string).collect(), ..Row::default() }, found)
         }

@@ -176,4 +176,6 @@ pub(super) struct Code {
     pub(super) registers: Vec<u32>,
     pub(super) arguments: Vec<Register>,
     pub(super) result: Vec<Register>,
+    /// Whether it has a loop.
+    pub(super) loops: bool,
 }

@@ -85,7 +85,7 @@ impl std::fmt::Display for Assumption {
             Assumption::Quotient => "a quotient is as accurate where the divisor lies beyond 2^-126 to 2^126",
             Assumption::Wave => "sine and cosine are as accurate beyond -π to π",
             Assumption::Root => "sqrt(0) is 0",
-            Assumption::Power => "pow(0, y) is 0",
+            Assumption::Power => "pow(0, y) is 0 for y > 0",
             Assumption::Angle => "atan2 is as accurate where x or y is 0 or beyond 2^-126 to 2^126",
         })
     }

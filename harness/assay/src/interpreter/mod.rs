@@ -81,6 +81,11 @@ impl Program {
         self.code.as_ref().map_err(Clone::clone)
     }
 
+    /// Whether it has a loop, and so may take long.
+    pub fn loops(&self) -> bool {
+        self.code.as_ref().is_ok_and(|code| code.loops)
+    }
+
     /// The words to run it in.
     ///
     /// # Errors

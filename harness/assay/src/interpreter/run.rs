@@ -188,7 +188,7 @@ fn float<M: Machine>(fun: Float, [x, y]: [f32; 2], site: Site, machine: &mut M) 
         Float::Sqrt if x == 0.0 => Some(Assumption::Root),
         Float::Sin | Float::Cos if exact.abs() > std::f64::consts::PI => Some(Assumption::Wave),
         Float::Atan2 if x == 0.0 || !DIVISORS.contains(&y.abs()) => Some(Assumption::Angle),
-        Float::Pow if x == 0.0 => Some(Assumption::Power),
+        Float::Pow if x == 0.0 && y > 0.0 => Some(Assumption::Power),
         _ => None,
     };
     if let Some(assumed) = assumed {
@@ -219,7 +219,7 @@ fn float<M: Machine>(fun: Float, [x, y]: [f32; 2], site: Site, machine: &mut M) 
         Float::Exp2 => round(exact.exp2(), Slack::Ulps(3.0 + 2.0 * exact.abs())),
         Float::Log => round(exact.ln(), logarithm(x)),
         Float::Log2 => round(exact.log2(), logarithm(x)),
-        Float::Pow if x == 0.0 => 0.0,
+        Float::Pow if x == 0.0 && y > 0.0 => machine.kept(0.0),
         Float::Pow => {
             let logarithm = f64::from(round(exact.log2(), logarithm(x)));
             let exponent = f64::from(round(f64::from(y) * logarithm, Slack::Rounded));

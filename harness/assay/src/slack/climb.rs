@@ -31,7 +31,7 @@ pub struct Worst {
     pub result: Words,
 }
 
-/// Climbs from each of `rows`, and returns the worst of all; none where there is no row.
+/// Climbs from each of `rows`, from the first ones where the function takes long, and returns the worst of all; none where there is no row, or one takes too long.
 ///
 /// # Errors
 /// Where the interpreter cannot run the function, or a row does not end.
@@ -43,7 +43,7 @@ pub fn worst(
     rows: &[Words],
 ) -> Result<Option<Worst>, Stopped> {
     let Some(first) = rows.first() else { return Ok(None) };
-    let rows = &rows[..rows.len().min(affordable(program, first)?.max(1))];
+    let rows = &rows[..rows.len().min(affordable(program, first)?)];
     let registers = program.registers()?;
     let found: Vec<Worst> = rows
         .par_iter()
@@ -55,12 +55,11 @@ pub fn worst(
     Ok(found.into_iter().reduce(|worst, next| if next.ratio > worst.ratio { next } else { worst }))
 }
 
-/// How many rows may be climbed from.
+/// How many rows may be climbed from: none where one takes too long.
 fn affordable(program: &Program, row: &[u32]) -> Result<usize, Stopped> {
     let mut device = Device::new(Mode::IDENTITY, 0);
-    program.run(row, &mut device, &mut Words::new())?;
-    let operations = device.operations().max(1);
-    Ok(MOST_OPERATIONS / (operations * operations.min(GROUPS) * ROUNDS * STARTS as usize))
+    let steps = program.run(row, &mut device, &mut Words::new())?.max(1) as usize;
+    Ok(MOST_OPERATIONS / (steps * device.operations().clamp(1, GROUPS) * ROUNDS * STARTS as usize))
 }
 
 /// The other way, each.
@@ -79,12 +78,19 @@ struct Climb<'a> {
 }
 
 impl Climb<'_> {
-    /// The error over the allowed one, without what `backward` allows, the result, and how many operations there were.
+    /// The error over the allowed one, the result, and how many operations there were. What `backward` allows is left out, which takes a search, but where a
+    /// flag or an integer differs: there nothing else tells one result from a worse one.
     fn forward(&mut self, mode: Mode, key: u64, shares: &[f32]) -> Result<(f64, Words, usize), Stopped> {
         let mut device = Device::with_shares(mode, key, shares);
         let mut result = Words::new();
         self.program.run_in(self.registers, self.row, &mut device, &mut result)?;
-        Ok((self.tolerance.forward(&result, &self.exact), result, device.operations()))
+        let forward = self.tolerance.forward(&result, &self.exact);
+        let ratio = if forward.is_finite() {
+            forward
+        } else {
+            verdict(self.formula, self.tolerance, self.row, &result, false).ratio
+        };
+        Ok((ratio, result, device.operations()))
     }
 
     fn run(&mut self, seed: u64) -> Result<Worst, Stopped> {
@@ -119,13 +125,13 @@ impl Climb<'_> {
                     break;
                 }
             }
+            // What is right for an input nearby is right.
+            if ratio > 1.0 {
+                ratio = verdict(self.formula, self.tolerance, self.row, &result, true).ratio;
+            }
             if ratio > worst {
                 (worst, at_worst) = (ratio, result);
             }
-        }
-        // What is right for an input nearby is right.
-        if worst > 1.0 {
-            worst = verdict(self.formula, self.tolerance, self.row, &at_worst, true).ratio;
         }
         Ok(Worst { ratio: worst, arguments: self.row.clone(), result: at_worst })
     }

@@ -16,7 +16,7 @@ const CLIMBED: usize = 8;
 /// What was found, and what was taken to hold where the standard states nothing.
 pub type Found = (Examination, BTreeSet<Assumption>);
 
-/// Examines the function of `formula` in `source`; `path` is for messages. Random inputs, hard cases, promises outside of the domain and the inputs beside branches run on a
+/// Examines the function of `formula` in `source`; `path` is for messages. `replayed` inputs, random ones, hard cases, promises outside of the domain and the inputs beside branches run on a
 /// device each; then the worst of the inputs, some hard cases and some others on the worst device that is found for them.
 ///
 /// # Errors
@@ -27,14 +27,16 @@ pub fn examine(
     tolerance: &Tolerance,
     settings: Settings,
     reassociation: Reassociation,
+    replayed: &[Words],
 ) -> Result<Found, DispatchError> {
     let mut runner = Slackened::new(source, path, formula.function, settings.seed, reassociation)?;
-    let mut found = examination::examine(formula, source, &mut runner, tolerance, settings, &[])?;
+    let mut found = examination::examine(formula, source, &mut runner, tolerance, settings, replayed)?;
     if reassociation == Reassociation::Written && found.report.failed == 0 {
         let program = Program::new(source, path, formula.function)?;
         let random = (0..settings.cases.min(CLIMBED as u64)).map(|row| formula.domain.row(settings.seed, row));
         let hard = formula.hard_cases.iter().map(|case| case.arguments.clone()).take(CLIMBED);
-        let rows: Vec<Words> = std::iter::once(found.report.worst.clone()).chain(random).chain(hard).collect();
+        let worst = (!found.report.worst.is_empty()).then(|| found.report.worst.clone());
+        let rows: Vec<Words> = worst.into_iter().chain(replayed.iter().cloned()).chain(random).chain(hard).collect();
         let worst = climb::worst(&program, formula, tolerance, settings.seed, &rows);
         let worst = worst.map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })?;
         if let Some(worst) = worst.filter(|worst| worst.ratio > found.report.worst_ratio) {

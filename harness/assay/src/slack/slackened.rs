@@ -143,7 +143,7 @@ impl Runner for Slackened {
     }
 
     fn loops(&self) -> bool {
-        false
+        self.programs.iter().any(Program::loops)
     }
 
     fn stopped(&self, row: usize) -> bool {

@@ -118,7 +118,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
     } else {
         let style = text::Style::of_stdout();
-        output::bytes(text::report(&checked, &described(context, arguments)?, style).as_bytes())?;
+        output::bytes(text::report(&checked, on(context, arguments)?, style).as_bytes())?;
     }
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
@@ -129,15 +129,6 @@ fn on(context: &Context, arguments: &Arguments) -> Result<On<'static>, Failure> 
         Arguments { reassociate: true, .. } => On::Slack(Reassociation::Reordered),
         Arguments { portable: true, .. } => On::Slack(Reassociation::Written),
         _ => On::Adapter(context.gpu()?),
-    })
-}
-
-/// The same in words.
-fn described(context: &Context, arguments: &Arguments) -> Result<String, Failure> {
-    Ok(match on(context, arguments)? {
-        On::Adapter(gpu) => gpu.describe(),
-        On::Slack(Reassociation::Written) => "devices that err as far as WGSL lets them".to_owned(),
-        On::Slack(Reassociation::Reordered) => "such devices, sums and products in other orders,".to_owned(),
     })
 }
 

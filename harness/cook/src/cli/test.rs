@@ -135,3 +135,41 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
     Ok(outcome)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::SLOW;
+    use std::path::{Path, PathBuf};
+
+    /// Every Rust file below a folder.
+    fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                files(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
+            }
+        }
+    }
+
+    /// A word that no test's name holds leaves nothing out, and nobody sees it.
+    #[test]
+    fn what_a_quick_run_leaves_out_is_there() {
+        let mut found = Vec::new();
+        files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), &mut found);
+        for word in SLOW {
+            let (module, start) = word.split_once("::").expect("a module");
+            let is_it = |path: &&PathBuf| {
+                let names =
+                    path.iter().rev().take(2).map(|name| name.to_string_lossy().trim_end_matches(".rs").to_owned());
+                names.into_iter().any(|name| name == module)
+            };
+            let holds = |path: &PathBuf| {
+                let text = std::fs::read_to_string(path).unwrap_or_default();
+                text.contains("#[test]") && text.contains(&format!("fn {start}"))
+            };
+            assert!(found.iter().filter(is_it).any(holds), "no test's name holds `{word}`");
+        }
+    }
+}

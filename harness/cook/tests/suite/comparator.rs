@@ -80,8 +80,8 @@ fn zero_has_no_sign_and_flushing_is_no_error() {
     assert!(judge(NONE, 0.0, -0.0, -0.0).holds());
     // What WGSL allows to be flushed, and the first number beyond it, of either sign.
     for sign in [1.0f64, -1.0] {
-        assert!(accepts(NONE, 0.0, sign * f64::from(f32::MIN_POSITIVE)));
-        assert!(!accepts(NONE, sign as f32 * f32::MIN_POSITIVE.next_up(), 0.0));
+        assert!(accepts(NONE, 0.0, sign * 2.0 * f64::from(f32::MIN_POSITIVE)));
+        assert!(!accepts(NONE, sign as f32 * (2.0 * f32::MIN_POSITIVE).next_up(), 0.0));
     }
 }
 

@@ -10,6 +10,9 @@ use crate::interpreter::Stopped;
 use crate::interpreter::code::{Op, Register};
 use naga::{BinaryOperator, Expression, Handle, ScalarKind, UnaryOperator};
 
+/// Operands of a chain; those beyond stay together.
+const MOST_LINKS: usize = 64;
+
 /// Sums or products.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -63,7 +66,14 @@ impl<'a> Compiler<'a> {
 
     /// The operands of the chain that an expression ends.
     fn links(&self, call: &Call<'a>, kind: Kind, handle: Handle<Expression>, inverse: bool, links: &mut Vec<Link>) {
-        let is_float = self.kind(call, handle) == Some(ScalarKind::Float);
+        let float = |handle: Handle<Expression>| self.kind(call, handle) == Some(ScalarKind::Float);
+        // Of matrices a factor has words of another number; and what is shared counts each time.
+        let is_float = links.len() < MOST_LINKS
+            && float(handle)
+            && match call.function.expressions[handle] {
+                Expression::Binary { left, right, .. } => float(left) && float(right),
+                _ => true,
+            };
         match (&call.function.expressions[handle], kind) {
             (Expression::Binary { op: BinaryOperator::Add, left, right }, Kind::Sum)
             | (Expression::Binary { op: BinaryOperator::Multiply, left, right }, Kind::Product)

@@ -22,7 +22,7 @@ pub(super) fn compile(
     function: Handle<Function>,
     order: Option<u64>,
 ) -> Result<Code, Stopped> {
-    let code = Code { ops: Vec::new(), registers: Vec::new(), arguments: Vec::new(), result: Vec::new() };
+    let code = Code { ops: Vec::new(), registers: Vec::new(), arguments: Vec::new(), result: Vec::new(), loops: false };
     let mut compiler = Compiler { module, info, code, order };
     let arguments: Vec<Value> = module.functions[function]
         .arguments
@@ -190,6 +190,7 @@ impl<'a> Compiler<'a> {
             }
             Statement::Switch { selector, cases } => self.switch(call, *selector, cases)?,
             Statement::Loop { body, continuing, break_if } => {
+                self.code.loops = true;
                 let start = self.here();
                 call.around.push(Around { breaks: Vec::new(), continues: Some(Vec::new()) });
                 self.block(call, body)?;
@@ -380,7 +381,7 @@ impl<'a> Compiler<'a> {
             }
             Expression::Binary { op, left, right } => match self.reordered(call, handle)? {
                 Some(value) => value,
-                None => self.binary(call, *op, *left, *right)?,
+                None => self.binary(call, *op, [*left, *right], site)?,
             },
             Expression::Select { condition, accept, reject } => {
                 let condition = self.value(call, *condition)?.registers().to_vec();
@@ -483,8 +484,8 @@ impl<'a> Compiler<'a> {
         &mut self,
         call: &mut Call<'a>,
         op: BinaryOperator,
-        left: Handle<Expression>,
-        right: Handle<Expression>,
+        [left, right]: [Handle<Expression>; 2],
+        site: Site,
     ) -> Result<Value, Stopped> {
         let Some(kind) = self.kind(call, left).filter(|_| self.kind(call, right).is_some()) else {
             return Err(Stopped("cannot multiply matrices on the CPU".to_owned()));
@@ -494,7 +495,7 @@ impl<'a> Compiler<'a> {
         let components = (0..left.len().max(right.len())).map(|index| {
             let (a, b) = (left[index % left.len()], right[index % right.len()]);
             match kind {
-                ScalarKind::Float => self.float(op, a, b),
+                ScalarKind::Float => self.float(op, a, b, site),
                 ScalarKind::Sint => self.result(|to| Op::Signed { op, to, a, b }),
                 _ => self.result(|to| Op::Unsigned { op, to, a, b }),
             }
@@ -502,12 +503,11 @@ impl<'a> Compiler<'a> {
         Ok(Value::Words(components.collect()))
     }
 
-    fn float(&mut self, op: BinaryOperator, a: Register, b: Register) -> Register {
+    fn float(&mut self, op: BinaryOperator, a: Register, b: Register, site: Site) -> Register {
         match op {
             BinaryOperator::Modulo => {
                 // x - y * trunc(x / y)
                 let quotient = self.result(|to| Op::Divide { to, a, b });
-                let site = Site { function: u32::MAX, expression: u32::MAX };
                 let whole = self.result(|to| Op::Float { fun: Float::Trunc, to, operands: [quotient, quotient], site });
                 let product = self.result(|to| Op::Multiply { to, a: b, b: whole });
                 self.result(|to| Op::Subtract { to, a, b: product })

@@ -3,7 +3,8 @@
 use super::Checked;
 use anstyle::AnsiColor;
 use lapidary_assay::failure::Failure;
-use lapidary_cook::check::Row;
+use lapidary_assay::slack::Reassociation;
+use lapidary_cook::check::{On, Row};
 use lapidary_cook::cookbook::release::Standing;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -40,15 +41,31 @@ impl Style {
 }
 
 /// The whole report: notes, the table, each failure, the sum.
-pub(super) fn report(checked: &Checked, adapter: &str, style: Style) -> String {
+pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
     let mut text = String::new();
     for line in notes(&checked.notes, &checked.releases) {
         let _ = writeln!(text, "{line}");
     }
+    let _ = match on {
+        On::Adapter(gpu) => write!(
+            text,
+            "Each result of the shader on {} is compared with that of its mirror in\n\
+             Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound. ",
+            gpu.describe()
+        ),
+        On::Slack(reassociation) => write!(
+            text,
+            "Each result of the shader on a device that errs as far as WGSL lets it{} is\n\
+             compared with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
+            match reassociation {
+                Reassociation::Written => "",
+                Reassociation::Reordered => ", sums and products in other orders,",
+            }
+        ),
+    };
     let _ = writeln!(
         text,
-        "Each result of the shader on {adapter} is compared with that of its mirror in\n\
-         Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound. `max ulp` to\n\
+        "`max ulp` to\n\
          `median` are the shader's error against the oracle; `of bound` is the worst error over the allowed one.\n"
     );
     let _ = writeln!(
