@@ -232,6 +232,59 @@ mod tests {
         assert_eq!(result, [8f32.to_bits(), (7f32 + 12.0).to_bits(), 8]);
     }
 
+    /// WGSL of a function of one u32, arguments, and the results that WGSL's rules give.
+    #[test]
+    fn control_flow_is_wgsls() {
+        let table: [(&str, [(u32, u32); 3]); 12] = [
+            // A break leaves the switch, a continue the turn of the loop around it.
+            (
+                "var s = 0u; for (var i = 0u; i < n; i++) { switch i { case 1u: { continue; } case 2u: { break; } default: { s += 10u; } } s += 1u; } return s;",
+                [(1, 11), (3, 12), (5, 34)],
+            ),
+            (
+                "var s = 0u; loop { s += 2u; continuing { s += 1u; break if s > n; } } return s;",
+                [(0, 3), (3, 6), (7, 9)],
+            ),
+            (
+                "var s = 0u; loop { if s == n { break; } s += 1u; continuing { s += 1u; } } return s;",
+                [(0, 0), (2, 2), (6, 6)],
+            ),
+            ("switch n { case 1u, 2u: { return 5u; } case default, 3u: { return 7u; } }", [(1, 5), (2, 5), (9, 7)]),
+            ("switch n { case default: { return 7u; } case 4u: { return 8u; } }", [(4, 8), (0, 7), (5, 7)]),
+            // A return out of a loop of an inlined call ends the call alone.
+            ("return first(n) * 100u + first(n + 1u);", [(0, 1), (2, 203), (7, 404)]),
+            // A variable in a loop begins anew.
+            (
+                "var s = 0u; for (var i = 0u; i < n; i++) { var t: u32; t += 1u; s += t; } return s;",
+                [(0, 0), (1, 1), (4, 4)],
+            ),
+            ("var s = 0u; for (var i = 0u; i < n; i++) { s += counted(i); } return s;", [(1, 1), (2, 3), (3, 6)]),
+            // A pointer into what an index finds.
+            (
+                "var a = array<u32, 4>(1u, 2u, 3u, 4u); raise(&a[n % 4u]); return a[0] * 1000u + a[1] * 100u + a[2] * 10u + a[3];",
+                [(0, 6234), (1, 1734), (3, 1239)],
+            ),
+            (
+                "var m = array<vec3u, 2>(vec3u(1u, 2u, 3u), vec3u(4u, 5u, 6u)); m[n % 2u][n % 3u] = 9u; let r = m[n % 2u]; return r.x * 100u + r.y * 10u + r.z;",
+                [(0, 923), (1, 496), (2, 129)],
+            ),
+            ("let m = mat2x2f(1.0, 2.0, 3.0, 4.0); return u32(m[n % 2u][(n / 2u) % 2u]);", [(0, 1), (1, 3), (3, 4)]),
+            // What was loaded stays as it was.
+            ("var a = n; let b = a; a += 1u; var c = a; c += b; return c * 10u + b;", [(0, 10), (1, 31), (2, 52)]),
+        ];
+        for (body, rows) in table {
+            let source = format!(
+                "fn first(n: u32) -> u32 {{ for (var i = 0u; i < 9u; i++) {{ if i == n {{ return i; }} if i == 4u {{ return 4u; }} }} return 9u; }}
+                fn counted(n: u32) -> u32 {{ var s = 0u; for (var i = 0u; i <= n; i++) {{ s += 1u; }} return s; }}
+                fn raise(p: ptr<function, u32>) {{ *p += 5u; }}
+                fn f(n: u32) -> u32 {{ {body} }}"
+            );
+            for (argument, result) in rows {
+                assert_eq!(call(&source, &[argument], &mut Nearest), [result], "{body} of {argument}");
+            }
+        }
+    }
+
     #[test]
     fn an_endless_loop_ends() {
         let program = Program::new("fn f(x: u32) -> u32 { loop { if x > 9u { break; } } return x; }", "t", "f");

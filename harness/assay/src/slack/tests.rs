@@ -29,6 +29,8 @@ struct Operation {
     operands: [[f64; 2]; 2],
     exact: fn(f64, f64) -> f64,
     allowed: fn(f64, f64, f64) -> f64,
+    /// Whether that is more than can be met.
+    is_loose: bool,
 }
 
 /// In units of the exact result's last place.
@@ -40,7 +42,9 @@ const AROUND: [f64; 2] = [-1e3, 1e3];
 const POSITIVE: [f64; 2] = [1e-3, 1e3];
 
 fn operations() -> Vec<Operation> {
-    let of = |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed };
+    let of = |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed, is_loose: false };
+    let loosely =
+        |expression, operands, exact, allowed| Operation { expression, operands, exact, allowed, is_loose: true };
     let rounded = |exact, _, _| ulps(1.0, exact);
     let wave = |_, _, _| 2f64.powi(-11);
     vec![
@@ -50,7 +54,7 @@ fn operations() -> Vec<Operation> {
         of("x / y", [AROUND, POSITIVE], |x, y| x / y, |exact, _, _| ulps(2.5, exact)),
         of("inverseSqrt(x)", [POSITIVE, AROUND], |x, _| 1.0 / x.sqrt(), |exact, _, _| ulps(2.0, exact)),
         // Of the inverse 2 ulp, which may be twice as many of the root's, and a quotient's 2.5.
-        of("sqrt(x)", [POSITIVE, AROUND], |x, _| x.sqrt(), |exact, _, _| ulps(4.0 + 2.5 + 1e-5, exact)),
+        loosely("sqrt(x)", [POSITIVE, AROUND], |x, _| x.sqrt(), |exact, _, _| ulps(4.0 + 2.5 + 1e-5, exact)),
         of("exp(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
         of("exp2(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp2(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
         of("log(x)", [[2.5, 1e3], AROUND], |x, _| x.ln(), |exact, _, _| ulps(3.0, exact)),
@@ -60,8 +64,8 @@ fn operations() -> Vec<Operation> {
         of("cos(x)", [[-3.0, 3.0], AROUND], |x, _| x.cos(), wave),
         of("atan(x)", [POSITIVE, AROUND], |x, _| x.atan(), |exact, _, _| ulps(4096.0, exact)),
         of("atan2(x, y)", [POSITIVE, POSITIVE], f64::atan2, |exact, _, _| ulps(4096.0, exact)),
-        of("acos(x)", [[0.0, 0.5], AROUND], |x, _| x.acos(), |exact, _, _| ulps(4096.0, exact) + 1e-6),
-        of("asin(x)", [[0.0, 0.1], AROUND], |x, _| x.asin(), |_, _, _| 6.81e-5 + 4e-6),
+        loosely("acos(x)", [[0.0, 0.5], AROUND], |x, _| x.acos(), |exact, _, _| ulps(4096.0, exact) + 1e-6),
+        loosely("asin(x)", [[0.0, 0.1], AROUND], |x, _| x.asin(), |_, _, _| 6.81e-5 + 4e-6),
         of("abs(x)", [AROUND, AROUND], |x, _| x.abs(), |_, _, _| 0.0),
         of("max(x, y)", [AROUND, AROUND], f64::max, |_, _, _| 0.0),
         of("floor(x)", [AROUND, AROUND], |x, _| x.floor(), |_, _, _| 0.0),
@@ -107,7 +111,9 @@ fn each_operation_errs_by_what_it_may_and_no_more() {
             if sides == [0, 0] {
                 continue;
             }
-            assert!(histogram[5..].iter().sum::<u32>() > 0, "{expression} {direction:?}: {histogram:?}");
+            // Of a root the inverse's 2 ulp count twice only beside a power of two, and a sum's whole ulp is rare.
+            let full = if operation.is_loose { 5 } else { 9 };
+            assert!(histogram[full..].iter().sum::<u32>() > 0, "{expression} {direction:?}: {histogram:?}");
             match direction {
                 Direction::Up => assert_eq!(met, [false, true], "{expression}"),
                 Direction::Down => assert_eq!(met, [true, false], "{expression}"),
@@ -117,6 +123,40 @@ fn each_operation_errs_by_what_it_may_and_no_more() {
                     assert!(sides[0].abs_diff(sides[1]) < 300, "{expression}: {sides:?}");
                 }
                 _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn outward_is_larger_and_inward_smaller() {
+    let program = program("fn f(x: f32, y: f32) -> f32 { return x / y; }");
+    for (x, y) in [(1.1f32, 1.3f32), (-1.1, 1.3), (7.0, -3.0)] {
+        let exact = f64::from(x) / f64::from(y);
+        let size = |direction| f64::from(run(&program, towards(direction), 0, &[x, y]).abs());
+        assert!(size(Direction::Outward) > exact.abs() && size(Direction::Inward) < exact.abs(), "{x} / {y}");
+    }
+}
+
+#[test]
+fn what_is_inherited_errs_as_its_expression() {
+    for (one, other) in [
+        ("x % y", "x - y * trunc(x / y)"),
+        ("tan(x)", "sin(x) / cos(x)"),
+        ("mix(x, y, 0.3)", "x * (1.0 - 0.3) + y * 0.3"),
+        ("fract(x)", "x - floor(x)"),
+        ("fma(x, y, x)", "x * y + x"),
+        ("length(vec2f(x, y))", "sqrt(x * x + y * y)"),
+        ("dot(vec2f(x, y), vec2f(y, y))", "x * y + y * y"),
+        ("distance(vec2f(x, y), vec2f(y, 1.0))", "length(vec2f(x, y) - vec2f(y, 1.0))"),
+        ("reflect(vec2f(x, y), vec2f(0.6, 0.8)).y", "y - (2.0 * (0.6 * x + 0.8 * y)) * 0.8"),
+    ] {
+        let [one_of, other_of] =
+            [one, other].map(|text| program(&format!("fn f(x: f32, y: f32) -> f32 {{ return {text}; }}")));
+        for direction in [Direction::Nearest, Direction::Up, Direction::Down, Direction::Outward] {
+            for (x, y) in [(0.7f32, 1.9f32), (1.3, 0.4), (2.9, 1.1)] {
+                let results = [&one_of, &other_of].map(|program| run(program, towards(direction), 0, &[x, y]));
+                assert_eq!(results[0], results[1], "{one} {direction:?} at {x}, {y}");
             }
         }
     }
