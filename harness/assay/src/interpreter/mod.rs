@@ -86,6 +86,15 @@ impl Program {
         self.code.as_ref().is_ok_and(|code| code.loops)
     }
 
+    /// Words of a row of arguments, and of a row of results.
+    ///
+    /// # Errors
+    /// Where the function does what the interpreter cannot.
+    pub fn words(&self) -> Result<[usize; 2], Stopped> {
+        let code = self.code()?;
+        Ok([code.arguments.len(), code.result.len()])
+    }
+
     /// The words to run it in.
     ///
     /// # Errors

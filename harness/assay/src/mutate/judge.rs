@@ -107,7 +107,7 @@ impl<'a> Judge<'a> {
 
     /// Whether the property tests tell this kernel from the right one.
     fn notices(&self, mutated: KernelModule) -> bool {
-        let (module, signature) = (mutated.module.clone(), mutated.signature.clone());
+        let module = mutated.module.clone();
         let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };
         let (width, all) = (kernel.argument_words(), self.mirrored.len());
         for (first, last) in [(0, FIRST_ROWS.min(all)), (FIRST_ROWS.min(all), all)] {
@@ -120,7 +120,7 @@ impl<'a> Judge<'a> {
             let right = self.mirrored[first..last].iter().zip(&self.exact[first..last]);
             let broken = rows.zip(right).any(|((arguments, result), (mirrored, exact))| {
                 !self.tolerance.judge(arguments, result, mirrored, exact, &*self.formula.oracle).holds()
-                    || self.formula.invariants.iter().any(|invariant| (invariant.holds)(arguments, result).is_err())
+                    || self.formula.broken(arguments, result, false).is_some()
             });
             if broken {
                 return true;
@@ -138,7 +138,7 @@ impl<'a> Judge<'a> {
         }
         let Some(tolerance) = &self.anywhere else { return false };
         let Some(program) = Program::of_module(module, self.formula.function) else { return true };
-        let mut runner = Slackened::of_program(program, &signature, SEED);
+        let Ok(mut runner) = Slackened::of_program(program, SEED) else { return false };
         let promises = &self.formula.promises;
         let settings = Settings { cases: ROWS_ANYWHERE, seed: SEED + 2 };
         let report = Check { formula: self.formula, runner: &mut runner, tolerance }.run(settings, &[]);

@@ -18,6 +18,22 @@ pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[
         .fold(plain, |best, next| if next.ratio < best.ratio { next } else { best })
 }
 
+/// Judges a result as its device is to be: alone where that errs as far as it may, else beside the mirror's as well.
+pub fn verdict_of(
+    is_slack: bool,
+    formula: &Formula,
+    tolerance: &Tolerance,
+    row: &[u32],
+    result: &[u32],
+    thoroughly: bool,
+) -> Verdict {
+    if is_slack {
+        return verdict(formula, tolerance, row, result, thoroughly);
+    }
+    let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
+    judge(tolerance, row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle)
+}
+
 /// Subnormals of a row of which each may have been flushed or not; of more all are.
 const MOST_SUBNORMALS: usize = 4;
 

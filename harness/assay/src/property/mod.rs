@@ -246,15 +246,15 @@ impl Check<'_> {
                 let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
                 judge(tolerance, arguments, result, mirrored, exact, &*formula.oracle)
             };
-            let said = formula.invariants.iter().filter(|invariant| !(is_slack && invariant.at_nearest));
-            let invariants = said.map(|invariant| {
-                (invariant.holds)(arguments, result).map_err(|why| format!("{}: {why}", invariant.name))
-            });
-            let pairs = pairs.iter().zip(&others).map(|(pair, other)| {
-                let other = &other[row * result_width..(row + 1) * result_width];
-                (pair.holds)(arguments, result, other).map_err(|why| format!("{}: {why}", pair.name))
-            });
-            let broken = invariants.chain(pairs).find_map(Result::err);
+            let mut pairs = pairs.iter().zip(&others);
+            let broken_pair = || {
+                pairs.find_map(|(pair, other)| {
+                    let other = &other[row * result_width..(row + 1) * result_width];
+                    (pair.holds)(arguments, result, other).err().map(|why| (pair.name, why))
+                })
+            };
+            let broken = formula.broken(arguments, result, is_slack).or_else(broken_pair);
+            let broken = broken.map(|(name, why)| format!("{name}: {why}"));
             Judged { verdict, broken, stopped: stopped[row] }
         };
         let mut judged: Vec<Judged> = (0..rows)

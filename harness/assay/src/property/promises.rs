@@ -42,8 +42,7 @@ pub fn broken(
             let verdict = match &promise.claim {
                 // Of infinities and NaNs the standard says nothing.
                 _ if is_slack && !alone::is_stated(formula, row) => Ok(()),
-                Claim::Accuracy if is_slack => ratio(alone::verdict(formula, tolerance, row, result, true)),
-                Claim::Accuracy => within_accuracy(formula, tolerance, row, result),
+                Claim::Accuracy => ratio(alone::verdict_of(is_slack, formula, tolerance, row, result, is_slack)),
                 Claim::Like(transform) if is_slack => {
                     let mut inside = Words::new();
                     transform(row, &mut inside);
@@ -88,10 +87,6 @@ fn same_bits(formula: &Formula, result: &[u32], other: &[u32]) -> Result<(), Str
             Err(format!("the result holds {}, inside {}", number(*scalar, *word), number(*scalar, *other)))
         }
     }
-}
-
-fn within_accuracy(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32]) -> Result<(), String> {
-    ratio(tolerance.judge(row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle))
 }
 
 fn ratio(verdict: Verdict) -> Result<(), String> {

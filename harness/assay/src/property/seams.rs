@@ -243,21 +243,12 @@ pub fn faults(
     let mut results = Words::new();
     runner.run(&rows.concat(), &mut results)?;
     for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
-        let (mirrored, exact) = (formula.mirrored(row), formula.exact(row));
-        let judge = |thoroughly: bool| {
-            if runner.is_slack() {
-                return alone::verdict(formula, tolerance, row, result, thoroughly);
-            }
-            let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
-            judge(tolerance, row, result, &mirrored, &exact, &*formula.oracle)
-        };
+        let judge = |thoroughly| alone::verdict_of(runner.is_slack(), formula, tolerance, row, result, thoroughly);
         // Of a function that is wrong everywhere a few faults are enough, and need no long search.
         let quick = judge(false);
         let verdict = if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(true) };
-        let mut said = formula.invariants.iter().filter(|invariant| !(runner.is_slack() && invariant.at_nearest));
-        let broken = said.find_map(|invariant| (invariant.holds)(row, result).err());
-        let fault = match broken {
-            Some(broken) => broken,
+        let fault = match formula.broken(row, result, runner.is_slack()) {
+            Some((_, broken)) => broken,
             None if verdict.nonfinite => "the result is not finite".to_owned(),
             None if !verdict.holds() => format!("off by {:.1} times the allowed error", verdict.ratio),
             None => continue,

@@ -4,7 +4,7 @@ use super::{Reassociation, Slackened, climb};
 use crate::dispatch::DispatchError;
 use crate::examination::{self, Examination};
 use crate::formula::{Formula, Words};
-use crate::interpreter::{Assumption, Program};
+use crate::interpreter::Assumption;
 use crate::literal::{Language, call};
 use crate::property::Settings;
 use crate::tolerance::Tolerance;
@@ -32,12 +32,11 @@ pub fn examine(
     let mut runner = Slackened::new(source, path, formula.function, settings.seed, reassociation)?;
     let mut found = examination::examine(formula, source, &mut runner, tolerance, settings, replayed)?;
     if reassociation == Reassociation::Written && found.report.failed == 0 {
-        let program = Program::new(source, path, formula.function)?;
         let random = (0..settings.cases.min(CLIMBED as u64)).map(|row| formula.domain.row(settings.seed, row));
         let hard = formula.hard_cases.iter().map(|case| case.arguments.clone()).take(CLIMBED);
         let worst = (!found.report.worst.is_empty()).then(|| found.report.worst.clone());
         let rows: Vec<Words> = worst.into_iter().chain(replayed.iter().cloned()).chain(random).chain(hard).collect();
-        let worst = climb::worst(&program, formula, tolerance, settings.seed, &rows);
+        let worst = climb::worst(runner.program(), formula, tolerance, settings.seed, &rows);
         let worst = worst.map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })?;
         if let Some(worst) = worst.filter(|worst| worst.ratio > found.report.worst_ratio) {
             found.report.worst_ratio = worst.ratio;

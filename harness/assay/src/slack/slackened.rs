@@ -2,7 +2,6 @@
 
 use super::device::{Device, Mode};
 use crate::dispatch::DispatchError;
-use crate::dispatch::signature::Signature;
 use crate::draws::mix;
 use crate::interpreter::{Assumption, Program, Registers, Stopped};
 use crate::runner::Runner;
@@ -30,7 +29,6 @@ pub struct Slackened {
     programs: Vec<Program>,
     words: [usize; 2],
     seed: u64,
-    mode: Option<Mode>,
     assumptions: BTreeSet<Assumption>,
     stopped: Vec<bool>,
     why: Option<Stopped>,
@@ -57,30 +55,30 @@ impl Slackened {
         reassociation: Reassociation,
     ) -> Result<Slackened, DispatchError> {
         let program = Program::new(source, path, function)?;
-        let signature = Signature::of_source(source, path, function)?;
-        program.registers().map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })?;
         let programs = match reassociation {
             Reassociation::Written => vec![program],
             Reassociation::Reordered => (0..ORDERS).map(|order| program.reassociated(mix(seed ^ order))).collect(),
         };
-        Ok(Self::of_programs(programs, &signature, seed))
+        let slackened = Self::of_programs(programs, seed);
+        slackened.map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })
     }
 
-    /// A function that is compiled, of that signature.
-    pub fn of_program(program: Program, signature: &Signature, seed: u64) -> Slackened {
-        Self::of_programs(vec![program], signature, seed)
+    /// A function that is compiled.
+    ///
+    /// # Errors
+    /// Where it does what the interpreter cannot.
+    pub fn of_program(program: Program, seed: u64) -> Result<Slackened, Stopped> {
+        Self::of_programs(vec![program], seed)
     }
 
-    fn of_programs(programs: Vec<Program>, signature: &Signature, seed: u64) -> Slackened {
-        let words = [signature.arguments.iter().map(|(_, shape)| shape.words()).sum(), signature.result.words()];
-        let (assumptions, stopped) = (BTreeSet::new(), Vec::new());
-        Slackened { programs, words, seed, mode: None, assumptions, stopped, why: None }
+    fn of_programs(programs: Vec<Program>, seed: u64) -> Result<Slackened, Stopped> {
+        let words = programs[0].words()?;
+        Ok(Slackened { programs, words, seed, assumptions: BTreeSet::new(), stopped: Vec::new(), why: None })
     }
 
-    /// The same on devices of one kind.
-    #[must_use]
-    pub fn with_mode(self, mode: Mode) -> Slackened {
-        Slackened { mode: Some(mode), ..self }
+    /// The function, in the first of its orders.
+    pub(super) fn program(&self) -> &Program {
+        &self.programs[0]
     }
 
     /// What was taken to hold so far where the standard states nothing.
@@ -97,7 +95,7 @@ impl Slackened {
         let mut part = Part { results: Vec::new(), stopped: Vec::new(), assumptions: BTreeSet::new(), why: None };
         for row in rows.chunks_exact(self.words[0]) {
             let key = self.key(row);
-            let mut device = Device::new(self.mode.unwrap_or_else(|| Mode::of(key)), mix(key));
+            let mut device = Device::new(Mode::of(key), mix(key));
             let order = (key >> 32) as usize % self.programs.len();
             let before = part.results.len();
             let ran = self.programs[order].run_in(&mut registers[order], row, &mut device, &mut part.results);

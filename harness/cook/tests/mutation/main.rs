@@ -10,6 +10,8 @@
 //! changed. It says what it does not judge. A run that names a module or function judges all of its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all
 //! and writes the record, `sample` one in ten by the suite's seed, `listed` those that are listed.
 
+#[path = "../suite/portable.rs"]
+mod portable;
 mod record;
 
 use lapidary_assay::formula::Formula;
@@ -419,9 +421,7 @@ fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
     let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula), &[]);
     let judge = judge.expect("the cookbook's WGSL is valid");
     // What does not hold on any device as it is, says nothing of its mutants there.
-    let excepted =
-        include_str!("../portable.txt").lines().any(|line| line.split(" | ").next() == Some(formula.function));
-    if excepted || formula.benign.is_some() {
+    if portable::excepted().contains_key(formula.function) || formula.benign.is_some() {
         judge
     } else {
         judge.and_anywhere(check::tolerance(On::Slack(Reassociation::Written), formula))

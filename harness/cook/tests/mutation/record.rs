@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What the score depends on, besides a module's own: the engine, this program, the versions of everything.
-const ENGINE: [&str; 13] = [
+const ENGINE: [&str; 14] = [
     "Cargo.lock",
     "Cargo.toml",
     "harness/assay/Cargo.toml",
@@ -17,6 +17,7 @@ const ENGINE: [&str; 13] = [
     "harness/cook/tests/mutation/main.rs",
     "harness/cook/tests/mutation/record.rs",
     "harness/cook/tests/portable.txt",
+    "harness/cook/tests/suite/portable.rs",
     "harness/gpu/Cargo.toml",
     "harness/gpu/src",
     "harness/specialise/Cargo.toml",

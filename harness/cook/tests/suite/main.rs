@@ -28,6 +28,7 @@ mod outside;
 mod parity;
 mod pixels;
 mod plan;
+mod portable;
 mod program;
 mod random_walk;
 mod reference;

@@ -1,16 +1,10 @@
 //! Slack: every function's portable bounds, held to on devices that err as far as WGSL lets them, or a line of `portable.txt` says why not.
 
+use super::portable::excepted;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_assay::slack::Reassociation;
 use lapidary_cook::check::{self, On, Row, Source};
 use lapidary_cook::formulas;
-use std::collections::BTreeMap;
-
-/// Function and reason of each line of the list.
-fn excepted() -> BTreeMap<&'static str, &'static str> {
-    let lines = include_str!("../portable.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
-    lines.map(|line| line.split_once(" | ").unwrap_or_else(|| panic!("portable.txt: {line}"))).collect()
-}
 
 fn examined(function: &str, source: Source<'_>, settings: Settings) -> Row {
     let formula = formulas::of_function(function).unwrap_or_else(|| panic!("no function `{function}`"));
