@@ -1,13 +1,17 @@
 //! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
 
 pub mod bounds;
+pub mod difference;
 pub mod guard;
+pub mod in_browser;
 pub mod user_file;
 
 use crate::cookbook::header::FunctionDoc;
 use crate::{cookbook, formulas};
+use difference::Difference;
+use in_browser::InBrowser;
 use lapidary_assay::dispatch::signature::Signature;
-use lapidary_assay::dispatch::{self, DispatchError, Kernel};
+use lapidary_assay::dispatch::{self, DispatchError, Kernel, KernelText};
 use lapidary_assay::examination::{self, Examination, examine};
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
@@ -17,6 +21,7 @@ use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::Scalar;
 use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
+use lapidary_browser::Browser;
 use lapidary_gpu::Gpu;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -107,6 +112,10 @@ pub struct Row {
     pub assumptions: Vec<String>,
     /// Why inputs beside branches were not tested: what the interpreter cannot run; null where they were.
     pub branches_untested: Option<String>,
+    /// Where the browser's results have other bits than the adapter's; null where no browser was asked.
+    pub difference: Option<Difference>,
+    /// The input of the largest distance between the two; null where there is none.
+    pub difference_input: Option<String>,
     /// Edges of the domain that the run did not reach.
     pub missed_edges: Vec<&'static str>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
@@ -135,6 +144,8 @@ pub enum On<'gpu> {
     Adapter(&'gpu Gpu),
     /// Devices that err as far as WGSL lets them: the interpreter, without an adapter.
     Slack(Reassociation),
+    /// A browser's WebGPU, and the adapter that its results are laid beside.
+    Browser(&'gpu Browser, &'gpu Gpu),
 }
 
 impl<'gpu> From<&'gpu Gpu> for On<'gpu> {
@@ -197,13 +208,13 @@ pub fn tolerance<'gpu>(on: impl Into<On<'gpu>>, formula: &Formula) -> Tolerance 
     promised.unwrap_or_else(|fault| panic!("{fault}"))
 }
 
-/// Whether a check can begin: the source is valid, and the signature the mirror's. On an adapter the function is compiled.
+/// Whether a check can begin: the source is valid, and the signature the mirror's. On an adapter the function is compiled, beside a browser too.
 ///
 /// # Errors
 /// Where it cannot.
 pub fn prepare(on: On<'_>, formula: &Formula, source: Source<'_>) -> Result<(), CheckError> {
     match on {
-        On::Adapter(gpu) => kernel(gpu, formula, source).map(|_| ()),
+        On::Adapter(gpu) | On::Browser(_, gpu) => kernel(gpu, formula, source).map(|_| ()),
         On::Slack(_) => {
             let (path, text) = located(formula, source);
             let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
@@ -285,6 +296,17 @@ pub fn run_keeping<'gpu>(
                 .map_err(|error| CheckError::Dispatch { path, error })?;
             (Row { assumptions: assumptions.iter().map(ToString::to_string).collect(), ..Row::default() }, found)
         }
+        On::Browser(browser, gpu) => {
+            let mut beside = kernel(gpu, formula, source)?;
+            let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
+            let text = KernelText::of_function(text, &path, formula.function).map_err(in_path)?;
+            let mut runner = InBrowser::new(browser, text);
+            let source = located(formula, source).1;
+            let found = examine(formula, source, &mut runner, &tolerance, settings, &[]).map_err(in_path)?;
+            let difference = difference::between(&mut runner, &mut beside, formula, settings).map_err(in_path)?;
+            let input = (difference.differing > 0).then(|| spell(formula, &difference.worst));
+            (Row { difference: Some(difference), difference_input: input, ..Row::default() }, found)
+        }
     };
     Ok(filled(row, formula, found, reproduce(on, formula, source, settings)))
 }
@@ -304,6 +326,7 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
 fn reproduce(on: On<'_>, formula: &Formula, source: Source<'_>, settings: Settings) -> String {
     let portable = match on {
         On::Adapter(_) => "",
+        On::Browser(..) => " --browser",
         On::Slack(Reassociation::Written) => " --portable",
         On::Slack(Reassociation::Reordered) => " --portable --reassociate",
     };

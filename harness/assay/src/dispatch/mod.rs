@@ -2,13 +2,13 @@
 
 mod batch;
 mod kernel;
-pub(crate) mod layout;
+pub mod layout;
 mod nonfinite;
 pub mod reach;
 pub mod signature;
 mod turns;
 
-pub use kernel::{ENTRY_POINT, kernel_source};
+pub use kernel::{ENTRY_POINT, WORKGROUP_SIZE, kernel_source};
 
 use crate::runner::Runner;
 use crate::tokens::{items, tokens};
@@ -47,11 +47,51 @@ pub enum DispatchError {
     /// The device refused.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// Another runner than a device of wgpu's refused.
+    #[error("{0}")]
+    Runner(String),
 }
 
 /// Parses and validates WGSL; an error holds naga's message with `path`, line and column.
 pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), DispatchError> {
     lapidary_specialise::parse(source, path).map_err(|error| DispatchError::Source(error.0))
+}
+
+/// A function's source with its entry point, as text, for whatever runs WGSL: a row of arguments an invocation, in bindings 0 (arguments) and 1 (results) of group 0.
+#[derive(Clone, Debug)]
+pub struct KernelText {
+    /// The source, as it was given, and the kernel below it.
+    pub text: String,
+    /// The function's signature.
+    pub signature: Signature,
+    /// Where the words of a row of arguments lie.
+    pub input: Layout,
+    /// Where those of a row of results lie.
+    pub output: Layout,
+}
+
+impl KernelText {
+    /// Reflects `function` in `source` (`path` is for messages) and writes its entry point.
+    pub fn of_function(source: &str, path: &str, function: &str) -> Result<KernelText, DispatchError> {
+        Self::reflect(source, path, function).map(|(kernel, _)| kernel)
+    }
+
+    fn reflect(source: &str, path: &str, function: &str) -> Result<(KernelText, naga::Module), DispatchError> {
+        let (module, _) = parse(source, path)?;
+        let signature = Signature::reflect(&module, function)?;
+        let words: usize = signature.arguments.iter().map(|(_, shape)| shape.words()).sum();
+        if words.max(signature.result.words()) > MOST_WORDS {
+            let message = format!("`{function}` takes or returns over {MOST_WORDS} numbers; make its arrays smaller");
+            return Err(DispatchError::Fault { line: None, message });
+        }
+        let kernel = kernel_source(&signature);
+        refuse_clashes(source, &kernel, &signature)?;
+        let text = format!("{source}\n{kernel}");
+        let (module, _) = parse(&text, path)?;
+        let input = Layout::of_struct(&module, kernel::INPUT);
+        let output = Layout::of_struct(&module, kernel::OUTPUT);
+        Ok((KernelText { text, signature, input, output }, module))
+    }
 }
 
 /// A function's source with its entry point, as naga IR: what a kernel is compiled from, and what a mutant is made of.
@@ -68,19 +108,7 @@ pub struct KernelModule {
 impl KernelModule {
     /// Reflects `function` in `source` (`path` is for messages) and appends its entry point.
     pub fn reflect(source: &str, path: &str, function: &str) -> Result<KernelModule, DispatchError> {
-        let (module, _) = parse(source, path)?;
-        let signature = Signature::reflect(&module, function)?;
-        let words: usize = signature.arguments.iter().map(|(_, shape)| shape.words()).sum();
-        if words.max(signature.result.words()) > MOST_WORDS {
-            let message = format!("`{function}` takes or returns over {MOST_WORDS} numbers; make its arrays smaller");
-            return Err(DispatchError::Fault { line: None, message });
-        }
-        let kernel = kernel_source(&signature);
-        refuse_clashes(source, &kernel, &signature)?;
-        let source = format!("{source}\n{kernel}");
-        let (module, _) = parse(&source, path)?;
-        let input = Layout::of_struct(&module, kernel::INPUT);
-        let output = Layout::of_struct(&module, kernel::OUTPUT);
+        let (KernelText { signature, input, output, .. }, module) = KernelText::reflect(source, path, function)?;
         Ok(KernelModule { signature, module, input, output })
     }
 }

@@ -91,10 +91,22 @@ impl std::fmt::Display for Assumption {
     }
 }
 
+/// An operation on floats that was run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Operation {
+    /// The numbers of its operands in the record: 0 for a constant.
+    pub operands: [u32; 2],
+    /// The derivatives of its result by them.
+    pub partials: [f64; 2],
+}
+
 /// What rounds, and what is told of decisions.
 pub trait Machine {
     /// Whether it may fuse products with sums.
     const FUSES: bool = false;
+
+    /// Whether it records operations.
+    const RECORDS: bool = false;
 
     /// The result of an operation whose exact one is `exact`.
     fn round(&mut self, exact: Exact, slack: Slack) -> f32;
@@ -131,6 +143,12 @@ pub trait Machine {
     #[inline(always)]
     fn fused(&mut self, _at: usize, _products: [bool; 2]) -> Option<usize> {
         None
+    }
+
+    /// Notes an operation's result, and how it depends on its operands; returns its number in the record, 0 where nothing is recorded.
+    #[inline(always)]
+    fn recorded(&mut self, _operation: Operation) -> u32 {
+        0
     }
 
     /// A branch was taken.

@@ -6,7 +6,7 @@ mod compile;
 mod machine;
 mod run;
 
-pub use machine::{Assumption, Decision, Exact, Machine, Nearest, Site, Slack, Traced};
+pub use machine::{Assumption, Decision, Exact, Machine, Nearest, Operation, Site, Slack, Traced};
 pub use run::Registers;
 
 use crate::dispatch::{self, DispatchError};
@@ -126,6 +126,14 @@ impl Program {
         let steps = code.run(arguments, registers, machine)?;
         result.extend(code.result.iter().map(|register| registers.word(*register)));
         Ok(steps)
+    }
+
+    /// The numbers of the last run's results in its machine's record.
+    ///
+    /// # Errors
+    /// Where the function does what the interpreter cannot.
+    pub fn recorded(&self, registers: &Registers) -> Result<Vec<u32>, Stopped> {
+        Ok(self.code()?.result.iter().map(|register| registers.number(*register)).collect())
     }
 
     /// The branches of the function itself: those of what it calls are theirs.

@@ -1,7 +1,7 @@
 //! Runs the compiled code.
 
 use super::code::{Bound, Code, Float, Op};
-use super::machine::{Assumption, Exact, Machine, Site, Slack};
+use super::machine::{Assumption, Exact, Machine, Operation, Site, Slack};
 use super::{MOST_OPERATIONS, Stopped};
 use naga::{BinaryOperator, MathFunction, ScalarKind};
 
@@ -14,11 +14,14 @@ pub struct Registers {
     words: Vec<u32>,
     /// Beside a word that is a product, the exact one; NaN beside any other.
     products: Vec<f64>,
+    /// Beside a word that a machine has recorded, its number there; 0 beside any other.
+    records: Vec<u32>,
 }
 
 impl Code {
     pub(super) fn registers(&self) -> Registers {
-        Registers { words: self.registers.clone(), products: vec![f64::NAN; self.registers.len()] }
+        let length = self.registers.len();
+        Registers { words: self.registers.clone(), products: vec![f64::NAN; length], records: vec![0; length] }
     }
 
     /// Runs from the first operation to the last; returns how many it took.
@@ -30,6 +33,7 @@ impl Code {
     ) -> Result<u64, Stopped> {
         for (register, word) in self.arguments.iter().zip(arguments) {
             registers.set::<M>(*register, *word);
+            registers.record::<M>(*register, [*register; 2], [0.0; 2], machine);
         }
         let (mut at, mut steps) = (0, 0);
         while let Some(op) = self.ops.get(at) {
@@ -57,6 +61,23 @@ impl Registers {
         if M::FUSES {
             self.products[register as usize] = f64::NAN;
         }
+        if M::RECORDS {
+            self.records[register as usize] = 0;
+        }
+    }
+
+    /// Notes how a result depends on its operands.
+    #[inline(always)]
+    fn record<M: Machine>(&mut self, to: u32, operands: [u32; 2], partials: [f64; 2], machine: &mut M) {
+        if M::RECORDS {
+            let operands = operands.map(|register| self.records[register as usize]);
+            self.records[to as usize] = machine.recorded(Operation { operands, partials });
+        }
+    }
+
+    /// The number of a word in its machine's record.
+    pub(super) fn number(&self, register: u32) -> u32 {
+        self.records[register as usize]
     }
 
     /// As it is, a product as one.
@@ -64,6 +85,9 @@ impl Registers {
         self.words[to as usize] = self.word(from);
         if M::FUSES {
             self.products[to as usize] = self.products[from as usize];
+        }
+        if M::RECORDS {
+            self.records[to as usize] = self.records[from as usize];
         }
     }
 
@@ -81,38 +105,43 @@ impl Registers {
             Op::Add { to, a, b } => self.sum(to, [a, b], 1.0, at, machine),
             Op::Subtract { to, a, b } => self.sum(to, [a, b], -1.0, at, machine),
             Op::Multiply { to, a, b } => {
-                let (a, b) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
-                let exact = f64::from(a) * f64::from(b);
+                let (x, y) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
+                let exact = f64::from(x) * f64::from(y);
                 let rounded = machine.round(Exact::from(exact), Slack::Rounded);
-                self.set::<M>(to, rounded.to_bits());
+                self.put(to, rounded, [a, b], || [y.into(), x.into()], machine);
                 if M::FUSES {
                     self.products[to as usize] = exact;
                 }
             }
             Op::Divide { to, a, b } => {
-                let (a, b) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
-                if !DIVISORS.contains(&b.abs()) {
+                let (x, y) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
+                if !DIVISORS.contains(&y.abs()) {
                     machine.assumed(Assumption::Quotient);
                 }
-                let quotient = machine.round(Exact::from(f64::from(a) / f64::from(b)), Slack::Ulps(2.5));
-                self.set::<M>(to, quotient.to_bits());
+                let exact = f64::from(x) / f64::from(y);
+                let quotient = machine.round(Exact::from(exact), Slack::Ulps(2.5));
+                self.put(to, quotient, [a, b], || [1.0 / f64::from(y), -exact / f64::from(y)], machine);
             }
             Op::Negate { to, from } => {
                 let operand = machine.operand(self.float(from));
                 let negated = machine.kept(-operand);
                 let product = if M::FUSES { -self.products[from as usize] } else { f64::NAN };
-                self.set::<M>(to, negated.to_bits());
+                self.put(to, negated, [from; 2], || [-1.0, 0.0], machine);
                 if M::FUSES {
                     self.products[to as usize] = product;
                 }
             }
             Op::Float { fun, to, operands, site } => {
-                let operands = operands.map(|register| machine.operand(self.float(register)));
-                self.set::<M>(to, float(fun, operands, site, machine).to_bits());
+                let floats = operands.map(|register| machine.operand(self.float(register)));
+                let result = float(fun, floats, site, machine);
+                self.put(to, result, operands, || derivatives(fun, floats.map(f64::from)), machine);
             }
             Op::Bound { bound, to, operands, site } => {
-                let operands = operands.map(|register| machine.operand(self.float(register)));
-                self.set::<M>(to, bounded(bound, operands, site, machine).to_bits());
+                let floats = operands.map(|register| machine.operand(self.float(register)));
+                let result = bounded(bound, floats, site, machine);
+                // The first of those that it may be.
+                let chosen = floats.iter().position(|float| *float == result).map_or(to, |index| operands[index]);
+                self.put(to, result, [chosen; 2], || [1.0, 0.0], machine);
             }
             Op::Compare { op, to, a, b } => {
                 let (a, b) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
@@ -142,6 +171,9 @@ impl Registers {
                     machine.decided(site, word);
                 }
                 self.set::<M>(to, word);
+                if kind == ScalarKind::Float && from_kind != ScalarKind::Float {
+                    self.record(to, [to; 2], [0.0; 2], machine);
+                }
             }
             Op::Select { to, condition, accept, reject, site } => {
                 let chosen = self.word(condition) != 0;
@@ -166,6 +198,23 @@ impl Registers {
         at + 1
     }
 
+    /// Sets a float and notes how it depends on its operands.
+    #[inline(always)]
+    fn put<M: Machine>(
+        &mut self,
+        to: u32,
+        float: f32,
+        operands: [u32; 2],
+        partials: impl FnOnce() -> [f64; 2],
+        machine: &mut M,
+    ) {
+        let numbers = if M::RECORDS { operands.map(|register| self.records[register as usize]) } else { [0; 2] };
+        self.set::<M>(to, float.to_bits());
+        if M::RECORDS {
+            self.records[to as usize] = machine.recorded(Operation { operands: numbers, partials: partials() });
+        }
+    }
+
     /// a ± b; a product may come in as it was before it was rounded.
     #[inline(always)]
     fn sum<M: Machine>(&mut self, to: u32, [a, b]: [u32; 2], sign: f64, at: usize, machine: &mut M) {
@@ -177,8 +226,32 @@ impl Registers {
             }
         }
         let sum = machine.round(Exact::sum(operands[0], sign * operands[1]), Slack::Rounded);
-        self.set::<M>(to, sum.to_bits());
+        self.put(to, sum, [a, b], || [1.0, sign], machine);
     }
+}
+
+/// The derivatives of a function by its operands; 0 where it has steps.
+fn derivatives(fun: Float, [x, y]: [f64; 2]) -> [f64; 2] {
+    let of_first = match fun {
+        Float::Abs => x.signum(),
+        Float::Sign | Float::Floor | Float::Ceil | Float::Round | Float::Trunc | Float::Step => 0.0,
+        Float::Sqrt => 0.5 / x.sqrt(),
+        Float::InverseSqrt => -0.5 / (x * x.sqrt()),
+        Float::Exp => x.exp(),
+        Float::Exp2 => std::f64::consts::LN_2 * x.exp2(),
+        Float::Log => 1.0 / x,
+        Float::Log2 => std::f64::consts::LOG2_E / x,
+        Float::Pow if x == 0.0 => 0.0,
+        Float::Pow => return [y * x.powf(y - 1.0), x.ln() * x.powf(y)],
+        Float::Sin => x.cos(),
+        Float::Cos => -x.sin(),
+        Float::Asin => 1.0 / (1.0 - x * x).sqrt(),
+        Float::Acos => -1.0 / (1.0 - x * x).sqrt(),
+        Float::Atan => 1.0 / (1.0 + x * x),
+        // The first operand is the ordinate.
+        Float::Atan2 => return [y / (x * x + y * y), -x / (x * x + y * y)],
+    };
+    [of_first, 0.0]
 }
 
 #[inline(always)]

@@ -7,10 +7,12 @@
 //! - [`Device`]: a machine for the interpreter that makes the choices of one call.
 //! - [`Slackened`]: a [`Runner`](crate::runner::Runner) whose rows run on a device each.
 //! - [`climb`]: the worst choices for one row.
+//! - [`allowance`]: how far a result may be off to first order, beside the bound that its comment states.
 //! - [`examine`]: everything that is tested of a formula, so.
 //!
 //! What the model takes to hold beyond the standard is named: [`Assumption`](crate::interpreter::Assumption).
 
+pub mod allowance;
 pub mod climb;
 mod device;
 mod examination;

@@ -7,11 +7,13 @@ use lapidary_assay::formula::Formula;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_assay::slack::Reassociation;
+use lapidary_browser::{Adapter, Browser};
 use lapidary_cook::check::guard::{self, Stage};
 use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
 use lapidary_cook::cookbook::release::Standing;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
 #[derive(clap::Args)]
@@ -31,6 +33,11 @@ pub(super) struct Arguments {
     /// The same with sums of three and more terms, and products, in other orders, as WGSL lets a compiler take them.
     #[arg(long, requires = "portable")]
     reassociate: bool,
+    /// Test in Chromium, which has another WGSL compiler and another driver, to the portable bounds; and say where its results have other bits than
+    /// the adapter's. swiftshader, which it brings along, or own: the adapter that it takes by itself. Where no Chromium is on the PATH, functions are
+    /// skipped, and counted; LAPIDARY_CHROMIUM=required makes that a fault.
+    #[arg(long, value_name = "ADAPTER", num_args = 0..=1, require_equals = true, default_missing_value = "swiftshader", conflicts_with_all = ["portable", "failures"])]
+    browser: Option<Adapter>,
     /// Random inputs a function.
     #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=u64::MAX))]
     cases: u64,
@@ -86,6 +93,17 @@ struct Checked {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    let outcome = checked(context, arguments);
+    if let Some(Ok(browser)) = BROWSER.get() {
+        browser.close();
+    }
+    outcome
+}
+
+fn checked(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.browser.is_some() && Browser::find().is_none() {
+        return skipped(arguments);
+    }
     let settings = Settings { cases: arguments.cases, seed: arguments.seed };
     let checked = match &arguments.wgsl {
         None => {
@@ -123,13 +141,45 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
 
+/// Without a browser nothing is checked in one: said and counted, and a fault where one is required.
+fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
+    const NONE: &str = "no Chromium or Chrome is on the PATH; install one";
+    if std::env::var_os("LAPIDARY_CHROMIUM").is_some_and(|value| value == "required") {
+        return Err(Failure(format!("{NONE} (LAPIDARY_CHROMIUM=required)")));
+    }
+    let count = match &arguments.wgsl {
+        None => Shard::share(arguments.shard, check::select(arguments.filter.as_deref())?).len(),
+        Some(path) => {
+            let contents = UserFile::read(path)?;
+            Shard::share(arguments.shard, contents.contents(arguments.filter.as_deref())?.formulas).len()
+        }
+    };
+    if arguments.json {
+        output::line("[]")?;
+    }
+    eprintln!("cook: {count} functions skipped: {NONE}");
+    Ok(Outcome::Passed)
+}
+
 /// What the check runs on.
 fn on(context: &Context, arguments: &Arguments) -> Result<On<'static>, Failure> {
     Ok(match arguments {
         Arguments { reassociate: true, .. } => On::Slack(Reassociation::Reordered),
         Arguments { portable: true, .. } => On::Slack(Reassociation::Written),
+        Arguments { browser: Some(adapter), .. } => {
+            let browser = BROWSER.get_or_init(|| start(*adapter)).as_ref();
+            On::Browser(browser.map_err(|fault| Failure(fault.clone()))?, context.gpu()?)
+        }
         _ => On::Adapter(context.gpu()?),
     })
+}
+
+/// Started once, for all functions.
+static BROWSER: OnceLock<Result<Browser, String>> = OnceLock::new();
+
+fn start(adapter: Adapter) -> Result<Browser, String> {
+    let program = Browser::find().ok_or("the browser has gone from the PATH")?;
+    Browser::start(&program, adapter).map_err(|error| format!("{}: {error}", program.display()))
 }
 
 /// Checks a user's file.

@@ -4,6 +4,7 @@ use super::Checked;
 use anstyle::AnsiColor;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::slack::Reassociation;
+use lapidary_cook::check::difference::Difference;
 use lapidary_cook::check::{On, Row};
 use lapidary_cook::cookbook::release::Standing;
 use std::collections::BTreeSet;
@@ -53,6 +54,12 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
              Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound. ",
             gpu.describe()
         ),
+        On::Browser(browser, _) => write!(
+            text,
+            "Each result of the shader in a browser on {} is compared with that of its mirror in\n\
+             Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's portable bound. ",
+            browser.adapter()
+        ),
         On::Slack(reassociation) => write!(
             text,
             "Each result of the shader on a device that errs as far as WGSL lets it{} is\n\
@@ -93,6 +100,9 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
     for row in &checked.rows {
         details(row, style, &mut text);
     }
+    if let On::Browser(browser, gpu) = on {
+        differences(&checked.rows, [browser.adapter(), &gpu.describe()], &mut text);
+    }
     let assumptions: BTreeSet<&String> = checked.rows.iter().flat_map(|row| &row.assumptions).collect();
     for assumption in assumptions {
         let _ = writeln!(text, "\nWGSL does not state, and it is taken to hold: {assumption}.");
@@ -107,6 +117,45 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
         if failed == 0 { String::new() } else { style.paint(AnsiColor::Red, &format!(", {failed} fail")) }
     );
     text
+}
+
+/// Where the browser's results have other bits than the adapter's, the most different function first.
+fn differences(rows: &[Row], [browser, adapter]: [&str; 2], text: &mut String) {
+    let mut differing: Vec<(&Row, &Difference)> = rows
+        .iter()
+        .filter_map(|row| Some((row, row.difference.as_ref().filter(|found| found.differing > 0)?)))
+        .collect();
+    differing.sort_by(|(_, one), (_, other)| {
+        (other.discrete, other.max_ulp).partial_cmp(&(one.discrete, one.max_ulp)).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    let _ = writeln!(
+        text,
+        "\nWhere the bits differ: {browser}, beside {adapter}. {} of {} functions give the same bits everywhere.\n\
+         `discrete` counts results with another bool or integer; distances are in ulp of a result's largest component.\n",
+        rows.len() - differing.len(),
+        rows.len()
+    );
+    if differing.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "{:<44} {:>9} {:>9} {:>9} {:>10} {:>10}  {}",
+        "function", "inputs", "differ", "discrete", "median ulp", "max ulp", "at"
+    );
+    for (row, found) in differing {
+        let _ = writeln!(
+            text,
+            "{:<44} {:>9} {:>9} {:>9} {:>10} {:>10}  {}",
+            row.function,
+            found.inputs,
+            found.differing,
+            found.discrete,
+            short(found.median_ulp),
+            short(found.max_ulp),
+            row.difference_input.as_deref().unwrap_or_default()
+        );
+    }
 }
 
 /// A line each.

@@ -1,18 +1,18 @@
 //! Chromium's WGSL compiler, Tint, takes what the cookbook hands out, modules and recipes, and what specialising makes of
-//! recipes and of random programs. naga, which everything else here goes through, lets some of what the language forbids pass.
+//! recipes and of random programs. naga, which everything else here goes through, lets some of what the language forbids pass. And the functions run there.
 //!
 //! Where there is no Chromium with WebGPU these tests say so and pass; with `LAPIDARY_CHROMIUM=required`, as in
 //! `.ci/run`, they fail.
 
-mod browser;
+mod functions;
 
 use crate::specialise::{specialised_program, specialised_texts};
-use browser::Message;
 use lapidary_assay::dispatch;
+use lapidary_browser::{Adapter, Browser, Message};
 use lapidary_cook::cookbook::modules;
 use lapidary_wgsl::{RECIPES, compose};
 use std::io::Write as _;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Instant;
 
 /// `required`: a missing Chromium is a failure.
@@ -83,17 +83,42 @@ fn texts() -> Vec<(String, String)> {
     planted.chain(each).chain([together]).chain(whole).chain(special).chain(programs).collect()
 }
 
+/// The browser of the tests that run now; it ends with the last of them.
+fn browser() -> Result<Arc<Browser>, String> {
+    static SHARED: Mutex<Weak<Browser>> = Mutex::new(Weak::new());
+    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(browser) = shared.upgrade() {
+        return Ok(browser);
+    }
+    let program = Browser::find().ok_or("no Chromium on the PATH")?;
+    let browser = Browser::start(&program, Adapter::SwiftShader);
+    let browser = Arc::new(browser.map_err(|error| format!("{} cannot be asked: {error}", program.display()))?);
+    *shared = Arc::downgrade(&browser);
+    Ok(browser)
+}
+
+/// What a test found, or none where there is no Chromium and none is required; then it says so.
+fn found<T>(found: Result<T, &str>, skipped: &str) -> Option<T> {
+    found
+        .inspect_err(|error| {
+            let required = std::env::var_os(VARIABLE).is_some_and(|value| value == "required");
+            assert!(!required, "{VARIABLE}=required: {error}");
+            // Past the test's own capture, which shows nothing of a test that passes.
+            let _ = writeln!(std::io::stderr(), "{skipped} not checked in Chromium: {error}");
+        })
+        .ok()
+}
+
 fn judge() -> Result<Vec<Judged>, String> {
-    let program = browser::find().ok_or("no Chromium on the PATH")?;
+    let browser = browser()?;
     let texts = texts();
     let started = Instant::now();
     let codes: Vec<&str> = texts.iter().map(|(_, text)| text.as_str()).collect();
-    let (adapter, messages) =
-        browser::ask(&program, &codes).map_err(|error| format!("{} cannot be asked: {error}", program.display()))?;
+    let messages = browser.messages(&codes).map_err(|error| error.to_string())?;
     if messages.len() != texts.len() {
         return Err(format!("{} texts were asked about, {} answered", texts.len(), messages.len()));
     }
-    println!("{} texts, {} on {adapter}: {:.1?}", texts.len(), program.display(), started.elapsed());
+    println!("{} texts, {}: {:.1?}", texts.len(), browser.adapter(), started.elapsed());
     let judged = texts.into_iter().zip(messages);
     Ok(judged.map(|((name, text), messages)| Judged { name, text, messages }).collect())
 }
@@ -101,16 +126,8 @@ fn judge() -> Result<Vec<Judged>, String> {
 /// The planted texts and the others, judged; none where there is no Chromium and none is required.
 fn judged() -> Option<(&'static [Judged], &'static [Judged])> {
     static JUDGED: OnceLock<Result<Vec<Judged>, String>> = OnceLock::new();
-    match JUDGED.get_or_init(judge) {
-        Ok(judged) => Some(judged.split_at(PLANTED.len())),
-        Err(error) => {
-            let required = std::env::var_os(VARIABLE).is_some_and(|value| value == "required");
-            assert!(!required, "{VARIABLE}=required: {error}");
-            // Past the test's own capture, which shows nothing of a test that passes.
-            let _ = writeln!(std::io::stderr(), "not checked with Chromium's WGSL compiler: {error}");
-            None
-        }
-    }
+    let judged = JUDGED.get_or_init(judge).as_ref().map_err(String::as_str);
+    found(judged, &format!("{} texts", texts().len())).map(|judged| judged.split_at(PLANTED.len()))
 }
 
 #[test]

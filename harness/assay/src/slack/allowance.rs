@@ -1,0 +1,187 @@
+//! How far a result may be off to first order: what every operation may err by, times the derivative of the result by it, added up.
+//!
+//! A call is recorded, operation by operation, and the record run backwards (adjoints, as in automatic differentiation). What first order does not see: the branches that an
+//! error changes, and where a derivative is infinite, as of a root at 0. Those rows are counted apart.
+
+use crate::formula::{Formula, Words};
+use crate::interpreter::{Exact, Machine, Operation, Program, Registers, Slack, Stopped};
+use crate::property::Settings;
+use crate::tolerance::Tolerance;
+use rayon::prelude::*;
+
+/// Rows that one thread takes at a time.
+const ROWS_PER_TASK: usize = 64;
+
+/// Operations of all rows together; of a function that takes long fewer rows are run.
+const MOST_OPERATIONS: u64 = 2_000_000_000;
+
+/// A stated bound beside what first order allows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Allowance {
+    /// Rows that first order says something of.
+    pub rows: u64,
+    /// Those that it does not: a derivative is not finite there.
+    pub beyond: u64,
+    /// The largest allowance of a row over the stated bound there.
+    pub largest: f64,
+    /// The median over rows.
+    pub median: f64,
+    /// The row of the largest.
+    pub at: Words,
+    /// For each part of the result, its name and the largest of it.
+    pub fields: Vec<(String, f64)>,
+}
+
+/// How far each operation may be off.
+pub trait Accuracy: Sync {
+    /// The largest distance of a result from the exact one.
+    fn reach(&self, exact: Exact, slack: Slack) -> f64;
+}
+
+/// What WGSL allows.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wgsl;
+
+impl Accuracy for Wgsl {
+    fn reach(&self, exact: Exact, slack: Slack) -> f64 {
+        super::device::reach(exact, slack)
+    }
+}
+
+/// An operation in the record.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    operands: [u32; 2],
+    partials: [f64; 2],
+    reach: f64,
+}
+
+/// A machine that rounds to nearest and records.
+struct Recorder<'a> {
+    accuracy: &'a dyn Accuracy,
+    nodes: Vec<Node>,
+    /// How far the operation that runs may be off; of one in several steps the sum, each with the weight that it has in the result.
+    steps: Vec<(Exact, Slack)>,
+}
+
+impl Machine for Recorder<'_> {
+    const RECORDS: bool = true;
+
+    fn round(&mut self, exact: Exact, slack: Slack) -> f32 {
+        self.steps.push((exact, slack));
+        exact.value as f32
+    }
+
+    fn recorded(&mut self, operation: Operation) -> u32 {
+        let reach = match self.steps[..] {
+            [] => 0.0,
+            // pow(x, y) as exp2(y log2(x)): what the logarithm and the product are off by goes through the power.
+            [logarithm, product, power] => {
+                let of = |(exact, slack): (Exact, Slack)| self.accuracy.reach(exact, slack);
+                let exponent = of(logarithm) * (product.0.value / logarithm.0.value).abs() + of(product);
+                let inherited = std::f64::consts::LN_2 * power.0.value.abs() * exponent;
+                if exponent == 0.0 { of(power) } else { inherited + of(power) }
+            }
+            _ => self.steps.iter().map(|(exact, slack)| self.accuracy.reach(*exact, *slack)).sum(),
+        };
+        self.steps.clear();
+        let Operation { operands, partials } = operation;
+        self.nodes.push(Node { operands, partials, reach });
+        self.nodes.len() as u32
+    }
+}
+
+/// What first order says of one row.
+#[derive(Clone, Debug, Default)]
+struct FirstOrder {
+    /// How far each word of the result may be off.
+    reach: Vec<f64>,
+    /// The derivative of each by each word of the arguments.
+    by_argument: Vec<Vec<f64>>,
+}
+
+/// Runs a row and goes back over what it did.
+fn first_order(
+    program: &Program,
+    registers: &mut Registers,
+    accuracy: &dyn Accuracy,
+    row: &[u32],
+) -> Result<FirstOrder, Stopped> {
+    let mut recorder = Recorder { accuracy, nodes: Vec::new(), steps: Vec::new() };
+    program.run_in(registers, row, &mut recorder, &mut Words::new())?;
+    let mut found = FirstOrder::default();
+    let mut adjoints = vec![0f64; recorder.nodes.len() + 1];
+    for result in program.recorded(registers)? {
+        adjoints.fill(0.0);
+        adjoints[result as usize] = 1.0;
+        let mut reach = 0.0;
+        for (index, node) in recorder.nodes.iter().enumerate().take(result as usize).rev() {
+            let adjoint = adjoints[index + 1];
+            if adjoint == 0.0 {
+                continue;
+            }
+            if node.reach > 0.0 {
+                reach += adjoint.abs() * node.reach;
+            }
+            for (operand, partial) in node.operands.iter().zip(node.partials) {
+                if partial != 0.0 && *operand != 0 {
+                    adjoints[*operand as usize] += adjoint * partial;
+                }
+            }
+        }
+        found.reach.push(reach);
+        // The arguments were recorded first.
+        found.by_argument.push(adjoints[1..=row.len()].to_vec());
+    }
+    Ok(found)
+}
+
+/// Lays a formula's stated bound beside what first order allows, for random inputs and the hard cases.
+///
+/// # Errors
+/// Where the interpreter cannot run the function, or it does not end.
+pub fn of_formula(
+    program: &Program,
+    formula: &Formula,
+    tolerance: &Tolerance,
+    accuracy: &dyn Accuracy,
+    settings: Settings,
+) -> Result<Allowance, Stopped> {
+    let registers = program.registers()?;
+    let [_, results] = program.words()?;
+    let steps = program.run(&formula.domain.row(settings.seed, 0), &mut crate::interpreter::Nearest, &mut Words::new())?;
+    let most = MOST_OPERATIONS / (steps.max(1) * results.max(1) as u64);
+    let cases = settings.cases.min(most.max(64));
+    let random = (0..cases).into_par_iter().map(|row| formula.domain.row(settings.seed, row));
+    let rows: Vec<Words> = random.chain(formula.hard_cases.par_iter().map(|case| case.arguments.clone())).collect();
+    let shares: Vec<Option<Vec<f64>>> = rows
+        .par_iter()
+        .with_min_len(ROWS_PER_TASK)
+        .map_init(
+            || registers.clone(),
+            |registers, row| {
+                let FirstOrder { reach, by_argument } = first_order(program, registers, accuracy, row)?;
+                Ok(tolerance.shares(row, &formula.exact(row), &reach, &by_argument))
+            },
+        )
+        .collect::<Result<_, Stopped>>()?;
+    let mut found = Allowance { fields: tolerance.fields().map(|name| (name.to_owned(), 0.0)).collect(), ..Allowance::default() };
+    let mut largest = Vec::new();
+    for (row, shares) in rows.iter().zip(shares) {
+        let Some(shares) = shares else {
+            found.beyond += 1;
+            continue;
+        };
+        let share = shares.iter().copied().fold(0.0, f64::max);
+        found.fields.iter_mut().zip(&shares).for_each(|((_, most), share)| *most = most.max(*share));
+        if share > found.largest {
+            found.largest = share;
+            found.at.clone_from(row);
+        }
+        largest.push(share);
+    }
+    largest.sort_by(f64::total_cmp);
+    found.rows = largest.len() as u64;
+    found.median = largest.get(largest.len() / 2).copied().unwrap_or(0.0);
+    Ok(found)
+}

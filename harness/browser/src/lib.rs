@@ -1,0 +1,226 @@
+//! A browser's WebGPU from Rust: a second compiler of WGSL (Tint) and other drivers than one's own.
+//!
+//! Chromium runs without a window on a page of this process. The page asks for jobs over a socket of this machine, does them and hands in the answers: it knows no
+//! shader, and this crate no technique.
+//!
+//! ```no_run
+//! use lapidary_browser::{Adapter, Browser, Buffer, Compute};
+//!
+//! let browser = Browser::start(&Browser::find().expect("Chromium on the PATH"), Adapter::SwiftShader)?;
+//! let code = "@group(0) @binding(0) var<storage, read_write> x: array<f32>;
+//!     @compute @workgroup_size(1) fn main() { x[0] = sqrt(x[0]); }";
+//! let buffers = [Buffer { size: 4, filled: Some(&4f32.to_le_bytes()), read: true }];
+//! let found = browser.compute(&Compute { code, entry: "main", buffers: &buffers, workgroups: [1, 1, 1] })?;
+//! println!("{}: {:?}", browser.adapter(), found[0]);
+//! # Ok::<(), lapidary_browser::BrowserError>(())
+//! ```
+
+mod connection;
+
+use connection::Connection;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The programs that are looked for on the PATH.
+const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// Why a browser gave no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum BrowserError {
+    /// It cannot be started or spoken to.
+    #[error("{0}")]
+    Connection(String),
+    /// Its WebGPU refused the job.
+    #[error("{0}")]
+    Refused(String),
+}
+
+/// Which adapter the browser takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Adapter {
+    /// SwiftShader, which Chromium brings along: the same on every machine.
+    #[default]
+    SwiftShader,
+    /// The one that the browser takes by itself: the machine's GPU, where it has one.
+    Own,
+}
+
+impl std::str::FromStr for Adapter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "swiftshader" => Ok(Adapter::SwiftShader),
+            "own" => Ok(Adapter::Own),
+            _ => Err("expected swiftshader, or own for the browser's own choice".to_owned()),
+        }
+    }
+}
+
+/// What the compiler says of a text.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct Message {
+    /// `error`, `warning` or `info`.
+    pub kind: String,
+    /// What it says.
+    pub text: String,
+    /// From 1; 0 where the message is of no line.
+    pub line: usize,
+}
+
+/// A storage buffer of group 0; its binding is its place in the list.
+#[derive(Clone, Copy, Debug)]
+pub struct Buffer<'a> {
+    /// Bytes.
+    pub size: usize,
+    /// What it holds before; zeros where left out.
+    pub filled: Option<&'a [u8]>,
+    /// Whether what it holds after the dispatch comes back.
+    pub read: bool,
+}
+
+/// One dispatch of a compute shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Compute<'a> {
+    /// WGSL; compiled once for all dispatches of the same text and entry point.
+    pub code: &'a str,
+    /// The entry point.
+    pub entry: &'a str,
+    /// The buffers of group 0.
+    pub buffers: &'a [Buffer<'a>],
+    /// Workgroups along each axis.
+    pub workgroups: [u32; 3],
+}
+
+/// What the page is asked to do.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Job<'a> {
+    Compile { texts: &'a [&'a str] },
+    Compute { key: usize, code: &'a str, entry: &'a str, buffers: Vec<Size>, workgroups: [u32; 3] },
+    End,
+}
+
+#[derive(Serialize)]
+struct Size {
+    size: usize,
+    filled: bool,
+    read: bool,
+}
+
+/// A browser at work; it ends with its last owner, at [`Browser::close`], or with this process.
+#[derive(Debug)]
+pub struct Browser {
+    adapter: String,
+    /// None once it is closed.
+    state: Mutex<Option<State>>,
+}
+
+#[derive(Debug)]
+struct State {
+    connection: Connection,
+    /// Numbers of texts with an entry point.
+    keys: BTreeMap<(String, String), usize>,
+}
+
+impl Browser {
+    /// The first Chromium or Chrome on the PATH.
+    pub fn find() -> Option<PathBuf> {
+        let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
+        NAMES.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name))).find(|path| path.is_file())
+    }
+
+    /// Starts `program`.
+    ///
+    /// # Errors
+    /// Where it cannot be started, or has no WebGPU.
+    pub fn start(program: &Path, adapter: Adapter) -> Result<Browser, BrowserError> {
+        #[derive(Deserialize)]
+        struct Greeting {
+            adapter: String,
+        }
+        let mut connection = Connection::open(program, adapter)?;
+        let (head, _) = connection.greeting()?;
+        let Greeting { adapter } = parsed(&head)?;
+        let adapter = if adapter.is_empty() { "an adapter without a name".to_owned() } else { adapter };
+        Ok(Browser { adapter, state: Mutex::new(Some(State { connection, keys: BTreeMap::new() })) })
+    }
+
+    /// The adapter's name, as the browser tells it.
+    pub fn adapter(&self) -> &str {
+        &self.adapter
+    }
+
+    /// What the compiler says of each text.
+    ///
+    /// # Errors
+    /// Where the browser is gone.
+    pub fn messages(&self, texts: &[&str]) -> Result<Vec<Vec<Message>>, BrowserError> {
+        #[derive(Deserialize)]
+        struct Answer {
+            messages: Vec<Vec<Message>>,
+        }
+        let mut guard = self.state();
+        let state = opened(&mut guard)?;
+        let (head, _) = state.connection.ask(&Job::Compile { texts }, &[])?;
+        let Answer { messages } = parsed(&head)?;
+        Ok(messages)
+    }
+
+    /// Runs a compute shader; returns the buffers that are read, in order.
+    ///
+    /// # Errors
+    /// Where the browser is gone, or its WebGPU refuses the shader or the buffers.
+    pub fn compute(&self, compute: &Compute<'_>) -> Result<Vec<Vec<u8>>, BrowserError> {
+        let Compute { code, entry, buffers, workgroups } = *compute;
+        let mut guard = self.state();
+        let state = opened(&mut guard)?;
+        let next = state.keys.len();
+        let key = *state.keys.entry((code.to_owned(), entry.to_owned())).or_insert(next);
+        let sizes = buffers
+            .iter()
+            .map(|buffer| Size { size: buffer.size, filled: buffer.filled.is_some(), read: buffer.read })
+            .collect();
+        let parts: Vec<&[u8]> = buffers.iter().filter_map(|buffer| buffer.filled).collect();
+        let job = Job::Compute { key, code, entry, buffers: sizes, workgroups };
+        let (_, bytes) = state.connection.ask(&job, &parts)?;
+        let mut rest = bytes.as_slice();
+        let read = buffers.iter().filter(|buffer| buffer.read);
+        read.map(|buffer| {
+            let (part, left) = rest
+                .split_at_checked(buffer.size)
+                .ok_or_else(|| BrowserError::Connection("its answer is too short".to_owned()))?;
+            rest = left;
+            Ok(part.to_vec())
+        })
+        .collect()
+    }
+
+    /// Ends it. Whatever is asked afterwards fails.
+    pub fn close(&self) {
+        if let Some(mut state) = self.state().take() {
+            state.connection.end(&Job::End);
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, Option<State>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        self.close();
+    }
+}
+
+fn opened<'a>(guard: &'a mut MutexGuard<'_, Option<State>>) -> Result<&'a mut State, BrowserError> {
+    guard.as_mut().ok_or_else(|| BrowserError::Connection("the browser is closed".to_owned()))
+}
+
+fn parsed<'a, T: Deserialize<'a>>(head: &'a [u8]) -> Result<T, BrowserError> {
+    serde_json::from_slice(head)
+        .map_err(|error| BrowserError::Connection(format!("its answer is no such one: {error}")))
+}

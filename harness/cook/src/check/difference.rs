@@ -1,0 +1,110 @@
+//! Where two devices give other bits for the same inputs, and by how much.
+
+use lapidary_assay::dispatch::{DispatchError, ROWS_PER_DISPATCH};
+use lapidary_assay::formula::{Formula, Words};
+use lapidary_assay::property::Settings;
+use lapidary_assay::runner::Runner;
+use lapidary_assay::shape::{Scalar, Shape};
+use lapidary_assay::tolerance::ulp_of;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// What two devices make of the same random inputs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Difference {
+    /// Inputs that both were given.
+    pub inputs: u64,
+    /// Those with a result of other bits.
+    pub differing: u64,
+    /// Those with another bool or integer.
+    pub discrete: u64,
+    /// The largest distance, in ulp of the larger result's largest component; zeros of either sign are the same.
+    pub max_ulp: f64,
+    /// The median distance of those that differ.
+    pub median_ulp: f64,
+    /// The input of the largest distance.
+    #[serde(skip)]
+    pub worst: Words,
+}
+
+/// Runs a formula's random inputs, those of `settings`, through both.
+///
+/// # Errors
+/// Where one of them refuses.
+pub fn between(
+    one: &mut dyn Runner,
+    other: &mut dyn Runner,
+    formula: &Formula,
+    settings: Settings,
+) -> Result<Difference, DispatchError> {
+    let mut found = Difference { inputs: settings.cases, ..Difference::default() };
+    let mut distances = Vec::new();
+    let mut results = [Words::new(), Words::new()];
+    for first in (0..settings.cases).step_by(ROWS_PER_DISPATCH) {
+        let last = (first + ROWS_PER_DISPATCH as u64).min(settings.cases);
+        let rows: Vec<Words> =
+            (first..last).into_par_iter().map(|row| formula.domain.row(settings.seed, row)).collect();
+        let arguments = rows.concat();
+        one.run(&arguments, &mut results[0])?;
+        other.run(&arguments, &mut results[1])?;
+        let width = one.result_words();
+        for ((row, one), other) in rows.iter().zip(results[0].chunks_exact(width)).zip(results[1].chunks_exact(width)) {
+            if one == other {
+                continue;
+            }
+            found.differing += 1;
+            let (distance, is_discrete) = apart(&formula.result, one, other);
+            found.discrete += u64::from(is_discrete);
+            distances.push(distance);
+            // The first of all counts, however near.
+            if found.worst.is_empty() || distance > found.max_ulp {
+                found.max_ulp = distance;
+                found.worst.clone_from(row);
+            }
+        }
+    }
+    distances.sort_by(f64::total_cmp);
+    found.median_ulp = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
+    Ok(found)
+}
+
+/// The largest distance over the floats of a result, and whether a bool or an integer differs; beyond one of those the floats belong to another case.
+fn apart(shape: &Shape, one: &[u32], other: &[u32]) -> (f64, bool) {
+    let leaves = shape.leaves();
+    let words = |leaf: &lapidary_assay::shape::Leaf| leaf.start..leaf.start + leaf.length;
+    if leaves.iter().any(|leaf| leaf.scalar != Scalar::F32 && one[words(leaf)] != other[words(leaf)]) {
+        return (0.0, true);
+    }
+    let distances = leaves.iter().filter(|leaf| leaf.scalar == Scalar::F32).map(|leaf| {
+        let floats = |row: &[u32]| -> Vec<f64> {
+            row[words(leaf)].iter().map(|word| f64::from(f32::from_bits(*word))).collect()
+        };
+        let (one, other) = (floats(one), floats(other));
+        let scale = one.iter().chain(&other).fold(0.0, |scale: f64, float| scale.max(float.abs()));
+        let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        apart / ulp_of(scale)
+    });
+    (distances.fold(0.0, f64::max), false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_in_units_of_the_largest_component() {
+        let shape = Shape::Struct(
+            "Hit".to_owned(),
+            vec![
+                ("direction".to_owned(), Shape::Vector(3, Scalar::F32)),
+                ("total".to_owned(), Shape::Scalar(Scalar::Bool)),
+            ],
+        );
+        let row = |x: f32, total: u32| vec![x.to_bits(), 4f32.to_bits(), 0f32.to_bits(), total];
+        let next = 1f32.next_up();
+        assert_eq!(apart(&shape, &row(1.0, 0), &row(next, 0)), (0.25, false));
+        assert_eq!(apart(&shape, &row(1.0, 0), &row(9.0, 1)), (0.0, true));
+        let zeros = [row(0.0, 1), row(-0.0, 1)];
+        assert_eq!(apart(&shape, &zeros[0], &zeros[1]), (0.0, false));
+    }
+}
