@@ -143,7 +143,7 @@ fn broken(
 ) -> Result<Option<String>, DispatchError> {
     let distance = distance_from_limit(runner, formula, &case.arguments, &case.limit)?;
     let bound = case.bound;
-    if runner.is_slack() {
+    if runner.is_portable() {
         let mut result = Words::new();
         runner.run(&case.arguments, &mut result)?;
         if alone::verdict(formula, tolerance, &case.arguments, &result, true).holds() {

@@ -120,9 +120,9 @@ impl Formula {
         result
     }
 
-    /// The first invariant that a row's result breaks, and how; `is_slack` where the device need not round to nearest.
-    pub fn broken(&self, row: &[u32], result: &[u32], is_slack: bool) -> Option<(&'static str, String)> {
-        let mut said = self.invariants.iter().filter(|invariant| !(is_slack && invariant.at_nearest));
+    /// The first invariant that a row's result breaks, and how; `is_portable` where the device need not round to nearest.
+    pub fn broken(&self, row: &[u32], result: &[u32], is_portable: bool) -> Option<(&'static str, String)> {
+        let mut said = self.invariants.iter().filter(|invariant| !(is_portable && invariant.at_nearest));
         said.find_map(|invariant| (invariant.holds)(row, result).err().map(|why| (invariant.name, why)))
     }
 

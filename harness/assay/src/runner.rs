@@ -16,9 +16,9 @@ pub trait Runner {
     /// Where the device refuses.
     fn run(&mut self, arguments: &[u32], results: &mut Vec<u32>) -> Result<(), DispatchError>;
 
-    /// Whether each row runs on a device of its own, as odd as WGSL allows. Then a result is held to the oracle alone, and what the formula says of two
-    /// results is not asked: it holds there as far as the bounds of both say.
-    fn is_slack(&self) -> bool {
+    /// Whether the device is held to what every device must keep that conforms to WGSL, and to nothing that the reference device keeps besides. Then a result is
+    /// held to the oracle alone, a subnormal input may have been read as 0, and what the formula says of two results, or of devices that round to nearest, is not asked.
+    fn is_portable(&self) -> bool {
         false
     }
 

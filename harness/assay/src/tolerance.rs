@@ -184,9 +184,9 @@ impl Tolerance {
         excess.reduce(f64::max)
     }
 
-    /// The names of the parts of a result that are floats.
-    pub fn fields(&self) -> impl Iterator<Item = &str> {
-        self.floats().map(|(leaf, _)| leaf.path.as_str())
+    /// The names of the parts of a result that are floats, and whether each is to be exact.
+    pub fn fields(&self) -> impl Iterator<Item = (&str, bool)> {
+        self.floats().map(|(leaf, bound)| (leaf.path.as_str(), *bound == Bound::default()))
     }
 
     /// Of each part that is floats, how far it may be off to first order over the bound stated: `reach` holds how far each word may be off, and

@@ -19,6 +19,7 @@ use lapidary_assay::property::Settings;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};
 use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::Scalar;
+use lapidary_assay::slack::allowance::Field;
 use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
 use lapidary_browser::Browser;
@@ -112,6 +113,12 @@ pub struct Row {
     pub assumptions: Vec<String>,
     /// Why inputs beside branches were not tested: what the interpreter cannot run; null where they were.
     pub branches_untested: Option<String>,
+    /// The largest first-order allowance of an input over the bound stated: above 1 the bound is too low, far below 1 it is too high. Null where none was asked for.
+    pub allowance: Option<f64>,
+    /// That input.
+    pub allowance_input: Option<String>,
+    /// The same of each field of the result that is a float.
+    pub allowances: Vec<Field>,
     /// Where the browser's results have other bits than the adapter's; null where no browser was asked.
     pub difference: Option<Difference>,
     /// The input of the largest distance between the two; null where there is none.
@@ -236,7 +243,7 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
     }
     let kernel = Kernel::of_function(gpu, text, &path, formula.function).map_err(in_path)?;
     kernel.signature().expect(&formula.arguments, &formula.result).map_err(|error| in_path(error.into()))?;
-    Ok(kernel)
+    Ok(kernel.portable(!gpu.is_lavapipe()))
 }
 
 /// Runs the property tests of one formula. Failing inputs of the cookbook's own are kept in the target folder, and go first
@@ -292,9 +299,13 @@ pub fn run_keeping<'gpu>(
         }
         On::Slack(reassociation) => {
             prepare(on, formula, source)?;
-            let (found, assumptions) = slack::examine(formula, (text, &path), &tolerance, settings, reassociation, &[])
+            let found = slack::examine(formula, (text, &path), &tolerance, settings, reassociation, &[])
                 .map_err(|error| CheckError::Dispatch { path, error })?;
-            (Row { assumptions: assumptions.iter().map(ToString::to_string).collect(), ..Row::default() }, found)
+            let assumptions = found.assumptions.iter().map(ToString::to_string).collect();
+            let allowance = found.allowance.as_ref().map(|allowance| allowance.largest);
+            let allowance_input = found.allowance.as_ref().map(|allowance| spell(formula, &allowance.at));
+            let allowances = found.allowance.map_or_else(Vec::new, |allowance| allowance.fields);
+            (Row { assumptions, allowance, allowance_input, allowances, ..Row::default() }, found.examination)
         }
         On::Browser(browser, gpu) => {
             let mut beside = kernel(gpu, formula, source)?;

@@ -175,6 +175,7 @@ pub struct Kernel<'gpu> {
     buffers: Option<Buffers>,
     /// Of each row of the last run; empty where the function has no loop.
     turns: Vec<u32>,
+    is_portable: bool,
 }
 
 impl<'gpu> Kernel<'gpu> {
@@ -195,7 +196,7 @@ impl<'gpu> Kernel<'gpu> {
                 compiled
             }
         };
-        Ok(Kernel { gpu, compiled, buffers: None, turns: Vec::new() })
+        Ok(Kernel { gpu, compiled, buffers: None, turns: Vec::new(), is_portable: false })
     }
 
     /// Compiles a kernel that nobody asks for again, such as a mutant.
@@ -209,7 +210,14 @@ impl<'gpu> Kernel<'gpu> {
         kernel: KernelModule,
         constants: &[(&str, f64)],
     ) -> Result<Kernel<'gpu>, DispatchError> {
-        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None, turns: Vec::new() })
+        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None, turns: Vec::new(), is_portable: false })
+    }
+
+    /// The same, held to what every device must keep that conforms to WGSL: see [`Runner::is_portable`].
+    #[must_use]
+    pub fn portable(mut self, is_portable: bool) -> Self {
+        self.is_portable = is_portable;
+        self
     }
 
     /// The function's signature.
@@ -248,6 +256,10 @@ impl Runner for Kernel<'_> {
             self.turns.extend_from_slice(&turns);
         }
         Ok(())
+    }
+
+    fn is_portable(&self) -> bool {
+        self.is_portable
     }
 
     fn loops(&self) -> bool {

@@ -20,14 +20,14 @@ pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[
 
 /// Judges a result as its device is to be: alone where that errs as far as it may, else beside the mirror's as well.
 pub fn verdict_of(
-    is_slack: bool,
+    is_portable: bool,
     formula: &Formula,
     tolerance: &Tolerance,
     row: &[u32],
     result: &[u32],
     thoroughly: bool,
 ) -> Verdict {
-    if is_slack {
+    if is_portable {
         return verdict(formula, tolerance, row, result, thoroughly);
     }
     let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };

@@ -218,8 +218,8 @@ impl Check<'_> {
         self.runner.run(arguments, &mut results)?;
         let mut stopped: Vec<bool> = (0..rows).map(|row| self.runner.stopped(row)).collect();
         let mut others = Vec::new();
-        let is_slack = self.runner.is_slack();
-        let pairs = if is_slack { &[] } else { &formula.pairs[..] };
+        let is_portable = self.runner.is_portable();
+        let pairs = if is_portable { &[] } else { &formula.pairs[..] };
         for pair in pairs {
             let mut transformed = Words::with_capacity(arguments.len());
             arguments.chunks_exact(width).for_each(|row| (pair.transform)(row, &mut transformed));
@@ -234,7 +234,7 @@ impl Check<'_> {
             let (mirrored, numbers, exact) = scratch;
             let arguments = &arguments[row * width..(row + 1) * width];
             let result = &results[row * result_width..(row + 1) * result_width];
-            let verdict = if is_slack {
+            let verdict = if is_portable {
                 alone::verdict(formula, tolerance, arguments, result, thoroughly)
             } else {
                 mirrored.clear();
@@ -253,7 +253,7 @@ impl Check<'_> {
                     (pair.holds)(arguments, result, other).err().map(|why| (pair.name, why))
                 })
             };
-            let broken = formula.broken(arguments, result, is_slack).or_else(broken_pair);
+            let broken = formula.broken(arguments, result, is_portable).or_else(broken_pair);
             let broken = broken.map(|(name, why)| format!("{name}: {why}"));
             Judged { verdict, broken, stopped: stopped[row] }
         };

@@ -22,15 +22,15 @@ pub fn broken(
 ) -> Result<Vec<String>, DispatchError> {
     let mut faults = Vec::new();
     for promise in promises {
-        let Some(inputs) = promise.inputs.as_ref().filter(|_| !(runner.is_slack() && promise.at_nearest)) else {
+        let Some(inputs) = promise.inputs.as_ref().filter(|_| !(runner.is_portable() && promise.at_nearest)) else {
             continue;
         };
         let rows: Vec<Words> = (0..CASES).map(|row| inputs.row(seed, row)).collect();
         let mut results = Words::new();
         runner.run(&rows.concat(), &mut results)?;
         let mut others = Words::new();
-        let is_slack = runner.is_slack();
-        if let (Claim::Like(transform), false) = (&promise.claim, is_slack) {
+        let is_portable = runner.is_portable();
+        if let (Claim::Like(transform), false) = (&promise.claim, is_portable) {
             let mut inside = Words::new();
             rows.iter().for_each(|row| transform(row, &mut inside));
             runner.run(&inside, &mut others)?;
@@ -41,9 +41,9 @@ pub fn broken(
             let result = &results[range.clone()];
             let verdict = match &promise.claim {
                 // Of infinities and NaNs the standard says nothing.
-                _ if is_slack && !alone::is_stated(formula, row) => Ok(()),
-                Claim::Accuracy => ratio(alone::verdict_of(is_slack, formula, tolerance, row, result, is_slack)),
-                Claim::Like(transform) if is_slack => {
+                _ if is_portable && !alone::is_stated(formula, row) => Ok(()),
+                Claim::Accuracy => ratio(alone::verdict_of(is_portable, formula, tolerance, row, result, is_portable)),
+                Claim::Like(transform) if is_portable => {
                     let mut inside = Words::new();
                     transform(row, &mut inside);
                     ratio(alone::verdict(formula, tolerance, &inside, result, true))

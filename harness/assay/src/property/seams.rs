@@ -243,11 +243,11 @@ pub fn faults(
     let mut results = Words::new();
     runner.run(&rows.concat(), &mut results)?;
     for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
-        let judge = |thoroughly| alone::verdict_of(runner.is_slack(), formula, tolerance, row, result, thoroughly);
+        let judge = |thoroughly| alone::verdict_of(runner.is_portable(), formula, tolerance, row, result, thoroughly);
         // Of a function that is wrong everywhere a few faults are enough, and need no long search.
         let quick = judge(false);
         let verdict = if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(true) };
-        let fault = match formula.broken(row, result, runner.is_slack()) {
+        let fault = match formula.broken(row, result, runner.is_portable()) {
             Some((_, broken)) => broken,
             None if verdict.nonfinite => "the result is not finite".to_owned(),
             None if !verdict.holds() => format!("off by {:.1} times the allowed error", verdict.ratio),

@@ -28,8 +28,20 @@ pub struct Allowance {
     pub median: f64,
     /// The row of the largest.
     pub at: Words,
-    /// For each part of the result, its name and the largest of it.
-    pub fields: Vec<(String, f64)>,
+    /// Each part of the result that is a float.
+    pub fields: Vec<Field>,
+}
+
+/// A part of the result beside its bound.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Field {
+    /// Its name; empty where the result has no parts.
+    pub name: String,
+    /// The largest allowance of a row over the stated bound there.
+    pub largest: f64,
+    /// Whether it is stated to be exact: then what may be flushed is all that is allowed, and it is not too much.
+    pub is_exact: bool,
 }
 
 /// How far each operation may be off.
@@ -165,7 +177,8 @@ pub fn of_formula(
             },
         )
         .collect::<Result<_, Stopped>>()?;
-    let mut found = Allowance { fields: tolerance.fields().map(|name| (name.to_owned(), 0.0)).collect(), ..Allowance::default() };
+    let fields = tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), largest: 0.0, is_exact });
+    let mut found = Allowance { fields: fields.collect(), ..Allowance::default() };
     let mut largest = Vec::new();
     for (row, shares) in rows.iter().zip(shares) {
         let Some(shares) = shares else {
@@ -173,7 +186,7 @@ pub fn of_formula(
             continue;
         };
         let share = shares.iter().copied().fold(0.0, f64::max);
-        found.fields.iter_mut().zip(&shares).for_each(|((_, most), share)| *most = most.max(*share));
+        found.fields.iter_mut().zip(&shares).for_each(|(field, share)| field.largest = field.largest.max(*share));
         if share > found.largest {
             found.largest = share;
             found.at.clone_from(row);

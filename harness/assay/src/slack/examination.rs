@@ -1,5 +1,6 @@
 //! Everything that is tested of a function, on devices that err as far as WGSL lets them.
 
+use super::allowance::{self, Allowance, Wgsl};
 use super::{Reassociation, Slackened, climb};
 use crate::dispatch::DispatchError;
 use crate::examination::{self, Examination};
@@ -13,8 +14,19 @@ use std::collections::BTreeSet;
 /// Random inputs, and as many hard cases, whose worst choices are looked for.
 const CLIMBED: usize = 8;
 
-/// What was found, and what was taken to hold where the standard states nothing.
-pub type Found = (Examination, BTreeSet<Assumption>);
+/// Random inputs whose first-order allowances are laid beside the bound.
+const ALLOWED: u64 = 65_536;
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// All that was tested.
+    pub examination: Examination,
+    /// What was taken to hold where the standard states nothing.
+    pub assumptions: BTreeSet<Assumption>,
+    /// What first order says of the bound; none under reassociation, and where the function takes too long.
+    pub allowance: Option<Allowance>,
+}
 
 /// Examines the function of `formula` in `source`; `path` is for messages. `replayed` inputs, random ones, hard cases, promises outside of the domain and the inputs beside branches run on a
 /// device each; then the worst of the inputs, some hard cases and some others on the worst device that is found for them.
@@ -31,6 +43,11 @@ pub fn examine(
 ) -> Result<Found, DispatchError> {
     let mut runner = Slackened::new(source, path, formula.function, settings.seed, reassociation)?;
     let mut found = examination::examine(formula, source, &mut runner, tolerance, settings, replayed)?;
+    let allowed = Settings { cases: settings.cases.min(ALLOWED), ..settings };
+    let allowance = match reassociation {
+        Reassociation::Written => allowance::of_formula(runner.program(), formula, tolerance, &Wgsl, allowed).ok(),
+        Reassociation::Reordered => None,
+    };
     if reassociation == Reassociation::Written && found.report.failed == 0 {
         let random = (0..settings.cases.min(CLIMBED as u64)).map(|row| formula.domain.row(settings.seed, row));
         let hard = formula.hard_cases.iter().map(|case| case.arguments.clone()).take(CLIMBED);
@@ -50,5 +67,5 @@ pub fn examine(
             found.report.worst = worst.arguments;
         }
     }
-    Ok((found, runner.assumptions().clone()))
+    Ok(Found { examination: found, assumptions: runner.assumptions().clone(), allowance })
 }

@@ -22,5 +22,5 @@ mod slackened;
 mod tests;
 
 pub use device::{Device, Direction, Habit, Mode};
-pub use examination::examine;
+pub use examination::{Found, examine};
 pub use slackened::{Reassociation, Slackened};

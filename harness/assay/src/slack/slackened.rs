@@ -136,7 +136,7 @@ impl Runner for Slackened {
         Ok(())
     }
 
-    fn is_slack(&self) -> bool {
+    fn is_portable(&self) -> bool {
         true
     }
 

@@ -59,6 +59,10 @@ impl Runner for InBrowser<'_> {
         Ok(())
     }
 
+    fn is_portable(&self) -> bool {
+        true
+    }
+
     fn loops(&self) -> bool {
         // So that the first dispatch is a short one.
         true

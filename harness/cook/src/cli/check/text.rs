@@ -48,6 +48,12 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
         let _ = writeln!(text, "{line}");
     }
     let _ = match on {
+        On::Adapter(gpu) if !gpu.is_lavapipe() => write!(
+            text,
+            "Each result of the shader on {} is compared with the exact one of\n\
+             its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
+            gpu.describe()
+        ),
         On::Adapter(gpu) => write!(
             text,
             "Each result of the shader on {} is compared with that of its mirror in\n\
@@ -56,8 +62,8 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
         ),
         On::Browser(browser, _) => write!(
             text,
-            "Each result of the shader in a browser on {} is compared with that of its mirror in\n\
-             Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's portable bound. ",
+            "Each result of the shader in a browser on {} is compared\n\
+             with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
             browser.adapter()
         ),
         On::Slack(reassociation) => write!(
