@@ -191,7 +191,13 @@ impl Tolerance {
 
     /// Of each part that is floats, how far it may be off to first order over the bound stated: `reach` holds how far each word may be off, and
     /// `derivatives` the derivatives of each by each word of the arguments. None where one is not finite.
-    pub fn shares(&self, arguments: &[u32], exact: &[f64], reach: &[f64], derivatives: &[Vec<f64>]) -> Option<Vec<f64>> {
+    pub fn shares(
+        &self,
+        arguments: &[u32],
+        exact: &[f64],
+        reach: &[f64],
+        derivatives: &[Vec<f64>],
+    ) -> Option<Vec<f64>> {
         // The unit of the input's largest component, for each of its words.
         let mut units = vec![0.0; arguments.len()];
         for leaf in self.arguments.iter().filter(|leaf| leaf.scalar == Scalar::F32) {
@@ -207,7 +213,9 @@ impl Tolerance {
             let backward =
                 if bound.backward > 0.0 { bound.backward * range.clone().map(spread).fold(0.0, f64::max) } else { 0.0 };
             let stated = forward(bound, largest(&exact[range.clone()])) + backward;
-            let allowed = range.map(|index| reach[index]).fold(0.0, |most: f64, next| if next > most || next.is_nan() { next } else { most });
+            let allowed = range
+                .map(|index| reach[index])
+                .fold(0.0, |most: f64, next| if next > most || next.is_nan() { next } else { most });
             let share = allowed / stated;
             share.is_finite().then_some(share)
         };

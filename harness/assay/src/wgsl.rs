@@ -247,8 +247,9 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         let Ready { text, formula, cases, tolerance, settings } = self.ready()?;
         let fail = |error: DispatchError| Failure(format!("{}: {error}", formula.function));
         let source = (text.as_str(), PATH);
-        let found =
-            slack::examine(&formula, source, &tolerance, settings, Reassociation::Written, &cases).map_err(fail)?.examination;
+        let found = slack::examine(&formula, source, &tolerance, settings, Reassociation::Written, &cases)
+            .map_err(fail)?
+            .examination;
         if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 

@@ -1,6 +1,7 @@
 //! The command line of the Lapidary cookbook, `cook`: it checks every WGSL function against its mirror and its f64 oracle, measures the ladders, compares
 //! the pictures and builds the gallery.
 
+pub mod builtins;
 pub mod check;
 pub mod cookbook;
 pub mod cost;

@@ -210,7 +210,13 @@ impl<'gpu> Kernel<'gpu> {
         kernel: KernelModule,
         constants: &[(&str, f64)],
     ) -> Result<Kernel<'gpu>, DispatchError> {
-        Ok(Kernel { gpu, compiled: compile(gpu, kernel, constants)?, buffers: None, turns: Vec::new(), is_portable: false })
+        Ok(Kernel {
+            gpu,
+            compiled: compile(gpu, kernel, constants)?,
+            buffers: None,
+            turns: Vec::new(),
+            is_portable: false,
+        })
     }
 
     /// The same, held to what every device must keep that conforms to WGSL: see [`Runner::is_portable`].

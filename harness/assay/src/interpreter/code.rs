@@ -9,28 +9,48 @@ pub(super) type Register = u32;
 /// The place of an operation.
 pub(super) type Label = usize;
 
-/// A function of floats that is no infix operator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Float {
+/// A function of floats that is no infix operator, as WGSL names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Float {
+    /// `abs`
     Abs,
+    /// `sign`
     Sign,
+    /// `floor`
     Floor,
+    /// `ceil`
     Ceil,
+    /// `round`
     Round,
+    /// `trunc`
     Trunc,
+    /// `step`
     Step,
+    /// `sqrt`
     Sqrt,
+    /// `inverseSqrt`
     InverseSqrt,
+    /// `exp`
     Exp,
+    /// `exp2`
     Exp2,
+    /// `log`
     Log,
+    /// `log2`
     Log2,
+    /// `pow`
     Pow,
+    /// `sin`
     Sin,
+    /// `cos`
     Cos,
+    /// `asin`
     Asin,
+    /// `acos`
     Acos,
+    /// `atan`
     Atan,
+    /// `atan2`
     Atan2,
 }
 

@@ -1,5 +1,7 @@
 //! Machines to run on: one that rounds to nearest, one that notes every decision.
 
+use super::code::Float;
+
 /// Where a decision is made: a function of the module and an expression of it, by their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Site {
@@ -94,6 +96,8 @@ impl std::fmt::Display for Assumption {
 /// An operation on floats that was run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Operation {
+    /// Which function, and its first argument; none of an infix operator.
+    pub function: Option<(Float, f32)>,
     /// The numbers of its operands in the record: 0 for a constant.
     pub operands: [u32; 2],
     /// The derivatives of its result by them.

@@ -6,6 +6,7 @@ mod compile;
 mod machine;
 mod run;
 
+pub use code::Float;
 pub use machine::{Assumption, Decision, Exact, Machine, Nearest, Operation, Site, Slack, Traced};
 pub use run::Registers;
 

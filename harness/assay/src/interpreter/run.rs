@@ -71,7 +71,7 @@ impl Registers {
     fn record<M: Machine>(&mut self, to: u32, operands: [u32; 2], partials: [f64; 2], machine: &mut M) {
         if M::RECORDS {
             let operands = operands.map(|register| self.records[register as usize]);
-            self.records[to as usize] = machine.recorded(Operation { operands, partials });
+            self.records[to as usize] = machine.recorded(Operation { function: None, operands, partials });
         }
     }
 
@@ -108,7 +108,7 @@ impl Registers {
                 let (x, y) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
                 let exact = f64::from(x) * f64::from(y);
                 let rounded = machine.round(Exact::from(exact), Slack::Rounded);
-                self.put(to, rounded, [a, b], || [y.into(), x.into()], machine);
+                self.put(to, rounded, (None, [a, b]), || [y.into(), x.into()], machine);
                 if M::FUSES {
                     self.products[to as usize] = exact;
                 }
@@ -120,13 +120,13 @@ impl Registers {
                 }
                 let exact = f64::from(x) / f64::from(y);
                 let quotient = machine.round(Exact::from(exact), Slack::Ulps(2.5));
-                self.put(to, quotient, [a, b], || [1.0 / f64::from(y), -exact / f64::from(y)], machine);
+                self.put(to, quotient, (None, [a, b]), || [1.0 / f64::from(y), -exact / f64::from(y)], machine);
             }
             Op::Negate { to, from } => {
                 let operand = machine.operand(self.float(from));
                 let negated = machine.kept(-operand);
                 let product = if M::FUSES { -self.products[from as usize] } else { f64::NAN };
-                self.put(to, negated, [from; 2], || [-1.0, 0.0], machine);
+                self.put(to, negated, (None, [from; 2]), || [-1.0, 0.0], machine);
                 if M::FUSES {
                     self.products[to as usize] = product;
                 }
@@ -134,14 +134,20 @@ impl Registers {
             Op::Float { fun, to, operands, site } => {
                 let floats = operands.map(|register| machine.operand(self.float(register)));
                 let result = float(fun, floats, site, machine);
-                self.put(to, result, operands, || derivatives(fun, floats.map(f64::from)), machine);
+                self.put(
+                    to,
+                    result,
+                    (Some((fun, floats[0])), operands),
+                    || derivatives(fun, floats.map(f64::from)),
+                    machine,
+                );
             }
             Op::Bound { bound, to, operands, site } => {
                 let floats = operands.map(|register| machine.operand(self.float(register)));
                 let result = bounded(bound, floats, site, machine);
                 // The first of those that it may be.
                 let chosen = floats.iter().position(|float| *float == result).map_or(to, |index| operands[index]);
-                self.put(to, result, [chosen; 2], || [1.0, 0.0], machine);
+                self.put(to, result, (None, [chosen; 2]), || [1.0, 0.0], machine);
             }
             Op::Compare { op, to, a, b } => {
                 let (a, b) = (machine.operand(self.float(a)), machine.operand(self.float(b)));
@@ -204,14 +210,15 @@ impl Registers {
         &mut self,
         to: u32,
         float: f32,
-        operands: [u32; 2],
+        (function, operands): (Option<(Float, f32)>, [u32; 2]),
         partials: impl FnOnce() -> [f64; 2],
         machine: &mut M,
     ) {
         let numbers = if M::RECORDS { operands.map(|register| self.records[register as usize]) } else { [0; 2] };
         self.set::<M>(to, float.to_bits());
         if M::RECORDS {
-            self.records[to as usize] = machine.recorded(Operation { operands: numbers, partials: partials() });
+            let operation = Operation { function, operands: numbers, partials: partials() };
+            self.records[to as usize] = machine.recorded(operation);
         }
     }
 
@@ -226,7 +233,7 @@ impl Registers {
             }
         }
         let sum = machine.round(Exact::sum(operands[0], sign * operands[1]), Slack::Rounded);
-        self.put(to, sum, [a, b], || [1.0, sign], machine);
+        self.put(to, sum, (None, [a, b]), || [1.0, sign], machine);
     }
 }
 
@@ -286,24 +293,49 @@ fn float<M: Machine>(fun: Float, [x, y]: [f32; 2], site: Site, machine: &mut M) 
             machine.decided(site, u32::from(x <= y));
             f32::from(machine.compared([x, y], x <= y))
         }
-        Float::Sqrt => round(exact.sqrt(), Slack::Root),
-        Float::InverseSqrt => round(1.0 / exact.sqrt(), Slack::Ulps(2.0)),
-        Float::Exp => round(exact.exp(), Slack::Ulps(3.0 + 2.0 * exact.abs())),
-        Float::Exp2 => round(exact.exp2(), Slack::Ulps(3.0 + 2.0 * exact.abs())),
-        Float::Log => round(exact.ln(), logarithm(x)),
-        Float::Log2 => round(exact.log2(), logarithm(x)),
         Float::Pow if x == 0.0 && y > 0.0 => machine.kept(0.0),
         Float::Pow => {
             let logarithm = f64::from(round(exact.log2(), logarithm(x)));
             let exponent = f64::from(round(f64::from(y) * logarithm, Slack::Rounded));
             round(exponent.exp2(), Slack::Ulps(3.0 + 2.0 * exponent.abs()))
         }
-        Float::Sin => round(exact.sin(), Slack::Absolute(2f64.powi(-11))),
-        Float::Cos => round(exact.cos(), Slack::Absolute(2f64.powi(-11))),
-        Float::Asin => round(exact.asin(), Slack::Absolute(inverse_sine(exact, exact.asin()))),
-        Float::Acos => round(exact.acos(), Slack::Absolute(inverse_sine(exact, exact.acos()))),
-        Float::Atan => round(exact.atan(), Slack::Ulps(4096.0)),
-        Float::Atan2 => round(exact.atan2(f64::from(y)), Slack::Ulps(4096.0)),
+        _ => {
+            let (exact, slack) = fun.exact(x, y);
+            round(exact, slack)
+        }
+    }
+}
+
+impl Float {
+    /// The exact value of a function, the ordinate first of `atan2`, and how far WGSL lets a device be off it. Of a power that is what its last step may add.
+    pub fn exact(self, x: f32, y: f32) -> (f64, Slack) {
+        let exact = f64::from(x);
+        match self {
+            Float::Abs => (exact.abs(), Slack::Rounded),
+            Float::Sign if x == 0.0 => (0.0, Slack::Rounded),
+            Float::Sign => (exact.signum(), Slack::Rounded),
+            Float::Floor => (exact.floor(), Slack::Rounded),
+            Float::Ceil => (exact.ceil(), Slack::Rounded),
+            Float::Round => (exact.round_ties_even(), Slack::Rounded),
+            Float::Trunc => (exact.trunc(), Slack::Rounded),
+            Float::Step => (f64::from(u8::from(x <= y)), Slack::Rounded),
+            Float::Sqrt => (exact.sqrt(), Slack::Root),
+            Float::InverseSqrt => (1.0 / exact.sqrt(), Slack::Ulps(2.0)),
+            Float::Exp => (exact.exp(), Slack::Ulps(3.0 + 2.0 * exact.abs())),
+            Float::Exp2 => (exact.exp2(), Slack::Ulps(3.0 + 2.0 * exact.abs())),
+            Float::Log => (exact.ln(), logarithm(x)),
+            Float::Log2 => (exact.log2(), logarithm(x)),
+            Float::Pow => {
+                let exponent = f64::from(y) * exact.log2();
+                (exact.powf(f64::from(y)), Slack::Ulps(3.0 + 2.0 * exponent.abs()))
+            }
+            Float::Sin => (exact.sin(), Slack::Absolute(2f64.powi(-11))),
+            Float::Cos => (exact.cos(), Slack::Absolute(2f64.powi(-11))),
+            Float::Asin => (exact.asin(), Slack::Absolute(inverse_sine(exact, exact.asin()))),
+            Float::Acos => (exact.acos(), Slack::Absolute(inverse_sine(exact, exact.acos()))),
+            Float::Atan => (exact.atan(), Slack::Ulps(4096.0)),
+            Float::Atan2 => (exact.atan2(f64::from(y)), Slack::Ulps(4096.0)),
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! error changes, and where a derivative is infinite, as of a root at 0. Those rows are counted apart.
 
 use crate::formula::{Formula, Words};
-use crate::interpreter::{Exact, Machine, Operation, Program, Registers, Slack, Stopped};
+use crate::interpreter::{Exact, Float, Machine, Operation, Program, Registers, Slack, Stopped};
 use crate::property::Settings;
 use crate::tolerance::Tolerance;
 use rayon::prelude::*;
@@ -46,8 +46,9 @@ pub struct Field {
 
 /// How far each operation may be off.
 pub trait Accuracy: Sync {
-    /// The largest distance of a result from the exact one.
-    fn reach(&self, exact: Exact, slack: Slack) -> f64;
+    /// The largest distance of a result from the exact one, which WGSL lets be off by `slack`. `function` is a function with its first argument, none of an infix operator;
+    /// a power is a logarithm, a product and an exponential (`Log2`, none, `Exp2`).
+    fn reach(&self, function: Option<(Float, f32)>, exact: Exact, slack: Slack) -> f64;
 }
 
 /// What WGSL allows.
@@ -55,7 +56,7 @@ pub trait Accuracy: Sync {
 pub struct Wgsl;
 
 impl Accuracy for Wgsl {
-    fn reach(&self, exact: Exact, slack: Slack) -> f64 {
+    fn reach(&self, _: Option<(Float, f32)>, exact: Exact, slack: Slack) -> f64 {
         super::device::reach(exact, slack)
     }
 }
@@ -89,15 +90,18 @@ impl Machine for Recorder<'_> {
             [] => 0.0,
             // pow(x, y) as exp2(y log2(x)): what the logarithm and the product are off by goes through the power.
             [logarithm, product, power] => {
-                let of = |(exact, slack): (Exact, Slack)| self.accuracy.reach(exact, slack);
-                let exponent = of(logarithm) * (product.0.value / logarithm.0.value).abs() + of(product);
-                let inherited = std::f64::consts::LN_2 * power.0.value.abs() * exponent;
-                if exponent == 0.0 { of(power) } else { inherited + of(power) }
+                let base = operation.function.map_or(1.0, |(_, base)| base);
+                let of = |function, (exact, slack): (Exact, Slack)| self.accuracy.reach(function, exact, slack);
+                // The derivative by x is y x^(y - 1), so that this is |y| x^y.
+                let by_logarithm = (operation.partials[0] * logarithm.0.value.exp2()).abs();
+                let exponent = of(Some((Float::Log2, base)), logarithm) * by_logarithm;
+                let exponent = exponent + of(None, product) * power.0.value.abs();
+                of(Some((Float::Exp2, product.0.value as f32)), power) + std::f64::consts::LN_2 * exponent
             }
-            _ => self.steps.iter().map(|(exact, slack)| self.accuracy.reach(*exact, *slack)).sum(),
+            _ => self.steps.iter().map(|(exact, slack)| self.accuracy.reach(operation.function, *exact, *slack)).sum(),
         };
         self.steps.clear();
-        let Operation { operands, partials } = operation;
+        let Operation { operands, partials, .. } = operation;
         self.nodes.push(Node { operands, partials, reach });
         self.nodes.len() as u32
     }
@@ -161,7 +165,8 @@ pub fn of_formula(
 ) -> Result<Allowance, Stopped> {
     let registers = program.registers()?;
     let [_, results] = program.words()?;
-    let steps = program.run(&formula.domain.row(settings.seed, 0), &mut crate::interpreter::Nearest, &mut Words::new())?;
+    let steps =
+        program.run(&formula.domain.row(settings.seed, 0), &mut crate::interpreter::Nearest, &mut Words::new())?;
     let most = MOST_OPERATIONS / (steps.max(1) * results.max(1) as u64);
     let cases = settings.cases.min(most.max(64));
     let random = (0..cases).into_par_iter().map(|row| formula.domain.row(settings.seed, row));

@@ -305,8 +305,9 @@ fn worst((formula, source): &(Formula, &'static str), bound: &str) -> f64 {
     let bounds = parse_bounds(bound).expect("bounds");
     let tolerance = Tolerance::new(&formula.arguments, &formula.result, &bounds);
     let settings = Settings { cases: 2_000, seed: 7 };
-    let found =
-        examine(formula, (source, "test.wgsl"), &tolerance, settings, Reassociation::Written, &[]).expect("runs").examination;
+    let found = examine(formula, (source, "test.wgsl"), &tolerance, settings, Reassociation::Written, &[])
+        .expect("runs")
+        .examination;
     assert_eq!(found.holds(), found.report.worst_ratio <= 1.0);
     found.report.worst_ratio
 }

@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::{Context, Failure, Outcome, number, output};
+use super::{Context, Failure, Outcome, browser, number, output};
 use lapidary_assay::formula::Formula;
 use lapidary_assay::property::persistence::Regressions;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
@@ -13,7 +13,6 @@ use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
 use lapidary_cook::cookbook::release::Standing;
 use std::path::PathBuf;
-use std::sync::OnceLock;
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
 #[derive(clap::Args)]
@@ -93,14 +92,6 @@ struct Checked {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let outcome = checked(context, arguments);
-    if let Some(Ok(browser)) = BROWSER.get() {
-        browser.close();
-    }
-    outcome
-}
-
-fn checked(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.browser.is_some() && Browser::find().is_none() {
         return skipped(arguments);
     }
@@ -143,10 +134,7 @@ fn checked(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure>
 
 /// Without a browser nothing is checked in one: said and counted, and a fault where one is required.
 fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
-    const NONE: &str = "no Chromium or Chrome is on the PATH; install one";
-    if std::env::var_os("LAPIDARY_CHROMIUM").is_some_and(|value| value == "required") {
-        return Err(Failure(format!("{NONE} (LAPIDARY_CHROMIUM=required)")));
-    }
+    browser::may_be_missing()?;
     let count = match &arguments.wgsl {
         None => Shard::share(arguments.shard, check::select(arguments.filter.as_deref())?).len(),
         Some(path) => {
@@ -157,7 +145,7 @@ fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.json {
         output::line("[]")?;
     }
-    eprintln!("cook: {count} functions skipped: {NONE}");
+    eprintln!("cook: {count} functions skipped: {}", browser::MISSING);
     Ok(Outcome::Passed)
 }
 
@@ -166,20 +154,9 @@ fn on(context: &Context, arguments: &Arguments) -> Result<On<'static>, Failure> 
     Ok(match arguments {
         Arguments { reassociate: true, .. } => On::Slack(Reassociation::Reordered),
         Arguments { portable: true, .. } => On::Slack(Reassociation::Written),
-        Arguments { browser: Some(adapter), .. } => {
-            let browser = BROWSER.get_or_init(|| start(*adapter)).as_ref();
-            On::Browser(browser.map_err(|fault| Failure(fault.clone()))?, context.gpu()?)
-        }
+        Arguments { browser: Some(adapter), .. } => On::Browser(browser::started(*adapter)?, context.gpu()?),
         _ => On::Adapter(context.gpu()?),
     })
-}
-
-/// Started once, for all functions.
-static BROWSER: OnceLock<Result<Browser, String>> = OnceLock::new();
-
-fn start(adapter: Adapter) -> Result<Browser, String> {
-    let program = Browser::find().ok_or("the browser has gone from the PATH")?;
-    Browser::start(&program, adapter).map_err(|error| format!("{}: {error}", program.display()))
 }
 
 /// Checks a user's file.

@@ -2,6 +2,8 @@
 //! for a check that failed, 2 for bad usage or bad input, with one clear line on stderr.
 
 mod asked;
+mod browser;
+mod builtins;
 mod check;
 mod copy;
 mod cost;
@@ -56,6 +58,7 @@ enum Command {
     Gallery(gallery::Arguments),
     Test(test::Arguments),
     Check(check::Arguments),
+    Builtins(builtins::Arguments),
     List(list::Arguments),
     New(new::Arguments),
     Copy(copy::Arguments),
@@ -93,6 +96,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Gallery(arguments) => gallery::run(&context, &arguments),
         Command::Test(arguments) => test::run(&context, &arguments),
         Command::Check(arguments) => check::run(&context, &arguments),
+        Command::Builtins(arguments) => builtins::run(&context, &arguments),
         Command::List(arguments) => list::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Copy(arguments) => copy::run(&arguments),
@@ -102,6 +106,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),
     };
+    browser::close();
     match outcome {
         Ok(Outcome::Passed) => ExitCode::SUCCESS,
         Ok(Outcome::Failed) => ExitCode::from(1),

@@ -1,0 +1,183 @@
+//! How accurate a device's own functions are: every built-in of one float over all floats, those of two, and what sums and products round to, over samples.
+
+mod binary;
+mod page;
+mod unary;
+
+pub use page::text;
+
+use lapidary_assay::dispatch::DispatchError;
+use lapidary_assay::interpreter::{Exact, Float, Slack};
+use lapidary_assay::runner::Runner;
+use lapidary_assay::slack::allowance::{Accuracy, Wgsl};
+use serde::{Deserialize, Serialize};
+
+/// Makes what runs a function of WGSL source.
+pub type Start<'a> = &'a dyn Fn(&str, &str) -> Result<Box<dyn Runner + 'a>, DispatchError>;
+
+/// A built-in over a range of its argument.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// As WGSL names it; of an infix operator the expression.
+    pub name: String,
+    /// Which arguments.
+    pub range: String,
+    /// How many were tried.
+    pub inputs: u64,
+    /// Those with a result that is not the nearest float.
+    pub not_nearest: u64,
+    /// The largest error in units in the last place of the exact value, where that is a normal float.
+    pub max_ulp: f64,
+    /// The argument of that error; two of a function of two.
+    pub at: Vec<f32>,
+    /// The largest error.
+    pub max_absolute: f64,
+    /// The largest error over what WGSL lets a device be off; none where it states nothing for the range.
+    pub of_wgsl: Option<f64>,
+    /// The argument of that.
+    pub of_wgsl_at: Vec<f32>,
+    /// Subnormal results that are zero.
+    pub flushed: u64,
+    /// Results that are not finite where the exact one is a float's size.
+    pub nonfinite: u64,
+}
+
+impl Measured {
+    fn new(name: &str, range: &str, is_stated: bool) -> Self {
+        Self {
+            name: name.to_owned(),
+            range: range.to_owned(),
+            inputs: 0,
+            not_nearest: 0,
+            max_ulp: 0.0,
+            at: Vec::new(),
+            max_absolute: 0.0,
+            of_wgsl: is_stated.then_some(0.0),
+            of_wgsl_at: Vec::new(),
+            flushed: 0,
+            nonfinite: 0,
+        }
+    }
+
+    /// Adds a result; `reach` is how far WGSL lets it be off, none where it does not state that.
+    #[inline(always)]
+    fn add(&mut self, arguments: &[f32], result: f32, exact: f64, reach: impl FnOnce() -> Option<f64>) {
+        self.inputs += 1;
+        // Its neighbour may be an infinity.
+        if exact.is_nan() || exact.abs() >= f64::from(f32::MAX) {
+            return;
+        }
+        if !result.is_finite() {
+            self.nonfinite += 1;
+            return;
+        }
+        let nearest = exact as f32;
+        if result == nearest {
+            // Half a unit is rounding's.
+            let error = (f64::from(result) - exact).abs();
+            self.max_absolute = self.max_absolute.max(error);
+            return;
+        }
+        self.not_nearest += 1;
+        if exact != 0.0 && exact.abs() < f64::from(f32::MIN_POSITIVE) && result == 0.0 {
+            self.flushed += 1;
+            return;
+        }
+        let error = (f64::from(result) - exact).abs();
+        self.max_absolute = self.max_absolute.max(error);
+        let ulps = error / lapidary_assay::tolerance::ulp_of(exact);
+        if exact.abs() >= f64::from(f32::MIN_POSITIVE) && ulps > self.max_ulp {
+            self.max_ulp = ulps;
+            self.at = arguments.to_vec();
+        }
+        if let (Some(reach), Some(share)) = (reach(), &mut self.of_wgsl)
+            && error / reach > *share
+        {
+            *share = error / reach;
+            self.of_wgsl_at = arguments.to_vec();
+        }
+    }
+
+    fn join(mut self, other: Measured) -> Measured {
+        if other.max_ulp > self.max_ulp {
+            self.max_ulp = other.max_ulp;
+            self.at = other.at;
+        }
+        self.inputs += other.inputs;
+        self.not_nearest += other.not_nearest;
+        self.max_absolute = self.max_absolute.max(other.max_absolute);
+        if other.of_wgsl > self.of_wgsl {
+            self.of_wgsl = other.of_wgsl;
+            self.of_wgsl_at = other.of_wgsl_at;
+        }
+        self.flushed += other.flushed;
+        self.nonfinite += other.nonfinite;
+        self
+    }
+}
+
+/// What was measured of a device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The device and its driver.
+    pub adapter: String,
+    /// Of the floats every how many-th was tried, by functions of one.
+    pub stride: u32,
+    /// A row for each built-in and range.
+    pub rows: Vec<Measured>,
+}
+
+/// Measures a device; `tick` is told after each function.
+///
+/// # Errors
+/// Where the device refuses.
+pub fn measure(adapter: &str, start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Result<Report, DispatchError> {
+    let mut rows = unary::measure(start, stride, tick)?;
+    rows.extend(binary::measure(start, tick)?);
+    Ok(Report { adapter: adapter.to_owned(), stride, rows })
+}
+
+/// How many functions [`measure`] tells of.
+pub fn count() -> usize {
+    unary::BUILTINS.len() + binary::count()
+}
+
+/// lapidary's reference device, as it was measured: `docs/measurements/lavapipe/builtins.json`.
+#[derive(Debug)]
+pub struct Lavapipe {
+    report: Report,
+}
+
+impl Lavapipe {
+    /// What the record holds.
+    ///
+    /// # Errors
+    /// Where it is no such record.
+    pub fn recorded() -> Result<Lavapipe, serde_json::Error> {
+        let text = include_str!("../../../../docs/measurements/lavapipe/builtins.json");
+        Ok(Lavapipe { report: serde_json::from_str(text)? })
+    }
+
+    /// The row of a function at an argument.
+    fn of(&self, function: Float, argument: f32) -> Option<&Measured> {
+        let name = unary::name(function);
+        let range = unary::range(function, argument);
+        self.report.rows.iter().find(|row| row.name == name && range.is_none_or(|range| row.range == range))
+    }
+}
+
+impl Accuracy for Lavapipe {
+    fn reach(&self, function: Option<(Float, f32)>, exact: Exact, slack: Slack) -> f64 {
+        let wgsl = Wgsl.reach(function, exact, slack);
+        if wgsl == 0.0 {
+            return 0.0;
+        }
+        let unit = lapidary_assay::tolerance::ulp_of(exact.value);
+        // Sums, products and quotients are the nearest float: the record says so too.
+        let measured = function.and_then(|(function, argument)| self.of(function, argument)).map_or(0.0, |row| {
+            let by_share = row.of_wgsl.map_or(f64::INFINITY, |share| share * wgsl);
+            (row.max_ulp * unit).min(row.max_absolute).min(by_share)
+        });
+        measured.max(0.5 * unit)
+    }
+}

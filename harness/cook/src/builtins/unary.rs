@@ -1,0 +1,187 @@
+//! Built-ins of one float, over all floats.
+
+use super::{Measured, Start};
+use lapidary_assay::dispatch::DispatchError;
+use lapidary_assay::interpreter::{Float, Slack};
+use lapidary_assay::slack::allowance::{Accuracy as _, Wgsl};
+use rayon::prelude::*;
+
+/// A built-in function.
+pub(super) struct Builtin {
+    pub(super) name: &'static str,
+    /// None of those whose accuracy WGSL derives from others.
+    function: Option<Float>,
+    exact: fn(f64) -> f64,
+    ranges: &'static [Range],
+}
+
+/// Which arguments: those with a size up to a limit; WGSL states how accurate the function is there, or does not.
+struct Range {
+    name: &'static str,
+    to: f32,
+    is_stated: bool,
+}
+
+const ALL: &[Range] = &[Range { name: "all", to: f32::MAX, is_stated: true }];
+const ANGLES: &[Range] = &[
+    Range { name: "to π", to: std::f32::consts::PI, is_stated: true },
+    Range { name: "to 2^7", to: 128.0, is_stated: false },
+    Range { name: "to 2^16", to: 65_536.0, is_stated: false },
+    Range { name: "beyond", to: f32::MAX, is_stated: false },
+];
+
+const fn stated(name: &'static str, function: Float, exact: fn(f64) -> f64) -> Builtin {
+    Builtin { name, function: Some(function), exact, ranges: ALL }
+}
+
+const fn derived(name: &'static str, exact: fn(f64) -> f64) -> Builtin {
+    Builtin { name, function: None, exact, ranges: ALL }
+}
+
+pub(super) const BUILTINS: [Builtin; 18] = [
+    stated("sqrt", Float::Sqrt, f64::sqrt),
+    stated("inverseSqrt", Float::InverseSqrt, |x| 1.0 / x.sqrt()),
+    stated("exp", Float::Exp, f64::exp),
+    stated("exp2", Float::Exp2, f64::exp2),
+    stated("log", Float::Log, f64::ln),
+    stated("log2", Float::Log2, f64::log2),
+    Builtin { name: "sin", function: Some(Float::Sin), exact: f64::sin, ranges: ANGLES },
+    Builtin { name: "cos", function: Some(Float::Cos), exact: f64::cos, ranges: ANGLES },
+    Builtin { name: "tan", function: None, exact: f64::tan, ranges: ANGLES },
+    stated("asin", Float::Asin, f64::asin),
+    stated("acos", Float::Acos, f64::acos),
+    stated("atan", Float::Atan, f64::atan),
+    derived("sinh", f64::sinh),
+    derived("cosh", f64::cosh),
+    derived("tanh", f64::tanh),
+    derived("asinh", f64::asinh),
+    derived("acosh", f64::acosh),
+    derived("atanh", f64::atanh),
+];
+
+/// The name of a built-in in the record.
+pub(super) fn name(function: Float) -> &'static str {
+    let found = BUILTINS.iter().find(|builtin| builtin.function == Some(function));
+    found.map_or_else(|| super::binary::name(function), |builtin| builtin.name)
+}
+
+/// The range of a built-in that an argument lies in; none of those that have no ranges.
+pub(super) fn range(function: Float, argument: f32) -> Option<&'static str> {
+    let found = BUILTINS.iter().find(|builtin| builtin.function == Some(function))?;
+    found.ranges.iter().find(|range| argument.abs() <= range.to).map(|range| range.name)
+}
+
+/// Results of a row.
+const RESULTS: u32 = 64;
+
+/// Rows of a dispatch.
+const ROWS: u32 = 32_768;
+
+/// A function from the first of so many bit patterns, and the distance between them, to the results for all of them.
+fn source(builtin: &str) -> String {
+    let part = |index: u32| {
+        let first = 4 * index;
+        format!(
+            "    {builtin}(bitcast<vec4f>(row.x + row.y * vec4u({first}u, {}u, {}u, {}u))),\n",
+            first + 1,
+            first + 2,
+            first + 3
+        )
+    };
+    let parts: String = (0..RESULTS / 4).map(part).collect();
+    format!("fn many(row: vec2u) -> array<vec4f, {}> {{\n  return array<vec4f, {0}>(\n{parts}  );\n}}\n", RESULTS / 4)
+}
+
+pub(super) fn measure(start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Result<Vec<Measured>, DispatchError> {
+    let mut rows = Vec::new();
+    for builtin in &BUILTINS {
+        tick(builtin.name);
+        let mut runner = start(&source(builtin.name), "many")?;
+        let mut found: Vec<Measured> =
+            builtin.ranges.iter().map(|range| Measured::new(builtin.name, range.name, range.is_stated)).collect();
+        if builtin.function.is_none() {
+            found.iter_mut().for_each(|row| row.of_wgsl = None);
+        }
+        let inputs = (1u64 << 32).div_ceil(stride.into());
+        let mut results = Vec::new();
+        for batch in (0..inputs).step_by((ROWS * RESULTS) as usize) {
+            let count = (inputs - batch).min((ROWS * RESULTS).into());
+            // The first pattern of each row; the last row may hold more than there are.
+            let starts =
+                (0..count).step_by(RESULTS as usize).map(|index| ((batch + index) as u32).wrapping_mul(stride));
+            let arguments: Vec<u32> = starts.flat_map(|start| [start, stride]).collect();
+            runner.run(&arguments, &mut results)?;
+            let parts: Vec<Vec<Measured>> = results
+                .par_chunks(RESULTS as usize * 512)
+                .enumerate()
+                .map(|(part, words)| {
+                    judged(builtin, &found, batch + part as u64 * u64::from(RESULTS) * 512, (stride, inputs), words)
+                })
+                .collect();
+            for part in parts {
+                found = found.into_iter().zip(part).map(|(one, other)| one.join(other)).collect();
+            }
+        }
+        rows.extend(found);
+    }
+    Ok(rows)
+}
+
+/// What these results are worth, range by range; they begin with that of input `first`.
+fn judged(
+    builtin: &Builtin,
+    like: &[Measured],
+    first: u64,
+    (stride, inputs): (u32, u64),
+    words: &[u32],
+) -> Vec<Measured> {
+    let mut found: Vec<Measured> =
+        like.iter().map(|row| Measured::new(&row.name, &row.range, row.of_wgsl.is_some())).collect();
+    for (index, word) in (first..inputs).zip(words) {
+        let x = f32::from_bits((index as u32).wrapping_mul(stride));
+        // Of infinities and NaNs the standard says nothing, and it lets a device read a subnormal as 0.
+        if !x.is_normal() && x != 0.0 {
+            continue;
+        }
+        let place = builtin.ranges.iter().position(|range| x.abs() <= range.to).unwrap_or(0);
+        let is_stated = builtin.ranges[place].is_stated;
+        let (exact, slack) = match builtin.function {
+            Some(function) => function.exact(x, x),
+            None => ((builtin.exact)(f64::from(x)), Slack::Rounded),
+        };
+        let is_stated = is_stated && builtin.function.is_some();
+        found[place]
+            .add(&[x], f32::from_bits(*word), exact, || is_stated.then(|| Wgsl.reach(None, exact.into(), slack)));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lapidary_assay::interpreter::{Nearest, Program};
+
+    /// The kernel calls the function for the patterns that it says.
+    #[test]
+    fn every_pattern_is_met_once() {
+        let program = Program::new(&source("sqrt"), "many.wgsl", "many").expect("valid");
+        let mut result = Vec::new();
+        program.run(&[1f32.to_bits(), 256], &mut Nearest, &mut result).expect("runs");
+        assert_eq!(result.len(), RESULTS as usize);
+        for (index, word) in (0u32..).zip(&result) {
+            let x = f32::from_bits(1f32.to_bits() + 256 * index);
+            assert_eq!(f32::from_bits(*word), x.sqrt(), "{index}");
+        }
+    }
+
+    #[test]
+    fn an_error_is_measured_in_units_and_by_what_wgsl_allows() {
+        let mut row = Measured::new("exp", "all", true);
+        let (exact, slack) = Float::Exp.exact(1.0, 1.0);
+        let off = (exact as f32).next_up().next_up().next_up();
+        row.add(&[1.0], off, exact, || Some(Wgsl.reach(None, exact.into(), slack)));
+        assert!((2.5..3.5).contains(&row.max_ulp), "{row:?}");
+        assert!(row.of_wgsl.is_some_and(|share| (share - row.max_ulp / 5.0).abs() < 1e-12), "{row:?}");
+        assert_eq!((row.not_nearest, row.at.as_slice()), (1, &[1.0][..]));
+    }
+}
