@@ -210,7 +210,7 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 // Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in the frame of the ray
 //   need not: its neighbours, of which it is an edge there, do. Of thin ones none is refused that the ray meets, but
 //   the point in it is less sure.
-// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0005 abs + 6 backward, triangle 6 backward; portable distance 8 ulp + 12 backward, barycentrics 8 ulp + 0.001 abs + 12 backward, triangle 12 backward
+// Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward, triangle 6 backward; portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,

@@ -168,7 +168,8 @@ fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, nor
     let area = frame.width * frame.rise;
     let twist = 0.5f * (dot(pixel.p_x, pixel.n_y) - dot(pixel.p_y, pixel.n_x));
     let determinant = frame.width * dot(frame.normal, cross(pixel.n_x, pixel.n_y)) - twist * twist;
-    return determinant / frame.bounded * (area * area / frame.bounded);
+    // In this order: the area's square may underflow.
+    return determinant / frame.bounded * area * (area / frame.bounded);
 }
 
 // The Gaussian curvature as the textbook writes it. Kept to show where it fails.
@@ -188,11 +189,12 @@ fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: v
 // part of `light` along the surface. In curvature_frame t = x first + y second = alpha p_x + beta p_y, with area alpha = rise x - lean y and
 // area beta = width y, and the normal changes along it by alpha n_x + beta n_y. As the light rises to the zenith, t loses its direction and the
 // result goes to the mean over all directions, which is the mean curvature.
-// Returns: between the principal curvatures; the mean curvature for a light along the normal. Fades to 0 edge-on as curvature_mean does.
+// Returns: between the principal curvatures; the mean curvature for a light along the normal. Fades to 0 edge-on as curvature_mean does. Where a device
+//   flushes subnormals, three of them, 2^-126 each, come in times fade / total, up to 4 / CURVATURE_ZENITH, and `share`, up to 2^10: 2e-28.
 // Units: one over the position's.
 // Domain: as curvature_gaussian; |light| = 1.
 // Outside: finite for |normal_x|, |normal_y| <= 2 and |light| <= 2.
-// Accuracy: lavapipe 6 ulp + 1e-31 abs + 6 backward; portable 16 ulp + 1e-31 abs + 12 backward
+// Accuracy: lavapipe 6 ulp + 1e-31 abs + 6 backward; portable 28 ulp + 2e-28 abs + 16 backward
 fn curvature_towards(
     position_x: vec3f,
     position_y: vec3f,
@@ -212,7 +214,8 @@ fn curvature_towards(
     let share = area / frame.bounded;
     let fade = area * share;
     let total = fade * (x * x + y * y) + CURVATURE_ZENITH;
-    return share * ((fade * dot(tangent, change) + CURVATURE_ZENITH * mean) / total);
+    // Weights first: products with a change of 1e-30 underflow.
+    return share * (fade / total * dot(tangent, change) + CURVATURE_ZENITH / total * mean);
 }
 
 // The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept

@@ -30,7 +30,8 @@ fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     let cosine_squared = cosine * cosine;
     let sine_squared = dot(across, across);
     let spread = a * a * cosine_squared + sine_squared;
-    if (spread <= 0.0f) {
+    // A subnormal may be flushed where it is divided by.
+    if (spread < 1.2e-38f) {
         return 0.0f;
     }
     // The sum of both squares is 1 for unit vectors. With it, only directions count, and the quotient cannot exceed 1 / alpha.

@@ -55,7 +55,7 @@ fn optical_path_relax(cost: f32, neighbour: f32, edge: f32) -> f32 {
 // Units: none.
 // Domain: least, the lesser of both neighbours on each axis, in [0, 1e30]; slowness, extinction times spacing, 0 or in [1e-30, 1e15].
 // Outside: a slowness below 2^-126 counts as 0 or as itself.
-// Accuracy: lavapipe 4 ulp; portable 12 ulp
+// Accuracy: lavapipe 4 ulp; portable 13 ulp
 fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {
     let low = min(least.x, least.y);
     let high = max(least.x, least.y);

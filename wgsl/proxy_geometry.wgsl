@@ -86,7 +86,8 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
     let size_first = max(max(abs(edge_first.x), abs(edge_first.y)), abs(edge_first.z));
     let size_second = max(max(abs(edge_second.x), abs(edge_second.y)), abs(edge_second.z));
     let size_third = max(max(abs(edge_third.x), abs(edge_third.y)), abs(edge_third.z));
-    if (min(min(size_first, size_second), size_third) == 0.0f) {
+    // A subnormal may be flushed where it is divided by.
+    if (min(min(size_first, size_second), size_third) < 1.2e-38f) {
         return vec3f(0.0f);
     }
     // The two edges in turn that follow the longest: the cross product of any two in turn is the same.
@@ -101,7 +102,7 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
     }
     let perpendicular = cross(first, second - first);
     let squared = dot(perpendicular, perpendicular);
-    if (squared == 0.0f) {
+    if (squared < 1.2e-38f) {
         return vec3f(0.0f);
     }
     return perpendicular / sqrt(squared);
@@ -155,7 +156,7 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
 fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
     let extent = max(abs(edge_first), abs(edge_second));
     let size = max(max(extent.x, extent.y), extent.z);
-    if (size == 0.0f) {
+    if (size < 1.2e-38f) {
         return vec2f(0.0f);
     }
     let offset = (point - origin) / size;
@@ -245,7 +246,7 @@ fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> P
 fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f) -> vec3f {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0f;
     let size = max(max(abs(to_centre.x), abs(to_centre.y)), abs(to_centre.z));
-    if (size == 0.0f) {
+    if (size < 1.2e-38f) {
         return -direction;
     }
     let scaled = to_centre / size;

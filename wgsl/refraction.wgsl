@@ -39,7 +39,7 @@ fn refraction_reflect(incident: vec3f, normal: vec3f) -> vec3f {
 // Units: none; `cosine` is that of the angle of incidence, `relative_index` a ratio.
 // Domain: cosine in [0, 1], relative_index in [1/4, 4].
 // Outside: the same quotient; finite for |cosine| < 1e9 and relative_index in [1e-9, 1e18].
-// Accuracy: lavapipe 5 ulp + 2 backward; portable 9 ulp + 4 backward
+// Accuracy: lavapipe 5 ulp + 2 backward; portable 12 ulp + 4 backward
 fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
     let excess = (relative_index - 1.0f) * (relative_index + 1.0f);
     return (excess + cosine * cosine) / (relative_index * relative_index);

@@ -224,7 +224,7 @@ fn voxelization_range(low: f32, high: f32, cells: u32) -> vec2u {
 //   e = 2^-23, and what it is taken from another 2.5 e of its quotient: 7 e of 64.
 // Units: voxels.
 // Domain: coordinates up to 1e9.
-// Outside: finite as long as products of two coordinates are.
+// Outside: finite as long as products of three coordinates are.
 // Accuracy: lavapipe 4 ulp + 1.2e-5 abs + 16 backward; portable 8 ulp + 5.4e-5 abs + 32 backward
 fn voxelization_span(a: vec3f, b: vec3f, c: vec3f, corner: vec2f) -> vec2f {
     let margin = voxelization_margin(a, b, c);

@@ -38,7 +38,8 @@ pub fn direction_naive(vector: Vec3) -> Vec3 {
 pub fn parameters(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3) -> Vec2 {
     let across = (normal_i + normal_j).cross(normal_j - normal_i);
     let across_squared = across.dot(across);
-    if across_squared == 0.0 {
+    // A subnormal may be flushed where it is divided by.
+    if across_squared < 1.2e-38 {
         return Vec2::splat(0.0);
     }
     let x = origin_j - origin_i;
@@ -70,7 +71,7 @@ pub fn fallback(position_a: Vec3, position_b: Vec3, position_c: Vec3) -> Vec3 {
     let edge_b = position_b - position_a;
     let edge_c = position_c - position_a;
     let size = largest_component(edge_b.abs().max(edge_c.abs()));
-    if size == 0.0 {
+    if size < 1.2e-38 {
         return position_a;
     }
     let b = edge_b / size;
@@ -107,7 +108,7 @@ pub fn centre(
     let offset_b = position_b - fallback;
     let offset_c = position_c - fallback;
     let size = largest_component(offset_a.abs().max(offset_b.abs()).max(offset_c.abs()));
-    if size == 0.0 {
+    if size < 1.2e-38 {
         return fallback;
     }
     let a = offset_a / size;

@@ -126,7 +126,8 @@ pub fn gaussian(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Ve
     let area = frame.width * frame.rise;
     let twist = 0.5 * (pixel.p_x.dot(pixel.n_y) - pixel.p_y.dot(pixel.n_x));
     let determinant = frame.width * frame.normal.dot(pixel.n_x.cross(pixel.n_y)) - twist * twist;
-    determinant / frame.bounded * (area * area / frame.bounded)
+    // In this order: the area's square may underflow.
+    determinant / frame.bounded * area * (area / frame.bounded)
 }
 
 /// The Gaussian curvature as the textbook writes it.
@@ -151,7 +152,8 @@ pub fn towards(position_x: Vec3, position_y: Vec3, normal_x: Vec3, normal_y: Vec
     let share = area / frame.bounded;
     let fade = area * share;
     let total = fade * (x * x + y * y) + CURVATURE_ZENITH;
-    share * ((fade * tangent.dot(change) + CURVATURE_ZENITH * mean) / total)
+    // Weights first: products with a change of 1e-30 underflow.
+    share * (fade / total * tangent.dot(change) + CURVATURE_ZENITH / total * mean)
 }
 
 /// The normal curvature along the light by the normal equations of its part along the surface.

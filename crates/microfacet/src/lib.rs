@@ -23,7 +23,8 @@ pub fn distribution(normal: Vec3, half: Vec3, alpha: f32) -> f32 {
     let cosine_squared = cosine * cosine;
     let sine_squared = across.dot(across);
     let spread = a * a * cosine_squared + sine_squared;
-    if spread <= 0.0 {
+    // A subnormal may be flushed where it is divided by.
+    if spread < 1.2e-38 {
         return 0.0;
     }
     let quotient = a * (cosine_squared + sine_squared) / spread;

@@ -76,7 +76,8 @@ pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: 
     let size_first = edge_first.x.abs().max(edge_first.y.abs()).max(edge_first.z.abs());
     let size_second = edge_second.x.abs().max(edge_second.y.abs()).max(edge_second.z.abs());
     let size_third = edge_third.x.abs().max(edge_third.y.abs()).max(edge_third.z.abs());
-    if size_first.min(size_second).min(size_third) == 0.0 {
+    // A subnormal may be flushed where it is divided by.
+    if size_first.min(size_second).min(size_third) < 1.2e-38 {
         return Vec3::ZERO;
     }
     // The two edges in turn that follow the longest: the cross product of any two in turn is the same.
@@ -91,7 +92,7 @@ pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: 
     }
     let perpendicular = first.cross(second - first);
     let squared = perpendicular.dot(perpendicular);
-    if squared == 0.0 {
+    if squared < 1.2e-38 {
         return Vec3::ZERO;
     }
     perpendicular / squared.sqrt()
@@ -123,7 +124,7 @@ pub fn intersect_naive(position: Vec3, direction: Vec3, plane_point: Vec3, norma
 pub fn coordinates(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec3) -> Vec2 {
     let extent = edge_first.abs().max(edge_second.abs());
     let size = extent.x.max(extent.y).max(extent.z);
-    if size == 0.0 {
+    if size < 1.2e-38 {
         return Vec2::ZERO;
     }
     let offset = (point - origin) / size;
@@ -192,7 +193,7 @@ pub fn facet_normal(
 ) -> Vec3 {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0;
     let size = to_centre.x.abs().max(to_centre.y.abs()).max(to_centre.z.abs());
-    if size == 0.0 {
+    if size < 1.2e-38 {
         return -direction;
     }
     let scaled = to_centre / size;

@@ -14,6 +14,8 @@ pub enum Accuracy {
         lavapipe: Vec<FieldBound>,
         /// From WGSL's own guarantees.
         portable: Vec<FieldBound>,
+        /// Whether the portable bounds need sums and products in the order in which they are written. WGSL lets a compiler take them in another.
+        order_kept: bool,
     },
 }
 
@@ -41,17 +43,22 @@ pub struct Bound {
 
 impl Accuracy {
     /// Parses the text after `Accuracy:`: `naive`, or `lavapipe BOUNDS; portable BOUNDS`, where BOUNDS are one bound for each field of the result,
-    /// with commas between, and a bound is `[field] NUMBER UNIT {+ NUMBER UNIT}` in `ulp`, `abs`, `rel` and `backward`.
+    /// with commas between, and a bound is `[field] NUMBER UNIT {+ NUMBER UNIT}` in `ulp`, `abs`, `rel` and `backward`. `; order kept` after them says that the
+    /// portable bounds need sums and products in the order in which they are written.
     pub fn parse(text: &str) -> Result<Accuracy, String> {
         let text = text.trim();
         if text == "naive" {
             return Ok(Self::Naive);
         }
         let expected = || "expected `naive` or `lavapipe BOUNDS; portable BOUNDS`".to_owned();
-        let (lavapipe, portable) = text.split_once(';').ok_or_else(expected)?;
+        let (bounds, order_kept) = match text.strip_suffix("; order kept") {
+            Some(bounds) => (bounds, true),
+            None => (text, false),
+        };
+        let (lavapipe, portable) = bounds.split_once(';').ok_or_else(expected)?;
         let lavapipe = lavapipe.trim().strip_prefix("lavapipe ").ok_or_else(expected)?;
         let portable = portable.trim().strip_prefix("portable ").ok_or_else(expected)?;
-        Ok(Self::Bounded { lavapipe: parse_bounds(lavapipe)?, portable: parse_bounds(portable)? })
+        Ok(Self::Bounded { lavapipe: parse_bounds(lavapipe)?, portable: parse_bounds(portable)?, order_kept })
     }
 
     /// What the comment over `fn name` in a WGSL `source` states: the text after its `Accuracy:`, to the comment's end.
@@ -86,7 +93,7 @@ impl Accuracy {
 
     /// Checks that the fields named are those of `result`, each once.
     pub fn check_fields(&self, result: &Shape) -> Result<(), String> {
-        let Self::Bounded { lavapipe, portable } = self else { return Ok(()) };
+        let Self::Bounded { lavapipe, portable, .. } = self else { return Ok(()) };
         check_fields(lavapipe, result).and_then(|()| check_fields(portable, result))
     }
 }
@@ -149,9 +156,10 @@ fn parse_bound(text: &str) -> Result<FieldBound, String> {
 /// In the line's own grammar.
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::Bounded { lavapipe, portable } = self else { return f.write_str("naive") };
+        let Self::Bounded { lavapipe, portable, order_kept } = self else { return f.write_str("naive") };
         let spell = |bounds: &[FieldBound]| bounds.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        write!(f, "lavapipe {}; portable {}", spell(lavapipe), spell(portable))
+        write!(f, "lavapipe {}; portable {}", spell(lavapipe), spell(portable))?;
+        if *order_kept { f.write_str("; order kept") } else { Ok(()) }
     }
 }
 
@@ -187,6 +195,7 @@ mod tests {
         for line in [
             "naive",
             "lavapipe 0.5 ulp; portable 2.5 ulp",
+            "lavapipe 0.5 ulp; portable 2.5 ulp; order kept",
             "lavapipe direction 5 ulp + 3 backward, total 3 backward; portable direction 9 ulp, total 0 ulp",
             "lavapipe 0.000001 abs; portable 0.001 rel",
         ] {
@@ -211,6 +220,7 @@ mod tests {
             "",
             "exact",
             "lavapipe 3 ulp",
+            "lavapipe 3 ulp; order kept",
             "portable 3 ulp; lavapipe 3 ulp",
             "lavapipe 3; portable 3 ulp",
             "lavapipe 3 cm; portable 3 ulp",

@@ -8,7 +8,7 @@ use crate::tolerance::{Allowed, Tolerance, number, word};
 
 /// A failing input and its results, as literals and as numbers.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Failure {
     /// The call in WGSL.
     pub wgsl: String,
@@ -34,7 +34,7 @@ pub struct Failure {
 
 /// A part of a result.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Field {
     /// Which, as `field.member[index]`; empty where the result has one part.
     pub field: String,

@@ -4,6 +4,7 @@ pub mod bounds;
 pub mod difference;
 pub mod guard;
 pub mod in_browser;
+pub mod record;
 pub mod user_file;
 
 use crate::cookbook::header::FunctionDoc;
@@ -16,6 +17,7 @@ use lapidary_assay::examination::{self, Examination, examine};
 use lapidary_assay::failure::Failure;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::property::Settings;
+use lapidary_assay::property::histogram::Histogram;
 use lapidary_assay::property::persistence::{PersistenceError, Regressions};
 use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::Scalar;
@@ -24,7 +26,7 @@ use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
 use lapidary_browser::Browser;
 use lapidary_gpu::Gpu;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Why a check could not run; a check that ran and failed is a report.
@@ -65,7 +67,7 @@ fn at_line(path: &str, error: &DispatchError) -> String {
 }
 
 /// A row of `cook check`'s table.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Row {
     /// Whether the formula holds.
     pub passed: bool,
@@ -124,7 +126,7 @@ pub struct Row {
     /// The input of the largest distance between the two; null where there is none.
     pub difference_input: Option<String>,
     /// Edges of the domain that the run did not reach.
-    pub missed_edges: Vec<&'static str>,
+    pub missed_edges: Vec<String>,
     /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
     pub release: Option<String>,
     /// What was changed in the function since that release.
@@ -135,6 +137,10 @@ pub struct Row {
     pub seconds: f64,
     /// The command that runs this again.
     pub reproduce: String,
+    /// The seeds from which inputs were drawn, so many from each.
+    pub seeds: Vec<u64>,
+    /// The distribution behind the quantiles.
+    pub ulps: Histogram,
 }
 
 impl Row {
@@ -319,7 +325,7 @@ pub fn run_keeping<'gpu>(
             (Row { difference: Some(difference), difference_input: input, ..Row::default() }, found)
         }
     };
-    Ok(filled(row, formula, found, reproduce(on, formula, source, settings)))
+    Ok(filled(row, formula, found, (settings.seed, reproduce(on, formula, source, settings))))
 }
 
 /// A source's path, for messages, and its text.
@@ -331,6 +337,11 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
         }
         Source::Copy(path, text) => (path.to_owned(), text),
     }
+}
+
+/// A hash of a module's text, as its version line has it.
+fn located_hash(module: &str) -> String {
+    cookbook::module(module).map_or_else(String::new, |module| cookbook::release::text_hash(module.source))
 }
 
 /// The command that runs the same inputs again.
@@ -349,7 +360,7 @@ fn reproduce(on: On<'_>, formula: &Formula, source: Source<'_>, settings: Settin
     format!("./cook check {}::{}{copy}{portable} --seed {seed} --cases {cases}", formula.module, formula.function)
 }
 
-fn filled(row: Row, formula: &Formula, found: Examination, reproduce: String) -> Row {
+fn filled(row: Row, formula: &Formula, found: Examination, (seed, reproduce): (u64, String)) -> Row {
     let passed = found.holds();
     let hard_cases = formula.hard_cases.len();
     let Examination { report, failure, broken_hard_cases, broken_promises, broken_branches, worst_choices, .. } = found;
@@ -368,7 +379,7 @@ fn filled(row: Row, formula: &Formula, found: Examination, reproduce: String) ->
         worst_ratio: report.worst_ratio.min(f64::MAX),
         worst_input: spell(formula, &report.worst),
         shrunk_input: report.shrunk.as_ref().map(|words| spell(formula, words)),
-        missed_edges: report.missed_edges().collect(),
+        missed_edges: report.missed_edges().map(str::to_owned).collect(),
         reason: report.reason,
         failure,
         hard_cases,
@@ -380,6 +391,8 @@ fn filled(row: Row, formula: &Formula, found: Examination, reproduce: String) ->
         branches_untested: found.branches_untested,
         seconds: report.seconds,
         reproduce,
+        seeds: vec![seed],
+        ulps: report.ulps,
         ..row
     }
 }

@@ -26,13 +26,13 @@ pub(super) fn promises() -> Vec<Promise> {
         ),
         holds(
             PARAMETERS,
-            "(0, 0) below an angle of 1e-23",
+            "(0, 0) below an angle of 1e-20",
             |draws| {
                 (
                     draws.in_cube(),
                     Vec3::X,
                     draws.in_cube(),
-                    Vec3::new(1.0, draws.signed(-126, -78), draws.signed(-126, -78)),
+                    Vec3::new(1.0, draws.signed(-126, -67), draws.signed(-126, -67)),
                 )
             },
             |_: (Vec3, Vec3, Vec3, Vec3), t: Vec2| that(t == Vec2::ZERO, || format!("the parameters are {t}")),

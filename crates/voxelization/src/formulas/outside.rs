@@ -102,9 +102,9 @@ pub(super) fn promises() -> Vec<Promise> {
                 that(range.x <= range.y && range.y <= cells, || format!("from {} to {}", range.x, range.y))
             },
         ),
-        finite("voxelization_span", "finite as long as products of two coordinates are", |draws| {
-            let corner = Vec2::new(draws.signed(-126, 58), draws.signed(-126, 58));
-            (vector_up_to(draws, 58), vector_up_to(draws, 58), vector_up_to(draws, 58), corner)
+        finite("voxelization_span", "finite as long as products of three coordinates are", |draws| {
+            let corner = Vec2::new(draws.signed(-126, 39), draws.signed(-126, 39));
+            (vector_up_to(draws, 39), vector_up_to(draws, 39), vector_up_to(draws, 39), corner)
         }),
         holds(
             OVERLAPS,

@@ -37,12 +37,22 @@ pub fn verdict_of(
 /// Subnormals of a row of which each may have been flushed or not; of more all are.
 const MOST_SUBNORMALS: usize = 4;
 
-/// The row as a device may see it that flushes some of its subnormals: each is kept, or a zero of either sign, or has lost its sign, which a comparison that flushes does not see.
-fn flushed(formula: &Formula, row: &[u32]) -> Vec<Words> {
+/// Where the floats of a row are that a device may flush.
+fn subnormals(formula: &Formula, row: &[u32]) -> Vec<usize> {
     let scalars = formula.arguments.iter().flat_map(Shape::scalars);
     let is_subnormal = |(word, scalar): (&u32, Scalar)| scalar == Scalar::F32 && f32::from_bits(*word).is_subnormal();
     let parts = row.iter().zip(scalars).enumerate().filter(|(_, part)| is_subnormal(*part));
-    let places: Vec<usize> = parts.map(|(place, _)| place).collect();
+    parts.map(|(place, _)| place).collect()
+}
+
+/// Whether a device may see the row otherwise than it is.
+pub fn has_subnormals(formula: &Formula, row: &[u32]) -> bool {
+    !subnormals(formula, row).is_empty()
+}
+
+/// The row as a device may see it that flushes some of its subnormals: each is kept, or a zero of either sign, or has lost its sign, which a comparison that flushes does not see.
+fn flushed(formula: &Formula, row: &[u32]) -> Vec<Words> {
+    let places = subnormals(formula, row);
     if places.len() > MOST_SUBNORMALS {
         let mut flushed = row.to_vec();
         places.iter().for_each(|place| flushed[*place] = 0);

@@ -2,6 +2,7 @@
 
 /// Counts by the upper 16 bits of the number's f32: 128 steps to each power of two.
 #[derive(Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Steps", into = "Steps"))]
 pub struct Histogram {
     counts: Vec<u64>,
     total: u64,
@@ -21,6 +22,12 @@ impl Histogram {
         self.total += 1;
     }
 
+    /// Adds another's numbers.
+    pub fn join(&mut self, other: &Histogram) {
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
+        self.total += other.total;
+    }
+
     /// The smallest recorded number that at least `share` (0 to 1) of all are not above, rounded down to its step; 0 where
     /// nothing was added.
     pub fn quantile(&self, share: f64) -> f64 {
@@ -33,6 +40,31 @@ impl Histogram {
             }
         }
         0.0
+    }
+}
+
+/// The steps that hold numbers: the place of each, and its count.
+#[cfg(feature = "serde")]
+type Steps = Vec<(usize, u64)>;
+
+#[cfg(feature = "serde")]
+impl From<Histogram> for Steps {
+    fn from(histogram: Histogram) -> Steps {
+        histogram.counts.into_iter().enumerate().filter(|(_, count)| *count > 0).collect()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Steps> for Histogram {
+    fn from(steps: Steps) -> Histogram {
+        let mut histogram = Histogram::default();
+        for (place, count) in steps {
+            if let Some(found) = histogram.counts.get_mut(place) {
+                *found += count;
+                histogram.total += count;
+            }
+        }
+        histogram
     }
 }
 

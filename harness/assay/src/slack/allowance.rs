@@ -5,8 +5,8 @@
 
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Exact, Float, Machine, Operation, Program, Registers, Slack, Stopped};
-use crate::property::Settings;
-use crate::tolerance::Tolerance;
+use crate::property::{Settings, alone};
+use crate::tolerance::{Tolerance, numbers};
 use rayon::prelude::*;
 
 /// Rows that one thread takes at a time.
@@ -20,7 +20,7 @@ const MOST_OPERATIONS: u64 = 2_000_000_000;
 pub struct Allowance {
     /// Rows that first order says something of.
     pub rows: u64,
-    /// Those that it does not: a derivative is not finite there.
+    /// Those that it does not: a derivative is not finite there, or an argument is subnormal.
     pub beyond: u64,
     /// The largest allowance of a row over the stated bound there.
     pub largest: f64,
@@ -34,12 +34,14 @@ pub struct Allowance {
 
 /// A part of the result beside its bound.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Field {
     /// Its name; empty where the result has no parts.
     pub name: String,
     /// The largest allowance of a row over the stated bound there.
     pub largest: f64,
+    /// The same with what the result is off by that rounds every operation to nearest: where the function is an approximation, most of that is the method's error.
+    pub with_method: f64,
     /// Whether it is stated to be exact: then what may be flushed is all that is allowed, and it is not too much.
     pub is_exact: bool,
 }
@@ -66,7 +68,10 @@ impl Accuracy for Wgsl {
 struct Node {
     operands: [u32; 2],
     partials: [f64; 2],
+    /// How far it may be off its exact value.
     reach: f64,
+    /// What is lost where it is flushed.
+    flushed: f64,
 }
 
 /// A machine that rounds to nearest and records.
@@ -100,9 +105,11 @@ impl Machine for Recorder<'_> {
             }
             _ => self.steps.iter().map(|(exact, slack)| self.accuracy.reach(operation.function, *exact, *slack)).sum(),
         };
+        let result = self.steps.last().map_or(0.0, |(exact, _)| exact.value.abs());
+        let flushed = if result < f64::from(f32::MIN_POSITIVE) { result } else { 0.0 };
         self.steps.clear();
         let Operation { operands, partials, .. } = operation;
-        self.nodes.push(Node { operands, partials, reach });
+        self.nodes.push(Node { operands, partials, reach, flushed });
         self.nodes.len() as u32
     }
 }
@@ -110,6 +117,8 @@ impl Machine for Recorder<'_> {
 /// What first order says of one row.
 #[derive(Clone, Debug, Default)]
 struct FirstOrder {
+    /// The result.
+    result: Words,
     /// How far each word of the result may be off.
     reach: Vec<f64>,
     /// The derivative of each by each word of the arguments.
@@ -124,13 +133,13 @@ fn first_order(
     row: &[u32],
 ) -> Result<FirstOrder, Stopped> {
     let mut recorder = Recorder { accuracy, nodes: Vec::new(), steps: Vec::new() };
-    program.run_in(registers, row, &mut recorder, &mut Words::new())?;
     let mut found = FirstOrder::default();
+    program.run_in(registers, row, &mut recorder, &mut found.result)?;
     let mut adjoints = vec![0f64; recorder.nodes.len() + 1];
     for result in program.recorded(registers)? {
         adjoints.fill(0.0);
         adjoints[result as usize] = 1.0;
-        let mut reach = 0.0;
+        let (mut reach, mut flushed) = (0.0, 0f64);
         for (index, node) in recorder.nodes.iter().enumerate().take(result as usize).rev() {
             let adjoint = adjoints[index + 1];
             if adjoint == 0.0 {
@@ -139,13 +148,17 @@ fn first_order(
             if node.reach > 0.0 {
                 reach += adjoint.abs() * node.reach;
             }
+            // What is 0 is not flushed once more: of a chain the worst counts, not the sum.
+            if node.flushed > 0.0 {
+                flushed = flushed.max(adjoint.abs() * node.flushed);
+            }
             for (operand, partial) in node.operands.iter().zip(node.partials) {
                 if partial != 0.0 && *operand != 0 {
                     adjoints[*operand as usize] += adjoint * partial;
                 }
             }
         }
-        found.reach.push(reach);
+        found.reach.push(reach + flushed);
         // The arguments were recorded first.
         found.by_argument.push(adjoints[1..=row.len()].to_vec());
     }
@@ -171,27 +184,37 @@ pub fn of_formula(
     let cases = settings.cases.min(most.max(64));
     let random = (0..cases).into_par_iter().map(|row| formula.domain.row(settings.seed, row));
     let rows: Vec<Words> = random.chain(formula.hard_cases.par_iter().map(|case| case.arguments.clone())).collect();
-    let shares: Vec<Option<Vec<f64>>> = rows
+    let shares: Vec<Option<(Vec<f64>, Vec<f64>)>> = rows
         .par_iter()
         .with_min_len(ROWS_PER_TASK)
         .map_init(
             || registers.clone(),
             |registers, row| {
-                let FirstOrder { reach, by_argument } = first_order(program, registers, accuracy, row)?;
-                Ok(tolerance.shares(row, &formula.exact(row), &reach, &by_argument))
+                // Such a one may have been read as 0.
+                if alone::has_subnormals(formula, row) {
+                    return Ok(None);
+                }
+                let FirstOrder { result, reach, by_argument } = first_order(program, registers, accuracy, row)?;
+                let exact = formula.exact(row);
+                let shares = tolerance.shares(row, &exact, &reach, &by_argument);
+                let found = numbers(&formula.result, &result);
+                let off = found.iter().zip(&exact).zip(&reach).map(|((found, exact), reach)| reach + (found - exact).abs());
+                let off = tolerance.shares(row, &exact, &off.collect::<Vec<_>>(), &by_argument);
+                Ok(shares.zip(off))
             },
         )
         .collect::<Result<_, Stopped>>()?;
-    let fields = tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), largest: 0.0, is_exact });
+    let fields = tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), is_exact, ..Field::default() });
     let mut found = Allowance { fields: fields.collect(), ..Allowance::default() };
     let mut largest = Vec::new();
     for (row, shares) in rows.iter().zip(shares) {
-        let Some(shares) = shares else {
+        let Some((shares, off)) = shares else {
             found.beyond += 1;
             continue;
         };
         let share = shares.iter().copied().fold(0.0, f64::max);
         found.fields.iter_mut().zip(&shares).for_each(|(field, share)| field.largest = field.largest.max(*share));
+        found.fields.iter_mut().zip(&off).for_each(|(field, share)| field.with_method = field.with_method.max(*share));
         if share > found.largest {
             found.largest = share;
             found.at.clone_from(row);

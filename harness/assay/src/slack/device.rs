@@ -261,22 +261,20 @@ fn erring(exact: Exact, share: f64, slack: Slack) -> f32 {
     }
 }
 
-/// How far a result may lie from the exact one, at most; what may be flushed is the smallest normal float.
+/// How far a result may lie from the exact one, at most, but for what is flushed.
 pub(super) fn reach(exact: Exact, slack: Slack) -> f64 {
     let value = exact.value.abs();
     if !value.is_finite() || value > f64::from(f32::MAX) {
         return f64::INFINITY;
     }
-    let flushed = if value != 0.0 && value < f64::from(f32::MIN_POSITIVE) { f64::from(f32::MIN_POSITIVE) } else { 0.0 };
-    let erring = match slack {
+    match slack {
         Slack::Rounded if exact.above(exact.value as f32) == 0.0 => 0.0,
         Slack::Rounded => crate::tolerance::ulp_of(value),
         Slack::Ulps(_) | Slack::Root if value == 0.0 => 0.0,
         Slack::Ulps(ulps) => ulps * unit(value),
         Slack::Absolute(most) => most,
         Slack::Root => 2.0 * unit(1.0 / value) * value * value + 2.5 * unit(value),
-    };
-    erring.max(flushed)
+    }
 }
 
 /// WGSL's unit in the last place: the least distance of two floats with the number between them. At a power of two that is the one below it.

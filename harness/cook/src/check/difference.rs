@@ -7,10 +7,10 @@ use lapidary_assay::runner::Runner;
 use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::ulp_of;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What two devices make of the same random inputs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Inputs that both were given.
     pub inputs: u64,
@@ -25,6 +25,21 @@ pub struct Difference {
     /// The input of the largest distance.
     #[serde(skip)]
     pub worst: Words,
+}
+
+impl Difference {
+    /// The two together. The median is that of the more numerous.
+    pub fn join(self, other: Difference) -> Difference {
+        let (larger, smaller) = if other.max_ulp > self.max_ulp { (other, self) } else { (self, other) };
+        let more = if larger.differing >= smaller.differing { &larger } else { &smaller };
+        Difference {
+            inputs: larger.inputs + smaller.inputs,
+            differing: larger.differing + smaller.differing,
+            discrete: larger.discrete + smaller.discrete,
+            median_ulp: more.median_ulp,
+            ..larger
+        }
+    }
 }
 
 /// Runs a formula's random inputs, those of `settings`, through both.

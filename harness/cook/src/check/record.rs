@@ -1,0 +1,217 @@
+//! A long check in parts: rows of one function from several seeds joined, and a file that holds what is done, so that a run goes on where another ended, and runs on several machines
+//! become one.
+
+use super::{Row, located_hash};
+use crate::text_file;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Random inputs of a part: a longer check takes as many from each of several seeds, one after the other.
+pub const PART: u64 = 1 << 20;
+
+/// Bytes of a record.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// What was done of a long check.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// What was compared with what, and on which device.
+    pub about: String,
+    /// Random inputs from each seed.
+    pub cases: u64,
+    /// The text of each function's module, as a hash.
+    pub texts: BTreeMap<String, String>,
+    /// A row for each function.
+    pub rows: Vec<Row>,
+}
+
+impl PartialEq for Row {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.function, &self.seeds, self.cases) == (&other.function, &other.seeds, other.cases)
+    }
+}
+
+impl Record {
+    /// An empty one.
+    pub fn new(about: &str, cases: u64) -> Record {
+        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), rows: Vec::new() }
+    }
+
+    /// What a file holds; the empty one where there is none.
+    ///
+    /// # Errors
+    /// One line: where the file is no record, or one of another check.
+    pub fn open(path: &Path, about: &str, cases: u64) -> Result<Record, String> {
+        if !path.exists() {
+            return Ok(Record::new(about, cases));
+        }
+        let found = Record::read(path)?;
+        let name = path.display();
+        if found.cases != cases || found.about != about {
+            return Err(format!("{name}: holds another check ({} inputs a seed; {}); name another file", found.cases, found.about));
+        }
+        found.check_texts(path)?;
+        Ok(found)
+    }
+
+    /// What a file holds.
+    ///
+    /// # Errors
+    /// One line: where it cannot be read, or is no record.
+    pub fn read(path: &Path) -> Result<Record, String> {
+        let text = text_file::read(path, MOST_BYTES)?;
+        serde_json::from_str(&text).map_err(|error| format!("{}: no record of a check: {error}", path.display()))
+    }
+
+    /// Refuses what was recorded of another text.
+    fn check_texts(&self, path: &Path) -> Result<(), String> {
+        match self.texts.iter().find(|(module, text)| located_hash(module) != **text) {
+            None => Ok(()),
+            Some((module, _)) => Err(format!(
+                "{}: `{module}` has changed since; name another file, or remove this one",
+                path.display()
+            )),
+        }
+    }
+
+    /// Whether a function was tested from a seed.
+    pub fn holds(&self, function: &str, seed: u64) -> bool {
+        self.rows.iter().any(|row| row.function == function && row.seeds.contains(&seed))
+    }
+
+    /// Adds a function's row.
+    pub fn add(&mut self, row: Row) {
+        self.texts.insert(row.module.clone(), located_hash(&row.module));
+        match self.rows.iter_mut().find(|found| found.function == row.function) {
+            Some(found) => *found = std::mem::take(found).join(row),
+            None => self.rows.push(row),
+        }
+    }
+
+    /// Several as one.
+    ///
+    /// # Errors
+    /// One line: where they are of other checks or other texts, or hold the same part twice.
+    pub fn merge(records: Vec<(String, Record)>) -> Result<Record, String> {
+        let mut records = records.into_iter();
+        let (first, mut merged) = records.next().ok_or("no record to merge")?;
+        for (name, record) in records {
+            if (&record.about, record.cases) != (&merged.about, merged.cases) {
+                return Err(format!(
+                    "{name}: of another check than {first} ({} inputs a seed; {})",
+                    record.cases, record.about
+                ));
+            }
+            let other = record.texts.iter().find(|(module, text)| merged.texts.get(*module).is_some_and(|found| found != *text));
+            if let Some((module, _)) = other {
+                return Err(format!("{name}: of another text of `{module}` than those before it"));
+            }
+            for row in record.rows {
+                if let Some(seed) = row.seeds.iter().find(|seed| merged.holds(&row.function, **seed)) {
+                    return Err(format!("{name}: holds `{}` from seed {seed}, which another holds as well", row.function));
+                }
+                match merged.rows.iter_mut().find(|found| found.function == row.function) {
+                    Some(found) => *found = std::mem::take(found).join(row),
+                    None => merged.rows.push(row),
+                }
+            }
+            merged.texts.extend(record.texts);
+        }
+        let order: BTreeMap<&str, usize> =
+            crate::formulas::all().iter().enumerate().map(|(place, formula)| (formula.function, place)).collect();
+        merged.rows.sort_by_key(|row| order.get(row.function.as_str()).copied());
+        Ok(merged)
+    }
+}
+
+impl Row {
+    /// The two together, of one function from other seeds: what fails of either, the worst of both.
+    pub fn join(mut self, other: Row) -> Row {
+        if (other.passed, -other.worst_ratio) < (self.passed, -self.worst_ratio) {
+            return other.join(self);
+        }
+        // This one is the worse: its worst input, its failure and its command stay.
+        self.cases += other.cases;
+        self.failed += other.failed;
+        self.nonfinite += other.nonfinite;
+        self.stopped += other.stopped;
+        self.max_ulp = self.max_ulp.max(other.max_ulp);
+        self.ulps.join(&other.ulps);
+        self.p99_ulp = self.ulps.quantile(0.99).min(f64::MAX);
+        self.median_ulp = self.ulps.quantile(0.5).min(f64::MAX);
+        self.worst_ratio = self.worst_ratio.max(other.worst_ratio);
+        self.held_hard_cases = self.held_hard_cases.min(other.held_hard_cases);
+        for (found, others) in [
+            (&mut self.broken_hard_cases, other.broken_hard_cases),
+            (&mut self.broken_promises, other.broken_promises),
+            (&mut self.broken_branches, other.broken_branches),
+            (&mut self.assumptions, other.assumptions),
+        ] {
+            let all: BTreeSet<String> = found.drain(..).chain(others).collect();
+            found.extend(all);
+        }
+        self.worst_choices = self.worst_choices.or(other.worst_choices);
+        if other.allowance > self.allowance {
+            (self.allowance, self.allowance_input) = (other.allowance, other.allowance_input);
+        }
+        for (field, other) in self.allowances.iter_mut().zip(&other.allowances) {
+            field.largest = field.largest.max(other.largest);
+            field.with_method = field.with_method.max(other.with_method);
+        }
+        self.difference = match (self.difference, other.difference) {
+            (Some(one), Some(other)) => Some(one.join(other)),
+            (one, other) => one.or(other),
+        };
+        self.branches_untested = self.branches_untested.or(other.branches_untested);
+        self.missed_edges.retain(|edge| other.missed_edges.contains(edge));
+        self.seconds += other.seconds;
+        self.seeds.extend(other.seeds);
+        self.seeds.sort_unstable();
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(seed: u64, failed: u64, ulp: f64) -> Row {
+        let mut row = Row { passed: failed == 0, module: "srgb".to_owned(), function: "srgb_encode".to_owned(), cases: 10, failed, ..Row::default() };
+        (row.max_ulp, row.worst_ratio, row.seeds) = (ulp, ulp / 4.0, vec![seed]);
+        row.worst_input = format!("of {seed}");
+        (0..10).for_each(|_| row.ulps.add(ulp));
+        row
+    }
+
+    #[test]
+    fn rows_join_to_what_one_run_would_say() {
+        let joined = row(1, 0, 2.0).join(row(2, 3, 8.0)).join(row(3, 0, 1.0));
+        assert!(!joined.passed);
+        assert_eq!((joined.cases, joined.failed, joined.max_ulp, joined.worst_ratio), (30, 3, 8.0, 2.0));
+        assert_eq!((joined.median_ulp, joined.worst_input.as_str(), joined.seeds.as_slice()), (2.0, "of 2", &[1, 2, 3][..]));
+    }
+
+    #[test]
+    fn records_are_read_back_merged_and_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.json");
+        let mut one = Record::open(&path, "on a device", 10).expect("none yet");
+        one.add(row(1, 0, 2.0));
+        std::fs::write(&path, serde_json::to_string(&one).expect("JSON")).expect("written");
+        let again = Record::open(&path, "on a device", 10).expect("the same");
+        assert!(again.holds("srgb_encode", 1) && !again.holds("srgb_encode", 2));
+        assert_eq!(again.rows[0].ulps, one.rows[0].ulps);
+        assert!(Record::open(&path, "on another", 10).expect_err("another").contains("another check"));
+        let mut two = Record::new("on a device", 10);
+        two.add(row(2, 1, 4.0));
+        let named = |record: &Record| ("x.json".to_owned(), record.clone());
+        let merged = Record::merge(vec![named(&one), named(&two)]).expect("merge");
+        assert_eq!((merged.rows.len(), merged.rows[0].cases, merged.rows[0].failed), (1, 20, 1));
+        assert!(Record::merge(vec![named(&one), named(&one)]).expect_err("twice").contains("another holds as well"));
+        let mut changed = one.clone();
+        changed.texts.insert("srgb".to_owned(), "another".to_owned());
+        std::fs::write(&path, serde_json::to_string(&changed).expect("JSON")).expect("written");
+        assert!(Record::open(&path, "on a device", 10).expect_err("changed").contains("has changed since"));
+    }
+}
