@@ -99,7 +99,7 @@ fn bvh_trace_turn(vector: vec3f, axis: u32) -> vec3f {
 // Domain: |direction| = 1, rows of a matrix that can be inverted, with components up to 1e6 and the turned direction at least 1e-6
 //   long; positions up to 1e12.
 // Outside: finite while the direction is not turned into 0.
-// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward
+// Accuracy: lavapipe origin 1 ulp + 5 backward, direction 5 ulp + 5 backward, stretch 5 ulp + 5 backward; portable origin 1 ulp + 10 backward, direction 22 ulp + 10 backward, stretch 20 ulp + 10 backward; order kept
 fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec3f, row_y: vec3f, row_z: vec3f) -> BvhTraceObjectRay {
     let offset = origin - place;
     let turned = vec3f(dot(row_x, direction), dot(row_y, direction), dot(row_z, direction));

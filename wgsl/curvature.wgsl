@@ -40,7 +40,7 @@ fn curvature_scale(derivative: vec3f) -> f32 {
 // Units: one over the screen's; independent of the normal's length.
 // Domain: |normal| in [1e-15, 1e15], |derivative| at most 2^20 |normal|.
 // Outside: fades to 0 for shorter normals; finite while |derivative| < 1e10.
-// Accuracy: lavapipe 4 ulp + 3 backward; portable 12 ulp + 6 backward
+// Accuracy: lavapipe 4 ulp + 3 backward; portable 13 ulp + 6.5 backward
 fn curvature_normal_derivative(normal: vec3f, derivative: vec3f) -> vec3f {
     let scale = curvature_scale(normal);
     let scaled = scale * normal;
@@ -161,7 +161,7 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
 // Units: one over the position's, squared.
 // Domain: as curvature_mean, and normal derivatives at right angles to the surface's normal up to 0.4 of their length.
 // Outside: finite for |normal_x|, |normal_y| <= 2.
-// Accuracy: lavapipe 5 ulp + 1e-31 abs + 6 backward; portable 12 ulp + 1e-31 abs + 12 backward
+// Accuracy: lavapipe 5 ulp + 1e-31 abs + 6 backward; portable 12 ulp + 1e-31 abs + 12 backward; order kept
 fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
     let pixel = curvature_pixel(position_x, position_y, normal_x, normal_y);
     let frame = curvature_frame(pixel.p_x, pixel.p_y);
@@ -194,7 +194,7 @@ fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: v
 // Units: one over the position's.
 // Domain: as curvature_gaussian; |light| = 1.
 // Outside: finite for |normal_x|, |normal_y| <= 2 and |light| <= 2.
-// Accuracy: lavapipe 6 ulp + 1e-31 abs + 6 backward; portable 28 ulp + 2e-28 abs + 16 backward
+// Accuracy: lavapipe 6 ulp + 1e-31 abs + 6 backward; portable 28 ulp + 2e-28 abs + 16 backward; order kept
 fn curvature_towards(
     position_x: vec3f,
     position_y: vec3f,

@@ -158,7 +158,7 @@ fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4], gradient . direction = 0,
 //   |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40, 1] or 0.
 // Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
-// Accuracy: lavapipe 96 ulp + 10 backward; portable 192 ulp + 20 backward
+// Accuracy: lavapipe 96 ulp + 10 backward; portable 192 ulp + 20 backward; order kept
 fn dispersion_refract(
     direction: vec3f,
     gradient: vec3f,

@@ -22,7 +22,7 @@ const MICROFACET_OPPOSITE: f32 = 1e-30f;
 // Units: 1/sr; alpha a slope.
 // Domain: normal and half of any length in [1e-4, 1e4], or 0; any alpha, clamped to [0.001, 1].
 // Outside: finite and not negative as long as the fourth power of the product of the lengths is finite; 0 where its square underflows.
-// Accuracy: lavapipe 35 ulp + 1 backward; portable 75 ulp + 2 backward
+// Accuracy: lavapipe 35 ulp + 1 backward; portable 75 ulp + 2 backward; order kept
 fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     let a = clamp(alpha, MICROFACET_SMOOTHEST, 1.0f);
     let cosine = dot(normal, half);

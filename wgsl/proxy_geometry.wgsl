@@ -152,7 +152,7 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-27, 1e27], distance of the point at most 100 of it, sine of the angle times the ratio of the edges at least 1e-4.
 // Outside: finite; ill-conditioned.
-// Accuracy: lavapipe 8 ulp + 3 backward; portable 14 ulp + 5 backward
+// Accuracy: lavapipe 8 ulp + 3 backward; portable 16 ulp + 5.5 backward
 fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
     let extent = max(abs(edge_first), abs(edge_second));
     let size = max(max(extent.x, extent.y), extent.z);
@@ -196,7 +196,7 @@ fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec
 // Units: lattice coordinates, as proxy_geometry_coordinates gives them.
 // Domain: coordinates up to 2^23, beyond which f32 has no halves.
 // Outside: as the formula gives; cells beyond 2^31 are clamped to it.
-// Accuracy: lavapipe steps 0 ulp, turned 1 backward; portable steps 0 ulp, turned 1 backward
+// Accuracy: lavapipe steps 0 ulp, turned 1 backward; portable steps 0 ulp, turned 1 backward; order kept
 fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     let corner = floor(coordinates);
     let within = coordinates - corner;
@@ -242,7 +242,7 @@ fn proxy_geometry_facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> P
 // Units: lengths in, none out; `direction` is a unit vector.
 // Domain: |direction| = 1, distance between centroid and centre 0 or in [1e-30, 1e30].
 // Outside: overflows beyond.
-// Accuracy: lavapipe 6 ulp + 5 backward; portable 10 ulp + 7 backward
+// Accuracy: lavapipe 6 ulp + 5 backward; portable 10 ulp + 7 backward; order kept
 fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f, direction: vec3f) -> vec3f {
     let to_centre = centre - (vertex_first + vertex_second + vertex_third) / 3.0f;
     let size = max(max(abs(to_centre.x), abs(to_centre.y)), abs(to_centre.z));

@@ -98,7 +98,7 @@ fn reflective_shadow_map_texel(clip: vec4f, size: f32) -> vec2f {
 // Units: none.
 // Domain: normal of any length in [1e-12, 1e12], or 0; |toward_light| = 1.
 // Outside: finite as long as the squared length of the normal is.
-// Accuracy: lavapipe 5 ulp + 1 backward; portable 12 ulp + 2 backward
+// Accuracy: lavapipe 6 ulp + 1.5 backward; portable 12 ulp + 2 backward
 fn reflective_shadow_map_cosine(normal: vec3f, toward_light: vec3f) -> f32 {
     let unit = normal * inverseSqrt(max(dot(normal, normal), 1e-30f));
     return clamp(dot(unit, toward_light), 0.0f, 1.0f);

@@ -90,6 +90,10 @@ pub fn crossing(a: Vec3, b: Vec3, y: f32) -> VoxelizationCrossing {
 
 /// Where a triangle crosses a column: the column passes between two of its edges' crossings, the lower one included.
 pub fn column(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
+    // Two edges are one as seen along x: a device may round them apart.
+    if a.yz() == b.yz() || b.yz() == c.yz() || c.yz() == a.yz() {
+        return VoxelizationColumn { inside: false, depth: 0.0 };
+    }
     let ab = crossing(a, b, column.x);
     let bc = crossing(b, c, column.x);
     let ca = crossing(c, a, column.x);

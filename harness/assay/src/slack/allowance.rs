@@ -46,6 +46,16 @@ pub struct Field {
     pub is_exact: bool,
 }
 
+/// How many times larger than the allowance a bound may be.
+const MOST_SPARE: f64 = 8.0;
+
+impl Field {
+    /// Whether the bound is neither below what first order allows nor far above it.
+    pub fn is_fitting(&self) -> bool {
+        self.largest <= 1.0 && (self.is_exact || MOST_SPARE * self.with_method >= 1.0)
+    }
+}
+
 /// How far each operation may be off.
 pub trait Accuracy: Sync {
     /// The largest distance of a result from the exact one, which WGSL lets be off by `slack`. `function` is a function with its first argument, none of an infix operator;
@@ -198,13 +208,15 @@ pub fn of_formula(
                 let exact = formula.exact(row);
                 let shares = tolerance.shares(row, &exact, &reach, &by_argument);
                 let found = numbers(&formula.result, &result);
-                let off = found.iter().zip(&exact).zip(&reach).map(|((found, exact), reach)| reach + (found - exact).abs());
+                let off =
+                    found.iter().zip(&exact).zip(&reach).map(|((found, exact), reach)| reach + (found - exact).abs());
                 let off = tolerance.shares(row, &exact, &off.collect::<Vec<_>>(), &by_argument);
                 Ok(shares.zip(off))
             },
         )
         .collect::<Result<_, Stopped>>()?;
-    let fields = tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), is_exact, ..Field::default() });
+    let fields =
+        tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), is_exact, ..Field::default() });
     let mut found = Allowance { fields: fields.collect(), ..Allowance::default() };
     let mut largest = Vec::new();
     for (row, shares) in rows.iter().zip(shares) {

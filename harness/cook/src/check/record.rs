@@ -48,8 +48,11 @@ impl Record {
         }
         let found = Record::read(path)?;
         let name = path.display();
-        if found.cases != cases || found.about != about {
-            return Err(format!("{name}: holds another check ({} inputs a seed; {}); name another file", found.cases, found.about));
+        if found.cases != cases {
+            return Err(format!("{name}: holds {} inputs a seed, not {cases}; name another file", found.cases));
+        }
+        if found.about != about {
+            return Err(format!("{name}: holds a check on another device; name another file"));
         }
         found.check_texts(path)?;
         Ok(found)
@@ -68,10 +71,9 @@ impl Record {
     fn check_texts(&self, path: &Path) -> Result<(), String> {
         match self.texts.iter().find(|(module, text)| located_hash(module) != **text) {
             None => Ok(()),
-            Some((module, _)) => Err(format!(
-                "{}: `{module}` has changed since; name another file, or remove this one",
-                path.display()
-            )),
+            Some((module, _)) => {
+                Err(format!("{}: `{module}` has changed since; name another file, or remove this one", path.display()))
+            }
         }
     }
 
@@ -89,6 +91,15 @@ impl Record {
         }
     }
 
+    /// The rows in the cookbook's order.
+    #[must_use]
+    pub fn in_order(mut self) -> Record {
+        let order: BTreeMap<&str, usize> =
+            crate::formulas::all().iter().enumerate().map(|(place, formula)| (formula.function, place)).collect();
+        self.rows.sort_by_key(|row| order.get(row.function.as_str()).copied());
+        self
+    }
+
     /// Several as one.
     ///
     /// # Errors
@@ -98,18 +109,21 @@ impl Record {
         let (first, mut merged) = records.next().ok_or("no record to merge")?;
         for (name, record) in records {
             if (&record.about, record.cases) != (&merged.about, merged.cases) {
-                return Err(format!(
-                    "{name}: of another check than {first} ({} inputs a seed; {})",
-                    record.cases, record.about
-                ));
+                return Err(format!("{name}: of another device or number of inputs a seed than {first}"));
             }
-            let other = record.texts.iter().find(|(module, text)| merged.texts.get(*module).is_some_and(|found| found != *text));
+            let other = record
+                .texts
+                .iter()
+                .find(|(module, text)| merged.texts.get(*module).is_some_and(|found| found != *text));
             if let Some((module, _)) = other {
                 return Err(format!("{name}: of another text of `{module}` than those before it"));
             }
             for row in record.rows {
                 if let Some(seed) = row.seeds.iter().find(|seed| merged.holds(&row.function, **seed)) {
-                    return Err(format!("{name}: holds `{}` from seed {seed}, which another holds as well", row.function));
+                    return Err(format!(
+                        "{name}: holds `{}` from seed {seed}, which another holds as well",
+                        row.function
+                    ));
                 }
                 match merged.rows.iter_mut().find(|found| found.function == row.function) {
                     Some(found) => *found = std::mem::take(found).join(row),
@@ -118,10 +132,7 @@ impl Record {
             }
             merged.texts.extend(record.texts);
         }
-        let order: BTreeMap<&str, usize> =
-            crate::formulas::all().iter().enumerate().map(|(place, formula)| (formula.function, place)).collect();
-        merged.rows.sort_by_key(|row| order.get(row.function.as_str()).copied());
-        Ok(merged)
+        Ok(merged.in_order())
     }
 }
 
@@ -177,7 +188,14 @@ mod tests {
     use super::*;
 
     fn row(seed: u64, failed: u64, ulp: f64) -> Row {
-        let mut row = Row { passed: failed == 0, module: "srgb".to_owned(), function: "srgb_encode".to_owned(), cases: 10, failed, ..Row::default() };
+        let mut row = Row {
+            passed: failed == 0,
+            module: "srgb".to_owned(),
+            function: "srgb_encode".to_owned(),
+            cases: 10,
+            failed,
+            ..Row::default()
+        };
         (row.max_ulp, row.worst_ratio, row.seeds) = (ulp, ulp / 4.0, vec![seed]);
         row.worst_input = format!("of {seed}");
         (0..10).for_each(|_| row.ulps.add(ulp));
@@ -189,7 +207,10 @@ mod tests {
         let joined = row(1, 0, 2.0).join(row(2, 3, 8.0)).join(row(3, 0, 1.0));
         assert!(!joined.passed);
         assert_eq!((joined.cases, joined.failed, joined.max_ulp, joined.worst_ratio), (30, 3, 8.0, 2.0));
-        assert_eq!((joined.median_ulp, joined.worst_input.as_str(), joined.seeds.as_slice()), (2.0, "of 2", &[1, 2, 3][..]));
+        assert_eq!(
+            (joined.median_ulp, joined.worst_input.as_str(), joined.seeds.as_slice()),
+            (2.0, "of 2", &[1, 2, 3][..])
+        );
     }
 
     #[test]
@@ -202,7 +223,7 @@ mod tests {
         let again = Record::open(&path, "on a device", 10).expect("the same");
         assert!(again.holds("srgb_encode", 1) && !again.holds("srgb_encode", 2));
         assert_eq!(again.rows[0].ulps, one.rows[0].ulps);
-        assert!(Record::open(&path, "on another", 10).expect_err("another").contains("another check"));
+        assert!(Record::open(&path, "on another", 10).expect_err("another").contains("another device"));
         let mut two = Record::new("on a device", 10);
         two.add(row(2, 1, 4.0));
         let named = |record: &Record| ("x.json".to_owned(), record.clone());

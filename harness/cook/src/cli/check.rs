@@ -9,10 +9,13 @@ use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_assay::slack::Reassociation;
 use lapidary_browser::{Adapter, Browser};
 use lapidary_cook::check::guard::{self, Stage};
+use lapidary_cook::check::record::{self, Record};
 use lapidary_cook::check::user_file::{Contents, UserFile};
 use lapidary_cook::check::{self, CheckError, On, Row, Source};
 use lapidary_cook::cookbook::release::Standing;
-use std::path::PathBuf;
+use lapidary_render::file;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 /// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
 #[derive(clap::Args)]
@@ -47,9 +50,16 @@ pub(super) struct Arguments {
     /// cookbook's own functions are tested with what is there first.
     #[arg(long, value_name = "DIR")]
     failures: Option<PathBuf>,
-    /// Test the I-th of N parts of the functions, to share the work between machines or runs.
+    /// Test the I-th of N parts of the work, to share it between machines or runs: of the functions, and where there are over 1,048,576 --cases of the seeds from which
+    /// so many are drawn each.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// A file for the results as they come. Where it is there from a run that was ended, this one goes on from it.
+    #[arg(long, value_name = "FILE", conflicts_with = "wgsl")]
+    record: Option<PathBuf>,
+    /// Run nothing: show these records, such as those of all shards, as one; with --record, write that too.
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["filter", "wgsl", "portable", "browser", "cases", "seed", "shard", "failures"])]
+    merge: Vec<PathBuf>,
     /// One JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -86,24 +96,39 @@ impl Shard {
 /// What was checked, and what there is to say besides.
 #[derive(Default)]
 struct Checked {
+    /// What was compared with what.
+    about: String,
     rows: Vec<Row>,
     notes: Vec<String>,
     releases: Vec<Standing>,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
+    if !arguments.merge.is_empty() {
+        return merged(arguments);
+    }
     if arguments.browser.is_some() && Browser::find().is_none() {
         return skipped(arguments);
     }
-    let settings = Settings { cases: arguments.cases, seed: arguments.seed };
+    let parts = parts(arguments);
+    let settings = parts[0];
     let checked = match &arguments.wgsl {
         None => {
             let formulas = check::select(arguments.filter.as_deref())?;
-            let formulas = Shard::share(arguments.shard, formulas);
+            let work = parts.iter().flat_map(|part| formulas.iter().map(|formula| (*formula, *part)));
+            let work = Shard::share(arguments.shard, work.collect());
             let on = on(context, arguments)?;
             let regressions = arguments.failures.as_ref().map_or_else(check::failures, Regressions::in_folder);
-            let rows = all(on, &formulas, Source::Cookbook, settings, Some(&regressions), None)?;
-            Checked { rows, ..Checked::default() }
+            let about = text::about(on);
+            let mut record = match &arguments.record {
+                Some(path) => {
+                    file::check_writable(path)?;
+                    Record::open(path, &about, settings.cases).map_err(Failure)?
+                }
+                None => Record::new(&about, settings.cases),
+            };
+            in_parts(on, &work, &regressions, &mut record, arguments.record.as_deref())?;
+            Checked { about, rows: record.in_order().rows, ..Checked::default() }
         }
         Some(path) => {
             // What the command line alone can be wrong in goes before the file, and both before the device.
@@ -111,25 +136,85 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             let file = UserFile::read(path)?;
             let on = on(context, arguments)?;
             let filter = arguments.filter.clone();
+            let about = text::about(on);
             let shard = arguments.shard;
             let regressions = arguments.failures.as_ref().map(Regressions::in_folder);
             let work = move |stage: &Stage| {
-                of_file(on, &file, (filter.as_deref(), shard), settings, regressions.as_ref(), stage)
+                let checked = of_file(on, &file, (filter.as_deref(), shard), settings, regressions.as_ref(), stage)?;
+                Ok::<_, CheckError>(Checked { about, ..checked })
             };
             guard::watched(work).map_err(|error| Failure(format!("{}: {error}", path.display())))??
         }
     };
-    if arguments.json {
+    said(&checked, arguments.json)
+}
+
+/// Says what was found.
+fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
+    if json {
         // stdout is the array alone.
         for line in text::notes(&checked.notes, &checked.releases) {
             eprintln!("cook: {line}");
         }
         output::line(&serde_json::to_string_pretty(&checked.rows)?.to_string())?;
     } else {
-        let style = text::Style::of_stdout();
-        output::bytes(text::report(&checked, on(context, arguments)?, style).as_bytes())?;
+        output::bytes(text::report(checked, text::Style::of_stdout()).as_bytes())?;
     }
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
+}
+
+/// The inputs in parts of [`record::PART`], from one seed after the other.
+fn parts(arguments: &Arguments) -> Vec<Settings> {
+    let Arguments { cases, seed, wgsl, .. } = arguments;
+    // A user's file is a matter of seconds.
+    if *cases <= record::PART || wgsl.is_some() {
+        return vec![Settings { cases: *cases, seed: *seed }];
+    }
+    (0..cases.div_ceil(record::PART))
+        .map(|part| Settings { cases: record::PART, seed: seed.wrapping_add(part) })
+        .collect()
+}
+
+/// Tests part by part, and writes after each what is done.
+fn in_parts(
+    on: On<'_>,
+    work: &[(&'static Formula, Settings)],
+    regressions: &Regressions,
+    record: &mut Record,
+    path: Option<&Path>,
+) -> Result<(), Failure> {
+    let left: Vec<&(&Formula, Settings)> =
+        work.iter().filter(|(formula, part)| !record.holds(formula.function, part.seed)).collect();
+    // All signatures first, so that a wrong one is said before minutes of testing.
+    let mut prepared = BTreeSet::new();
+    for (formula, _) in &left {
+        if prepared.insert(formula.function) {
+            check::prepare(on, formula, Source::Cookbook)?;
+        }
+    }
+    let bar = super::progress::bar(work.len() as u64, "checking");
+    bar.set_position((work.len() - left.len()) as u64);
+    for (formula, part) in left {
+        bar.set_message(format!("{} seed {}", formula.function, part.seed));
+        record.add(check::run_keeping(on, formula, Source::Cookbook, *part, Some(regressions))?);
+        bar.inc(1);
+        if let Some(path) = path {
+            file::replace(path, serde_json::to_string(record)?.as_bytes())?;
+        }
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+/// Several records as one.
+fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let read = |path: &PathBuf| Record::read(path).map(|record| (path.display().to_string(), record));
+    let records = arguments.merge.iter().map(read).collect::<Result<_, _>>().map_err(Failure)?;
+    let record = Record::merge(records).map_err(Failure)?;
+    if let Some(path) = &arguments.record {
+        file::replace(path, serde_json::to_string(&record)?.as_bytes())?;
+    }
+    said(&Checked { about: record.about, rows: record.rows, ..Checked::default() }, arguments.json)
 }
 
 /// Without a browser nothing is checked in one: said and counted, and a fault where one is required.
@@ -171,7 +256,7 @@ fn of_file(
     let Contents { formulas, notes, releases } = file.contents(filter)?;
     let formulas = Shard::share(shard, formulas);
     let source = Source::Copy(&file.path, &file.text);
-    let mut rows = all(on, &formulas, source, settings, regressions, Some(stage))?;
+    let mut rows = all(on, &formulas, source, settings, regressions, stage)?;
     for row in &mut rows {
         for standing in releases.iter().filter(|standing| standing.module == row.module) {
             if let Some(origin) = standing.origins.iter().find(|origin| origin.function == row.function) {
@@ -180,7 +265,7 @@ fn of_file(
             }
         }
     }
-    Ok(Checked { rows, notes, releases })
+    Ok(Checked { about: String::new(), rows, notes, releases })
 }
 
 fn all(
@@ -189,21 +274,17 @@ fn all(
     source: Source<'_>,
     settings: Settings,
     regressions: Option<&Regressions>,
-    stage: Option<&Stage>,
+    stage: &Stage,
 ) -> Result<Vec<Row>, CheckError> {
     // All signatures first, so that a wrong one is said before minutes of testing.
     for formula in formulas {
-        if let Some(stage) = stage {
-            stage.compiling(&format!("compiling `{}`", formula.function));
-        }
+        stage.compiling(&format!("compiling `{}`", formula.function));
         check::prepare(on, formula, source)?;
     }
     let bar = super::progress::bar(formulas.len() as u64, "checking");
     let mut rows = Vec::new();
     for formula in formulas {
-        if let Some(stage) = stage {
-            stage.running(&format!("running `{}`", formula.function));
-        }
+        stage.running(&format!("running `{}`", formula.function));
         bar.set_message(formula.function);
         rows.push(check::run_keeping(on, formula, source, settings, regressions)?);
         bar.inc(1);

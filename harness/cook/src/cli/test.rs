@@ -33,7 +33,8 @@ pub(super) struct Arguments {
 }
 
 /// What a quick run leaves out: the tests with one of these in their names.
-const SLOW: [&str; 34] = [
+const SLOW: [&str; 35] = [
+    "allowance::",
     "antialiasing::",
     "atlas::",
     "cdrf_shading::",

@@ -95,14 +95,15 @@ fn signature(source: &str, function: &FunctionDoc) -> String {
 }
 
 fn accuracy(accuracy: &Accuracy) -> String {
-    let Accuracy::Bounded { lavapipe, portable } = accuracy else {
+    let Accuracy::Bounded { lavapipe, portable, order_kept } = accuracy else {
         return "<span class=\"badge\">naive</span>".to_owned();
     };
     let device = |name: &str, bounds: &[FieldBound]| {
         let bounds: String = bounds.iter().map(|bound| format!("<dd>{}</dd>", self::bound(bound))).collect();
         format!("<div><dt>{name}</dt>{bounds}</div>\n")
     };
-    format!("<dl class=\"bounds\">\n{}{}</dl>", device("lavapipe", lavapipe), device("portable", portable))
+    let order = if *order_kept { "<div><dt>order</dt><dd>kept</dd></div>\n" } else { "" };
+    format!("<dl class=\"bounds\">\n{}{}{order}</dl>", device("lavapipe", lavapipe), device("portable", portable))
 }
 
 /// In the accuracy line's grammar, small numbers by powers of ten.

@@ -10,8 +10,6 @@
 //! changed. It says what it does not judge. A run that names a module or function judges all of its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all
 //! and writes the record, `sample` one in ten by the suite's seed, `listed` those that are listed.
 
-#[path = "../suite/portable.rs"]
-mod portable;
 mod record;
 
 use lapidary_assay::formula::Formula;
@@ -420,8 +418,7 @@ fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
     let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula), &[]);
     let judge = judge.expect("the cookbook's WGSL is valid");
-    // What does not hold on any device as it is, says nothing of its mutants there.
-    if portable::excepted().contains_key(formula.function) || formula.benign.is_some() {
+    if formula.benign.is_some() {
         judge
     } else {
         judge.and_anywhere(check::tolerance(On::Slack(Reassociation::Written), formula))

@@ -16,7 +16,6 @@ const ENGINE: [&str; 14] = [
     "harness/cook/src/cookbook",
     "harness/cook/tests/mutation/main.rs",
     "harness/cook/tests/mutation/record.rs",
-    "harness/cook/tests/portable.txt",
     "harness/cook/tests/suite/portable.rs",
     "harness/gpu/Cargo.toml",
     "harness/gpu/src",

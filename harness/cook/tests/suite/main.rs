@@ -1,6 +1,7 @@
 //! The tests that need the whole harness: a GPU, the compiled-in cookbook, or the real `cook` binary.
 
 mod adapter;
+mod allowance;
 mod antialiasing;
 mod bad_input;
 mod bvh;
@@ -28,7 +29,6 @@ mod outside;
 mod parity;
 mod pixels;
 mod plan;
-mod portable;
 mod program;
 mod random_walk;
 mod reference;

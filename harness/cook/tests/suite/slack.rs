@@ -1,6 +1,6 @@
-//! Slack: every function's portable bounds, held to on devices that err as far as WGSL lets them, or a line of `portable.txt` says why not.
+//! Slack: every function's portable bounds, held to on devices that err as far as WGSL lets them.
 
-use super::portable::excepted;
+use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
 use lapidary_assay::slack::Reassociation;
 use lapidary_cook::check::{self, On, Row, Source};
@@ -24,12 +24,8 @@ fn described(row: &Row) -> String {
 #[test]
 fn every_function_holds_on_every_device_that_wgsl_allows() {
     let settings = Settings { cases: DEFAULT_CASES, seed: super::seed() };
-    let excepted = excepted();
     let mut faults = Vec::new();
     for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
-        if excepted.contains_key(formula.function) {
-            continue;
-        }
         let row = examined(formula.function, Source::Cookbook, settings);
         // Edges are the adapters' runs' to reach.
         let broken = [&row.broken_hard_cases, &row.broken_promises, &row.broken_branches];
@@ -40,14 +36,30 @@ fn every_function_holds_on_every_device_that_wgsl_allows() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// From a fixed seed: what fails for few inputs may hold for another's.
+/// WGSL lets a compiler take sums of three and more terms, and products, in another order. A function whose portable bound needs the written one says so in its
+/// `Accuracy:` line, and does fail without it, from a fixed seed.
 #[test]
-fn what_the_list_excepts_does_fail() {
-    for (function, reason) in excepted() {
-        let settings = Settings { cases: 4 * DEFAULT_CASES, ..Settings::default() };
-        let row = examined(function, Source::Cookbook, settings);
-        assert!(!row.passed(), "{function} holds; take its line from portable.txt ({reason})");
+fn what_reassociation_breaks_is_named() {
+    let mut faults = Vec::new();
+    for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
+        let accuracy = &check::documentation(formula).accuracy;
+        let named = matches!(accuracy, Accuracy::Bounded { order_kept: true, .. });
+        let settings = if named {
+            Settings { cases: 4 * DEFAULT_CASES, ..Settings::default() }
+        } else {
+            Settings { cases: DEFAULT_CASES / 4, seed: super::seed() }
+        };
+        let on = On::Slack(Reassociation::Reordered);
+        let row = check::run(on, formula, Source::Cookbook, settings).expect("the interpreter runs it");
+        let fails = row.failed > 0 || !row.broken_hard_cases.is_empty() || !row.broken_promises.is_empty();
+        if fails && !named {
+            faults.push(format!("write `order kept` where it stands, or mend it: {}", described(&row)));
+        }
+        if named && !fails {
+            faults.push(format!("{} holds in any order; its line says `order kept`", formula.function));
+        }
     }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
 /// A change that the reference device forgives.

@@ -41,41 +41,43 @@ impl Style {
     }
 }
 
-/// The whole report: notes, the table, each failure, the sum.
-pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
-    let mut text = String::new();
-    for line in notes(&checked.notes, &checked.releases) {
-        let _ = writeln!(text, "{line}");
-    }
-    let _ = match on {
-        On::Adapter(gpu) if !gpu.is_lavapipe() => write!(
-            text,
-            "Each result of the shader on {} is compared with the exact one of\n\
-             its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
-            gpu.describe()
-        ),
-        On::Adapter(gpu) => write!(
-            text,
+/// What is compared with what, and on which device.
+pub(super) fn about(on: On<'_>) -> String {
+    match on {
+        On::Adapter(gpu) if gpu.is_lavapipe() => format!(
             "Each result of the shader on {} is compared with that of its mirror in\n\
-             Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound. ",
+             Rust (f32) and with the exact one of its oracle (f64); all three may differ by the `Accuracy:` line's bound.",
             gpu.describe()
         ),
-        On::Browser(browser, _) => write!(
-            text,
-            "Each result of the shader in a browser on {} is compared\n\
-             with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
-            browser.adapter()
+        On::Adapter(gpu) => format!(
+            "Each result of the shader on {} is compared with the exact one of\n\
+             its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound.",
+            gpu.describe()
         ),
-        On::Slack(reassociation) => write!(
-            text,
+        On::Browser(browser, gpu) => format!(
+            "Each result of the shader in a browser on {} is compared\n\
+             with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound; its bits with those on\n{}.",
+            browser.adapter(),
+            gpu.describe()
+        ),
+        On::Slack(reassociation) => format!(
             "Each result of the shader on a device that errs as far as WGSL lets it{} is\n\
-             compared with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound. ",
+             compared with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound.",
             match reassociation {
                 Reassociation::Written => "",
                 Reassociation::Reordered => ", sums and products in other orders,",
             }
         ),
-    };
+    }
+}
+
+/// The whole report: notes, the table, each failure, the sum.
+pub(super) fn report(checked: &Checked, style: Style) -> String {
+    let mut text = String::new();
+    for line in notes(&checked.notes, &checked.releases) {
+        let _ = writeln!(text, "{line}");
+    }
+    let _ = write!(text, "{} ", checked.about);
     let _ = writeln!(
         text,
         "`max ulp` to\n\
@@ -106,8 +108,11 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
     for row in &checked.rows {
         details(row, style, &mut text);
     }
-    if let On::Browser(browser, gpu) = on {
-        differences(&checked.rows, [browser.adapter(), &gpu.describe()], &mut text);
+    if checked.rows.iter().any(|row| row.difference.is_some()) {
+        differences(&checked.rows, &mut text);
+    }
+    if checked.rows.iter().any(|row| row.allowance.is_some()) {
+        allowances(&checked.rows, &mut text);
     }
     let assumptions: BTreeSet<&String> = checked.rows.iter().flat_map(|row| &row.assumptions).collect();
     for assumption in assumptions {
@@ -126,7 +131,7 @@ pub(super) fn report(checked: &Checked, on: On<'_>, style: Style) -> String {
 }
 
 /// Where the browser's results have other bits than the adapter's, the most different function first.
-fn differences(rows: &[Row], [browser, adapter]: [&str; 2], text: &mut String) {
+fn differences(rows: &[Row], text: &mut String) {
     let mut differing: Vec<(&Row, &Difference)> = rows
         .iter()
         .filter_map(|row| Some((row, row.difference.as_ref().filter(|found| found.differing > 0)?)))
@@ -136,7 +141,7 @@ fn differences(rows: &[Row], [browser, adapter]: [&str; 2], text: &mut String) {
     });
     let _ = writeln!(
         text,
-        "\nWhere the bits differ: {browser}, beside {adapter}. {} of {} functions give the same bits everywhere.\n\
+        "\nWhere the bits differ. {} of {} functions give the same bits everywhere.\n\
          `discrete` counts results with another bool or integer; distances are in ulp of a result's largest component.\n",
         rows.len() - differing.len(),
         rows.len()
@@ -161,6 +166,31 @@ fn differences(rows: &[Row], [browser, adapter]: [&str; 2], text: &mut String) {
             short(found.max_ulp),
             row.difference_input.as_deref().unwrap_or_default()
         );
+    }
+}
+
+/// Bounds that first order says are too low, or too high.
+fn allowances(rows: &[Row], text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\nTo first order, what every operation may be off by, carried to the result, is at most the stated bound and at least an eighth of it, but for:"
+    );
+    let mut none = true;
+    for row in rows {
+        for field in row.allowances.iter().filter(|field| !field.is_fitting()) {
+            none = false;
+            let name = format!("{} {}", row.function, field.name);
+            let _ = writeln!(
+                text,
+                "  {:<56} {:>8} of the bound; with the error of the method {:>8}",
+                name.trim_end(),
+                short(field.largest),
+                short(field.with_method)
+            );
+        }
+    }
+    if none {
+        let _ = writeln!(text, "  none");
     }
 }
 

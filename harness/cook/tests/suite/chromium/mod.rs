@@ -98,7 +98,7 @@ fn browser() -> Result<Arc<Browser>, String> {
 }
 
 /// What a test found, or none where there is no Chromium and none is required; then it says so.
-fn found<T>(found: Result<T, &str>, skipped: &str) -> Option<T> {
+fn found<T, E: std::fmt::Display>(found: Result<T, E>, skipped: &str) -> Option<T> {
     found
         .inspect_err(|error| {
             let required = std::env::var_os(VARIABLE).is_some_and(|value| value == "required");
@@ -126,7 +126,7 @@ fn judge() -> Result<Vec<Judged>, String> {
 /// The planted texts and the others, judged; none where there is no Chromium and none is required.
 fn judged() -> Option<(&'static [Judged], &'static [Judged])> {
     static JUDGED: OnceLock<Result<Vec<Judged>, String>> = OnceLock::new();
-    let judged = JUDGED.get_or_init(judge).as_ref().map_err(String::as_str);
+    let judged = JUDGED.get_or_init(judge).as_ref();
     found(judged, &format!("{} texts", texts().len())).map(|judged| judged.split_at(PLANTED.len()))
 }
 
