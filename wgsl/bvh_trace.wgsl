@@ -1,6 +1,6 @@
 // bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 03e3a1199bf55053
+// Version: 0.2.0, hash 17da964fd61f047f
 // Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis permutation, shear,
 //   edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013 (conservative boxes). The naive triangle: Möller
 //   and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Compared with: Imagire, "Proxy Geometry Gem

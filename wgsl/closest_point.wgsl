@@ -1,6 +1,6 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash edd4d94f74ef34e4
+// Version: 0.2.0, hash d392e92db6b8058a
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected after (A.6).
 //   The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the Regularization Method", 1963.
 

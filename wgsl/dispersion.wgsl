@@ -1,6 +1,6 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash ebfee976a7caa7e4
+// Version: 0.2.0, hash ac54028674c5f4b9
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
 //   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
 //   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile),

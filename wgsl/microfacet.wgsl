@@ -1,6 +1,6 @@
 // microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d3e7685048775129
+// Version: 0.2.0, hash 1ecd18273a47c03e
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, eq. (20), (33);
 //   Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, eq. (72), (99);
 //   Lagrange's identity for the squared sine: Guy and Agopian, "Physically Based Rendering in Filament", 4.4.1.

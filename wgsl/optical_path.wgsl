@@ -1,6 +1,6 @@
 // optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a2f39ddd36931d87
+// Version: 0.2.0, hash feb040893238c1f4
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", sections 2 and 3;
 //   Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29 (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal
 //   Equations", SIAM J. Sci. Comput. 30 (2008).

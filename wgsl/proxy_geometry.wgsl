@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash ade7e5b1f566dbaf
+// Version: 0.2.0, hash d08ec65ed20671b9
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the

@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 38fff672414d5615
+// Version: 0.2.0, hash dd8a68312a1374ab
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);

@@ -1,6 +1,6 @@
 // reflective_shadow_map: where a light's view puts a point, how much light the surface takes there, and whether something stands before it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 8a59f25e8d47aa57
+// Version: 0.2.0, hash e24f8d3c52aabbc3
 // Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and Morishima, "Real-time Rendering of
 //   Translucent Material using Dynamic Programming", section 3.1, for the four channels: world position and N.L;
 //   Duff et al., "Building an Orthonormal Basis, Revisited", 2017, listing 3, for the map's axes.

@@ -1,6 +1,6 @@
 // refraction: a ray refracted at a plane interface, with total internal reflection as an explicit result.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash cc02e8e94501a471
+// Version: 0.2.0, hash 4ed77dc430a57809
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of Optics, 7th ed., section 1.5.
 //
 // `relative_index` is n = n_transmitted / n_incident, the paper's 1 / eta: 2.417 into a diamond, 1 / 2.417 out

@@ -1,6 +1,6 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash cd32c1c3cbf35ddc
+// Version: 0.2.0, hash adfa93f806b4ae10
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
 //   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //

@@ -37,6 +37,14 @@ pub fn verdict_of(
 /// Subnormals of a row of which each may have been flushed or not; of more all are.
 const MOST_SUBNORMALS: usize = 4;
 
+/// The first invariant that a result breaks, and how; of a portable device one that it also breaks for the row as a device may see it that flushes.
+pub fn broken(formula: &Formula, row: &[u32], result: &[u32], is_portable: bool) -> Option<(&'static str, String)> {
+    let broken = formula.broken(row, result, is_portable)?;
+    let holds = |row: &Words| formula.broken(row, result, is_portable).is_none();
+    let is_forgiven = is_portable && has_subnormals(formula, row) && flushed(formula, row).iter().any(holds);
+    (!is_forgiven).then_some(broken)
+}
+
 /// Where the floats of a row are that a device may flush.
 fn subnormals(formula: &Formula, row: &[u32]) -> Vec<usize> {
     let scalars = formula.arguments.iter().flat_map(Shape::scalars);

@@ -253,7 +253,7 @@ impl Check<'_> {
                     (pair.holds)(arguments, result, other).err().map(|why| (pair.name, why))
                 })
             };
-            let broken = formula.broken(arguments, result, is_portable).or_else(broken_pair);
+            let broken = alone::broken(formula, arguments, result, is_portable).or_else(broken_pair);
             let broken = broken.map(|(name, why)| format!("{name}: {why}"));
             Judged { verdict, broken, stopped: stopped[row] }
         };

@@ -247,7 +247,7 @@ pub fn faults(
         // Of a function that is wrong everywhere a few faults are enough, and need no long search.
         let quick = judge(false);
         let verdict = if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(true) };
-        let fault = match formula.broken(row, result, runner.is_portable()) {
+        let fault = match alone::broken(formula, row, result, runner.is_portable()) {
             Some((_, broken)) => broken,
             None if verdict.nonfinite => "the result is not finite".to_owned(),
             None if !verdict.holds() => format!("off by {:.1} times the allowed error", verdict.ratio),
