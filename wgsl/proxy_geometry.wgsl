@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d08ec65ed20671b9
+// Version: 0.2.0, hash 477d7374ff231b7f
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
@@ -74,7 +74,7 @@ fn proxy_geometry_plane(centre: vec3f, position_first: vec3f, position_second: v
 // its own ends, while two long ones that differ by a short third have lost it if their common end is far from the origin. They are
 // scaled to size 1 first: their cross product and its square leave the range of f32 for triangles of size 1e-10 and of 1e10. It is their
 // difference that is crossed, which is exact where they are nearly parallel, so that slivers keep their digits.
-// Returns: unit normal; zero for a degenerate triangle, one whose edges' cross product is zero in f32.
+// Returns: unit normal; zero for a degenerate triangle, one whose edges' cross product has a square below 1.2e-38 once they are scaled.
 // Units: lengths in, none out.
 // Domain: edges in [1e-30, 1e30], sine of the angle between the two shortest at least 1e-6.
 // Outside: finite; zero or ill-conditioned.

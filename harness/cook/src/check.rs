@@ -139,7 +139,8 @@ pub struct Row {
     pub reproduce: String,
     /// The seeds from which inputs were drawn, so many from each.
     pub seeds: Vec<u64>,
-    /// The distribution behind the quantiles.
+    /// The distribution behind the quantiles; a [`record::Record`] keeps it.
+    #[serde(skip)]
     pub ulps: Histogram,
 }
 

@@ -238,3 +238,118 @@ pub fn of_formula(
     found.median = largest.get(largest.len() / 2).copied().unwrap_or(0.0);
     Ok(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draws::mix;
+    use crate::interpreter::Nearest;
+    use crate::slack::{Device, Mode};
+
+    fn program(expression: &str) -> Program {
+        let source = format!("fn f(x: f32, y: f32) -> f32 {{ return {expression}; }}");
+        Program::new(&source, "test.wgsl", "f").expect("valid")
+    }
+
+    fn of(program: &Program, [x, y]: [f32; 2]) -> FirstOrder {
+        let mut registers = program.registers().expect("runs");
+        first_order(program, &mut registers, &Wgsl, &[x.to_bits(), y.to_bits()]).expect("ends")
+    }
+
+    fn value(program: &Program, [x, y]: [f32; 2], machine: &mut impl Machine) -> f64 {
+        let mut result = Words::new();
+        program.run(&[x.to_bits(), y.to_bits()], machine, &mut result).expect("ends");
+        f64::from(f32::from_bits(result[0]))
+    }
+
+    const EXPRESSIONS: [&str; 26] = [
+        "x + y",
+        "x - y",
+        "x * y",
+        "x / y",
+        "-x",
+        "abs(y - 4.0f)",
+        "sqrt(x)",
+        "inverseSqrt(x)",
+        "exp(x)",
+        "exp2(x)",
+        "log(x)",
+        "log2(y)",
+        "pow(x, y)",
+        "sin(x)",
+        "cos(x)",
+        "tan(x)",
+        "asin(x)",
+        "acos(x)",
+        "atan(x)",
+        "atan2(x, y)",
+        "mix(x, y, 0.3f)",
+        "min(x, y) * max(x, y)",
+        "clamp(x, 0.1f, 0.9f) + clamp(y, 0.0f, 1.0f)",
+        "dot(vec3f(x, y, 1.0f), vec3f(y, y, x))",
+        "length(vec2f(x, y))",
+        "smoothstep(0.0f, 4.0f, x + y)",
+    ];
+
+    #[test]
+    fn derivatives_are_those_of_the_function() {
+        let (at, step) = ([0.625f32, 1.75f32], 1.0 / 256.0);
+        for expression in EXPRESSIONS {
+            let program = program(expression);
+            let found = of(&program, at).by_argument;
+            for (place, derivative) in found[0].iter().enumerate() {
+                let beside = |sign: f32| {
+                    let mut moved = at;
+                    moved[place] += sign * step;
+                    value(&program, moved, &mut Nearest)
+                };
+                let quotient = (beside(1.0) - beside(-1.0)) / f64::from(2.0 * step);
+                assert!(
+                    (quotient - derivative).abs() < 1e-3 * (1.0 + derivative.abs()),
+                    "{expression}: {derivative}, {quotient}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_allowance_is_what_the_operations_may_add() {
+        let unit = 2f64.powi(-23);
+        // A sum that is exact; one rounding; a rounding of 1e4's unit that the difference leaves over.
+        for (expression, at, reach) in [
+            ("x + y", [0.5, 0.25], 0.0),
+            ("x * 2.0f", [0.3, 0.0], 0.0),
+            ("x + y", [1.0, 1e-9], unit),
+            ("(x + 8192.0f) - 8192.0f", [0.3, 0.0], 8192.0 * unit),
+            ("x / y", [1.0, 3.0], 2.5 * unit / 4.0),
+            ("sin(x)", [1.0, 0.0], 2f64.powi(-11)),
+            ("0.3f * sin(x)", [0.5, 0.0], f64::from(0.3f32) * 2f64.powi(-11) + unit / 8.0),
+        ] {
+            let found = of(&program(expression), at).reach[0];
+            assert!((found - reach).abs() <= 1e-9 * reach, "{expression}: {found:e}, not {reach:e}");
+        }
+    }
+
+    /// What devices make of it stays within: the second order is far below the first here.
+    #[test]
+    fn no_device_exceeds_it() {
+        for expression in EXPRESSIONS {
+            let program = program(expression);
+            for row in 0..64 {
+                let share = |place: u64| (mix(row ^ mix(place)) >> 40) as f32 / 16_777_216.0;
+                let at = [0.1 + 0.8 * share(1), 1.1 + 2.0 * share(2)];
+                let nearest = value(&program, at, &mut Nearest);
+                let reach = of(&program, at).reach[0];
+                for key in 0..64 {
+                    let key = mix(key ^ mix(row));
+                    let found = value(&program, at, &mut Device::new(Mode::of(key), key));
+                    // The result to nearest is itself off by as much at most.
+                    assert!(
+                        (found - nearest).abs() <= 2.001 * reach,
+                        "{expression} at {at:?}: {found}, {nearest} ± {reach:e}"
+                    );
+                }
+            }
+        }
+    }
+}

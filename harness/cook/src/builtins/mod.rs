@@ -4,7 +4,7 @@ mod binary;
 mod page;
 mod unary;
 
-pub use page::text;
+pub use page::{side_by_side, text};
 
 use lapidary_assay::dispatch::DispatchError;
 use lapidary_assay::interpreter::{Exact, Float, Slack};

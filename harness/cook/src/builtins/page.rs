@@ -45,3 +45,27 @@ pub fn text(report: &Report) -> String {
     }
     text
 }
+
+/// A table of several devices side by side, of the built-ins and ranges that WGSL states an accuracy of: the largest error over the allowed one, and in ulp.
+pub fn side_by_side(reports: &[(&str, Report)]) -> String {
+    let names: Vec<&str> = reports.iter().map(|(name, _)| *name).collect();
+    let mut table = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    let Some((_, first)) = reports.first() else { return table };
+    for row in first.rows.iter().filter(|row| row.of_wgsl.is_some()) {
+        let cells: Vec<String> = reports
+            .iter()
+            .map(|(_, report)| {
+                let found = report.rows.iter().find(|other| (&other.name, &other.range) == (&row.name, &row.range));
+                found.map_or("-".to_owned(), |found| {
+                    let share = found.of_wgsl.unwrap_or_default();
+                    let share = if share > 1.0 { format!("**{share:.2}**") } else { format!("{share:.2}") };
+                    // Next to a zero of the function there is no end to it.
+                    let ulp = format!(" ({:.1} ulp)", found.max_ulp.max(0.5));
+                    if found.max_ulp < 1e4 { share + &ulp } else { share }
+                })
+            })
+            .collect();
+        let _ = writeln!(table, "| `{}` | {} |", row.name, cells.join(" | "));
+    }
+    table
+}

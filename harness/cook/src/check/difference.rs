@@ -1,5 +1,6 @@
 //! Where two devices give other bits for the same inputs, and by how much.
 
+use super::Row;
 use lapidary_assay::dispatch::{DispatchError, ROWS_PER_DISPATCH};
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::property::Settings;
@@ -8,6 +9,8 @@ use lapidary_assay::shape::{Scalar, Shape};
 use lapidary_assay::tolerance::ulp_of;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
+use std::fmt::Write as _;
 
 /// What two devices make of the same random inputs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -81,6 +84,41 @@ pub fn between(
     distances.sort_by(f64::total_cmp);
     found.median_ulp = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
     Ok(found)
+}
+
+/// The functions whose bits differ, the most different first.
+pub fn differing(rows: &[Row]) -> Vec<(&Row, &Difference)> {
+    let mut differing: Vec<(&Row, &Difference)> = rows
+        .iter()
+        .filter_map(|row| Some((row, row.difference.as_ref().filter(|found| found.differing > 0)?)))
+        .collect();
+    differing.sort_by(|(_, one), (_, other)| {
+        (other.discrete, other.max_ulp).partial_cmp(&(one.discrete, one.max_ulp)).unwrap_or(Ordering::Equal)
+    });
+    differing
+}
+
+/// A table of them, and how many do not differ.
+pub fn table(rows: &[Row]) -> String {
+    let differing = differing(rows);
+    let same = rows.len() - differing.len();
+    let mut table = format!(
+        "{same} of {} functions give the same bits for every input.\n\n| function | inputs that differ | another flag or integer | median ulp | largest ulp |\n|---|---|---|---|---|\n",
+        rows.len()
+    );
+    for (row, found) in differing {
+        let share = 100.0 * found.differing as f64 / found.inputs.max(1) as f64;
+        let number = |ulp: f64| if (0.01..1e4).contains(&ulp) { format!("{ulp:.1}") } else { format!("{ulp:.0e}") };
+        let _ = writeln!(
+            table,
+            "| `{}` | {share:.2} % | {} | {} | {} |",
+            row.function,
+            found.discrete,
+            number(found.median_ulp),
+            number(found.max_ulp)
+        );
+    }
+    table
 }
 
 /// The largest distance over the floats of a result, and whether a bool or an integer differs; beyond one of those the floats belong to another case.

@@ -3,6 +3,7 @@
 
 use super::{Row, located_hash};
 use crate::text_file;
+use lapidary_assay::property::histogram::Histogram;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -24,6 +25,8 @@ pub struct Record {
     pub texts: BTreeMap<String, String>,
     /// A row for each function.
     pub rows: Vec<Row>,
+    /// The distribution of errors behind each row.
+    ulps: Vec<Histogram>,
 }
 
 impl PartialEq for Row {
@@ -35,7 +38,7 @@ impl PartialEq for Row {
 impl Record {
     /// An empty one.
     pub fn new(about: &str, cases: u64) -> Record {
-        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), rows: Vec::new() }
+        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), rows: Vec::new(), ulps: Vec::new() }
     }
 
     /// What a file holds; the empty one where there is none.
@@ -64,7 +67,17 @@ impl Record {
     /// One line: where it cannot be read, or is no record.
     pub fn read(path: &Path) -> Result<Record, String> {
         let text = text_file::read(path, MOST_BYTES)?;
-        serde_json::from_str(&text).map_err(|error| format!("{}: no record of a check: {error}", path.display()))
+        let found: Result<Record, _> = serde_json::from_str(&text);
+        let mut found = found.map_err(|error| format!("{}: no record of a check: {error}", path.display()))?;
+        let ulps = std::mem::take(&mut found.ulps);
+        found.rows.iter_mut().zip(ulps).for_each(|(row, ulps)| row.ulps = ulps);
+        Ok(found)
+    }
+
+    /// What a file of it holds.
+    pub fn text(&self) -> String {
+        let ulps = self.rows.iter().map(|row| row.ulps.clone()).collect();
+        serde_json::to_string(&Record { ulps, ..self.clone() }).unwrap_or_else(|error| unreachable!("{error}"))
     }
 
     /// Refuses what was recorded of another text.
@@ -219,7 +232,7 @@ mod tests {
         let path = folder.path().join("a.json");
         let mut one = Record::open(&path, "on a device", 10).expect("none yet");
         one.add(row(1, 0, 2.0));
-        std::fs::write(&path, serde_json::to_string(&one).expect("JSON")).expect("written");
+        std::fs::write(&path, one.text()).expect("written");
         let again = Record::open(&path, "on a device", 10).expect("the same");
         assert!(again.holds("srgb_encode", 1) && !again.holds("srgb_encode", 2));
         assert_eq!(again.rows[0].ulps, one.rows[0].ulps);
@@ -232,7 +245,7 @@ mod tests {
         assert!(Record::merge(vec![named(&one), named(&one)]).expect_err("twice").contains("another holds as well"));
         let mut changed = one.clone();
         changed.texts.insert("srgb".to_owned(), "another".to_owned());
-        std::fs::write(&path, serde_json::to_string(&changed).expect("JSON")).expect("written");
+        std::fs::write(&path, changed.text()).expect("written");
         assert!(Record::open(&path, "on a device", 10).expect_err("changed").contains("has changed since"));
     }
 }

@@ -199,7 +199,7 @@ fn in_parts(
         record.add(check::run_keeping(on, formula, Source::Cookbook, *part, Some(regressions))?);
         bar.inc(1);
         if let Some(path) = path {
-            file::replace(path, serde_json::to_string(record)?.as_bytes())?;
+            file::replace(path, record.text().as_bytes())?;
         }
     }
     bar.finish_and_clear();
@@ -212,7 +212,7 @@ fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
     let records = arguments.merge.iter().map(read).collect::<Result<_, _>>().map_err(Failure)?;
     let record = Record::merge(records).map_err(Failure)?;
     if let Some(path) = &arguments.record {
-        file::replace(path, serde_json::to_string(&record)?.as_bytes())?;
+        file::replace(path, record.text().as_bytes())?;
     }
     said(&Checked { about: record.about, rows: record.rows, ..Checked::default() }, arguments.json)
 }

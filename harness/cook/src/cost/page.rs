@@ -16,6 +16,12 @@ const END: &str = "<!-- end -->";
 /// The name of the README's table of modules, which is no report's.
 pub const MODULES: &str = "modules";
 
+/// The name of the table of built-in functions by device.
+pub const BUILTINS: &str = "builtins";
+
+/// The name of the table of functions whose bits differ between devices.
+pub const DIFFERENCES: &str = "differences";
+
 /// A table's name and what makes it of a report.
 pub type Table<R> = (&'static str, fn(&R) -> String);
 
@@ -38,7 +44,12 @@ fn names() -> Vec<&'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
     }
     let paths = of::<OpticalPathReport>().chain(of::<RestraintReport>()).chain(of::<EffectsReport>());
-    of::<Report>().chain(of::<CdrfReport>()).chain(of::<SphereReport>()).chain(paths).chain([MODULES]).collect()
+    of::<Report>()
+        .chain(of::<CdrfReport>())
+        .chain(of::<SphereReport>())
+        .chain(paths)
+        .chain([MODULES, BUILTINS, DIFFERENCES])
+        .collect()
 }
 
 /// Whether a page's marks are sound.

@@ -4,9 +4,11 @@
 use crate::program::succeeds;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::Signature;
-use lapidary_cook::cookbook;
+use lapidary_cook::check::{Row, difference};
 use lapidary_cook::cost::page;
+use lapidary_cook::{builtins, cookbook};
 use std::fmt::Write as _;
+use std::path::Path;
 
 #[test]
 fn signatures_and_accuracies_are_as_they_were() {
@@ -28,6 +30,26 @@ fn signatures_and_accuracies_are_as_they_were() {
 }
 
 /// The README's table is what `./cook list --markdown` prints. `./cook test --refresh` writes it anew.
+/// The page of drivers shows what the records hold.
+#[test]
+fn the_drivers_are_as_recorded() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let read = |name: &str| std::fs::read_to_string(docs.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let of = |folder: &str| -> builtins::Report {
+        serde_json::from_str(&read(&format!("measurements/{folder}/builtins.json"))).expect(folder)
+    };
+    let builtins = builtins::side_by_side(&[("lavapipe", of("lavapipe")), ("SwiftShader", of("swiftshader"))]);
+    let rows: Vec<Row> = serde_json::from_str(&read("measurements/swiftshader/check.json")).expect("rows");
+    let page = read("drivers.md");
+    let filled = page::with_table(&page, page::BUILTINS, &builtins).expect("sound marks");
+    let filled = page::with_table(&filled, page::DIFFERENCES, &difference::table(&rows)).expect("sound marks");
+    assert!(filled.contains(&builtins), "drivers.md has no place for the table `{}`", page::BUILTINS);
+    if filled != page {
+        assert!(std::env::var_os("LAPIDARY_REFRESH_PAGES").is_some(), "docs/drivers.md: ./cook test --refresh");
+        std::fs::write(docs.join("drivers.md"), filled).expect("written");
+    }
+}
+
 #[test]
 fn the_readme_lists_the_modules() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");

@@ -4,8 +4,7 @@ use super::Checked;
 use anstyle::AnsiColor;
 use lapidary_assay::failure::Failure;
 use lapidary_assay::slack::Reassociation;
-use lapidary_cook::check::difference::Difference;
-use lapidary_cook::check::{On, Row};
+use lapidary_cook::check::{On, Row, difference};
 use lapidary_cook::cookbook::release::Standing;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -132,13 +131,7 @@ pub(super) fn report(checked: &Checked, style: Style) -> String {
 
 /// Where the browser's results have other bits than the adapter's, the most different function first.
 fn differences(rows: &[Row], text: &mut String) {
-    let mut differing: Vec<(&Row, &Difference)> = rows
-        .iter()
-        .filter_map(|row| Some((row, row.difference.as_ref().filter(|found| found.differing > 0)?)))
-        .collect();
-    differing.sort_by(|(_, one), (_, other)| {
-        (other.discrete, other.max_ulp).partial_cmp(&(one.discrete, one.max_ulp)).unwrap_or(std::cmp::Ordering::Equal)
-    });
+    let differing = difference::differing(rows);
     let _ = writeln!(
         text,
         "\nWhere the bits differ. {} of {} functions give the same bits everywhere.\n\
@@ -151,8 +144,8 @@ fn differences(rows: &[Row], text: &mut String) {
     }
     let _ = writeln!(
         text,
-        "{:<44} {:>9} {:>9} {:>9} {:>10} {:>10}  {}",
-        "function", "inputs", "differ", "discrete", "median ulp", "max ulp", "at"
+        "{:<44} {:>9} {:>9} {:>9} {:>10} {:>10}  at",
+        "function", "inputs", "differ", "discrete", "median ulp", "max ulp"
     );
     for (row, found) in differing {
         let _ = writeln!(
