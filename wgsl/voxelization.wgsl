@@ -1,6 +1,6 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash adfa93f806b4ae10
+// Version: 0.2.0, hash 3bfebeefd53aca88
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
 //   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //
@@ -90,11 +90,12 @@ fn voxelization_voxel(grid: VoxelizationGrid, position: vec3f) -> vec3u {
 // The point that divides a line at two distances. It is found from the nearer end, and is that end where the distance is 0.
 // Returns: (after from + before to) / (before + after), within the box of `from` and `to`.
 // Units: those of `from` and `to`; before and after in any one unit.
-// Domain: before >= 0, after > 0; products below 1e38.
-// Outside: finite for a sum that is not 0.
+// Domain: before >= 0, after > 0, their sum at least 1.2e-38; products below 1e38.
+// Outside: within the box for a smaller sum too.
 // Accuracy: lavapipe 1 ulp + 2 backward; portable 3 ulp + 4 backward
 fn voxelization_between(from_point: vec2f, to_point: vec2f, before: f32, after: f32) -> vec2f {
-    let share = min(before, after) / (before + after);
+    // A subnormal may be flushed where it is divided by.
+    let share = min(before, after) / max(before + after, 1.2e-38f);
     let near = select(to_point, from_point, before < after);
     let far = select(from_point, to_point, before < after);
     return clamp(near + share * (far - near), min(near, far), max(near, far));

@@ -71,7 +71,8 @@ pub fn voxel(grid: VoxelizationGrid, position: Vec3) -> UVec3 {
 
 /// The point that divides a line at two distances.
 pub fn between(from_point: Vec2, to_point: Vec2, before: f32, after: f32) -> Vec2 {
-    let share = before.min(after) / (before + after);
+    // A subnormal may be flushed where it is divided by.
+    let share = before.min(after) / (before + after).max(1.2e-38);
     let near = if before < after { from_point } else { to_point };
     let far = if before < after { to_point } else { from_point };
     (near + share * (far - near)).clamp(near.min(far), near.max(far))

@@ -207,17 +207,16 @@ impl Tolerance {
         }
         let share = |(leaf, bound): &(Leaf, Bound)| {
             let range = leaf.start..leaf.start + leaf.length;
+            let most = |most: f64, next: f64| if next > most || next.is_nan() { next } else { most };
             let spread = |index: usize| -> f64 {
                 derivatives[index].iter().zip(&units).map(|(derivative, unit)| (derivative * unit).abs()).sum()
             };
             let backward =
-                if bound.backward > 0.0 { bound.backward * range.clone().map(spread).fold(0.0, f64::max) } else { 0.0 };
+                if bound.backward > 0.0 { bound.backward * range.clone().map(spread).fold(0.0, most) } else { 0.0 };
             let stated = forward(bound, largest(&exact[range.clone()])) + backward;
-            let allowed = range
-                .map(|index| reach[index])
-                .fold(0.0, |most: f64, next| if next > most || next.is_nan() { next } else { most });
-            let share = allowed / stated;
-            share.is_finite().then_some(share)
+            let share = range.map(|index| reach[index]).fold(0.0, most) / stated;
+            // Beyond an infinite derivative all would be within the bound.
+            (share.is_finite() && stated.is_finite()).then_some(share)
         };
         self.floats().map(share).collect()
     }

@@ -114,6 +114,7 @@ struct Size {
 #[derive(Debug)]
 pub struct Browser {
     adapter: String,
+    choice: Adapter,
     /// None once it is closed.
     state: Mutex<Option<State>>,
 }
@@ -142,15 +143,30 @@ impl Browser {
             adapter: String,
         }
         let mut connection = Connection::open(program, adapter)?;
-        let (head, _) = connection.greeting()?;
-        let Greeting { adapter } = parsed(&head)?;
-        let adapter = if adapter.is_empty() { "an adapter without a name".to_owned() } else { adapter };
-        Ok(Browser { adapter, state: Mutex::new(Some(State { connection, keys: BTreeMap::new() })) })
+        let (head, _) = match connection.greeting() {
+            Ok(greeting) => greeting,
+            Err(error) => {
+                connection.end(&Job::End);
+                return Err(error);
+            }
+        };
+        let Greeting { adapter: name } = parsed(&head)?;
+        let name = if name.is_empty() { "an adapter without a name".to_owned() } else { name };
+        Ok(Browser {
+            adapter: name,
+            choice: adapter,
+            state: Mutex::new(Some(State { connection, keys: BTreeMap::new() })),
+        })
     }
 
     /// The adapter's name, as the browser tells it.
     pub fn adapter(&self) -> &str {
         &self.adapter
+    }
+
+    /// Which one it was asked to take.
+    pub fn choice(&self) -> Adapter {
+        self.choice
     }
 
     /// What the compiler says of each text.

@@ -24,7 +24,7 @@ use lapidary_assay::shape::Scalar;
 use lapidary_assay::slack::allowance::Field;
 use lapidary_assay::slack::{self, Reassociation};
 use lapidary_assay::tolerance::Tolerance;
-use lapidary_browser::Browser;
+use lapidary_browser::{Adapter, Browser};
 use lapidary_gpu::Gpu;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -349,6 +349,7 @@ fn located_hash(module: &str) -> String {
 fn reproduce(on: On<'_>, formula: &Formula, source: Source<'_>, settings: Settings) -> String {
     let portable = match on {
         On::Adapter(_) => "",
+        On::Browser(browser, _) if browser.choice() == Adapter::Own => " --browser=own",
         On::Browser(..) => " --browser",
         On::Slack(Reassociation::Written) => " --portable",
         On::Slack(Reassociation::Reordered) => " --portable --reassociate",

@@ -44,11 +44,18 @@ pub(super) fn promises() -> Vec<Promise> {
                 that(voxel.max_element() < grid.cells, || format!("the voxel is {voxel}"))
             },
         ),
-        finite("voxelization_between", "finite for a sum that is not 0", |draws| {
-            let (before, after) = (draws.signed(-40, 40), draws.signed(-40, 40));
-            let after = if before + after == 0.0 { 2.0 * after } else { after };
-            (draws.in_square(), draws.in_square(), before, after)
-        }),
+        holds(
+            "voxelization_between",
+            "within the box for a smaller sum too",
+            |draws| {
+                let small = |draws: &mut Draws<'_>| if draws.below(4) == 0 { 0.0 } else { draws.magnitude(-149, -127) };
+                (draws.in_square(), draws.in_square(), small(draws), small(draws))
+            },
+            |(one, other, ..): (Vec2, Vec2, f32, f32), found: Vec2| {
+                let inside = found.cmpge(one.min(other)).all() && found.cmple(one.max(other)).all();
+                that(inside, || format!("{found}"))
+            },
+        ),
         holds(
             "voxelization_crossing",
             "crossed as the comparisons say",

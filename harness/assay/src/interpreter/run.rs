@@ -31,6 +31,9 @@ impl Code {
         registers: &mut Registers,
         machine: &mut M,
     ) -> Result<u64, Stopped> {
+        if M::RECORDS {
+            registers.records.fill(0);
+        }
         for (register, word) in self.arguments.iter().zip(arguments) {
             registers.set::<M>(*register, *word);
             registers.record::<M>(*register, [*register; 2], [0.0; 2], machine);
@@ -145,9 +148,10 @@ impl Registers {
             Op::Bound { bound, to, operands, site } => {
                 let floats = operands.map(|register| machine.operand(self.float(register)));
                 let result = bounded(bound, floats, site, machine);
-                // The first of those that it may be.
-                let chosen = floats.iter().position(|float| *float == result).map_or(to, |index| operands[index]);
-                self.put(to, result, (None, [chosen; 2]), || [1.0, 0.0], machine);
+                // The first of those that it may be; of no number what it depends on is unknown.
+                let chosen = floats.iter().position(|float| *float == result);
+                let partial = if chosen.is_some() { 1.0 } else { f64::NAN };
+                self.put(to, result, (None, [operands[chosen.unwrap_or(0)]; 2]), || [partial, 0.0], machine);
             }
             Op::Compare { op, to, a, b } => {
                 let (a, b) = (machine.operand(self.float(a)), machine.operand(self.float(b)));

@@ -24,8 +24,6 @@ pub struct Allowance {
     pub beyond: u64,
     /// The largest allowance of a row over the stated bound there.
     pub largest: f64,
-    /// The median over rows.
-    pub median: f64,
     /// The row of the largest.
     pub at: Words,
     /// Each part of the result that is a float.
@@ -88,7 +86,7 @@ struct Node {
 struct Recorder<'a> {
     accuracy: &'a dyn Accuracy,
     nodes: Vec<Node>,
-    /// How far the operation that runs may be off; of one in several steps the sum, each with the weight that it has in the result.
+    /// The roundings of the operation that runs.
     steps: Vec<(Exact, Slack)>,
 }
 
@@ -158,7 +156,8 @@ fn first_order(
             if node.reach > 0.0 {
                 reach += adjoint.abs() * node.reach;
             }
-            // What is 0 is not flushed once more: of a chain the worst counts, not the sum.
+            // What is 0 is not flushed once more, so that of a chain the worst counts; of terms beside each other that is too little, which the runs on
+            // devices that flush look for.
             if node.flushed > 0.0 {
                 flushed = flushed.max(adjoint.abs() * node.flushed);
             }
@@ -218,7 +217,6 @@ pub fn of_formula(
     let fields =
         tolerance.fields().map(|(name, is_exact)| Field { name: name.to_owned(), is_exact, ..Field::default() });
     let mut found = Allowance { fields: fields.collect(), ..Allowance::default() };
-    let mut largest = Vec::new();
     for (row, shares) in rows.iter().zip(shares) {
         let Some((shares, off)) = shares else {
             found.beyond += 1;
@@ -231,11 +229,8 @@ pub fn of_formula(
             found.largest = share;
             found.at.clone_from(row);
         }
-        largest.push(share);
+        found.rows += 1;
     }
-    largest.sort_by(f64::total_cmp);
-    found.rows = largest.len() as u64;
-    found.median = largest.get(largest.len() / 2).copied().unwrap_or(0.0);
     Ok(found)
 }
 

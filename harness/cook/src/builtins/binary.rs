@@ -26,7 +26,7 @@ struct Sampled {
 enum Draw {
     /// Any bits.
     Bits,
-    /// Sizes from 2^-20 to 2^20, so that sums and products meet.
+    /// Sizes from 2^-16 to 2^16, so that sums and products meet.
     Sizes,
     /// A positive base, and an exponent for which the power is a float's size.
     Power,

@@ -93,7 +93,8 @@ impl Measured {
         if let (Some(reach), Some(share)) = (reach(), &mut self.of_wgsl)
             && error / reach > *share
         {
-            *share = error / reach;
+            // JSON has no infinity.
+            *share = (error / reach).min(f64::MAX);
             self.of_wgsl_at = arguments.to_vec();
         }
     }

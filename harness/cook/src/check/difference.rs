@@ -2,6 +2,7 @@
 
 use super::Row;
 use lapidary_assay::dispatch::{DispatchError, ROWS_PER_DISPATCH};
+use lapidary_assay::extremum::largest;
 use lapidary_assay::formula::{Formula, Words};
 use lapidary_assay::property::Settings;
 use lapidary_assay::runner::Runner;
@@ -134,8 +135,9 @@ fn apart(shape: &Shape, one: &[u32], other: &[u32]) -> (f64, bool) {
         };
         let (one, other) = (floats(one), floats(other));
         let scale = one.iter().chain(&other).fold(0.0, |scale: f64, float| scale.max(float.abs()));
-        let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-        apart / ulp_of(scale)
+        let apart = largest(one.iter().zip(&other).map(|(one, other)| (one - other).abs()));
+        // JSON has no infinity, and no NaN.
+        if apart.is_finite() && scale.is_finite() { apart / ulp_of(scale) } else { f64::MAX }
     });
     (distances.fold(0.0, f64::max), false)
 }
@@ -157,6 +159,8 @@ mod tests {
         let next = 1f32.next_up();
         assert_eq!(apart(&shape, &row(1.0, 0), &row(next, 0)), (0.25, false));
         assert_eq!(apart(&shape, &row(1.0, 0), &row(9.0, 1)), (0.0, true));
+        assert_eq!(apart(&shape, &row(1.0, 0), &row(f32::NAN, 0)), (f64::MAX, false));
+        assert_eq!(apart(&shape, &row(1.0, 0), &row(f32::INFINITY, 0)), (f64::MAX, false));
         let zeros = [row(0.0, 1), row(-0.0, 1)];
         assert_eq!(apart(&shape, &zeros[0], &zeros[1]), (0.0, false));
     }

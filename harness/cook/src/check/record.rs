@@ -3,8 +3,10 @@
 
 use super::{Row, located_hash};
 use crate::text_file;
+use lapidary_assay::property::DEFAULT_CASES;
 use lapidary_assay::property::histogram::Histogram;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -15,7 +17,7 @@ pub const PART: u64 = 1 << 20;
 const MOST_BYTES: u64 = 1 << 28;
 
 /// What was done of a long check.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Record {
     /// What was compared with what, and on which device.
     pub about: String,
@@ -23,36 +25,40 @@ pub struct Record {
     pub cases: u64,
     /// The text of each function's module, as a hash.
     pub texts: BTreeMap<String, String>,
+    /// How many parts, a function from a seed each, the whole check has, in all shards.
+    pub parts: usize,
     /// A row for each function.
     pub rows: Vec<Row>,
     /// The distribution of errors behind each row.
     ulps: Vec<Histogram>,
 }
 
-impl PartialEq for Row {
-    fn eq(&self, other: &Self) -> bool {
-        (&self.function, &self.seeds, self.cases) == (&other.function, &other.seeds, other.cases)
-    }
-}
-
 impl Record {
     /// An empty one.
-    pub fn new(about: &str, cases: u64) -> Record {
-        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), rows: Vec::new(), ulps: Vec::new() }
+    pub fn new(about: &str, cases: u64, parts: usize) -> Record {
+        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), parts, rows: Vec::new(), ulps: Vec::new() }
+    }
+
+    /// How many parts are done.
+    pub fn done(&self) -> usize {
+        self.rows.iter().map(|row| row.seeds.len()).sum()
     }
 
     /// What a file holds; the empty one where there is none.
     ///
     /// # Errors
     /// One line: where the file is no record, or one of another check.
-    pub fn open(path: &Path, about: &str, cases: u64) -> Result<Record, String> {
+    pub fn open(path: &Path, about: &str, cases: u64, parts: usize) -> Result<Record, String> {
         if !path.exists() {
-            return Ok(Record::new(about, cases));
+            return Ok(Record::new(about, cases, parts));
         }
         let found = Record::read(path)?;
         let name = path.display();
         if found.cases != cases {
             return Err(format!("{name}: holds {} inputs a seed, not {cases}; name another file", found.cases));
+        }
+        if found.parts != parts {
+            return Err(format!("{name}: holds a check of {} parts, not {parts}; name another file", found.parts));
         }
         if found.about != about {
             return Err(format!("{name}: holds a check on another device; name another file"));
@@ -121,8 +127,8 @@ impl Record {
         let mut records = records.into_iter();
         let (first, mut merged) = records.next().ok_or("no record to merge")?;
         for (name, record) in records {
-            if (&record.about, record.cases) != (&merged.about, merged.cases) {
-                return Err(format!("{name}: of another device or number of inputs a seed than {first}"));
+            if (&record.about, record.cases, record.parts) != (&merged.about, merged.cases, merged.parts) {
+                return Err(format!("{name}: of another device or number of inputs than {first}"));
             }
             let other = record
                 .texts
@@ -151,8 +157,10 @@ impl Record {
 
 impl Row {
     /// The two together, of one function from other seeds: what fails of either, the worst of both.
-    pub fn join(mut self, other: Row) -> Row {
-        if (other.passed, -other.worst_ratio) < (self.passed, -self.worst_ratio) {
+    #[must_use]
+    pub fn join(mut self, mut other: Row) -> Row {
+        let badness = |row: &Row| (row.failed > 0, !row.passed, row.worst_ratio);
+        if badness(&other).partial_cmp(&badness(&self)) == Some(Ordering::Greater) {
             return other.join(self);
         }
         // This one is the worse: its worst input, its failure and its command stay.
@@ -166,6 +174,10 @@ impl Row {
         self.median_ulp = self.ulps.quantile(0.5).min(f64::MAX);
         self.worst_ratio = self.worst_ratio.max(other.worst_ratio);
         self.held_hard_cases = self.held_hard_cases.min(other.held_hard_cases);
+        let largest = |row: &Row| row.difference.as_ref().map_or(-1.0, |difference| difference.max_ulp);
+        if self.difference_input.is_none() || largest(&other) > largest(&self) {
+            self.difference_input = other.difference_input.take().or(self.difference_input);
+        }
         for (found, others) in [
             (&mut self.broken_hard_cases, other.broken_hard_cases),
             (&mut self.broken_promises, other.broken_promises),
@@ -192,6 +204,11 @@ impl Row {
         self.seconds += other.seconds;
         self.seeds.extend(other.seeds);
         self.seeds.sort_unstable();
+        // An edge that one missed and the other reached is reached.
+        let broken = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
+        let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
+        self.passed =
+            self.failed == 0 && edges && self.worst_choices.is_none() && broken.into_iter().all(Vec::is_empty);
         self
     }
 }
@@ -227,25 +244,45 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_that_one_part_reached_is_reached_and_a_broken_invariant_is_not_lost() {
+        let missing = |edges: &[&str]| Row {
+            passed: false,
+            cases: DEFAULT_CASES,
+            missed_edges: edges.iter().map(|edge| (*edge).to_owned()).collect(),
+            ..row(1, 0, 1.0)
+        };
+        let joined = missing(&["one"]).join(missing(&["two"]));
+        assert!(joined.passed && joined.missed_edges.is_empty(), "{joined:?}");
+        assert!(!missing(&["one"]).join(missing(&["one", "two"])).passed);
+        // One broke a promise at a larger share of its bound; the other has the failing input.
+        let mut promise = Row { passed: false, ..row(1, 0, 3.6) };
+        promise.broken_promises.push("a promise".to_owned());
+        let invariant = Row { reason: Some("an invariant".to_owned()), ..row(2, 1, 2.0) };
+        let joined = promise.join(invariant);
+        assert_eq!((joined.reason.as_deref(), joined.broken_promises.len()), (Some("an invariant"), 1));
+    }
+
+    #[test]
     fn records_are_read_back_merged_and_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.json");
-        let mut one = Record::open(&path, "on a device", 10).expect("none yet");
+        let mut one = Record::open(&path, "on a device", 10, 2).expect("none yet");
         one.add(row(1, 0, 2.0));
         std::fs::write(&path, one.text()).expect("written");
-        let again = Record::open(&path, "on a device", 10).expect("the same");
+        let again = Record::open(&path, "on a device", 10, 2).expect("the same");
         assert!(again.holds("srgb_encode", 1) && !again.holds("srgb_encode", 2));
         assert_eq!(again.rows[0].ulps, one.rows[0].ulps);
-        assert!(Record::open(&path, "on another", 10).expect_err("another").contains("another device"));
-        let mut two = Record::new("on a device", 10);
+        assert!(Record::open(&path, "on another", 10, 2).expect_err("another").contains("another device"));
+        let mut two = Record::new("on a device", 10, 2);
         two.add(row(2, 1, 4.0));
         let named = |record: &Record| ("x.json".to_owned(), record.clone());
         let merged = Record::merge(vec![named(&one), named(&two)]).expect("merge");
         assert_eq!((merged.rows.len(), merged.rows[0].cases, merged.rows[0].failed), (1, 20, 1));
+        assert_eq!((one.done(), merged.done(), merged.parts), (1, 2, 2));
         assert!(Record::merge(vec![named(&one), named(&one)]).expect_err("twice").contains("another holds as well"));
         let mut changed = one.clone();
         changed.texts.insert("srgb".to_owned(), "another".to_owned());
         std::fs::write(&path, changed.text()).expect("written");
-        assert!(Record::open(&path, "on a device", 10).expect_err("changed").contains("has changed since"));
+        assert!(Record::open(&path, "on a device", 10, 2).expect_err("changed").contains("has changed since"));
     }
 }

@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     /// skipped, and counted; LAPIDARY_CHROMIUM=required makes that a fault.
     #[arg(long, value_name = "ADAPTER", num_args = 0..=1, require_equals = true, default_missing_value = "swiftshader", conflicts_with_all = ["portable", "failures"])]
     browser: Option<Adapter>,
-    /// Random inputs a function.
-    #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=u64::MAX))]
+    /// Random inputs a function; over 1,048,576, so many from each of several seeds, and no fewer than asked for.
+    #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=1_u64 << 40))]
     cases: u64,
     /// Where the random inputs start; the same seed gives the same inputs.
     #[arg(long, default_value_t = Settings::default().seed, value_parser = number::whole(0..=u64::MAX))]
@@ -86,7 +86,7 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Every N-th function, so that the slow ones of a module fall to several parts; all of them without a shard.
+    /// Every N-th part, so that the slow ones of a module fall to several parts; all of them without a shard.
     fn share<T>(shard: Option<Self>, all: Vec<T>) -> Vec<T> {
         let Self { index, count } = shard.unwrap_or(Self { index: 1, count: 1 });
         all.into_iter().skip(index - 1).step_by(count).collect()
@@ -116,16 +116,18 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         None => {
             let formulas = check::select(arguments.filter.as_deref())?;
             let work = parts.iter().flat_map(|part| formulas.iter().map(|formula| (*formula, *part)));
-            let work = Shard::share(arguments.shard, work.collect());
+            let whole: Vec<(&Formula, Settings)> = work.collect();
+            let count = whole.len();
+            let work = Shard::share(arguments.shard, whole);
             let on = on(context, arguments)?;
             let regressions = arguments.failures.as_ref().map_or_else(check::failures, Regressions::in_folder);
             let about = text::about(on);
             let mut record = match &arguments.record {
                 Some(path) => {
                     file::check_writable(path)?;
-                    Record::open(path, &about, settings.cases).map_err(Failure)?
+                    Record::open(path, &about, settings.cases, count).map_err(Failure)?
                 }
-                None => Record::new(&about, settings.cases),
+                None => Record::new(&about, settings.cases, count),
             };
             in_parts(on, &work, &regressions, &mut record, arguments.record.as_deref())?;
             Checked { about, rows: record.in_order().rows, ..Checked::default() }
@@ -192,6 +194,10 @@ fn in_parts(
             check::prepare(on, formula, Source::Cookbook)?;
         }
     }
+    // A shard without work has a record, too.
+    if let Some(path) = path {
+        file::replace(path, record.text().as_bytes())?;
+    }
     let bar = super::progress::bar(work.len() as u64, "checking");
     bar.set_position((work.len() - left.len()) as u64);
     for (formula, part) in left {
@@ -214,7 +220,14 @@ fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.record {
         file::replace(path, record.text().as_bytes())?;
     }
-    said(&Checked { about: record.about, rows: record.rows, ..Checked::default() }, arguments.json)
+    let (done, parts) = (record.done(), record.parts);
+    let outcome = said(&Checked { about: record.about, rows: record.rows, ..Checked::default() }, arguments.json)?;
+    if done < parts {
+        return Err(Failure(format!(
+            "{done} of {parts} parts are done; merge the other shards' records too, or go on with them"
+        )));
+    }
+    Ok(outcome)
 }
 
 /// Without a browser nothing is checked in one: said and counted, and a fault where one is required.

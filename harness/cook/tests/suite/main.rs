@@ -31,6 +31,7 @@ mod pixels;
 mod plan;
 mod program;
 mod random_walk;
+mod records;
 mod reference;
 mod releases;
 mod restraint;

@@ -29,7 +29,6 @@ fn signatures_and_accuracies_are_as_they_were() {
     });
 }
 
-/// The README's table is what `./cook list --markdown` prints. `./cook test --refresh` writes it anew.
 /// The page of drivers shows what the records hold.
 #[test]
 fn the_drivers_are_as_recorded() {
@@ -50,6 +49,7 @@ fn the_drivers_are_as_recorded() {
     }
 }
 
+/// The README's table is what `./cook list --markdown` prints. `./cook test --refresh` writes it anew.
 #[test]
 fn the_readme_lists_the_modules() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");

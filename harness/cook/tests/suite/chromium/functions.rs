@@ -38,7 +38,7 @@ fn every_function_holds_in_chromium() {
     assert!(faults.is_empty(), "{}:\n{}", browser.adapter(), faults.join("\n"));
 }
 
-/// A function that Tint and SwiftShader are bound to compute otherwise than the cookbook says is found, in bits and against the bound.
+/// A copy that computes something else fails there too.
 #[test]
 fn another_function_is_told_from_the_cookbooks() {
     let Some(browser) = found(browser(), "a changed function") else { return };
