@@ -68,7 +68,7 @@ pub(super) fn promises() -> Vec<Promise> {
         }),
         holds(
             CENTRE,
-            "Opposed normals give o too, with up to a thousand ulp",
+            "Opposed normals give o too, with up to four thousand ulp",
             |draws| {
                 let axis = draws.unit_vector();
                 let aside = |draws: &mut Draws<'_>, sign: f64| {
@@ -82,7 +82,7 @@ pub(super) fn promises() -> Vec<Promise> {
                 let wanted = closest_point::centre(a, n_a, b, n_b, c, n_c);
                 // The face's normal, which the fallback takes, is as sure as the triangle is fat.
                 let fat = (b - a).cross(c - a).length() / (b - a).length().max((c - a).length()).powi(2);
-                let bound = 1000.0 * 2f64.powi(-23) * wanted.abs().max_element().max(1.0) / fat.clamp(1e-3, 1.0);
+                let bound = 4000.0 * 2f64.powi(-23) * wanted.abs().max_element().max(1.0) / fat.clamp(1e-3, 1.0);
                 close(&o.to_array(), &wanted.to_array(), bound)
             },
         )
