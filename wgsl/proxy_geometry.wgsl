@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 477d7374ff231b7f
+// Version: 0.2.0, hash 9ece8883aaa4c3c1
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
@@ -124,7 +124,7 @@ fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3
 // Units: lengths; `direction` and `normal` are unit vectors.
 // Domain: |direction| = |normal| = 1, positions up to 1e30.
 // Outside: for positions beyond, overflows.
-// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward; portable point 7 ulp + 6 backward, distance 9 ulp + 6 backward, hit 6 backward
+// Accuracy: lavapipe point 4 ulp + 4 backward, distance 6 ulp + 4 backward, hit 4 backward; portable point 8 ulp + 7 backward, distance 9 ulp + 7 backward, hit 7 backward
 fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
     let slope = dot(normal, direction);
     let height = dot(normal, plane_point - position);

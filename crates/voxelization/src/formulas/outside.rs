@@ -109,9 +109,10 @@ pub(super) fn promises() -> Vec<Promise> {
                 that(range.x <= range.y && range.y <= cells, || format!("from {} to {}", range.x, range.y))
             },
         ),
-        finite("voxelization_span", "finite as long as products of three coordinates are", |draws| {
-            let corner = Vec2::new(draws.signed(-126, 39), draws.signed(-126, 39));
-            (vector_up_to(draws, 39), vector_up_to(draws, 39), vector_up_to(draws, 39), corner)
+        finite("voxelization_span", "finite for coordinates from 1e-6 to 1e11, or 0", |draws| {
+            let coordinate = |draws: &mut Draws<'_>| if draws.below(8) == 0 { 0.0 } else { draws.signed(-19, 35) };
+            let vector = |draws: &mut Draws<'_>| Vec3::new(coordinate(draws), coordinate(draws), coordinate(draws));
+            (vector(draws), vector(draws), vector(draws), Vec2::new(coordinate(draws), coordinate(draws)))
         }),
         holds(
             OVERLAPS,
