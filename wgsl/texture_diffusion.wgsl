@@ -1,6 +1,6 @@
 // texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d365acb19eb620a3
+// Version: 0.2.0, hash 016c60d64e36e2ea
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14: stretch, separable blur.
 //   The placement of the taps is derived in docs/texture_diffusion.md.
@@ -125,7 +125,7 @@ fn texture_diffusion_ratio(sigma0: vec3f) -> f32 {
 // Units: none.
 // Domain: as texture_diffusion_ratio.
 // Outside: the same.
-// Accuracy: lavapipe 2 backward; portable 5 backward
+// Accuracy: lavapipe 2 backward; portable 4 backward
 fn texture_diffusion_pairs(sigma0: vec3f) -> u32 {
     let ratio = texture_diffusion_ratio(sigma0);
     var pairs = 15u;
