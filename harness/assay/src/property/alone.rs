@@ -4,11 +4,8 @@ use crate::formula::{Formula, Words};
 use crate::shape::{Scalar, Shape};
 use crate::tolerance::{Tolerance, Verdict};
 
-/// Judges a result; an input that is subnormal may have been read as 0, and of one that is not finite the standard says nothing.
+/// Judges a result; an input that is subnormal may have been read as 0.
 pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32], thoroughly: bool) -> Verdict {
-    if !is_stated(formula, row) {
-        return Verdict { ulp: 0.0, ratio: 0.0, nonfinite: false };
-    }
     let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
     let of = |row: &[u32]| judge(tolerance, row, result, result, &formula.exact(row), &*formula.oracle);
     let plain = of(row);
@@ -44,8 +41,7 @@ const MOST_SUBNORMALS: usize = 4;
 pub fn broken(formula: &Formula, row: &[u32], result: &[u32], is_portable: bool) -> Option<(&'static str, String)> {
     let broken = formula.broken(row, result, is_portable)?;
     let holds = |row: &Words| formula.broken(row, result, is_portable).is_none();
-    let is_flushed = || has_subnormals(formula, row) && flushed(formula, row).iter().any(holds);
-    let is_forgiven = is_portable && (!is_stated(formula, row) || is_flushed());
+    let is_forgiven = is_portable && has_subnormals(formula, row) && flushed(formula, row).iter().any(holds);
     (!is_forgiven).then_some(broken)
 }
 
