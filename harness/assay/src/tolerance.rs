@@ -189,15 +189,9 @@ impl Tolerance {
         self.floats().map(|(leaf, bound)| (leaf.path.as_str(), *bound == Bound::default()))
     }
 
-    /// Of each part that is floats, how far it may be off to first order over the bound stated: `reach` holds how far each word may be off, and
-    /// `derivatives` the derivatives of each by each word of the arguments. None where one is not finite.
-    pub fn shares(
-        &self,
-        arguments: &[u32],
-        exact: &[f64],
-        reach: &[f64],
-        derivatives: &[Vec<f64>],
-    ) -> Option<Vec<f64>> {
+    /// Of each part that is floats, how far it may be off for these arguments, what `backward` allows included to first order: `derivatives` holds those of each word of
+    /// the result by each word of the arguments. None where that is not finite.
+    pub fn stated(&self, arguments: &[u32], exact: &[f64], derivatives: &[Vec<f64>]) -> Option<Vec<f64>> {
         // The unit of the input's largest component, for each of its words.
         let mut units = vec![0.0; arguments.len()];
         for leaf in self.arguments.iter().filter(|leaf| leaf.scalar == Scalar::F32) {
@@ -205,20 +199,21 @@ impl Tolerance {
             let floats: Vec<f64> = arguments[range.clone()].iter().map(|word| number(leaf.scalar, *word)).collect();
             units[range].fill(ulp_of(largest(&floats)));
         }
-        let share = |(leaf, bound): &(Leaf, Bound)| {
+        let spread: Vec<f64> = derivatives
+            .iter()
+            .map(|by| by.iter().zip(&units).map(|(derivative, unit)| (derivative * unit).abs()).sum())
+            .collect();
+        let stated = |(leaf, bound): &(Leaf, Bound)| {
             let range = leaf.start..leaf.start + leaf.length;
-            let most = |most: f64, next: f64| if next > most || next.is_nan() { next } else { most };
-            let spread = |index: usize| -> f64 {
-                derivatives[index].iter().zip(&units).map(|(derivative, unit)| (derivative * unit).abs()).sum()
-            };
-            let backward =
-                if bound.backward > 0.0 { bound.backward * range.clone().map(spread).fold(0.0, most) } else { 0.0 };
-            let stated = forward(bound, largest(&exact[range.clone()])) + backward;
-            let share = range.map(|index| reach[index]).fold(0.0, most) / stated;
-            // Beyond an infinite derivative all would be within the bound.
-            (share.is_finite() && stated.is_finite()).then_some(share)
+            let backward = if bound.backward > 0.0 { bound.backward * largest(&spread[range.clone()]) } else { 0.0 };
+            Some(forward(bound, largest(&exact[range])) + backward).filter(|stated| stated.is_finite())
         };
-        self.floats().map(share).collect()
+        self.floats().map(stated).collect()
+    }
+
+    /// Of each part that is floats, the largest of these numbers, one for each word of the result.
+    pub fn largest_of_parts(&self, numbers: &[f64]) -> Vec<f64> {
+        self.floats().map(|(leaf, _)| largest(&numbers[leaf.start..leaf.start + leaf.length])).collect()
     }
 
     fn floats(&self) -> impl Iterator<Item = &(Leaf, Bound)> {

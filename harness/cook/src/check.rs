@@ -149,6 +149,12 @@ impl Row {
     pub fn passed(&self) -> bool {
         self.passed
     }
+
+    /// Whether nothing wrong was found, whatever edges the inputs reached.
+    pub fn is_right(&self) -> bool {
+        let broken = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
+        self.failed == 0 && self.worst_choices.is_none() && broken.into_iter().all(Vec::is_empty)
+    }
 }
 
 /// What a check runs on.
@@ -317,10 +323,9 @@ pub fn run_keeping<'gpu>(
         On::Browser(browser, gpu) => {
             let mut beside = kernel(gpu, formula, source)?;
             let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
-            let text = KernelText::of_function(text, &path, formula.function).map_err(in_path)?;
-            let mut runner = InBrowser::new(browser, text);
-            let source = located(formula, source).1;
-            let found = examine(formula, source, &mut runner, &tolerance, settings, &[]).map_err(in_path)?;
+            let kernel = KernelText::of_function(text, &path, formula.function).map_err(in_path)?;
+            let mut runner = InBrowser::new(browser, kernel);
+            let found = examine(formula, text, &mut runner, &tolerance, settings, &[]).map_err(in_path)?;
             let difference = difference::between(&mut runner, &mut beside, formula, settings).map_err(in_path)?;
             let input = (difference.differing > 0).then(|| spell(formula, &difference.worst));
             (Row { difference: Some(difference), difference_input: input, ..Row::default() }, found)
@@ -338,11 +343,6 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
         }
         Source::Copy(path, text) => (path.to_owned(), text),
     }
-}
-
-/// A hash of a module's text, as its version line has it.
-fn located_hash(module: &str) -> String {
-    cookbook::module(module).map_or_else(String::new, |module| cookbook::release::text_hash(module.source))
 }
 
 /// The command that runs the same inputs again.

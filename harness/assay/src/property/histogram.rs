@@ -2,7 +2,7 @@
 
 /// Counts by the upper 16 bits of the number's f32: 128 steps to each power of two.
 #[derive(Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Steps", into = "Steps"))]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(from = "Steps"))]
 pub struct Histogram {
     counts: Vec<u64>,
     total: u64,
@@ -48,9 +48,9 @@ impl Histogram {
 type Steps = Vec<(usize, u64)>;
 
 #[cfg(feature = "serde")]
-impl From<Histogram> for Steps {
-    fn from(histogram: Histogram) -> Steps {
-        histogram.counts.into_iter().enumerate().filter(|(_, count)| *count > 0).collect()
+impl serde::Serialize for Histogram {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.counts.iter().enumerate().filter(|(_, count)| **count > 0))
     }
 }
 

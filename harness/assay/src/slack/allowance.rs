@@ -205,12 +205,15 @@ pub fn of_formula(
                 }
                 let FirstOrder { result, reach, by_argument } = first_order(program, registers, accuracy, row)?;
                 let exact = formula.exact(row);
-                let shares = tolerance.shares(row, &exact, &reach, &by_argument);
+                let Some(stated) = tolerance.stated(row, &exact, &by_argument) else { return Ok(None) };
+                let shares = |reach: &[f64]| -> Option<Vec<f64>> {
+                    let shares = tolerance.largest_of_parts(reach).into_iter().zip(&stated);
+                    shares.map(|(reach, stated)| Some(reach / stated).filter(|share| share.is_finite())).collect()
+                };
                 let found = numbers(&formula.result, &result);
-                let off =
-                    found.iter().zip(&exact).zip(&reach).map(|((found, exact), reach)| reach + (found - exact).abs());
-                let off = tolerance.shares(row, &exact, &off.collect::<Vec<_>>(), &by_argument);
-                Ok(shares.zip(off))
+                let off = found.iter().zip(&exact).zip(&reach);
+                let off: Vec<f64> = off.map(|((found, exact), reach)| reach + (found - exact).abs()).collect();
+                Ok(shares(&reach).zip(shares(&off)))
             },
         )
         .collect::<Result<_, Stopped>>()?;

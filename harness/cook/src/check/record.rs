@@ -1,11 +1,13 @@
 //! A long check in parts: rows of one function from several seeds joined, and a file that holds what is done, so that a run goes on where another ended, and runs on several machines
 //! become one.
 
-use super::{Row, located_hash};
+use super::Row;
+use crate::cookbook::{self, release};
 use crate::text_file;
 use lapidary_assay::property::DEFAULT_CASES;
 use lapidary_assay::property::histogram::Histogram;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -17,26 +19,36 @@ pub const PART: u64 = 1 << 20;
 const MOST_BYTES: u64 = 1 << 28;
 
 /// What was done of a long check.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Record {
     /// What was compared with what, and on which device.
     pub about: String,
     /// Random inputs from each seed.
     pub cases: u64,
-    /// The text of each function's module, as a hash.
-    pub texts: BTreeMap<String, String>,
     /// How many parts, a function from a seed each, the whole check has, in all shards.
     pub parts: usize,
     /// A row for each function.
     pub rows: Vec<Row>,
+    /// The text of each function's module, as a hash.
+    texts: BTreeMap<String, String>,
+}
+
+/// A record's file. What is written is borrowed: it is written after every part.
+#[derive(Serialize, Deserialize)]
+struct Stored<'a> {
+    about: Cow<'a, str>,
+    cases: u64,
+    texts: Cow<'a, BTreeMap<String, String>>,
+    parts: usize,
+    rows: Cow<'a, [Row]>,
     /// The distribution of errors behind each row.
-    ulps: Vec<Histogram>,
+    ulps: Vec<Cow<'a, Histogram>>,
 }
 
 impl Record {
     /// An empty one.
     pub fn new(about: &str, cases: u64, parts: usize) -> Record {
-        Record { about: about.to_owned(), cases, texts: BTreeMap::new(), parts, rows: Vec::new(), ulps: Vec::new() }
+        Record { about: about.to_owned(), cases, parts, rows: Vec::new(), texts: BTreeMap::new() }
     }
 
     /// How many parts are done.
@@ -73,22 +85,31 @@ impl Record {
     /// One line: where it cannot be read, or is no record.
     pub fn read(path: &Path) -> Result<Record, String> {
         let text = text_file::read(path, MOST_BYTES)?;
-        let found: Result<Record, _> = serde_json::from_str(&text);
-        let mut found = found.map_err(|error| format!("{}: no record of a check: {error}", path.display()))?;
-        let ulps = std::mem::take(&mut found.ulps);
-        found.rows.iter_mut().zip(ulps).for_each(|(row, ulps)| row.ulps = ulps);
-        Ok(found)
+        let found: Result<Stored<'_>, _> = serde_json::from_str(&text);
+        let found = found.map_err(|error| format!("{}: no record of a check: {error}", path.display()))?;
+        let Stored { about, cases, texts, parts, rows, ulps } = found;
+        let mut rows = rows.into_owned();
+        rows.iter_mut().zip(ulps).for_each(|(row, ulps)| row.ulps = ulps.into_owned());
+        Ok(Record { about: about.into_owned(), cases, parts, rows, texts: texts.into_owned() })
     }
 
     /// What a file of it holds.
     pub fn text(&self) -> String {
-        let ulps = self.rows.iter().map(|row| row.ulps.clone()).collect();
-        serde_json::to_string(&Record { ulps, ..self.clone() }).unwrap_or_else(|error| unreachable!("{error}"))
+        let Record { about, cases, parts, rows, texts } = self;
+        let stored = Stored {
+            about: about.into(),
+            cases: *cases,
+            texts: Cow::Borrowed(texts),
+            parts: *parts,
+            rows: rows.into(),
+            ulps: rows.iter().map(|row| Cow::Borrowed(&row.ulps)).collect(),
+        };
+        serde_json::to_string(&stored).unwrap_or_else(|error| unreachable!("{error}"))
     }
 
     /// Refuses what was recorded of another text.
     fn check_texts(&self, path: &Path) -> Result<(), String> {
-        match self.texts.iter().find(|(module, text)| located_hash(module) != **text) {
+        match self.texts.iter().find(|(module, text)| text_hash(module) != **text) {
             None => Ok(()),
             Some((module, _)) => {
                 Err(format!("{}: `{module}` has changed since; name another file, or remove this one", path.display()))
@@ -103,7 +124,11 @@ impl Record {
 
     /// Adds a function's row.
     pub fn add(&mut self, row: Row) {
-        self.texts.insert(row.module.clone(), located_hash(&row.module));
+        self.texts.insert(row.module.clone(), text_hash(&row.module));
+        self.put(row);
+    }
+
+    fn put(&mut self, row: Row) {
         match self.rows.iter_mut().find(|found| found.function == row.function) {
             Some(found) => *found = std::mem::take(found).join(row),
             None => self.rows.push(row),
@@ -144,15 +169,17 @@ impl Record {
                         row.function
                     ));
                 }
-                match merged.rows.iter_mut().find(|found| found.function == row.function) {
-                    Some(found) => *found = std::mem::take(found).join(row),
-                    None => merged.rows.push(row),
-                }
+                merged.put(row);
             }
             merged.texts.extend(record.texts);
         }
         Ok(merged.in_order())
     }
+}
+
+/// A hash of a module's text, as its version line has it.
+fn text_hash(module: &str) -> String {
+    cookbook::module(module).map_or_else(String::new, |module| release::text_hash(module.source))
 }
 
 impl Row {
@@ -205,10 +232,7 @@ impl Row {
         self.seeds.extend(other.seeds);
         self.seeds.sort_unstable();
         // An edge that one missed and the other reached is reached.
-        let broken = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
-        let edges = self.cases < DEFAULT_CASES || self.missed_edges.is_empty();
-        self.passed =
-            self.failed == 0 && edges && self.worst_choices.is_none() && broken.into_iter().all(Vec::is_empty);
+        self.passed = self.is_right() && (self.cases < DEFAULT_CASES || self.missed_edges.is_empty());
         self
     }
 }
