@@ -5,10 +5,12 @@
 // parts: mesh
 //
 // A frame: the host sets `matter`, `surface`, `beyond`, `large` and `status` to 0; then
-// 1. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the bit of the first voxel behind it changes;
+// 1. `voxelization_vertices`, a thread for each vertex, or fewer. It brings each into the grid's coordinates, once, so that the triangles that share a
+//    vertex have the same one to the last bit.
+// 2. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the bit of the first voxel behind it changes;
 //    what it touches is set in `surface`. Triangles over many columns are put on a list.
-// 2. `voxelization_large`, any number of workgroups, which share the triangles of that list among them.
-// 3. `voxelization_finish`, a thread for each row along x. From each bit that changed, all behind it change. A row whose column was crossed an odd
+// 3. `voxelization_large`, any number of workgroups, which share the triangles of that list among them.
+// 4. `voxelization_finish`, a thread for each row along x. From each bit that changed, all behind it change. A row whose column was crossed an odd
 //    number of times belongs to an open mesh: nothing of it is filled, so that no streak runs through the grid, and it is counted.
 // A voxel is filled if its centre is inside or if the surface touches it.
 //
@@ -47,6 +49,8 @@ struct VoxelizationStatus {
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
 @group(0) @binding(7) var<storage, read_write> status: VoxelizationStatus;
+// The vertices in the grid's coordinates, three numbers each, as many as there are positions.
+@group(0) @binding(8) var<storage, read_write> corners: array<f32>;
 
 // A triangle in the grid's coordinates, and the columns that it may touch.
 struct VoxelizationTriangle {
@@ -62,10 +66,14 @@ fn voxelization_words() -> u32 {
     return (grid.cells + 31u) / 32u;
 }
 
+fn voxelization_corner(vertex: u32) -> vec3f {
+    return vec3f(corners[3u * vertex], corners[3u * vertex + 1u], corners[3u * vertex + 2u]);
+}
+
 fn voxelization_load(triangle: u32) -> VoxelizationTriangle {
-    let a = voxelization_local(grid, mesh_position(indices[3u * triangle]));
-    let b = voxelization_local(grid, mesh_position(indices[3u * triangle + 1u]));
-    let c = voxelization_local(grid, mesh_position(indices[3u * triangle + 2u]));
+    let a = voxelization_corner(indices[3u * triangle]);
+    let b = voxelization_corner(indices[3u * triangle + 1u]);
+    let c = voxelization_corner(indices[3u * triangle + 2u]);
     let margin = voxelization_margin(a, b, c);
     let low = min(a, min(b, c)) - margin;
     let high = max(a, max(b, c)) + margin;
@@ -107,6 +115,16 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
             }
         }
         //+surface }
+    }
+}
+
+@compute @workgroup_size(VOXELIZATION_WORKGROUP)
+fn voxelization_vertices(@builtin(global_invocation_id) invocation: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var vertex = invocation.x; vertex < arrayLength(&positions) / 3u; vertex += groups.x * VOXELIZATION_WORKGROUP) {
+        let corner = voxelization_local(grid, mesh_position(vertex));
+        corners[3u * vertex] = corner.x;
+        corners[3u * vertex + 1u] = corner.y;
+        corners[3u * vertex + 2u] = corner.z;
     }
 }
 

@@ -2,14 +2,15 @@
 
 mod outside;
 
-use crate::{self as mirror, VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid, oracle};
-use glam::{DVec3, UVec3, Vec2, Vec3};
+use crate::{self as mirror, VoxelizationColumn, VoxelizationEdge, VoxelizationGrid, VoxelizationInteger, oracle};
+use glam::{DVec3, IVec2, UVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, VoxelizationGrid { origin, spacing, cells });
-mirror_struct!(crate, VoxelizationCrossing { crossed, at });
+mirror_struct!(crate, VoxelizationInteger { high, low });
+mirror_struct!(crate, VoxelizationEdge { turn, area });
 mirror_struct!(crate, VoxelizationColumn { inside, depth });
 
 const M: &str = "voxelization";
@@ -75,17 +76,62 @@ fn place(draws: &mut Draws<'_>) -> DVec3 {
     150.0 + 80.0 * draws.in_cube().as_dvec3()
 }
 
-/// A triangle and a column: of the steps, or aimed at the inside, an edge, a corner or beside.
+/// A point of the lattice near the column, or as far away as points are.
+fn point(draws: &mut Draws<'_>) -> IVec2 {
+    const MOST: i32 = 1 << 29;
+    let mut coordinate = || match draws.below(4) {
+        0 => draws.below(5) as i32 - 2,
+        1 => draws.pick(&[-MOST, MOST, 1 - MOST, MOST - 1, 1 << 15, (1 << 15) - 1, -(1 << 15)]),
+        _ => {
+            let size = 1 << draws.below(30);
+            draws.below(2 * size + 1) as i32 - size as i32
+        }
+    };
+    IVec2::new(coordinate(), coordinate())
+}
+
+/// Two points of the lattice whose difference is within it: anywhere, or nearly on a line through the column.
+fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
+    let half = |draws: &mut Draws<'_>| point(draws) / 2;
+    let one = half(draws);
+    let other = match draws.below(4) {
+        0 => half(draws),
+        1 => one,
+        // By ratios whose products stay exact, and one step beside.
+        _ => {
+            let ratio = draws.pick(&[(1, 1), (-1, 1), (1, 2), (-1, 2), (2, 3), (-3, 4), (0, 1)]);
+            one / (4 * ratio.1) * ratio.0 + IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1)
+        }
+    };
+    if draws.below(2) == 0 { (one, other) } else { (other, one) }
+}
+
+/// A triangle and a column: of the steps, aimed at the inside, an edge, a corner or beside, of a few points of the lattice, or as wide as it is.
 fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
-    if draws.below(2) == 0 {
-        return (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws)));
-    }
+    let aimed = match draws.below(8) {
+        0..3 => return (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws))),
+        3 => {
+            let near = draws.pick(&[0.0, 0.5, 100.0]);
+            let mut few = || near + whole(draws, 3) / mirror::VOXELIZATION_LATTICE;
+            let flat = [few(), few(), few(), few(), few(), few(), few(), few()];
+            let mut corner = |k: usize| Vec3::new(draws.signed(-10, 10), flat[2 * k], flat[2 * k + 1]);
+            return (corner(0), corner(1), corner(2), Vec2::new(flat[6], flat[7]));
+        }
+        4 => {
+            let (a, b, c) = (draws.in_cube(), draws.in_cube(), draws.in_cube());
+            let share = Vec3::new(draws.between(0.0, 1.0), draws.between(0.0, 1.0), draws.between(0.0, 1.0));
+            let at = (share.x * a + share.y * b + share.z * c) / share.element_sum().max(0.1);
+            let [a, b, c, at] = [a, b, c, at].map(|corner| mirror::VOXELIZATION_REACH * corner);
+            return (a, b, c, Vec2::new(at.y, at.z));
+        }
+        aimed => aimed,
+    };
     let middle = place(draws);
     let size = f64::from(draws.magnitude(-3, 6));
     let (a, b, c) = fat_triangle(draws, middle, size);
-    let (v, w) = match draws.below(4) {
-        0 => draws.pick(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5)]),
-        1 => (2.0 * draws.unit() - 0.5, 2.0 * draws.unit() - 0.5),
+    let (v, w) = match aimed {
+        5 => draws.pick(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5)]),
+        6 => (2.0 * draws.unit() - 0.5, 2.0 * draws.unit() - 0.5),
         _ => {
             let (v, w) = (draws.unit(), draws.unit());
             if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) }
@@ -219,38 +265,51 @@ fn column_formulas() -> Vec<Formula> {
     let edge_on = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 1.0), Vec3::new(3.0, 2.0, 2.0), Vec2::splat(0.5));
     let naive = "voxelization_column_naive";
     vec![
-        formula(M, "voxelization_between", mirror::between, oracle::between, |draws| {
-            let (one, other) = (draws.in_square() - 0.5, draws.in_square() - 0.5);
-            let size = draws.magnitude(-10, 10);
-            let before = if draws.below(8) == 0 { 0.0 } else { draws.magnitude(-20, 10) };
-            (size * one, if draws.below(8) == 0 { size * one } else { size * other }, before, draws.magnitude(-20, 10))
+        formula(M, "voxelization_lattice", mirror::lattice, oracle::lattice, |draws| {
+            let mut coordinate = || match draws.below(4) {
+                0 => (whole(draws, 99) + 0.5) / mirror::VOXELIZATION_LATTICE,
+                1 => {
+                    let between = whole(draws, 400) + 0.5 / mirror::VOXELIZATION_LATTICE;
+                    draws.nudged(between, 1)
+                }
+                2 => draws.between(-mirror::VOXELIZATION_REACH, mirror::VOXELIZATION_REACH),
+                _ => draws.signed(-30, 13),
+            };
+            (Vec2::new(coordinate(), coordinate()),)
         })
-        .edge("at the first", |(.., before, _)| before == 0.0)
-        .edge("both alike", |(one, other, ..)| one == other)
-        .invariant("an end where it has no distance", |(one, _, before, _), found: Vec2| {
-            if before > 0.0 || found == one { Ok(()) } else { Err(format!("{found}, not {one}")) }
-        })
-        .invariant("between them", |(one, other, ..), found: Vec2| {
-            let inside = found.cmpge(one.min(other)).all() && found.cmple(one.max(other)).all();
-            if inside { Ok(()) } else { Err(format!("{found}")) }
-        })
+        .edge("between two points", |(at,)| (mirror::VOXELIZATION_LATTICE * at).fract().abs().max_element() == 0.5)
+        .edge("before the origin", |(at,)| at.max_element() < 0.0)
+        .edge("a hundred voxels away", |(at,)| at.abs().min_element() > 100.0)
         .build(),
-        formula(M, "voxelization_crossing", mirror::crossing, oracle::crossing, |draws| {
-            let (a, b, _, column) = column_case(draws);
-            (a, b, column.x)
-        })
-        .edge("crossed", |(a, b, y)| mirror::crossing(a, b, y).crossed)
-        .edge("at the lower end", |(a, b, y)| a.y == y && b.y > y)
-        .edge("at the upper end", |(a, b, y)| a.y == y && b.y < y)
-        .edge("along the plane", |(a, b, y)| a.y == y && b.y == y)
-        .pair(
-            "either end may be named first",
-            |(a, b, y)| (b, a, y),
-            |_, one: VoxelizationCrossing, other: VoxelizationCrossing| {
-                if one == other { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
-            },
-        )
-        .build(),
+        formula(M, "voxelization_cross", mirror::cross, oracle::cross, |draws| (point(draws), point(draws)))
+            .edge("negative and small", |(p, q)| mirror::cross(p, q).high == -1)
+            .edge("above 2^57", |(p, q)| mirror::cross(p, q).high > 1 << 27)
+            .edge("below -2^57", |(p, q)| mirror::cross(p, q).high < -(1 << 27))
+            .pair(
+                "the other way round it changes its sign",
+                |(p, q)| (q, p),
+                |_, one: VoxelizationInteger, other: VoxelizationInteger| {
+                    let [one, other] = [one, other].map(|part| (i64::from(part.high) << 30) + i64::from(part.low));
+                    if one == -other { Ok(()) } else { Err(format!("{one}, {other}")) }
+                },
+            )
+            .build(),
+        formula(M, "voxelization_edge", mirror::edge, oracle::edge, edge)
+            .edge("without length", |(p, q)| p == q)
+            .edge("on the column", |(p, q)| p != q && oracle::edge(p, q).area == 0.0)
+            .edge("on the column and along y", |(p, q)| p.y == 0 && q.y == 0 && p.x != q.x)
+            .edge("small of large parts", |(p, q)| {
+                let area = mirror::cross(p, q);
+                area.high == -1 && area.low > 1_073_741_000 && p.abs().max_element() > 1 << 20
+            })
+            .pair(
+                "the other way round it turns the other way",
+                |(p, q)| (q, p),
+                |_, one: VoxelizationEdge, other: VoxelizationEdge| {
+                    if one.turn == -other.turn { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
+                },
+            )
+            .build(),
         formula(M, "voxelization_column", mirror::column, oracle::column, column_case)
             .edge("inside", |(a, b, c, at)| mirror::column(a, b, c, at).inside)
             .edge("outside", |(a, b, c, at)| !mirror::column(a, b, c, at).inside)
@@ -260,16 +319,13 @@ fn column_formulas() -> Vec<Formula> {
                 p.y * q.z == p.z * q.y && p.y != q.y
             })
             .edge("across x", |(a, b, c, at)| a.x == b.x && b.x == c.x && mirror::column(a, b, c, at).inside)
-            .invariant_at_nearest("on a grid of steps the side is exact", |(a, b, c, at), found: VoxelizationColumn| {
-                if !all_steps(&[a, b, c]) || !all_steps(&[at.extend(0.0)]) {
-                    return Ok(());
-                }
-                let [p, q, r] = exact_triangle((a, b, c));
-                let wanted = oracle::column(p, q, r, at.as_dvec2());
-                if found.inside != wanted.inside {
-                    return Err(format!("{found:?}, not {wanted:?}"));
-                }
-                near("depth", found.depth.into(), wanted.depth, 2e-6)
+            .edge("of a few points, inside", |(a, b, c, at)| {
+                let size = a.max(b).max(c) - a.min(b).min(c);
+                size.y.max(size.z) < 1e-3 && mirror::column(a, b, c, at).inside
+            })
+            .edge("as wide as the lattice, inside", |(a, b, c, at)| {
+                let size = a.max(b).max(c) - a.min(b).min(c);
+                size.y.min(size.z) > mirror::VOXELIZATION_REACH && mirror::column(a, b, c, at).inside
             })
             .invariant("the depth is the triangle's", |(a, b, c, _), found: VoxelizationColumn| {
                 let extent = a.x.min(b.x).min(c.x)..=a.x.max(b.x).max(c.x);
@@ -278,8 +334,11 @@ fn column_formulas() -> Vec<Formula> {
             .pair(
                 "the corners may be named in any order",
                 |(a, b, c, at)| (c, b, a, at),
-                |_, one: VoxelizationColumn, other: VoxelizationColumn| {
-                    if one == other { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
+                |(a, b, c, _), one: VoxelizationColumn, other: VoxelizationColumn| {
+                    // Three weights, products and their sum, the sum of the weights and the quotient, each way.
+                    let most = f64::from(a.x.abs().max(b.x.abs()).max(c.x.abs())) * 24.0 * 2f64.powi(-23);
+                    near("depth", one.depth.into(), other.depth.into(), most)?;
+                    if one.inside == other.inside { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
                 },
             )
             .hard_case("on a shared edge: the other triangle's", under, (&[0.0, 0.0], 0.0), (naive, 1.0))

@@ -27,12 +27,11 @@ pub fn frame(grid: VoxelizationGrid, positions: &[f32], indices: &[u32], effect_
     let bits = vec![0; (columns * words(grid)) as usize];
     let beyond = vec![0; columns.div_ceil(32) as usize];
     let mut buffers = Buffers { matter: bits.clone(), surface: bits, beyond, status: [0; 3] };
+    let corners: Vec<Vec3> =
+        positions.chunks_exact(3).map(|position| crate::local(grid, Vec3::from_slice(position))).collect();
     for triangle in indices.chunks_exact(3) {
-        let corner = |k: usize| {
-            let first = 3 * triangle[k] as usize;
-            crate::local(grid, Vec3::new(positions[first], positions[first + 1], positions[first + 2]))
-        };
-        walk(grid, [corner(0), corner(1), corner(2)], effect_surface, &mut buffers);
+        let [a, b, c] = [0, 1, 2].map(|k| corners[triangle[k] as usize]);
+        walk(grid, [a, b, c], effect_surface, &mut buffers);
     }
     for row in 0..columns {
         finish(grid, row, &mut buffers);

@@ -12,8 +12,12 @@ pub mod oracle;
 #[cfg(test)]
 mod tests;
 
-use glam::{UVec2, UVec3, Vec2, Vec3, Vec3Swizzles as _};
+use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec3Swizzles as _};
 
+/// Points of the lattice along a voxel's edge.
+pub const VOXELIZATION_LATTICE: f32 = 16384.0;
+/// How far the lattice reaches from the grid's origin, in voxels.
+pub const VOXELIZATION_REACH: f32 = 16384.0;
 /// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2⁻¹⁹.
 pub const VOXELIZATION_MARGIN: f32 = 1.9073486328125e-6;
 /// Steeper planes than this are cut off by the triangle's own extent, whatever the grid.
@@ -30,13 +34,22 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// Where an edge crosses a plane across y.
+/// An integer of 60 bits: high 2³⁰ + low.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VoxelizationInteger {
+    /// Units of 2³⁰.
+    pub high: i32,
+    /// From 0 to 2³⁰ - 1.
+    pub low: i32,
+}
+
+/// An edge as seen from a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VoxelizationCrossing {
-    /// Whether it does.
-    pub crossed: bool,
-    /// x and z of the place; 0 where there is none.
-    pub at: Vec2,
+pub struct VoxelizationEdge {
+    /// 1 where it runs counterclockwise about the column, with y to the right and z upwards; -1 where clockwise; 0 for an edge without length.
+    pub turn: i32,
+    /// Twice the area of the triangle between the edge and the column, in squares of the lattice.
+    pub area: f32,
 }
 
 /// Where a triangle crosses a column.
@@ -69,50 +82,57 @@ pub fn voxel(grid: VoxelizationGrid, position: Vec3) -> UVec3 {
     local(grid, position).clamp(Vec3::ZERO, Vec3::splat(last as f32)).as_uvec3().min(UVec3::splat(last))
 }
 
-/// The point that divides a line at two distances.
-pub fn between(from_point: Vec2, to_point: Vec2, before: f32, after: f32) -> Vec2 {
-    // A subnormal may be flushed where it is divided by.
-    let share = before.min(after) / (before + after).max(1.2e-38);
-    let near = if before < after { from_point } else { to_point };
-    let far = if before < after { to_point } else { from_point };
-    (near + share * (far - near)).clamp(near.min(far), near.max(far))
+/// The nearest point of the lattice on which it is decided what lies inside.
+pub fn lattice(position: Vec2) -> IVec2 {
+    let reach = Vec2::splat(VOXELIZATION_REACH);
+    let scaled = position.clamp(-reach, reach) * VOXELIZATION_LATTICE;
+    Vec2::new(scaled.x.round_ties_even(), scaled.y.round_ties_even()).as_ivec2()
 }
 
-/// Where an edge crosses the plane of a row of columns: its lower end belongs to it and its upper does not.
-pub fn crossing(a: Vec3, b: Vec3, y: f32) -> VoxelizationCrossing {
-    let swapped = b.y < a.y;
-    let lower = if swapped { b } else { a };
-    let upper = if swapped { a } else { b };
-    if lower.y <= y && y < upper.y {
-        return VoxelizationCrossing { crossed: true, at: between(lower.xz(), upper.xz(), y - lower.y, upper.y - y) };
-    }
-    VoxelizationCrossing { crossed: false, at: Vec2::ZERO }
+/// The cross product of two vectors of whole numbers, all of its bits.
+pub fn cross(p: IVec2, q: IVec2) -> VoxelizationInteger {
+    let p_high = p >> UVec2::splat(15);
+    let q_high = q >> UVec2::splat(15);
+    let p_low = p & IVec2::splat(32767);
+    let q_low = q & IVec2::splat(32767);
+    let low = p_low.x * q_low.y - p_low.y * q_low.x;
+    let middle = (p_high.x * q_low.y - p_high.y * q_low.x) + (p_low.x * q_high.y - p_low.y * q_high.x) + (low >> 15);
+    let high = p_high.x * q_high.y - p_high.y * q_high.x + (middle >> 15);
+    VoxelizationInteger { high, low: ((middle & 32767) << 15) | (low & 32767) }
 }
 
-/// Where a triangle crosses a column: the column passes between two of its edges' crossings, the lower one included.
+/// An edge as seen from a column, which never lies on the line of an edge.
+pub fn edge(from_point: IVec2, to_point: IVec2) -> VoxelizationEdge {
+    let area = cross(from_point, to_point);
+    let way = to_point - from_point;
+    let turn_beside = if way.x == 0 { -way.y.signum() } else { way.x.signum() };
+    let turn_near = if area.low > 0 { 1 } else { turn_beside };
+    let turn = if area.high == 0 { turn_near } else { area.high.signum() };
+    // Without the sign: a small difference of two large parts would lose its digits.
+    let high = if area.high < 0 { -1 - area.high } else { area.high };
+    let low = if area.high < 0 { 1_073_741_824 - area.low } else { area.low };
+    VoxelizationEdge { turn, area: high as f32 * 1_073_741_824.0 + low as f32 }
+}
+
+/// Where a triangle crosses a column: all three edges turn about it the same way.
 pub fn column(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
-    // Two edges are one as seen along x: a device may round them apart.
-    if a.yz() == b.yz() || b.yz() == c.yz() || c.yz() == a.yz() {
+    let at = lattice(column);
+    let p = lattice(a.yz()) - at;
+    let q = lattice(b.yz()) - at;
+    let r = lattice(c.yz()) - at;
+    let ab = edge(p, q);
+    let bc = edge(q, r);
+    let ca = edge(r, p);
+    if ab.turn == 0 || ab.turn != bc.turn || bc.turn != ca.turn {
         return VoxelizationColumn { inside: false, depth: 0.0 };
     }
-    let ab = crossing(a, b, column.x);
-    let bc = crossing(b, c, column.x);
-    let ca = crossing(c, a, column.x);
-    let under_ab = ab.crossed && ab.at.y <= column.y;
-    let under_bc = bc.crossed && bc.at.y <= column.y;
-    let under_ca = ca.crossed && ca.at.y <= column.y;
-    // Of three edges none or two are crossed; the column is between two of which one lies under it.
-    if (under_ab != under_bc) != under_ca {
-        let not_ab = if under_bc { bc.at } else { ca.at };
-        let low = if under_ab { ab.at } else { not_ab };
-        let not_ab = if bc.crossed && !under_bc { bc.at } else { ca.at };
-        let high = if ab.crossed && !under_ab { ab.at } else { not_ab };
-        return VoxelizationColumn { inside: true, depth: between(low, high, column.y - low.y, high.y - column.y).x };
-    }
-    VoxelizationColumn { inside: false, depth: 0.0 }
+    // Each corner weighs as much as the edge across from it.
+    let weights = Vec3::new(bc.area, ca.area, ab.area);
+    let depth = weights.dot(Vec3::new(a.x, b.x, c.x)) / (weights.x + weights.y + weights.z);
+    VoxelizationColumn { inside: true, depth: depth.clamp(a.x.min(b.x.min(c.x)), a.x.max(b.x.max(c.x))) }
 }
 
-/// The same by edge functions, as one finds it.
+/// The same in floats, as one finds it.
 pub fn column_naive(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     let p = a.yz() - column;
     let q = b.yz() - column;

@@ -1,7 +1,7 @@
-//! The truth in f64. Faces and centres are counted, edges are met by lines in homogeneous coordinates, a column is inside by signed areas and its
-//! depth by the plane, and a triangle touches a voxel if something is left of it once the voxel's six faces have clipped it.
+//! The truth, in f64 and in integers of 128 bits. Faces and centres are counted, a column is inside by the edges that lie beside it, its depth is weighed by areas,
+//! and a triangle touches a voxel if something is left of it once the voxel's six faces have clipped it.
 
-use glam::{DVec2, DVec3, UVec2, UVec3};
+use glam::{DVec2, DVec3, IVec2, UVec2, UVec3};
 
 /// A cube of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,13 +14,22 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// Where an edge crosses a plane across y.
+/// An integer of 60 bits: high 2³⁰ + low.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VoxelizationInteger {
+    /// Units of 2³⁰.
+    pub high: i32,
+    /// From 0 to 2³⁰ - 1.
+    pub low: i32,
+}
+
+/// An edge as seen from a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VoxelizationCrossing {
-    /// Whether it does.
-    pub crossed: bool,
-    /// x and z of the place; 0 where there is none.
-    pub at: DVec2,
+pub struct VoxelizationEdge {
+    /// 1 counterclockwise, -1 clockwise, 0 for an edge without length.
+    pub turn: i32,
+    /// Twice the area of the triangle between the edge and the column.
+    pub area: f64,
 }
 
 /// Where a triangle crosses a column.
@@ -59,27 +68,33 @@ pub fn voxel(grid: VoxelizationGrid, position: DVec3) -> UVec3 {
     }))
 }
 
-/// From one point on, by the share of the way.
-pub fn between(from_point: DVec2, to_point: DVec2, before: f64, after: f64) -> DVec2 {
-    from_point + (to_point - from_point) * (before / (before + after))
-}
-
-/// Where the line through two points of a plane has this first coordinate, in homogeneous coordinates.
-fn on_line(one: DVec2, other: DVec2, first: f64) -> f64 {
-    let line = one.extend(1.0).cross(other.extend(1.0));
-    -(line.x * first + line.z) / line.y
-}
-
-/// In the planes of (y, x) and of (y, z).
-pub fn crossing(a: DVec3, b: DVec3, y: f64) -> VoxelizationCrossing {
-    if (a.y <= y) == (b.y <= y) {
-        return VoxelizationCrossing { crossed: false, at: DVec2::ZERO };
-    }
-    let across = |axis: usize| {
-        let place = on_line(DVec2::new(a.y, a[axis]), DVec2::new(b.y, b[axis]), y);
-        place.clamp(a[axis].min(b[axis]), a[axis].max(b[axis]))
+/// By the whole numbers on both sides.
+pub fn lattice(position: DVec2) -> IVec2 {
+    let nearest = |coordinate: f64| {
+        let steps = coordinate.clamp(-16384.0, 16384.0) * 16384.0;
+        let (below, part) = (steps.floor() as i32, steps - steps.floor());
+        below + i32::from(part > 0.5 || (part == 0.5 && below % 2 != 0))
     };
-    VoxelizationCrossing { crossed: true, at: DVec2::new(across(0), across(2)) }
+    IVec2::new(nearest(position.x), nearest(position.y))
+}
+
+/// At once, in 128 bits.
+fn whole_cross(p: IVec2, q: IVec2) -> i128 {
+    i128::from(p.x) * i128::from(q.y) - i128::from(p.y) * i128::from(q.x)
+}
+
+/// The parts of the whole.
+pub fn cross(p: IVec2, q: IVec2) -> VoxelizationInteger {
+    let whole = whole_cross(p, q);
+    VoxelizationInteger { high: whole.div_euclid(1 << 30) as i32, low: whole.rem_euclid(1 << 30) as i32 }
+}
+
+/// The area from a column at (e², e), as the coefficients of a polynomial in e: the first that is not 0 has the sign.
+pub fn edge(from_point: IVec2, to_point: IVec2) -> VoxelizationEdge {
+    let area = whole_cross(from_point, to_point);
+    let powers = [area, i128::from(to_point.x - from_point.x), i128::from(from_point.y - to_point.y)];
+    let turn = powers.into_iter().map(i128::signum).find(|sign| *sign != 0).unwrap_or(0);
+    VoxelizationEdge { turn: turn as i32, area: area.unsigned_abs() as f64 }
 }
 
 /// Twice the signed area of a triangle in the plane of y and z.
@@ -91,17 +106,23 @@ fn across(point: DVec3) -> DVec2 {
     DVec2::new(point.y, point.z)
 }
 
-/// By the signs of areas; ties as if the column lay a little higher in y, and in z by less than that.
+/// By the edges that lie beside the column, each with its lower end and without its upper one; ties as if the column lay a little higher in z, and in y
+/// by less than that.
 pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
-    let beside = |from: DVec3, to: DVec3| {
-        let (lower, upper) = if from.y <= to.y { (from, to) } else { (to, from) };
-        lower.y <= column.x && column.x < upper.y && area(across(lower), across(upper), column) >= 0.0
+    let at = lattice(column);
+    let corners = [a, b, c].map(|corner| (lattice(across(corner)) - at, corner.x));
+    let weight = |k: usize| whole_cross(corners[(k + 1) % 3].0, corners[(k + 2) % 3].0);
+    let beside = |k: usize| {
+        let (from, to) = (corners[(k + 1) % 3].0, corners[(k + 2) % 3].0);
+        let upwards = if from.x <= to.x { weight(k) } else { -weight(k) };
+        from.x.min(to.x) <= 0 && 0 < from.x.max(to.x) && upwards >= 0
     };
-    let count = [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| beside(*from, *to)).count();
-    if count % 2 == 0 {
+    if (0..3).filter(|k| beside(*k)).count() % 2 == 0 {
         return VoxelizationColumn { inside: false, depth: 0.0 };
     }
-    VoxelizationColumn { inside: true, depth: on_plane(a, b, c, column) }
+    let whole: i128 = (0..3).map(weight).sum();
+    let depth: f64 = (0..3).map(|k| weight(k) as f64 / whole as f64 * corners[k].1).sum();
+    VoxelizationColumn { inside: true, depth }
 }
 
 /// x of the plane over a column, within the triangle's extent.

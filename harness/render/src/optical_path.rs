@@ -215,7 +215,12 @@ impl<'gpu> Upload<'_, 'gpu> {
     ) -> Result<BodyPaths<'gpu>, RenderError> {
         let gpu = self.gpu;
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
-        let voxelizer = Voxelizer::new(gpu, grid, mesh.triangle_count() as u32, &decisions.constants())?;
+        let voxelizer = Voxelizer::new(
+            gpu,
+            grid,
+            (mesh.positions.len() as u32, mesh.triangle_count() as u32),
+            &decisions.constants(),
+        )?;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
         let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;

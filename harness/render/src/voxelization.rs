@@ -12,8 +12,10 @@ const RECIPE: &str = "voxelization";
 const WORKGROUP: u32 = 64;
 /// Workgroups that share the triangles over many columns.
 const LARGE_GROUPS: u32 = 64;
-/// The most triangles: as many workgroups as may stand in a line.
-pub const MOST_TRIANGLES: u32 = 65_535 * WORKGROUP;
+/// The most workgroups that may stand in a line.
+const MOST_WORKGROUPS: u32 = 65_535;
+/// The most triangles: a thread each.
+pub const MOST_TRIANGLES: u32 = MOST_WORKGROUPS * WORKGROUP;
 /// Bytes of the counts.
 const STATUS_BYTES: u64 = 12;
 
@@ -34,17 +36,18 @@ impl From<VoxelGrid> for VoxelizationGrid {
     }
 }
 
-/// Pipelines and buffers for meshes of up to so many triangles in a grid of one size.
+/// Pipelines and buffers for meshes of up to so many vertices and triangles in a grid of one size.
 #[derive(Debug)]
 pub struct Voxelizer<'gpu> {
     gpu: &'gpu Gpu,
     cells: u32,
     most_triangles: u32,
-    /// Of each triangle, of those over many columns, of each row.
-    kernels: [Kernel; 3],
+    /// Of each vertex, of each triangle, of those over many columns, of each row.
+    kernels: [Kernel; 4],
     grid: wgpu::Buffer,
     beyond: wgpu::Buffer,
     large: wgpu::Buffer,
+    corners: wgpu::Buffer,
     /// A bit for each voxel that is filled: [`VoxelGrid::words_per_row`] words a row.
     pub matter: wgpu::Buffer,
     /// The same for the voxels that the surface touches, where these are set too.
@@ -54,7 +57,7 @@ pub struct Voxelizer<'gpu> {
 }
 
 impl<'gpu> Voxelizer<'gpu> {
-    /// For meshes of up to `most_triangles`, with the effects by the names of the recipe's overrides.
+    /// For meshes of up to `most_vertices` and `most_triangles`, with the effects by the names of the recipe's overrides.
     ///
     /// # Errors
     /// Where the device refuses the recipe or the memory.
@@ -64,14 +67,18 @@ impl<'gpu> Voxelizer<'gpu> {
     pub fn new(
         gpu: &'gpu Gpu,
         grid: VoxelGrid,
-        most_triangles: u32,
+        (most_vertices, most_triangles): (u32, u32),
         effects: &[(&str, f64)],
     ) -> Result<Self, ShaderError> {
         assert!(most_triangles <= MOST_TRIANGLES, "{most_triangles} triangles");
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let kernel = |entry| Kernel::new(gpu, RECIPE, &source, entry, effects);
-        let kernels =
-            [kernel("voxelization_triangles")?, kernel("voxelization_large")?, kernel("voxelization_finish")?];
+        let kernels = [
+            kernel("voxelization_vertices")?,
+            kernel("voxelization_triangles")?,
+            kernel("voxelization_large")?,
+            kernel("voxelization_finish")?,
+        ];
         let columns = u64::from(grid.cells) * u64::from(grid.cells);
         let bits = 4 * columns * u64::from(grid.words_per_row());
         let holds_surface = kernels.iter().any(|kernel| kernel.binds(0, 4));
@@ -91,6 +98,7 @@ impl<'gpu> Voxelizer<'gpu> {
                 beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
                 // A list of none still has a place.
                 large: storage("large triangles", 4 + 4 * u64::from(most_triangles.max(1))),
+                corners: storage("vertices in the grid", 12 * u64::from(most_vertices.max(1))),
                 matter: storage("matter", bits),
                 surface: holds_surface.then(|| storage("surface voxels", bits)),
                 status: storage("voxel counts", STATUS_BYTES),
@@ -106,7 +114,7 @@ impl<'gpu> Voxelizer<'gpu> {
     /// Where the device refuses the buffers.
     ///
     /// # Panics
-    /// Where there are more triangles than this was made for.
+    /// Where there are more vertices or triangles than this was made for.
     pub fn encode(
         &self,
         encoder: &mut Encoder,
@@ -115,6 +123,7 @@ impl<'gpu> Voxelizer<'gpu> {
     ) -> Result<(), ShaderError> {
         let triangles = indices.size() / 12;
         assert!(triangles <= u64::from(self.most_triangles), "{triangles} triangles");
+        assert!(positions.size() <= self.corners.size(), "{} vertices", positions.size() / 12);
         for buffer in [&self.matter, &self.beyond, &self.status].into_iter().chain(&self.surface) {
             encoder.clear_buffer(buffer, 0, None);
         }
@@ -133,6 +142,7 @@ impl<'gpu> Voxelizer<'gpu> {
                 (5, &self.beyond),
                 (6, &self.large),
                 (7, &self.status),
+                (8, &self.corners),
             ];
             let resources: Vec<_> = buffers
                 .into_iter()
@@ -144,7 +154,8 @@ impl<'gpu> Voxelizer<'gpu> {
                 ..wgpu::ComputePassDescriptor::default()
             });
             let rows = self.cells * self.cells;
-            let workgroups = [(triangles as u32).div_ceil(WORKGROUP), LARGE_GROUPS, rows.div_ceil(WORKGROUP)];
+            let vertices = (positions.size() / 12).div_ceil(WORKGROUP.into()).min(MOST_WORKGROUPS.into()) as u32;
+            let workgroups = [vertices, (triangles as u32).div_ceil(WORKGROUP), LARGE_GROUPS, rows.div_ceil(WORKGROUP)];
             for (kernel, workgroups) in self.kernels.iter().zip(workgroups) {
                 pass.set_pipeline(&kernel.pipeline);
                 pass.set_bind_group(0, kernel.bind(device, 0, &resources).as_ref());
@@ -157,7 +168,7 @@ impl<'gpu> Voxelizer<'gpu> {
     /// Bytes of its buffers.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let buffers = [&self.grid, &self.beyond, &self.large, &self.matter, &self.status];
+        let buffers = [&self.grid, &self.beyond, &self.large, &self.corners, &self.matter, &self.status];
         buffers.into_iter().chain(&self.surface).map(wgpu::Buffer::size).sum()
     }
 

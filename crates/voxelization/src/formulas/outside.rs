@@ -1,7 +1,7 @@
 //! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
 
-use crate::{VoxelizationColumn, VoxelizationCrossing, VoxelizationGrid};
-use glam::{UVec2, UVec3, Vec2, Vec3};
+use crate::{VoxelizationColumn, VoxelizationEdge, VoxelizationGrid, VoxelizationInteger, oracle};
+use glam::{DVec3, IVec2, UVec2, UVec3, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{
     Promise, accurate, any_bits, any_finite, any_number, any_numbers, any_vector, finite, holds, nothing, that,
@@ -16,7 +16,7 @@ pub(super) fn promises() -> Vec<Promise> {
         spacing: draws.magnitude(-60, high),
         cells: any_number(draws).max(1),
     };
-    let crossed = |a: Vec3, b: Vec3, y: f32| (a.y <= y) != (b.y <= y);
+    let point = |draws: &mut Draws<'_>| IVec2::new(any_number(draws).cast_signed(), any_number(draws).cast_signed());
     vec![
         holds(
             "voxelization_index",
@@ -45,28 +45,34 @@ pub(super) fn promises() -> Vec<Promise> {
             },
         ),
         holds(
-            "voxelization_between",
-            "within the box for a smaller sum too",
-            |draws| {
-                let small = |draws: &mut Draws<'_>| if draws.below(4) == 0 { 0.0 } else { draws.magnitude(-149, -127) };
-                (draws.in_square(), draws.in_square(), small(draws), small(draws))
-            },
-            |(one, other, ..): (Vec2, Vec2, f32, f32), found: Vec2| {
-                let inside = found.cmpge(one.min(other)).all() && found.cmple(one.max(other)).all();
-                that(inside, || format!("{found}"))
+            "voxelization_lattice",
+            "the lattice's last point, on the position's side",
+            |draws| (Vec2::new(any_finite(draws), any_finite(draws)),),
+            |(position,): (Vec2,), found: IVec2| {
+                let wanted = oracle::lattice(position.as_dvec2());
+                that(found == wanted, || format!("{found}, not {wanted}"))
             },
         ),
         holds(
-            "voxelization_crossing",
-            "crossed as the comparisons say",
-            |draws| (any_vector(draws), any_vector(draws), any_finite(draws)),
-            move |(a, b, y): (Vec3, Vec3, f32), crossing: VoxelizationCrossing| {
-                that(crossing.crossed == crossed(a, b, y), || format!("crossed: {}", crossing.crossed))
+            "voxelization_cross",
+            "some number, with low from 0 to 2^30 - 1",
+            move |draws| (point(draws), point(draws)),
+            |_: (IVec2, IVec2), found: VoxelizationInteger| {
+                that((0..1 << 30).contains(&found.low), || format!("{found:?}"))
+            },
+        ),
+        holds(
+            "voxelization_edge",
+            "turn from -1 to 1, area from 0 to 2^62",
+            move |draws| (point(draws), point(draws)),
+            |_: (IVec2, IVec2), found: VoxelizationEdge| {
+                let within = (-1..=1).contains(&found.turn) && (0.0..=2f32.powi(62)).contains(&found.area);
+                that(within, || format!("{found:?}"))
             },
         ),
         holds(
             "voxelization_column",
-            "as voxelization_crossing",
+            "inside as for the lattice's last points",
             |draws| {
                 (
                     any_vector(draws),
@@ -75,9 +81,11 @@ pub(super) fn promises() -> Vec<Promise> {
                     Vec2::new(any_finite(draws), any_finite(draws)),
                 )
             },
-            move |(a, b, c, column): (Vec3, Vec3, Vec3, Vec2), found: VoxelizationColumn| {
-                let edges = [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| crossed(*from, *to, column.x));
-                that(!found.inside || edges.count() == 2, || "inside, though the line crosses no edge".to_owned())
+            |(a, b, c, column): (Vec3, Vec3, Vec3, Vec2), found: VoxelizationColumn| {
+                // What x is makes no difference.
+                let [a, b, c] = [a, b, c].map(|corner| DVec3::new(0.0, corner.y.into(), corner.z.into()));
+                let wanted = oracle::column(a, b, c, column.as_dvec2());
+                that(found.inside == wanted.inside, || format!("inside: {}", found.inside))
             },
         ),
         accurate("voxelization_first", "none is; from 0 to cells whatever comes in", |draws| {
