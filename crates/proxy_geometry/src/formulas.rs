@@ -272,7 +272,12 @@ fn normal_formulas() -> Vec<Formula> {
                 1 => (a, b, a),
                 2 => (a, a, a),
                 3 => (Vec3::ZERO, b - a, b - a),
-                4 => (Vec3::ZERO, b - a, 2.0 * (b - a)),
+                4 => {
+                    // Of powers of two, so that the quotients are exact; else a device may round two equal ones apart.
+                    let mut power = || draws.pick(&[-4.0, -1.0, -0.5, 0.25, 1.0, 8.0]);
+                    let edge = Vec3::new(power(), power(), power());
+                    (Vec3::ZERO, edge, 2.0 * edge)
+                }
                 _ => (a, b, c),
             }
         })

@@ -110,6 +110,7 @@ fn cases() -> Vec<Case> {
         "grid",
         "columns crossed beyond",
         "large triangles",
+        "vertices in the grid",
         "matter",
         "surface voxels",
         "voxel counts",
