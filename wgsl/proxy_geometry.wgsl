@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 9ece8883aaa4c3c1
+// Version: 0.2.0, hash 535447529fdb1fa5
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
@@ -219,7 +219,8 @@ fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
     return ProxyGeometryCell(vec2i(corner), within.x + within.y > 1.0f);
 }
 
-// The vertices of a tile, each from its own place on the lattice, so that tiles share theirs to the last bit.
+// The vertices of a tile, each from its own place on the lattice: no error adds up from tile to tile. Tiles share a vertex to the last bit where a device
+// rounds equal expressions alike, and within the bounds below everywhere; nothing rests on more.
 // Returns: ProxyGeometryFacet.
 // Units: lengths.
 // Domain: size of the triangle in [1e-27, 1e27], at most 100 steps.

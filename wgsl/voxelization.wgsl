@@ -1,6 +1,6 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash cc74498b1e6a0621
+// Version: 0.2.0, hash 40029287ec37630d
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
 //   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //
@@ -33,7 +33,7 @@ struct VoxelizationGrid {
     cells: u32,
 }
 
-// An integer of 60 bits: high 2^30 + low.
+// An integer of more bits than 32: high 2^30 + low.
 struct VoxelizationInteger {
     high: i32,
     // From 0 to 2^30 - 1.
@@ -97,16 +97,16 @@ fn voxelization_voxel(grid: VoxelizationGrid, position: vec3f) -> vec3u {
     return min(vec3u(clamp(voxelization_local(grid, position), vec3f(0.0f), vec3f(f32(last)))), vec3u(last));
 }
 
-// The nearest point of the lattice on which it is decided what lies inside. The product by a power of two and the rounding are exact, so that a position has
-// the same point on every device.
+// The nearest point of the lattice on which inside and outside are decided. The product by a power of two and the rounding are exact, so that a
+// position has the same point on every device.
 // Returns: 2^14 position, rounded to whole numbers, halves to the even one.
 // Units: steps of the lattice; position in voxels.
 // Domain: coordinates up to 16384.
 // Outside: the lattice's last point, on the position's side.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn voxelization_lattice(position: vec2f) -> vec2i {
-    let reach = vec2f(VOXELIZATION_REACH);
-    return vec2i(round(clamp(position, -reach, reach) * VOXELIZATION_LATTICE));
+    let within = clamp(position, vec2f(-VOXELIZATION_REACH), vec2f(VOXELIZATION_REACH));
+    return vec2i(round(within * VOXELIZATION_LATTICE));
 }
 
 // The cross product of two vectors of whole numbers, all of its bits. In halves of 15 bits no sum of products leaves 32 bits.
@@ -118,12 +118,12 @@ fn voxelization_lattice(position: vec2f) -> vec2i {
 fn voxelization_cross(p: vec2i, q: vec2i) -> VoxelizationInteger {
     let p_high = p >> vec2u(15u);
     let q_high = q >> vec2u(15u);
-    let p_low = p & vec2i(32767);
-    let q_low = q & vec2i(32767);
+    let p_low = p & vec2i(32767i);
+    let q_low = q & vec2i(32767i);
     let low = p_low.x * q_low.y - p_low.y * q_low.x;
     let middle = (p_high.x * q_low.y - p_high.y * q_low.x) + (p_low.x * q_high.y - p_low.y * q_high.x) + (low >> 15u);
     let high = p_high.x * q_high.y - p_high.y * q_high.x + (middle >> 15u);
-    return VoxelizationInteger(high, ((middle & 32767) << 15u) | (low & 32767));
+    return VoxelizationInteger(high, ((middle & 32767i) << 15u) | (low & 32767i));
 }
 
 // An edge as seen from a column. On the edge's line, the column counts as a little higher in z, and in y by less than that; so it never lies on the
@@ -132,21 +132,21 @@ fn voxelization_cross(p: vec2i, q: vec2i) -> VoxelizationInteger {
 // Units: `from_point` and `to_point` in steps of the lattice, from the column.
 // Domain: components up to 2^29, and their differences.
 // Outside: turn from -1 to 1, area from 0 to 2^62.
-// Accuracy: lavapipe turn 0 ulp, area 1.5 ulp; portable turn 0 ulp, area 4 ulp
+// Accuracy: lavapipe turn 0 ulp, area 2 ulp; portable turn 0 ulp, area 4 ulp
 fn voxelization_edge(from_point: vec2i, to_point: vec2i) -> VoxelizationEdge {
     let area = voxelization_cross(from_point, to_point);
     let way = to_point - from_point;
-    let turn_beside = select(sign(way.x), -sign(way.y), way.x == 0);
-    let turn = select(sign(area.high), select(turn_beside, 1, area.low > 0), area.high == 0);
+    let turn_beside = select(sign(way.x), -sign(way.y), way.x == 0i);
+    let turn = select(sign(area.high), select(turn_beside, 1i, area.low > 0i), area.high == 0i);
     // Without the sign: a small difference of two large parts would lose its digits.
-    let high = select(area.high, -1 - area.high, area.high < 0);
-    let low = select(area.low, 1073741824 - area.low, area.high < 0);
+    let high = select(area.high, -1i - area.high, area.high < 0i);
+    let low = select(area.low, 1073741824i - area.low, area.high < 0i);
     return VoxelizationEdge(turn, f32(high) * 1073741824.0f + f32(low));
 }
 
-// Where a triangle crosses a column: all three edges turn about it the same way. The side is exact for the triangle that has its corners' nearest points of the
-// lattice in y and z, and with the column's: no shared edge is counted twice or missed, on any device. A triangle seen edge-on is never crossed, so
-// that no area divided by is 0.
+// Where a triangle crosses a column: all three edges turn about it the same way. The decision is exact for the corners and the column moved to their
+// nearest points of the lattice, at most 2^-15 voxels in y and in z: no shared edge is counted twice or missed, on any device. A triangle without area
+// on the lattice is never crossed, so that no sum of weights is 0.
 // Returns: VoxelizationColumn; `depth` within the triangle's extent.
 // Units: voxels; `column` is y and z of the column.
 // Domain: y and z up to 16384, x up to 1e18.
@@ -160,7 +160,7 @@ fn voxelization_column(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> Voxelizat
     let ab = voxelization_edge(p, q);
     let bc = voxelization_edge(q, r);
     let ca = voxelization_edge(r, p);
-    if ab.turn == 0 || ab.turn != bc.turn || bc.turn != ca.turn {
+    if ab.turn == 0i || ab.turn != bc.turn || bc.turn != ca.turn {
         return VoxelizationColumn(false, 0.0f);
     }
     // Each corner weighs as much as the edge across from it.
@@ -169,7 +169,7 @@ fn voxelization_column(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> Voxelizat
     return VoxelizationColumn(true, clamp(depth, min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x))));
 }
 
-// The same in floats, as one finds it: each triangle counts what lies on its edges, and rounding decides what lies there.
+// The same in floats, as one finds it: each triangle counts the columns on its edges, and rounding decides which columns these are.
 // Returns: VoxelizationColumn.
 // Units: as voxelization_column.
 // Domain: triangles that have an area as seen along x.

@@ -49,7 +49,7 @@ struct VoxelizationStatus {
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
 @group(0) @binding(7) var<storage, read_write> status: VoxelizationStatus;
-// The vertices in the grid's coordinates, three numbers each, as many as there are positions.
+// The vertices in the grid's coordinates, three numbers each, as many as in `positions`. No pass binds more than six of the storage buffers.
 @group(0) @binding(8) var<storage, read_write> corners: array<f32>;
 
 // A triangle in the grid's coordinates, and the columns that it may touch.

@@ -93,6 +93,10 @@ fn point(draws: &mut Draws<'_>) -> IVec2 {
 /// Two points of the lattice whose difference is within it: anywhere, or nearly on a line through the column.
 fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
     let half = |draws: &mut Draws<'_>| point(draws) / 2;
+    if draws.below(4) == 0 {
+        let far = point(draws);
+        return (far, far / 2 + IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1));
+    }
     let one = half(draws);
     let other = match draws.below(4) {
         0 => half(draws),

@@ -34,7 +34,7 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// An integer of 60 bits: high 2³⁰ + low.
+/// An integer of more bits than 32: high 2³⁰ + low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoxelizationInteger {
     /// Units of 2³⁰.
@@ -82,10 +82,10 @@ pub fn voxel(grid: VoxelizationGrid, position: Vec3) -> UVec3 {
     local(grid, position).clamp(Vec3::ZERO, Vec3::splat(last as f32)).as_uvec3().min(UVec3::splat(last))
 }
 
-/// The nearest point of the lattice on which it is decided what lies inside.
+/// The nearest point of the lattice on which inside and outside are decided.
 pub fn lattice(position: Vec2) -> IVec2 {
-    let reach = Vec2::splat(VOXELIZATION_REACH);
-    let scaled = position.clamp(-reach, reach) * VOXELIZATION_LATTICE;
+    let within = position.clamp(Vec2::splat(-VOXELIZATION_REACH), Vec2::splat(VOXELIZATION_REACH));
+    let scaled = within * VOXELIZATION_LATTICE;
     Vec2::new(scaled.x.round_ties_even(), scaled.y.round_ties_even()).as_ivec2()
 }
 

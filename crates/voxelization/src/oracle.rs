@@ -1,4 +1,4 @@
-//! The truth, in f64 and in integers of 128 bits. Faces and centres are counted, a column is inside by the edges that lie beside it, its depth is weighed by areas,
+//! The truth, in f64 and in integers of 128 bits. Faces and centres are counted, a column is inside by the edges that lie beside it, its depth by Cramer's rule,
 //! and a triangle touches a voxel if something is left of it once the voxel's six faces have clipped it.
 
 use glam::{DVec2, DVec3, IVec2, UVec2, UVec3};
@@ -14,7 +14,7 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// An integer of 60 bits: high 2³⁰ + low.
+/// An integer of more bits than 32: high 2³⁰ + low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoxelizationInteger {
     /// Units of 2³⁰.
@@ -120,9 +120,12 @@ pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn
     if (0..3).filter(|k| beside(*k)).count() % 2 == 0 {
         return VoxelizationColumn { inside: false, depth: 0.0 };
     }
-    let whole: i128 = (0..3).map(weight).sum();
-    let depth: f64 = (0..3).map(|k| weight(k) as f64 / whole as f64 * corners[k].1).sum();
-    VoxelizationColumn { inside: true, depth }
+    // From the first corner along two edges (Cramer's rule).
+    let [(first, start), (second, _), (third, _)] = corners;
+    let [along, across] = [second - first, third - first];
+    let whole = whole_cross(along, across) as f64;
+    let [to_second, to_third] = [whole_cross(-first, across) as f64 / whole, whole_cross(along, -first) as f64 / whole];
+    VoxelizationColumn { inside: true, depth: start + to_second * (b.x - start) + to_third * (c.x - start) }
 }
 
 /// x of the plane over a column, within the triangle's extent.

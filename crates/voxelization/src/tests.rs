@@ -1,6 +1,6 @@
 //! What parity promises of whole meshes, in exact counts.
 
-use crate::{column, column_naive};
+use crate::{VOXELIZATION_LATTICE, column, column_naive};
 use glam::{Vec2, Vec3};
 
 /// Two fans with one outline, about vertices that columns pass through exactly: each edge belongs to two triangles.
@@ -43,4 +43,38 @@ fn every_column_is_crossed_an_even_number_of_times() {
     }
     assert!(met > 50_000, "{met} columns met anything");
     assert!(odd_naive > 0, "the usual form leaks nowhere");
+}
+
+/// Closed by construction: each tetrahedron has its four faces, and any number of them may meet, turned inside out or flat.
+fn tetrahedra(corners: &[Vec3]) -> Vec<[Vec3; 3]> {
+    corners
+        .chunks_exact(4)
+        .flat_map(|v| [[v[0], v[1], v[2]], [v[1], v[0], v[3]], [v[2], v[1], v[3]], [v[3], v[0], v[2]]])
+        .collect()
+}
+
+#[test]
+fn flat_and_tiny_triangles_leak_nowhere() {
+    let mut state = 1u32;
+    let mut few = |count: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % count
+    };
+    let (mut met, mut flat) = (0, 0);
+    for (count, step) in
+        [(3, VOXELIZATION_LATTICE.recip()), (5, VOXELIZATION_LATTICE.recip()), (4, 1.0), (7, 0.3), (3, 5000.0)]
+    {
+        for _ in 0..2_000 {
+            let corners: Vec<Vec3> =
+                (0..12).map(|_| Vec3::from([0.0; 3].map(|_| step * (few(count) as f32 - 1.0)))).collect();
+            let mesh = tetrahedra(&corners);
+            let at = step * Vec2::new(few(2 * count) as f32 / 2.0 - 1.0, few(2 * count) as f32 / 2.0 - 1.0);
+            let crossed = mesh.iter().filter(|[a, b, c]| column(*a, *b, *c, at).inside).count();
+            assert!(crossed.is_multiple_of(2), "{corners:?}, column {at}: {crossed}");
+            met += usize::from(crossed > 0);
+            let area = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).x;
+            flat += mesh.iter().filter(|triangle| area(triangle) == 0.0).count();
+        }
+    }
+    assert!(met > 3_000 && flat > 30_000, "{met} met anything, {flat} triangles were flat");
 }

@@ -2,17 +2,29 @@
 
 use super::{Measured, Start};
 use lapidary_assay::dispatch::DispatchError;
-use lapidary_assay::interpreter::{Float, Slack};
+use lapidary_assay::interpreter::Float;
 use lapidary_assay::slack::allowance::{Accuracy as _, Wgsl};
 use rayon::prelude::*;
 
 /// A built-in function.
 pub(super) struct Builtin {
     pub(super) name: &'static str,
-    /// None of those whose accuracy WGSL derives from others.
-    function: Option<Float>,
-    exact: fn(f64) -> f64,
+    truth: Truth,
     ranges: &'static [Range],
+}
+
+/// What a built-in should return.
+enum Truth {
+    /// WGSL states how accurate it is.
+    Stated(Float),
+    /// WGSL derives that from other functions, or does not state it.
+    Derived(fn(f64) -> f64),
+}
+
+impl Builtin {
+    fn is(&self, function: Float) -> bool {
+        matches!(self.truth, Truth::Stated(own) if own == function)
+    }
 }
 
 /// Which arguments: those with a size up to a limit; WGSL states how accurate the function is there, or does not.
@@ -30,27 +42,27 @@ const ANGLES: &[Range] = &[
     Range { name: "beyond", to: f32::MAX, is_stated: false },
 ];
 
-const fn stated(name: &'static str, function: Float, exact: fn(f64) -> f64) -> Builtin {
-    Builtin { name, function: Some(function), exact, ranges: ALL }
+const fn stated(name: &'static str, function: Float) -> Builtin {
+    Builtin { name, truth: Truth::Stated(function), ranges: ALL }
 }
 
 const fn derived(name: &'static str, exact: fn(f64) -> f64) -> Builtin {
-    Builtin { name, function: None, exact, ranges: ALL }
+    Builtin { name, truth: Truth::Derived(exact), ranges: ALL }
 }
 
 pub(super) const BUILTINS: [Builtin; 18] = [
-    stated("sqrt", Float::Sqrt, f64::sqrt),
-    stated("inverseSqrt", Float::InverseSqrt, |x| 1.0 / x.sqrt()),
-    stated("exp", Float::Exp, f64::exp),
-    stated("exp2", Float::Exp2, f64::exp2),
-    stated("log", Float::Log, f64::ln),
-    stated("log2", Float::Log2, f64::log2),
-    Builtin { name: "sin", function: Some(Float::Sin), exact: f64::sin, ranges: ANGLES },
-    Builtin { name: "cos", function: Some(Float::Cos), exact: f64::cos, ranges: ANGLES },
-    Builtin { name: "tan", function: None, exact: f64::tan, ranges: ANGLES },
-    stated("asin", Float::Asin, f64::asin),
-    stated("acos", Float::Acos, f64::acos),
-    stated("atan", Float::Atan, f64::atan),
+    stated("sqrt", Float::Sqrt),
+    stated("inverseSqrt", Float::InverseSqrt),
+    stated("exp", Float::Exp),
+    stated("exp2", Float::Exp2),
+    stated("log", Float::Log),
+    stated("log2", Float::Log2),
+    Builtin { ranges: ANGLES, ..stated("sin", Float::Sin) },
+    Builtin { ranges: ANGLES, ..stated("cos", Float::Cos) },
+    Builtin { ranges: ANGLES, ..derived("tan", f64::tan) },
+    stated("asin", Float::Asin),
+    stated("acos", Float::Acos),
+    stated("atan", Float::Atan),
     derived("sinh", f64::sinh),
     derived("cosh", f64::cosh),
     derived("tanh", f64::tanh),
@@ -61,13 +73,13 @@ pub(super) const BUILTINS: [Builtin; 18] = [
 
 /// The name of a built-in in the record.
 pub(super) fn name(function: Float) -> &'static str {
-    let found = BUILTINS.iter().find(|builtin| builtin.function == Some(function));
+    let found = BUILTINS.iter().find(|builtin| builtin.is(function));
     found.map_or_else(|| super::binary::name(function), |builtin| builtin.name)
 }
 
 /// The range of a built-in that an argument lies in; none of those that have no ranges.
 pub(super) fn range(function: Float, argument: f32) -> Option<&'static str> {
-    let found = BUILTINS.iter().find(|builtin| builtin.function == Some(function))?;
+    let found = BUILTINS.iter().find(|builtin| builtin.is(function))?;
     found.ranges.iter().find(|range| argument.abs() <= range.to).map(|range| range.name)
 }
 
@@ -99,7 +111,7 @@ pub(super) fn measure(start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Res
         let mut runner = start(&source(builtin.name), "many")?;
         let mut found: Vec<Measured> =
             builtin.ranges.iter().map(|range| Measured::new(builtin.name, range.name, range.is_stated)).collect();
-        if builtin.function.is_none() {
+        if let Truth::Derived(_) = builtin.truth {
             found.iter_mut().for_each(|row| row.of_wgsl = None);
         }
         let inputs = (1u64 << 32).div_ceil(stride.into());
@@ -144,14 +156,15 @@ fn judged(
             continue;
         }
         let place = builtin.ranges.iter().position(|range| x.abs() <= range.to).unwrap_or(0);
-        let is_stated = builtin.ranges[place].is_stated;
-        let (exact, slack) = match builtin.function {
-            Some(function) => function.exact(x, x),
-            None => ((builtin.exact)(f64::from(x)), Slack::Rounded),
+        let (exact, slack) = match builtin.truth {
+            Truth::Stated(function) => {
+                let (exact, slack) = function.exact(x, x);
+                (exact, builtin.ranges[place].is_stated.then_some(slack))
+            }
+            Truth::Derived(exact) => (exact(x.into()), None),
         };
-        let is_stated = is_stated && builtin.function.is_some();
         found[place]
-            .add(&[x], f32::from_bits(*word), exact, || is_stated.then(|| Wgsl.reach(None, exact.into(), slack)));
+            .add(&[x], f32::from_bits(*word), exact, || slack.map(|slack| Wgsl.reach(None, exact.into(), slack)));
     }
     found
 }

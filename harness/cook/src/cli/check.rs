@@ -129,7 +129,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                 }
                 None => Record::new(&about, settings.cases, count),
             };
-            in_parts(on, &work, &regressions, &mut record, arguments.record.as_deref())?;
+            let bench = Bench { on, source: Source::Cookbook, regressions: Some(&regressions), stage: None };
+            in_parts(&bench, work, &mut record, arguments.record.as_deref())?;
             Checked { about, rows: record.in_order().rows, ..Checked::default() }
         }
         Some(path) => {
@@ -177,39 +178,67 @@ fn parts(arguments: &Arguments) -> Vec<Settings> {
         .collect()
 }
 
+/// Where and from what functions are tested.
+struct Bench<'a> {
+    on: On<'a>,
+    source: Source<'a>,
+    regressions: Option<&'a Regressions>,
+    /// What a user's file is at, for who waits for it.
+    stage: Option<&'a Stage>,
+}
+
+impl Bench<'_> {
+    /// Compiles all, so that a wrong signature is said before minutes of testing.
+    fn prepare<'f>(&self, formulas: impl Iterator<Item = &'f Formula>) -> Result<(), CheckError> {
+        let mut prepared = BTreeSet::new();
+        for formula in formulas.filter(|formula| prepared.insert(formula.function)) {
+            if let Some(stage) = self.stage {
+                stage.compiling(&format!("compiling `{}`", formula.function));
+            }
+            check::prepare(self.on, formula, self.source)?;
+        }
+        Ok(())
+    }
+
+    /// Tests one after the other; `keep` takes each row. `before` of them all were done in another run.
+    fn run<E: From<CheckError>>(
+        &self,
+        work: &[(&Formula, Settings)],
+        before: usize,
+        mut keep: impl FnMut(Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let bar = super::progress::bar((before + work.len()) as u64, "checking");
+        bar.set_position(before as u64);
+        for (formula, settings) in work {
+            if let Some(stage) = self.stage {
+                stage.running(&format!("running `{}`", formula.function));
+            }
+            bar.set_message(format!("{} seed {}", formula.function, settings.seed));
+            keep(check::run_keeping(self.on, formula, self.source, *settings, self.regressions)?)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        Ok(())
+    }
+}
+
 /// Tests part by part, and writes after each what is done.
 fn in_parts(
-    on: On<'_>,
-    work: &[(&'static Formula, Settings)],
-    regressions: &Regressions,
+    bench: &Bench<'_>,
+    work: Vec<(&'static Formula, Settings)>,
     record: &mut Record,
     path: Option<&Path>,
 ) -> Result<(), Failure> {
-    let left: Vec<&(&Formula, Settings)> =
-        work.iter().filter(|(formula, part)| !record.holds(formula.function, part.seed)).collect();
-    // All signatures first, so that a wrong one is said before minutes of testing.
-    let mut prepared = BTreeSet::new();
-    for (formula, _) in &left {
-        if prepared.insert(formula.function) {
-            check::prepare(on, formula, Source::Cookbook)?;
-        }
-    }
+    let all = work.len();
+    let left: Vec<_> = work.into_iter().filter(|(formula, part)| !record.holds(formula.function, part.seed)).collect();
+    bench.prepare(left.iter().map(|(formula, _)| *formula))?;
+    let write = |record: &Record| path.map_or(Ok(()), |path| file::replace(path, record.text().as_bytes()));
     // A shard without work has a record, too.
-    if let Some(path) = path {
-        file::replace(path, record.text().as_bytes())?;
-    }
-    let bar = super::progress::bar(work.len() as u64, "checking");
-    bar.set_position((work.len() - left.len()) as u64);
-    for (formula, part) in left {
-        bar.set_message(format!("{} seed {}", formula.function, part.seed));
-        record.add(check::run_keeping(on, formula, Source::Cookbook, *part, Some(regressions))?);
-        bar.inc(1);
-        if let Some(path) = path {
-            file::replace(path, record.text().as_bytes())?;
-        }
-    }
-    bar.finish_and_clear();
-    Ok(())
+    write(record)?;
+    bench.run(&left, all - left.len(), |row| {
+        record.add(row);
+        Ok::<_, Failure>(write(record)?)
+    })
 }
 
 /// Several records as one.
@@ -269,7 +298,14 @@ fn of_file(
     let Contents { formulas, notes, releases } = file.contents(filter)?;
     let formulas = Shard::share(shard, formulas);
     let source = Source::Copy(&file.path, &file.text);
-    let mut rows = all(on, &formulas, source, settings, regressions, stage)?;
+    let bench = Bench { on, source, regressions, stage: Some(stage) };
+    bench.prepare(formulas.iter().copied())?;
+    let work: Vec<_> = formulas.into_iter().map(|formula| (formula, settings)).collect();
+    let mut rows = Vec::new();
+    bench.run(&work, 0, |row| {
+        rows.push(row);
+        Ok::<_, CheckError>(())
+    })?;
     for row in &mut rows {
         for standing in releases.iter().filter(|standing| standing.module == row.module) {
             if let Some(origin) = standing.origins.iter().find(|origin| origin.function == row.function) {
@@ -279,29 +315,4 @@ fn of_file(
         }
     }
     Ok(Checked { about: String::new(), rows, notes, releases })
-}
-
-fn all(
-    on: On<'_>,
-    formulas: &[&'static Formula],
-    source: Source<'_>,
-    settings: Settings,
-    regressions: Option<&Regressions>,
-    stage: &Stage,
-) -> Result<Vec<Row>, CheckError> {
-    // All signatures first, so that a wrong one is said before minutes of testing.
-    for formula in formulas {
-        stage.compiling(&format!("compiling `{}`", formula.function));
-        check::prepare(on, formula, source)?;
-    }
-    let bar = super::progress::bar(formulas.len() as u64, "checking");
-    let mut rows = Vec::new();
-    for formula in formulas {
-        stage.running(&format!("running `{}`", formula.function));
-        bar.set_message(formula.function);
-        rows.push(check::run_keeping(on, formula, source, settings, regressions)?);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok(rows)
 }

@@ -242,6 +242,8 @@ fn same(function: &Function, left: Handle<Expression>, right: Handle<Expression>
             Expression::AccessIndex { base: left, index: first },
             Expression::AccessIndex { base: right, index: second },
         ) => first == second && same(function, *left, *right),
+        // Two calls may return different things.
+        (Expression::CallResult(_), _) => false,
         (left, right) => left == right,
     }
 }

@@ -43,7 +43,7 @@ mirrored! {
     texture_diffusion, lapidary_texture_diffusion: TEXTURE_DIFFUSION_REACH TEXTURE_DIFFUSION_LEAST_RATIO
         TEXTURE_DIFFUSION_NARROWEST TEXTURE_DIFFUSION_SMALLEST;
     veins, lapidary_veins: VEINS_FARTHEST VEINS_NARROWEST VEINS_WIDEST VEINS_MOST_OCTAVES;
-    voxelization, lapidary_voxelization: VOXELIZATION_MARGIN VOXELIZATION_STEEPEST;
+    voxelization, lapidary_voxelization: VOXELIZATION_LATTICE VOXELIZATION_REACH VOXELIZATION_MARGIN VOXELIZATION_STEEPEST;
 }
 
 /// Appends the words of a global expression, as naga has evaluated it.
