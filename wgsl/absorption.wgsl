@@ -1,6 +1,6 @@
 // absorption: the share of light that a coloured medium lets through along a path inside, by the law of Beer and Lambert.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 28f9ebed2f2f70aa
+// Version: 0.2.0, hash b2bc5bfe2eb43ab1
 // Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles of Optics", 7th ed., section 14.1.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.1.27, for the logarithm.
 
@@ -53,16 +53,6 @@ fn absorption_coefficient(attenuation_color: vec3f, attenuation_distance: f32) -
     return depth / max(attenuation_distance, ABSORPTION_NEAREST);
 }
 
-// The coefficient by the built-in logarithm, as one writes it.
-// Returns: -log(attenuation_color) / attenuation_distance.
-// Units: the inverse of the distance's.
-// Domain: colours in [0.01, 0.9], distances in [1e-3, 1e3].
-// Outside: near a colour of 1 off by up to its whole value; infinite or not a number for a colour or a distance of 0.
-// Accuracy: naive
-fn absorption_coefficient_naive(attenuation_color: vec3f, attenuation_distance: f32) -> vec3f {
-    return -log(attenuation_color) / attenuation_distance;
-}
-
 // Share of light that is left after a path of length `distance` inside. Two paths, one after the other, multiply.
 // Returns: exp(-coefficient distance) per channel, in [0, 1]; exactly 1 where the coefficient or the distance is 0; from an optical depth of
 //   88 on, 0 or less than 2^-126.
@@ -75,15 +65,4 @@ fn absorption_transmittance(coefficient: vec3f, distance: f32) -> vec3f {
     // Said apart, and held to 1: WGSL lets exp err by 3 ulp near 0, where a colourless stone must not gain or lose light.
     let clear = vec3f(1.0f);
     return select(min(exp(-depth), clear), clear, depth == vec3f(0.0f));
-}
-
-// The transmittance as KHR_materials_volume prints it: the colour raised to the ratio of the distances.
-// Returns: pow(attenuation_color, distance / attenuation_distance).
-// Units: none; both distances in the same unit.
-// Domain: colours in [0.01, 0.9], distance at most 4 attenuation distances, those in [1e-3, 1e3].
-// Outside: not a number for two distances of 0; for a colour of 0 at a distance of 0 what 2^(0 log2 0) is on the device; along many attenuation
-//   distances the error of the logarithm in pow is multiplied by their number.
-// Accuracy: naive
-fn absorption_transmittance_naive(attenuation_color: vec3f, attenuation_distance: f32, distance: f32) -> vec3f {
-    return pow(attenuation_color, vec3f(distance / attenuation_distance));
 }

@@ -7,8 +7,16 @@ fn main() -> std::io::Result<()> {
     let root = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets it"));
     let mut text = String::new();
-    let page = |name: &str| format!(", page: {}", include(&root.join(format!("../docs/{name}.md"))));
-    list(&mut text, "Every module", "MODULES", "Module", &files(&root, "wgsl")?, page);
+    let more = |name: &str| {
+        let [own, naive] = ["", "naive/"].map(|folder| root.join(format!("{folder}{name}.wgsl")));
+        let (naive, whole) = match naive.is_file() {
+            true => (include(&naive), format!("concat!({}, \"\\n\", {})", include(&own), include(&naive))),
+            false => ("\"\"".to_owned(), include(&own)),
+        };
+        let page = include(&root.join(format!("../docs/{name}.md")));
+        format!(", naive: {naive}, whole: {whole}, page: {page}")
+    };
+    list(&mut text, "Every module", "MODULES", "Module", &files(&root, "wgsl")?, more);
     list(&mut text, "Every recipe", "RECIPES", "Recipe", &files(&root.join("recipes"), "wgsl")?, |_| String::new());
     list(&mut text, "Every part", "PARTS", "Part", &files(&root.join("recipes/parts"), "wgsl")?, |_| String::new());
     let releases: Vec<String> =
@@ -18,7 +26,7 @@ fn main() -> std::io::Result<()> {
         "/// The hashes of each release's functions, the oldest first, as JSON.\npub const RELEASES: &[&str] = &[{}];",
         releases.join(", ")
     );
-    for folder in ["", "recipes", "recipes/parts", "releases"] {
+    for folder in ["", "naive", "recipes", "recipes/parts", "releases"] {
         println!("cargo:rerun-if-changed={}", root.join(folder).display());
     }
     std::fs::write(out.join("folder.rs"), text)

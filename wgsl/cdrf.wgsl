@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e2d66b4c085a2184
+// Version: 0.2.0, hash 70592c9f1310752c
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
@@ -45,16 +45,6 @@ fn cdrf_finite(value: f32) -> f32 {
 // Accuracy: lavapipe 1 ulp; portable 1 ulp
 fn cdrf_sigma(sigma0: f32, curvature: f32) -> f32 {
     return max(cdrf_finite(sigma0), 0.0f) * abs(cdrf_finite(curvature));
-}
-
-// The product as it stands in the paper.
-// Returns: sigma0 curvature.
-// Units: as cdrf_sigma.
-// Domain: sigma0, curvature in [0, 1e18].
-// Outside: negative, a NaN or infinite.
-// Accuracy: naive
-fn cdrf_sigma_naive(sigma0: f32, curvature: f32) -> f32 {
-    return sigma0 * curvature;
 }
 
 // Angle whose sine is given. WGSL grants its own asin an absolute error of 6.8e-5, or what 4096 ulp of an arctangent make; and at a
@@ -191,17 +181,6 @@ fn cdrf_edge(cosine: f32, sigma: f32) -> f32 {
     return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
-// The same to first order, with the quotient as it stands.
-// Returns: max(cosine, 0) blurred as if the cosine were a straight line.
-// Units: as cdrf_edge.
-// Domain: cosine in [-1, 1]; sigma in [0.01, 0.3].
-// Outside: 0/0 at the terminator for sigma = 0.
-// Accuracy: naive
-fn cdrf_edge_naive(cosine: f32, sigma: f32) -> f32 {
-    let u = cosine / sigma;
-    return cosine * cdrf_normal_share(u) + sigma * cdrf_normal_density(u);
-}
-
 // The convolution, accurate: at one edge while the Gaussian is narrow, the wrapped form's series when it is wide.
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; 1/pi from sigma = 8 on.
 // Units: sigma in radians.
@@ -213,36 +192,6 @@ fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
         return cdrf_edge(cosine, sigma);
     }
     return max(cdrf_series(cosine, sigma, 7u), 0.0f);
-}
-
-// The series alone, four terms for every sigma: short of terms where the Gaussian is narrow.
-// Returns: cdrf_accurate(...) to 1.5e-5 for sigma >= 0.35.
-// Units: sigma in radians.
-// Domain: cosine in [-1, 1]; sigma in [0.35, 8].
-// Outside: 0.035 off at the terminator for sigma = 0, negative in the shadow.
-// Accuracy: naive
-fn cdrf_series_naive(cosine: f32, sigma: f32) -> f32 {
-    return cdrf_series(cosine, sigma, 4u);
-}
-
-// The single edge for every sigma, not wrapped round: the light that comes from behind is missing.
-// Returns: cdrf_accurate(...) for sigma <= 0.3.
-// Units: sigma in radians.
-// Domain: cosine in [-1, 1]; sigma in [0, 0.3].
-// Outside: 0.025 off at sigma = 1, 0.39 at 2.
-// Accuracy: naive
-fn cdrf_accurate_naive(cosine: f32, sigma: f32) -> f32 {
-    return cdrf_edge(cosine, sigma);
-}
-
-// From the angle, as the formula is written: what acos is off by enters with the function's whole slope.
-// Returns: cdrf_accurate(...) to 6.8e-5, or to 4.9e-4 where acos is as bad as WGSL lets it be.
-// Units: sigma in radians.
-// Domain: cosine in [-1, 1]; any sigma.
-// Outside: acos of more than 1 is not a number.
-// Accuracy: naive
-fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
-    return cdrf_accurate(cos(acos(cosine)), sigma);
 }
 
 // The convolution, cheap: no angle, no loop, one exponential and one division.
@@ -463,16 +412,6 @@ fn cdrf_table_texel(texel: vec2u, size: vec2u, tint: vec3f) -> vec3f {
 fn cdrf_texture_coordinates(coordinates: vec2f, size: vec2u) -> vec2f {
     let whole = vec2f(size);
     return (coordinates * (whole - 1.0f) + 0.5f) / whole;
-}
-
-// The same without the half texel: every lookup is drawn towards the table's middle.
-// Returns: coordinates.
-// Units: fractions of the texture.
-// Domain: coordinates in [0, 1].
-// Outside: the same.
-// Accuracy: naive
-fn cdrf_texture_coordinates_naive(coordinates: vec2f) -> vec2f {
-    return coordinates;
 }
 
 // The four texels around a place of the table and how to blend them.

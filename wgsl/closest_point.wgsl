@@ -1,6 +1,6 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 220e77ad90a5ceed
+// Version: 0.2.0, hash 73f6d88777467163
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected after (A.6).
 //   The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the Regularization Method", 1963.
 
@@ -42,16 +42,6 @@ fn closest_point_direction(vector: vec3f) -> vec3f {
     return scaled / length(scaled);
 }
 
-// The direction by the built-in function.
-// Returns: `vector` at unit length.
-// Units: none.
-// Domain: lengths in [1e-15, 1e15].
-// Outside: 0 / 0 for the zero vector and wherever the square underflows, 0 where it overflows.
-// Accuracy: naive
-fn closest_point_direction_naive(vector: vec3f) -> vec3f {
-    return normalize(vector);
-}
-
 // Parameters of the closest points of two lines, eq. (A.6): point h lies at origin_h + t_h normal_h. The cross product
 // n_i x n_j is taken as half of (n_i + n_j) x (n_j - n_i). The difference of two nearby normals is exact, so the
 // direction across them keeps its digits at every angle, where n_i x n_j has lost them all at 1e-7 rad.
@@ -71,37 +61,6 @@ fn closest_point_parameters(origin_i: vec3f, normal_i: vec3f, origin_j: vec3f, n
     // `across` is twice n_i x n_j, which enters once above and squared below.
     let t = vec2f(dot(cross(x, normal_j), across), dot(cross(x, normal_i), across));
     return 2.0f * t / across_squared;
-}
-
-// The same parameters by dot products, eq. (A.4). Kept to show where it fails: its determinant is 1 - cos^2 of the
-// normals' angle, which has lost all digits at 2^-12 rad.
-// Returns: (t_i, t_j); 0 / 0 for parallel normals.
-// Units: as closest_point_parameters.
-// Domain: unit normals at an angle in [0.5, 2.6].
-// Outside: as the formula gives.
-// Accuracy: naive
-fn closest_point_parameters_dot(origin_i: vec3f, normal_i: vec3f, origin_j: vec3f, normal_j: vec3f) -> vec2f {
-    let x = origin_j - origin_i;
-    let ii = dot(normal_i, normal_i);
-    let jj = dot(normal_j, normal_j);
-    let ij = dot(normal_i, normal_j);
-    let xi = dot(x, normal_i);
-    let xj = dot(x, normal_j);
-    return vec2f(jj * xi - ij * xj, ij * xi - ii * xj) / (ii * jj - ij * ij);
-}
-
-// The parameters by eq. (3) as it is printed: the numerator crosses with n_h where (A.6) has the other normal, so t_i
-// and t_j are swapped. On a sphere they are equal and nothing shows.
-// Returns: (t_j, t_i) of closest_point_parameters; 0 / 0 for parallel normals.
-// Units: as closest_point_parameters.
-// Domain: unit normals at an angle in [0.5, 2.6].
-// Outside: as the formula gives.
-// Accuracy: naive
-fn closest_point_parameters_literal(origin_i: vec3f, normal_i: vec3f, origin_j: vec3f, normal_j: vec3f) -> vec2f {
-    let x = origin_j - origin_i;
-    let across = cross(normal_i, normal_j);
-    let t = vec2f(dot(cross(x, normal_i), across), dot(cross(x, normal_j), across));
-    return t / dot(normal_i, cross(normal_j, across));
 }
 
 // Where the centre is taken to be if the normals do not say: behind the triangle's face by its longest edge. It needs
@@ -129,20 +88,6 @@ fn closest_point_fallback(position_a: vec3f, position_b: vec3f, position_c: vec3
     let faded = CLOSEST_POINT_SLIVER * longest_squared;
     let depth = sqrt(longest_squared / (dot(area_normal, area_normal) + faded * faded));
     return position_a + size * ((b + c) / 3.0f - depth * area_normal);
-}
-
-// The same point as one writes it first. Kept to show where it fails: the cross product's square underflows for edges
-// below 1e-10 and overflows above 1e9, and a triangle without area has no direction to normalise.
-// Returns: centroid - n longest_edge; 0 / 0 if the vertices are collinear.
-// Units: those of the positions.
-// Domain: edges in [1e-4, 1e4], altitudes of at least 1/10 of the longest edge.
-// Outside: as the formula gives.
-// Accuracy: naive
-fn closest_point_fallback_naive(position_a: vec3f, position_b: vec3f, position_c: vec3f) -> vec3f {
-    let edge_b = position_b - position_a;
-    let edge_c = position_c - position_a;
-    let longest = max(max(length(edge_b), length(edge_c)), length(edge_c - edge_b));
-    return (position_a + position_b + position_c) / 3.0f - longest * normalize(cross(edge_b, edge_c));
 }
 
 // Centre of the proxy sphere: the point o closest to the three normal lines, by least squares with a pull towards the
@@ -217,62 +162,4 @@ fn closest_point_centre(
     let drift = vec3f(dot(row_x, coupling), dot(row_y, coupling), dot(row_z, coupling)) / determinant;
     let depth = (right_along - dot(coupling, at_axis)) / (stiffness - dot(coupling, drift));
     return fallback + size * (at_axis + depth * (axis - drift));
-}
-
-// The paper's centre, eq. (4), (5), with eq. (3) corrected: for each vertex the point of its line closest to the next
-// vertex's, averaged by the sines of the normals' angles. Kept for comparison: as normals become parallel, weight times
-// parameter tends to a limit that depends on the direction of approach while the sum of weights vanishes, so the point
-// runs off to infinity; and since only one of each pair's two points counts, it depends on the winding.
-// Returns: o; closest_point_fallback if all three normals are parallel.
-// Units: those of the positions.
-// Domain: unit normals at angles in [0.3, 2.8] from each other.
-// Outside: as the formula gives.
-// Accuracy: naive
-fn closest_point_centre_paper(
-    position_a: vec3f,
-    normal_a: vec3f,
-    position_b: vec3f,
-    normal_b: vec3f,
-    position_c: vec3f,
-    normal_c: vec3f,
-) -> vec3f {
-    let weight = vec3f(
-        length(cross(normal_a, normal_b)),
-        length(cross(normal_b, normal_c)),
-        length(cross(normal_c, normal_a)),
-    );
-    let total = weight.x + weight.y + weight.z;
-    if total == 0.0f {
-        return closest_point_fallback(position_a, position_b, position_c);
-    }
-    let point_a = position_a + normal_a * closest_point_parameters(position_a, normal_a, position_b, normal_b).x;
-    let point_b = position_b + normal_b * closest_point_parameters(position_b, normal_b, position_c, normal_c).x;
-    let point_c = position_c + normal_c * closest_point_parameters(position_c, normal_c, position_a, normal_a).x;
-    return (weight.x * point_a + weight.y * point_b + weight.z * point_c) / total;
-}
-
-// The paper's centre with eq. (3) as printed. Each vertex's point lies at the distance that belongs to its neighbour:
-// right on a sphere, wrong on any other stone.
-// Returns: o with t_i and t_j swapped; 0 / 0 as soon as two normals are parallel.
-// Units: those of the positions.
-// Domain: unit normals at angles in [0.3, 2.8] from each other.
-// Outside: as the formula gives.
-// Accuracy: naive
-fn closest_point_centre_literal(
-    position_a: vec3f,
-    normal_a: vec3f,
-    position_b: vec3f,
-    normal_b: vec3f,
-    position_c: vec3f,
-    normal_c: vec3f,
-) -> vec3f {
-    let weight = vec3f(
-        length(cross(normal_a, normal_b)),
-        length(cross(normal_b, normal_c)),
-        length(cross(normal_c, normal_a)),
-    );
-    let point_a = position_a + normal_a * closest_point_parameters_literal(position_a, normal_a, position_b, normal_b).x;
-    let point_b = position_b + normal_b * closest_point_parameters_literal(position_b, normal_b, position_c, normal_c).x;
-    let point_c = position_c + normal_c * closest_point_parameters_literal(position_c, normal_c, position_a, normal_a).x;
-    return (weight.x * point_a + weight.y * point_b + weight.z * point_c) / (weight.x + weight.y + weight.z);
 }

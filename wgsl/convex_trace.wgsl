@@ -1,6 +1,6 @@
 // convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash fbe4c4c545a98a0b
+// Version: 0.2.0, hash d66d1893bc224b72
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon; Cyrus and Beck, "Generalized two- and
 //   three-dimensional clipping", 1978, for planes in place of polygons.
 //
@@ -61,21 +61,6 @@ fn convex_trace_step(hit: ConvexTraceHit, position: vec3f, direction: vec3f, pla
     return hit;
 }
 
-// The same with an epsilon against meeting the face that was left, as one finds it.
-// Returns: this plane's ConvexTraceHit if it is met nearer than `hit` and farther than 1e-4, else `hit`.
-// Units: lengths in units of the ray's direction.
-// Domain: stones of size 1 about the origin, the next plane farther than 1e-4, the ray not nearly parallel to it.
-// Outside: misses facets beside edges, all facets of small stones and those that the ray starts outside of by rounding;
-//   meets the face that was left again, far away, at grazing incidence.
-// Accuracy: naive
-fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32) -> ConvexTraceHit {
-    let distance = (plane.w - dot(plane.xyz, position)) / dot(plane.xyz, direction);
-    if (distance > 1e-4f && distance < hit.distance) {
-        return ConvexTraceHit(distance, face);
-    }
-    return hit;
-}
-
 // Where a ray meets a plane, put back onto the plane: x + t r is off it by the rounding of x, t and r, which on a long way is
 // more than the plane's own. With a distance of 0 it puts a start, as a rasterizer interpolates it, onto the facet that it belongs to.
 // Returns: the point of the plane nearest to position + distance direction.
@@ -86,14 +71,4 @@ fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3
 fn convex_trace_point(position: vec3f, direction: vec3f, distance: f32, plane: vec4f) -> vec3f {
     let point = position + distance * direction;
     return point - (dot(plane.xyz, point) - plane.w) * plane.xyz;
-}
-
-// The point along the ray, left where rounding puts it.
-// Returns: position + distance direction.
-// Units: lengths.
-// Domain: as above, where `distance` is that of the plane and all are of one size.
-// Outside: off the plane by units in the last place of the largest of position and distance.
-// Accuracy: naive
-fn convex_trace_point_naive(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
-    return position + distance * direction;
 }

@@ -1,6 +1,6 @@
 // curvature: mean, Gaussian and normal curvature of a surface from screen-space derivatives of its position and normal.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e7143123aa0931c3
+// Version: 0.2.0, hash 8605f143adbd9be0
 // Source: do Carmo, Differential Geometry of Curves and Surfaces, sections 3-2 and 3-3: first and second fundamental form, Euler's formula;
 //   section 3-5, exercise 11: the area of a parallel surface. The usual form: Penner, "Pre-Integrated Skin Shading", GPU Pro 2, 2011.
 //
@@ -46,16 +46,6 @@ fn curvature_normal_derivative(normal: vec3f, derivative: vec3f) -> vec3f {
     let scaled = scale * normal;
     let squared = max(dot(scaled, scaled), 1.0f);
     return cross(cross(scaled, scale * derivative), scaled) / (squared * sqrt(squared));
-}
-
-// What dpdx(normalize(normal)) computes: the difference of two neighbours' unit normals.
-// Returns: n(x + 1) - n(x).
-// Units: one over the screen's.
-// Domain: |normal| in [1e-3, 1e3], neighbours at an angle of 0.1 or more.
-// Outside: loses digits as 2^-24 / angle; 0 / 0 for the zero vector.
-// Accuracy: naive
-fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f {
-    return normalize(normal + derivative) - normalize(normal);
 }
 
 // A pixel's derivatives, brought to a width and a height at which those of the position are about 1 long.
@@ -139,20 +129,6 @@ fn curvature_mean(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_
     return 0.5f * dot(area, growth) / max(dot(area, area), least);
 }
 
-// The mean curvature as the textbook writes it. Kept to show where it fails.
-// Returns: (eG - 2fF + gE) / (2 (EG - F^2)).
-// Units: one over the position's.
-// Domain: position derivatives of length 1e-4 to 1e4, at an angle with a sine of 0.3 or more.
-// Outside: EG - F^2 is rounding noise at sines below 2^-11; 0 / 0 where it is 0 or underflows, infinity over infinity above 1e9.
-// Accuracy: naive
-fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
-    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
-    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
-    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
-    let determinant = first.x * first.z - first.y * first.y;
-    return 0.5f * (second.x * first.z - 2.0f * second.y * first.y + second.z * first.x) / determinant;
-}
-
 // Gaussian curvature, the product of the principal ones: (eg - f^2) / (EG - F^2). With a = p_x x p_y, which is width times the normal of
 // curvature_frame, the numerator is a . (n_x x n_y) - ((p_x . n_y - p_y . n_x) / 2)^2; the square is 0 on a smooth surface and what interpolated normals leave of
 // asymmetry. With it K is at most H^2, but for rounding: principal curvatures are H +- sqrt(max(H^2 - K, 0)).
@@ -170,19 +146,6 @@ fn curvature_gaussian(position_x: vec3f, position_y: vec3f, normal_x: vec3f, nor
     let determinant = frame.width * dot(frame.normal, cross(pixel.n_x, pixel.n_y)) - twist * twist;
     // In this order: the area's square may underflow.
     return determinant / frame.bounded * area * (area / frame.bounded);
-}
-
-// The Gaussian curvature as the textbook writes it. Kept to show where it fails.
-// Returns: (eg - f^2) / (EG - F^2).
-// Units: one over the position's, squared.
-// Domain: as curvature_mean_textbook.
-// Outside: as curvature_mean_textbook.
-// Accuracy: naive
-fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
-    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
-    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
-    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
-    return (second.x * second.z - second.y * second.y) / (first.x * first.z - first.y * first.y);
 }
 
 // Normal curvature along the light: that of the curve on the surface which runs towards the light's foot, II(t, t) / I(t, t) with t the
@@ -216,40 +179,4 @@ fn curvature_towards(
     let total = fade * (x * x + y * y) + CURVATURE_ZENITH;
     // Weights first: products with a change of 1e-30 underflow.
     return share * (fade / total * dot(tangent, change) + CURVATURE_ZENITH / total * mean);
-}
-
-// The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept
-// to show where it fails.
-// Returns: (alpha^2 e + 2 alpha beta f + beta^2 g) / (alpha^2 E + 2 alpha beta F + beta^2 G).
-// Units: one over the position's.
-// Domain: as curvature_mean_textbook, with a light at 0.1 or more from the normal.
-// Outside: 0 / 0 for a light along the normal; otherwise as curvature_mean_textbook.
-// Accuracy: naive
-fn curvature_towards_textbook(
-    position_x: vec3f,
-    position_y: vec3f,
-    normal_x: vec3f,
-    normal_y: vec3f,
-    light: vec3f,
-) -> f32 {
-    let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));
-    let mixed = 0.5f * (dot(position_x, normal_y) + dot(position_y, normal_x));
-    let second = vec3f(dot(position_x, normal_x), mixed, dot(position_y, normal_y));
-    let light_x = dot(light, position_x);
-    let light_y = dot(light, position_y);
-    let alpha = first.z * light_x - first.y * light_y;
-    let beta = first.x * light_y - first.y * light_x;
-    let weight = vec3f(alpha * alpha, 2.0f * alpha * beta, beta * beta);
-    return dot(weight, second) / dot(weight, first);
-}
-
-// The usual rung, |dN| / |dP|: length(fwidth(normal)) / length(fwidth(position)). It is right on a sphere. Elsewhere it depends on the view, on
-// the screen's axes and, through fwidth, even on how the world's axes lie; it has no sign, and on a saddle it never vanishes.
-// Returns: some mean of the principal curvatures' magnitudes.
-// Units: one over the position's.
-// Domain: position derivatives of length 1e-4 to 1e4.
-// Outside: 0 / 0 where both position derivatives are 0.
-// Accuracy: naive
-fn curvature_naive(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
-    return length(abs(normal_x) + abs(normal_y)) / length(abs(position_x) + abs(position_y));
 }

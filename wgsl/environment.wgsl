@@ -1,6 +1,6 @@
 // environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 6302649073f61382
+// Version: 0.2.0, hash 15ae8ac9216a67ff
 // Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the map; the convention is
 // that of Khronos's glTF Sample Renderer and three.js: +Y up, u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
 //
@@ -76,18 +76,6 @@ fn environment_uv_from_direction(direction: vec3f) -> vec2f {
     return vec2f(u, v);
 }
 
-// The same by normalize and acos, as it is usually written: acos amplifies the rounding of y without bound at the poles.
-// Returns: environment_uv_from_direction(direction), v to about 1e-4 near the poles.
-// Units: fractions of the map.
-// Domain: lengths in [1e-15, 1e15], angle to the poles at least 0.1 radians.
-// Outside: v jumps to the pole within 3e-4 radians of it, up to 1.1e-4 off; at the pole u is 1 for x = -0; lengths whose square
-// over- or underflows (1e-23, 1e19) give another direction or no number.
-// Accuracy: naive
-fn environment_uv_from_direction_naive(direction: vec3f) -> vec2f {
-    let unit = normalize(direction);
-    return vec2f(0.5f + atan2(unit.z, unit.x) * 0.15915494f, acos(unit.y) * 0.31830987f);
-}
-
 // Direction of latitude-longitude coordinates: the inverse of environment_uv_from_direction.
 // u - 1/2 turns are an azimuth; that half turn is in the signs, since subtracting it would round a small u.
 // Returns: unit direction; +-Y exactly up to its length at v = 0 and v = 1, whatever u.
@@ -132,19 +120,6 @@ fn environment_texels(uv: vec2f, size: vec2u) -> EnvironmentTexels {
     let lower = vec2u(left, top);
     let upper = vec2u((left + 1u) % size.x, min(top + 1u, size.y - 1u));
     return EnvironmentTexels(lower, upper, vec2f(column - floor(column), row - floor(row)));
-}
-
-// The same with both coordinates clamped, as a sampler left at its default does: a seam down the -x meridian.
-// Returns: environment_texels(uv, size) away from the borders.
-// Units: texels.
-// Domain: u in [1 / size.x, 1 - 1 / size.x], v in [1 / size.y, 1 - 1 / size.y].
-// Outside: half a texel from the seam, the texel across it is missed.
-// Accuracy: naive
-fn environment_texels_naive(uv: vec2f, size: vec2u) -> EnvironmentTexels {
-    let corner = uv * vec2f(size) - 0.5f;
-    let lower = vec2u(max(floor(corner), vec2f(0.0f)));
-    let upper = min(lower + 1u, size - 1u);
-    return EnvironmentTexels(lower, upper, corner - floor(corner));
 }
 
 // The real spherical harmonics of a direction, orthonormal over the sphere, of the degrees that a clamped cosine holds but for the smallest:
@@ -212,22 +187,6 @@ fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2
     }
     let right = cross(up, axis);
     // Reciprocals: a division costs several multiplications, and that by a constant softness is none at all.
-    let position = vec2f(dot(direction, right), dot(direction, up)) * (1.0f / depth);
-    let inside = (half_size + softness - abs(position)) * (0.5f / softness);
-    let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));
-    let coverage = t * t * (3.0f - 2.0f * t);
-    return coverage.x * coverage.y;
-}
-
-// The same without a look at the sign of the depth: every light shines a second time, from behind.
-// Returns: environment_softbox(...) for axis . direction > 0.
-// Units: as environment_softbox.
-// Domain: as environment_softbox, and axis . direction > 0.
-// Outside: the light's mirror image for axis . direction < 0.
-// Accuracy: naive
-fn environment_softbox_naive(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
-    let depth = dot(direction, axis);
-    let right = cross(up, axis);
     let position = vec2f(dot(direction, right), dot(direction, up)) * (1.0f / depth);
     let inside = (half_size + softness - abs(position)) * (0.5f / softness);
     let t = clamp(inside, vec2f(0.0f), vec2f(1.0f));

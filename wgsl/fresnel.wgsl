@@ -1,6 +1,6 @@
 // fresnel: the share of unpolarised light that an interface between two dielectrics reflects.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 4b09f0352451dead
+// Version: 0.2.0, hash e34233202eb98ef6
 // Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as docs/fresnel.md shows.
 //   Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, eq. (15).
 
@@ -36,23 +36,6 @@ fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
     let p = p_numerator / max(p_root * p_root, abs(p_numerator));
     // WGSL lets a quotient of equals exceed 1.
     return min(0.5f * (s * s + p * p), 1.0f);
-}
-
-// The same reflectance as textbooks and most shaders write it: quotients of cosines, with the cosine of refraction from
-// Snell's law. Kept to show where it fails: for an index near 1 and near grazing incidence its numerators are
-// differences of nearly equal roots.
-// Returns: reflectance; 0 / 0 for cosine = 0 with relative_index <= 1.
-// Units: as fresnel_dielectric.
-// Domain: cosine in [0, 1], relative_index in [1/4, 4]; of use for |relative_index - 1| > 0.1 away from the critical angle.
-// Outside: as the formula gives.
-// Accuracy: naive
-fn fresnel_dielectric_textbook(cosine: f32, relative_index: f32) -> f32 {
-    let eta = 1.0f / relative_index;
-    // No light is transmitted where the radicand is negative; with the cosine 0 both quotients are 1.
-    let cosine_transmitted = sqrt(max(1.0f - eta * eta * (1.0f - cosine * cosine), 0.0f));
-    let s = (cosine - relative_index * cosine_transmitted) / (cosine + relative_index * cosine_transmitted);
-    let p = (relative_index * cosine - cosine_transmitted) / (relative_index * cosine + cosine_transmitted);
-    return 0.5f * (s * s + p * p);
 }
 
 // Reflectance at normal incidence, the F0 of shading models.

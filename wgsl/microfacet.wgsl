@@ -1,6 +1,6 @@
 // microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 1ecd18273a47c03e
+// Version: 0.2.0, hash 6812aee2f9744745
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, eq. (20), (33);
 //   Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, eq. (72), (99);
 //   Lagrange's identity for the squared sine: Guy and Agopian, "Physically Based Rendering in Filament", 4.4.1.
@@ -39,19 +39,6 @@ fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     return 0.31830987f * quotient * quotient;
 }
 
-// The distribution as one finds it, from the cosine alone. Kept to show where it fails: next to the normal the cosine rounds to 1, and
-// of alpha^2 little is left beside the 1 that it is added to.
-// Returns: alpha^2 / (pi (cosine^2 (alpha^2 - 1) + 1)^2).
-// Units: 1/sr; alpha a slope.
-// Domain: cosine in [0, 1], alpha in (0, 1]; of use for alpha above 0.1.
-// Outside: as the formula gives; 0 / 0 for alpha = 0 at cosine = 1.
-// Accuracy: naive
-fn microfacet_distribution_naive(cosine: f32, alpha: f32) -> f32 {
-    let squared = alpha * alpha;
-    let spread = cosine * cosine * (squared - 1.0f) + 1.0f;
-    return squared / (3.1415927f * spread * spread);
-}
-
 // Smith's share of facets that both light and eye reach, for facets whose heights hide them from both alike, over 4 (n . l) (n . v), the
 // divisor of the reflectance. In the quotient all that tends to 0 at grazing incidence but one sum cancels.
 // Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 + (1 - alpha^2) n.v^2)), in [1/4, 5e23].
@@ -71,22 +58,6 @@ fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 
     return 0.5f / max(shadowing + masking, MICROFACET_GRAZING);
 }
 
-// The same quotient, numerator and divisor each by itself, as Heitz's eq. (72) and (99) read. Kept to show where it fails: at grazing
-// incidence it is 0 / 0.
-// Returns: 1 / (1 + Lambda(l) + Lambda(v)) / (4 n.l n.v), with Lambda = (sqrt(1 + alpha^2 tan^2) - 1) / 2.
-// Units: as microfacet_visibility.
-// Domain: cosines in (0, 1], alpha in (0, 1].
-// Outside: no number where a cosine is below 1e-19: its square underflows.
-// Accuracy: naive
-fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
-    let squared = alpha * alpha;
-    let tangent_light = 1.0f / (cosine_light * cosine_light) - 1.0f;
-    let tangent_eye = 1.0f / (cosine_eye * cosine_eye) - 1.0f;
-    let lambda_light = 0.5f * (sqrt(1.0f + squared * tangent_light) - 1.0f);
-    let lambda_eye = 0.5f * (sqrt(1.0f + squared * tangent_eye) - 1.0f);
-    return 1.0f / (1.0f + lambda_light + lambda_eye) / (4.0f * cosine_light * cosine_eye);
-}
-
 // Normal of the facets that reflect the light into the eye: halfway between both.
 // Returns: unit direction of toward_light + toward_eye; shorter where that sum is below 1e-15, and 0 for exactly opposite directions,
 //   so that its cosine with either is 0, as it is where they are nearly opposite.
@@ -97,16 +68,6 @@ fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -
 fn microfacet_half(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     let sum = toward_light + toward_eye;
     return sum / sqrt(max(dot(sum, sum), MICROFACET_OPPOSITE));
-}
-
-// The sum normalized. Kept to show where it fails: a sum of 0 has no direction.
-// Returns: unit direction of toward_light + toward_eye.
-// Units: none; unit vectors.
-// Domain: unit vectors that are not opposite.
-// Outside: no number.
-// Accuracy: naive
-fn microfacet_half_naive(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
-    return normalize(toward_light + toward_eye);
 }
 
 // What of a light's irradiance, measured across its direction, the rough surface reflects into the eye: BRDF times n . l. To be multiplied by

@@ -1,6 +1,6 @@
 // optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash feb040893238c1f4
+// Version: 0.2.0, hash 463db40eaa778719
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", sections 2 and 3;
 //   Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29 (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal
 //   Equations", SIAM J. Sci. Comput. 30 (2008).
@@ -23,16 +23,6 @@ const OPTICAL_PATH_DEEPEST: f32 = 87.3f;
 // Accuracy: lavapipe 2 ulp; portable 3 ulp
 fn optical_path_edge(extinction_a: f32, extinction_b: f32, length: f32) -> f32 {
     return 0.5f * (extinction_a + extinction_b) * length;
-}
-
-// Cost of an edge as it stands in the paper: the extinction, whatever the edge's length. So it depends on the grid how deep a body is.
-// Returns: (extinction_a + extinction_b) / 2.
-// Units: that of the extinctions.
-// Domain: extinctions in [0, 1e15].
-// Outside: finite while the sum is.
-// Accuracy: naive
-fn optical_path_edge_paper(extinction_a: f32, extinction_b: f32) -> f32 {
-    return 0.5f * (extinction_a + extinction_b);
 }
 
 // Cost of a node once the way through one neighbour is known: the step that every solver on a graph repeats.
@@ -72,33 +62,6 @@ fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {
     return min(first + slowness * three, OPTICAL_PATH_UNREACHED);
 }
 
-// The same by the quadratic formula in T itself, case by case, as one writes it.
-// Returns: optical_path_godunov(...).
-// Units: none.
-// Domain: least in [0, 2], slowness in [0.5, 2].
-// Outside: the digits of the slowness cancel where costs are large beside it; not a number where the radicand becomes negative, or for costs above 1e19.
-// Accuracy: naive
-fn optical_path_godunov_naive(least: vec3f, slowness: f32) -> f32 {
-    let low = min(least.x, least.y);
-    let high = max(least.x, least.y);
-    let rest = max(low, least.z);
-    let first = min(low, least.z);
-    let second = min(rest, high);
-    let third = max(rest, high);
-    let one = first + slowness;
-    if one <= second {
-        return one;
-    }
-    let pair = first + second;
-    let two = 0.5f * (pair + sqrt(pair * pair - 2.0f * (first * first + second * second - slowness * slowness)));
-    if two <= third {
-        return two;
-    }
-    let sum = pair + third;
-    let squares = first * first + second * second + third * third;
-    return (sum + sqrt(sum * sum - 3.0f * (squares - slowness * slowness))) / 3.0f;
-}
-
 // A cost as bits that are ordered as costs are, for atomicMin, which WGSL has for integers only.
 // Returns: the bits of `cost`; those of +0 for negative numbers and -0; those of unreached from there on, for infinity and for every NaN.
 // Units: none.
@@ -134,16 +97,6 @@ fn optical_path_seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32
         return OPTICAL_PATH_UNREACHED;
     }
     return max(-log(irradiance_share), 0.0f) + extinction * offset;
-}
-
-// The same as one writes it.
-// Returns: -ln(irradiance_share) + extinction offset.
-// Units: as optical_path_seed.
-// Domain: share in [0.01, 0.9], extinction and offset in [0, 10].
-// Outside: infinite or not a number without light, and negative above 1, where atomicMin takes it for the largest of costs.
-// Accuracy: naive
-fn optical_path_seed_naive(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
-    return -log(irradiance_share) + extinction * offset;
 }
 
 // Cost of a point by way of a node: a shaded point asks all nodes about it, and itself if it is lit, and takes the least.

@@ -1,6 +1,6 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 535447529fdb1fa5
+// Version: 0.2.0, hash c6b01d35b00d68ae
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P, parallel to the
@@ -108,16 +108,6 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
     return perpendicular / sqrt(squared);
 }
 
-// The normal as one writes it: normalize(cross).
-// Returns: unit normal.
-// Units: lengths in, none out.
-// Domain: size of the triangle in [1e-4, 1e4], sine of the angle at the first vertex at least 1e-2.
-// Outside: not a number for degenerate, very small and very large triangles.
-// Accuracy: naive
-fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
-    return normalize(cross(position_second - position_first, position_third - position_first));
-}
-
 // Where a ray meets the plane through `plane_point` with unit normal `normal`. From a triangle with plane P at height h under
 // it, entering along r this is t = 2 h / -(n . r). The sign of the normal does not matter.
 // Returns: ProxyGeometryHit.
@@ -132,17 +122,6 @@ fn proxy_geometry_intersect(position: vec3f, direction: vec3f, plane_point: vec3
         return ProxyGeometryHit(position, 0.0f, false);
     }
     let distance = height / slope;
-    return ProxyGeometryHit(position + distance * direction, distance, true);
-}
-
-// The intersection without its cases.
-// Returns: ProxyGeometryHit with `hit` true always.
-// Units: lengths; `direction` and `normal` are unit vectors.
-// Domain: as above, for a ray that does meet the plane ahead of it.
-// Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind it.
-// Accuracy: naive
-fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
-    let distance = dot(normal, plane_point - position) / dot(normal, direction);
     return ProxyGeometryHit(position + distance * direction, distance, true);
 }
 
@@ -171,25 +150,6 @@ fn proxy_geometry_coordinates(point: vec3f, origin: vec3f, edge_first: vec3f, ed
     return vec2f(dot(cross(offset, second), perpendicular), dot(cross(first, offset), perpendicular)) / squared;
 }
 
-// The coordinates by the Gram matrix of the edges, as barycentric coordinates are usually computed.
-// Returns: the two coordinates.
-// Units: lengths in, none out.
-// Domain: size of the triangle in [1e-3, 1e3], sine of the angle at least 0.1.
-// Outside: loses twice the digits that the triangle's thinness costs; not a number for degenerate, tiny and huge ones.
-// Accuracy: naive
-fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
-    let offset = point - origin;
-    let first_first = dot(edge_first, edge_first);
-    let first_second = dot(edge_first, edge_second);
-    let second_second = dot(edge_second, edge_second);
-    let offset_first = dot(offset, edge_first);
-    let offset_second = dot(offset, edge_second);
-    return vec2f(
-        second_second * offset_first - first_second * offset_second,
-        first_first * offset_second - first_second * offset_first,
-    ) / (first_first * second_second - first_second * first_second);
-}
-
 // The tile that holds a point of plane P. A point on an edge or a vertex belongs to exactly one tile: cells are half open, and a
 // cell's diagonal belongs to the half that is not turned.
 // Returns: ProxyGeometryCell.
@@ -205,18 +165,6 @@ fn proxy_geometry_cell(coordinates: vec2f) -> ProxyGeometryCell {
     // sides are smaller.
     let turned = select(within.x > short.y, within.y > short.x, within.y + short.x < within.x + short.y);
     return ProxyGeometryCell(vec2i(corner), turned);
-}
-
-// The tile by the sum of the fractions, as one writes it.
-// Returns: ProxyGeometryCell.
-// Units: lattice coordinates.
-// Domain: coordinates up to 2^23, away from the edges of tiles.
-// Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points beside a vertex get the wrong half.
-// Accuracy: naive
-fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
-    let corner = floor(coordinates);
-    let within = coordinates - corner;
-    return ProxyGeometryCell(vec2i(corner), within.x + within.y > 1.0f);
 }
 
 // The vertices of a tile, each from its own place on the lattice: no error adds up from tile to tile. Tiles share a vertex to the last bit where a device
@@ -253,16 +201,6 @@ fn proxy_geometry_facet_normal(centre: vec3f, vertex_first: vec3f, vertex_second
     let scaled = to_centre / size;
     let normal = scaled / sqrt(dot(scaled, scaled));
     return select(normal, -normal, dot(normal, direction) > 0.0f);
-}
-
-// Eq. (8) and (9) as they stand.
-// Returns: unit normal.
-// Units: lengths in, none out.
-// Domain: distance between centroid and centre in [1e-15, 1e15].
-// Outside: zero, infinite or not a number where the square of the distance leaves the range of f32.
-// Accuracy: naive
-fn proxy_geometry_facet_normal_naive(centre: vec3f, vertex_first: vec3f, vertex_second: vec3f, vertex_third: vec3f) -> vec3f {
-    return normalize(centre - (vertex_first + vertex_second + vertex_third) / 3.0f);
 }
 
 // The plane that a ray meets after it was reflected at a tile: the tile's image through the same centre, as the triangle's

@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash dd8a68312a1374ab
+// Version: 0.2.0, hash f0b92d672622054c
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
@@ -83,16 +83,6 @@ fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
     return depth / max(majorant, RANDOM_WALK_THINNEST);
 }
 
-// The same by the built-in logarithm, as one writes it. Kept to show where it fails: below 2^-25 nothing is left of u.
-// Returns: -log(1 - u) / majorant.
-// Units: as random_walk_free_path.
-// Domain: u in [0.1, 0.9], majorant in [1e-3, 1e3].
-// Outside: off by its whole value for a small u, infinite for u = 1 or no majorant.
-// Accuracy: naive
-fn random_walk_free_path_naive(u: f32, majorant: f32) -> f32 {
-    return -log(1.0f - u) / majorant;
-}
-
 // What happens at a tentative collision (delta tracking): where matter is thinner than the majorant, light passes with the probability of the
 // difference, which makes free paths right in matter of any density below it.
 // Returns: RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED or RANDOM_WALK_PASSED.
@@ -122,16 +112,6 @@ fn random_walk_ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
     return transmittance * (max(most - density, 0.0f) / most);
 }
 
-// The same with the quotient taken first. Kept to show where it fails: for a density near the majorant.
-// Returns: transmittance (1 - density / majorant).
-// Units: as random_walk_ratio.
-// Domain: transmittance in [0.1, 1]; density at most half the majorant.
-// Outside: off by the rounding of 1 where both are nearly equal.
-// Accuracy: naive
-fn random_walk_ratio_naive(transmittance: f32, density: f32, majorant: f32) -> f32 {
-    return transmittance * (1.0f - density / majorant);
-}
-
 // Henyey and Greenstein's phase function. 1 + g^2 - 2 g cos is written (1 - |g|)^2 + 2 |g| (1 - cos), which does not cancel.
 // Returns: share of scattered light per solid angle, above 0; 1 / (4 pi) for g = 0. Its integral over the sphere is 1, its mean cosine g.
 // Units: 1/sr.
@@ -144,16 +124,6 @@ fn random_walk_phase(cosine: f32, g: f32) -> f32 {
     let rest = 1.0f - a;
     let squared = rest * rest + 2.0f * a * (1.0f - c);
     return 0.07957747f * rest * (1.0f + a) / (squared * sqrt(squared));
-}
-
-// The phase function as it is printed. Kept to show where it fails: for g near 1 its sum is the difference of nearly equal numbers.
-// Returns: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5).
-// Units: as random_walk_phase.
-// Domain: cosine in [-1, 1], g in [-0.8, 0.8].
-// Outside: 0 / 0 for g = 1 and cosine = 1.
-// Accuracy: naive
-fn random_walk_phase_naive(cosine: f32, g: f32) -> f32 {
-    return 0.07957747f * (1.0f - g * g) / pow(1.0f + g * g - 2.0f * g * cosine, 1.5f);
 }
 
 // Deflection by Henyey and Greenstein's phase function from a uniform number. Both 1 + cos and 1 - cos are products of positive
@@ -174,18 +144,6 @@ fn random_walk_deflection(u: f32, g: f32) -> vec2f {
     let above = forwards * (1.0f + a + root) / sum;
     let below = backwards * (1.0f - a + root) / sum;
     return vec2f(0.5f * (above - below), sqrt(above * below));
-}
-
-// The deflection as it is printed. Kept to show where it fails: it divides a difference of nearly equal numbers by a small g.
-// Returns: cosine (1 + g^2 - ((1 - g^2) / (1 - g + 2 g u))^2) / (2 g) and its sine.
-// Units: none.
-// Domain: u in [0.05, 0.95], |g| in [0.3, 0.8].
-// Outside: 0 / 0 for g = 0.
-// Accuracy: naive
-fn random_walk_deflection_naive(u: f32, g: f32) -> vec2f {
-    let root = (1.0f - g * g) / (1.0f - g + 2.0f * g * u);
-    let cosine = (1.0f + g * g - root * root) / (2.0f * g);
-    return vec2f(cosine, sqrt(max(1.0f - cosine * cosine, 0.0f)));
 }
 
 // Cosine and sine of an angle in turns: WGSL holds its own to an absolute 2^-11. The polynomial is cdrf_sine's; the cosine is
@@ -215,21 +173,6 @@ fn random_walk_basis(normal: vec3f) -> RandomWalkBasis {
     return RandomWalkBasis(
         vec3f(1.0f + side * normal.x * normal.x * a, side * b, -side * normal.x),
         vec3f(b, side + normal.y * normal.y * a, -normal.y),
-    );
-}
-
-// The basis without the branch, as Frisvad had it. Kept to show where it fails: towards -z its divisor tends to 0.
-// Returns: RandomWalkBasis.
-// Units: none; unit vectors.
-// Domain: |normal| = 1, normal.z >= 0.
-// Outside: off by up to 1 near -z, and not finite there.
-// Accuracy: naive
-fn random_walk_basis_naive(normal: vec3f) -> RandomWalkBasis {
-    let a = 1.0f / (1.0f + normal.z);
-    let b = -normal.x * normal.y * a;
-    return RandomWalkBasis(
-        vec3f(1.0f - normal.x * normal.x * a, b, -normal.x),
-        vec3f(b, 1.0f - normal.y * normal.y * a, -normal.y),
     );
 }
 

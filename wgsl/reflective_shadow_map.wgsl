@@ -1,6 +1,6 @@
 // reflective_shadow_map: where a light's view puts a point, how much light the surface takes there, and whether something stands before it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e24f8d3c52aabbc3
+// Version: 0.2.0, hash a4969541cb6ec6e3
 // Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and Morishima, "Real-time Rendering of
 //   Translucent Material using Dynamic Programming", section 3.1, for the four channels: world position and N.L;
 //   Duff et al., "Building an Orthonormal Basis, Revisited", 2017, listing 3, for the map's axes.
@@ -46,18 +46,6 @@ fn reflective_shadow_map_basis(axis: vec3f) -> ReflectiveShadowMapBasis {
     let right = vec3f(1.0f + side * axis.x * axis.x * a, side * b, -side * axis.x);
     let up = vec3f(b, side + axis.y * axis.y * a, -axis.y);
     return ReflectiveShadowMapBasis(right, up);
-}
-
-// The axes as one finds them, by a cross product with the vertical. Kept to show where it fails: under a light from straight above, the most
-// usual one, there is no such product.
-// Returns: two unit vectors.
-// Units: none.
-// Domain: |axis| = 1, away from +y and -y.
-// Outside: 0 / 0 for a vertical axis.
-// Accuracy: naive
-fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
-    let right = normalize(cross(vec3f(0.0f, 1.0f, 0.0f), axis));
-    return ReflectiveShadowMapBasis(right, cross(axis, right));
 }
 
 // Where a point appears in a map: clip coordinates as WebGPU has them. The point goes by its difference from the view's origin, so that a
@@ -115,15 +103,4 @@ fn reflective_shadow_map_cosine(normal: vec3f, toward_light: vec3f) -> f32 {
 fn reflective_shadow_map_height(seen: vec3f, position: vec3f, normal: vec3f) -> f32 {
     let unit = normal * inverseSqrt(max(dot(normal, normal), 1e-30f));
     return dot(seen - position, unit);
-}
-
-// The usual test: how much nearer to the light the seen point is than the point itself. Kept to show where it fails: on a plane that light
-// grazes, the neighbouring texel is nearly as much nearer as it is wide, so that no bias serves both the plane and a thin body's shadow.
-// Returns: distance along the light.
-// Units: world units.
-// Domain: coordinates up to 1e6, |toward_light| = 1.
-// Outside: as the formula gives.
-// Accuracy: naive
-fn reflective_shadow_map_height_naive(seen: vec3f, position: vec3f, toward_light: vec3f) -> f32 {
-    return dot(seen, toward_light) - dot(position, toward_light);
 }

@@ -1,6 +1,6 @@
 // refraction: a ray refracted at a plane interface, with total internal reflection as an explicit result.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 4ed77dc430a57809
+// Version: 0.2.0, hash 5337808d69cf31a2
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of Optics, 7th ed., section 1.5.
 //
 // `relative_index` is n = n_transmitted / n_incident, the paper's 1 / eta: 2.417 into a diamond, 1 / 2.417 out
@@ -45,17 +45,6 @@ fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
     return (excess + cosine * cosine) / (relative_index * relative_index);
 }
 
-// The radicand as eq. (6) prints it, with eta = 1 / n.
-// Returns: cos² of the angle of refraction; negative under total internal reflection.
-// Units: none; `cosine` is that of the angle of incidence, `relative_index` a ratio.
-// Domain: cosine in [0, 1], relative_index in [1/4, 4], away from relative_index = 1 at grazing incidence.
-// Outside: there the sign, and with it the choice between refraction and reflection, is rounding noise.
-// Accuracy: naive
-fn refraction_radicand_naive(cosine: f32, relative_index: f32) -> f32 {
-    let eta = 1.0f / relative_index;
-    return 1.0f - eta * eta * (1.0f - cosine * cosine);
-}
-
 // Refracts `incident` at a plane of normal `normal`, or reflects it where refraction is impossible. Eq. (6) with
 // c = -normal . incident and g = n cos(angle of refraction) = sqrt(m + c²) is r' = (r + (c - g) n) / n; here c - g is
 // written -m / (c + g), which does not cancel as n -> 1.
@@ -77,31 +66,4 @@ fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> Re
     }
     let bend = excess / (cosine + sqrt(radicand));
     return RefractionHit((incident - bend * normal) / relative_index, false);
-}
-
-// Refraction as eq. (6) prints it, by a double cross product. Kept to be compared with.
-// Returns: RefractionHit; where the radicand is negative, the reflected direction.
-// Units: none; unit vectors and a ratio.
-// Domain: |incident| = |normal| = 1, normal . incident < 0, relative_index in [1/4, 4], away from relative_index = 1 at grazing incidence.
-// Outside: near there the direction is off by up to the square root of the rounding unit, and `total` is wrong for some rays.
-// Accuracy: naive
-fn refraction_refract_naive(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
-    let eta = 1.0f / relative_index;
-    let cosine = -dot(normal, incident);
-    let radicand = 1.0f - eta * eta * (1.0f - cosine * cosine);
-    if (radicand < 0.0f) {
-        return RefractionHit(incident + 2.0f * cosine * normal, true);
-    }
-    return RefractionHit(-eta * cross(normal, cross(normal, incident)) - sqrt(radicand) * normal, false);
-}
-
-// What one finds in shaders: the built-in `refract`, normalized. `refract` returns the zero vector under total internal
-// reflection, which has no direction.
-// Returns: RefractionHit with `total` false always.
-// Units: none; unit vectors and a ratio.
-// Domain: |incident| = |normal| = 1, normal . incident < 0, relative_index in [1/4, 4], where a ray is refracted.
-// Outside: not a number under total internal reflection.
-// Accuracy: naive
-fn refraction_refract_builtin(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
-    return RefractionHit(normalize(refract(incident, normal, 1.0f / relative_index)), false);
 }

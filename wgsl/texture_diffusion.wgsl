@@ -1,6 +1,6 @@
 // texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 016c60d64e36e2ea
+// Version: 0.2.0, hash 9a84eb75750ecbf2
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14: stretch, separable blur.
 //   The placement of the taps is derived in docs/texture_diffusion.md.
@@ -46,16 +46,6 @@ fn texture_diffusion_clip(uv: vec2f) -> vec4f {
     return vec4f(2.0f * uv.x - 1.0f, 1.0f - 2.0f * uv.y, 0.0f, 1.0f);
 }
 
-// The same with y as OpenGL counts texels, from below.
-// Returns: the position, upside down in WebGPU.
-// Units: as texture_diffusion_clip.
-// Domain: uv in [0, 1].
-// Outside: the same.
-// Accuracy: naive
-fn texture_diffusion_clip_naive(uv: vec2f) -> vec4f {
-    return vec4f(2.0f * uv - 1.0f, 0.0f, 1.0f);
-}
-
 // How much surface lies under a step of one texel, for the pass that draws the irradiance: there dpdx and dpdy of the
 // world position are its derivatives by texels along u and v. Take them before any branch.
 // Returns: world length of a texel along u and along v.
@@ -79,16 +69,6 @@ fn texture_diffusion_width(sigma0: f32, stretch: f32, widest: f32) -> f32 {
     let sigma = max(texture_diffusion_finite(sigma0), 0.0f);
     let texel = abs(texture_diffusion_finite(stretch));
     return max(min(sigma / max(texel, TEXTURE_DIFFUSION_SMALLEST), widest), 0.0f);
-}
-
-// The quotient as it stands.
-// Returns: sigma0 / stretch.
-// Units: as texture_diffusion_width.
-// Domain: sigma0, stretch in [1e-6, 1e6].
-// Outside: infinite at a pole, 0/0 off the charts of a material that does not scatter.
-// Accuracy: naive
-fn texture_diffusion_width_naive(sigma0: f32, stretch: f32) -> f32 {
-    return sigma0 / stretch;
 }
 
 // Each channel's scattering, made safe.
@@ -169,19 +149,6 @@ fn texture_diffusion_tap(index: u32, pairs: u32, sigma0: vec3f) -> TextureDiffus
     return TextureDiffusionTap(offset, (1.0f + bent) / (apart * apart) * exp(-0.5f * deviations * deviations));
 }
 
-// Taps at equal distances, as far out as the widest channel needs them.
-// Returns: as texture_diffusion_tap.
-// Units: standard deviations of the widest channel.
-// Domain: index from 0 to pairs; each of sigma0 positive.
-// Outside: 0/0 for a channel that does not scatter; NaNs and negative numbers go through.
-// Accuracy: naive
-fn texture_diffusion_tap_naive(index: u32, pairs: u32, sigma0: vec3f) -> TextureDiffusionTap {
-    let widest = max(max(sigma0.x, sigma0.y), sigma0.z);
-    let offset = TEXTURE_DIFFUSION_REACH * f32(index) / f32(pairs);
-    let deviations = offset / (sigma0 / widest);
-    return TextureDiffusionTap(offset, exp(-0.5f * deviations * deviations));
-}
-
 // The mean over what the taps have found of the surface. Both sums are taken with the channel's weights: of the texels' colours, which are
 // multiplied by their coverage, and of the coverage alone. So the weights need not sum to 1, and texels outside all charts count for nothing.
 // Returns: irradiance of each channel: a mean of that of the covered texels; 0 where nothing is covered.
@@ -191,16 +158,6 @@ fn texture_diffusion_tap_naive(index: u32, pairs: u32, sigma0: vec3f) -> Texture
 // Accuracy: lavapipe 1 ulp; portable 3 ulp
 fn texture_diffusion_normalize(sum: vec3f, coverage: vec3f) -> vec3f {
     return sum / max(coverage, vec3f(TEXTURE_DIFFUSION_SMALLEST));
-}
-
-// The usual blur: divided by the sum of the weights, whatever is under them.
-// Returns: irradiance, darkened by what lies outside the chart.
-// Units: that of the irradiance.
-// Domain: total in [1e-6, 1e6].
-// Outside: as long as the total is positive.
-// Accuracy: naive
-fn texture_diffusion_normalize_naive(sum: vec3f, total: vec3f) -> vec3f {
-    return sum / total;
 }
 
 // The nearest half float, for a target of those. How a target rounds is up to the device: one that cuts off takes up to 2^-10 in each

@@ -1,6 +1,6 @@
 // veins: density of veined stone at a point of space: the surfaces on which gradient noise is 0, blurred.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash ec0b9975c5289a01
+// Version: 0.2.0, hash 366710648b89520b
 // Source: Perlin, "Improving Noise", SIGGRAPH 2002 (fade and gradients); Jarzynski and Olano, "Hash Functions for GPU Rendering",
 //   JCGT 9(3), 2020 (pcg4d); Ebert et al., "Texturing and Modeling", 3rd ed., 2003, ch. 2 (octaves, marble).
 //
@@ -45,18 +45,6 @@ fn veins_cell(position: vec3f) -> VeinsCell {
     let p = clamp(position, vec3f(-VEINS_FARTHEST), vec3f(VEINS_FARTHEST));
     let lower = floor(p);
     return VeinsCell(vec3i(lower), p - lower);
-}
-
-// The cell by conversion to integers, as one writes it. Kept to show where it fails: conversion cuts towards 0, so that the cells about the origin are
-// two wide and mirrored.
-// Returns: VeinsCell.
-// Units: cells.
-// Domain: positions above 0, up to 1e6.
-// Outside: offsets below 0 for negative positions.
-// Accuracy: naive
-fn veins_cell_naive(position: vec3f) -> VeinsCell {
-    let corner = vec3i(position);
-    return VeinsCell(corner, position - vec3f(corner));
 }
 
 // Random bits of a corner of the grid, by pcg4d: the same on every device.
@@ -161,16 +149,6 @@ fn veins_fold(value: f32, width: f32) -> f32 {
     let half = clamp(width, VEINS_NARROWEST, VEINS_WIDEST);
     let squared = half * half;
     return min(squared / (squared + value * value), 1.0f);
-}
-
-// The vein by the absolute value, as turbulence has it. Kept to show where it fails: it has a crease in the middle, and is negative away from it.
-// Returns: 1 - |value| / (2 width).
-// Units: as veins_fold.
-// Domain: |value| at most 1, width in [0.1, 1].
-// Outside: negative from twice the width on, so that no majorant bounds a density made of it.
-// Accuracy: naive
-fn veins_fold_naive(value: f32, width: f32) -> f32 {
-    return 1.0f - abs(value) / (2.0f * width);
 }
 
 // Density of veined stone: what scattering and absorption coefficient are multiplied by.

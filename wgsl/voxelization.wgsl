@@ -1,6 +1,6 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 40029287ec37630d
+// Version: 0.2.0, hash 741230ddfb12f53c
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
 //   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //
@@ -167,23 +167,6 @@ fn voxelization_column(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> Voxelizat
     let weights = vec3f(bc.area, ca.area, ab.area);
     let depth = dot(weights, vec3f(a.x, b.x, c.x)) / (weights.x + weights.y + weights.z);
     return VoxelizationColumn(true, clamp(depth, min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x))));
-}
-
-// The same in floats, as one finds it: each triangle counts the columns on its edges, and rounding decides which columns these are.
-// Returns: VoxelizationColumn.
-// Units: as voxelization_column.
-// Domain: triangles that have an area as seen along x.
-// Outside: columns on a shared edge count for both triangles; seen edge-on, depth is 0/0.
-// Accuracy: naive
-fn voxelization_column_naive(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> VoxelizationColumn {
-    let p = a.yz - column;
-    let q = b.yz - column;
-    let r = c.yz - column;
-    let weights = vec3f(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
-    if all(weights >= vec3f(0.0f)) || all(weights <= vec3f(0.0f)) {
-        return VoxelizationColumn(true, dot(weights, vec3f(a.x, b.x, c.x)) / (weights.x + weights.y + weights.z));
-    }
-    return VoxelizationColumn(false, 0.0f);
 }
 
 // The first voxel of a row whose centre lies at a coordinate or beyond it.

@@ -3,6 +3,7 @@
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel, microfacet, reflective_shadow_map
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
+// compares: curvature
 //
 // Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
 // applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.

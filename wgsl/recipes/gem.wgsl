@@ -3,6 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.
 // requires: absorption, closest_point, dispersion, environment, fresnel, proxy_geometry, refraction
 // parts: mesh, mesh_normals, surroundings, gem_shading
+// compares: closest_point
 //
 // Draw 3 vertices per triangle without a vertex buffer: the mesh itself is read from storage buffers, so that
 // each vertex sees its whole triangle and the proxy needs no further data and no further pass.

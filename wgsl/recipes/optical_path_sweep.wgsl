@@ -3,6 +3,7 @@
 // Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 2.
 // requires: optical_path
 // parts: matter, optical_path_grid
+// compares: optical_path
 //
 // 1. `optical_path_sweep_begin`.
 // 2. As often as passes are granted: `optical_path_sweep_next`, one workgroup, then, by the arguments that it has written,

@@ -13,6 +13,10 @@ pub struct Module {
     pub name: &'static str,
     /// WGSL, valid by itself.
     pub source: &'static str,
+    /// The forms that fail, which follow `source`; empty where there are none.
+    pub naive: &'static str,
+    /// Both.
+    pub whole: &'static str,
     /// Its doc page in Markdown.
     pub page: &'static str,
 }
@@ -77,13 +81,26 @@ impl Recipe {
         named(self.source, "// parts:").into_iter().map(part).collect()
     }
 
-    /// The whole shader: the modules, the parts, then the recipe.
+    /// The modules of which the recipe or one of its parts draws a naive form too, to be compared with.
+    ///
+    /// # Panics
+    /// Where a part is unknown: a fault of the cookbook's own.
+    #[must_use]
+    pub fn compares(&self) -> Vec<&'static str> {
+        let mut names: Vec<&str> = self.own_text().into_iter().flat_map(|text| named(text, "// compares:")).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// The whole shader: the modules, the naive forms that it compares with, the parts, then the recipe.
     ///
     /// # Panics
     /// Where a module or part is unknown: a fault of the cookbook's own.
     #[must_use]
     pub fn compose(&self) -> String {
-        compose(&self.requires(), &self.own_text().join("\n"))
+        let naive = self.compares().into_iter().map(|name| known(name).naive);
+        compose(&self.requires(), &naive.chain(self.own_text()).collect::<Vec<_>>().join("\n"))
     }
 
     /// The recipe's own texts: the parts, then the recipe, without the modules.
@@ -102,12 +119,15 @@ impl Recipe {
 /// Where a module is unknown.
 #[must_use]
 pub fn compose(names: &[&str], last: &str) -> String {
-    let known = |name: &&str| module(name).unwrap_or_else(|| panic!("no module `{name}`")).source;
-    let mut texts: Vec<&str> = names.iter().map(known).collect();
+    let mut texts: Vec<&str> = names.iter().map(|name| known(name).source).collect();
     if !last.is_empty() {
         texts.push(last);
     }
     texts.join("\n")
+}
+
+fn known(name: &str) -> &'static Module {
+    module(name).unwrap_or_else(|| panic!("no module `{name}`"))
 }
 
 /// What the names of a module's functions, structs and consts start with.

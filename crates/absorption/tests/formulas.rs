@@ -1,7 +1,12 @@
-//! `wgsl/absorption.wgsl`, function by function, on the device: `cargo test -p lapidary-absorption`.
+//! `wgsl/absorption.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-absorption`.
 
 use lapidary_absorption::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/absorption.wgsl"), formulas())
+    let module = concat!(
+        include_str!("../../../wgsl/absorption.wgsl"),
+        "\n",
+        include_str!("../../../wgsl/naive/absorption.wgsl")
+    );
+    lapidary_assay::module::test(module, formulas())
 }

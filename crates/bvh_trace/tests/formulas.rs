@@ -1,7 +1,9 @@
-//! `wgsl/bvh_trace.wgsl`, function by function, on the device: `cargo test -p lapidary-bvh_trace`.
+//! `wgsl/bvh_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-bvh_trace`.
 
 use lapidary_bvh_trace::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/bvh_trace.wgsl"), formulas())
+    let module =
+        concat!(include_str!("../../../wgsl/bvh_trace.wgsl"), "\n", include_str!("../../../wgsl/naive/bvh_trace.wgsl"));
+    lapidary_assay::module::test(module, formulas())
 }

@@ -1,7 +1,8 @@
-//! `wgsl/cdrf.wgsl`, function by function, on the device: `cargo test -p lapidary-cdrf`.
+//! `wgsl/cdrf.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-cdrf`.
 
 use lapidary_cdrf::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/cdrf.wgsl"), formulas())
+    let module = concat!(include_str!("../../../wgsl/cdrf.wgsl"), "\n", include_str!("../../../wgsl/naive/cdrf.wgsl"));
+    lapidary_assay::module::test(module, formulas())
 }

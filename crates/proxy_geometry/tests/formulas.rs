@@ -1,7 +1,12 @@
-//! `wgsl/proxy_geometry.wgsl`, function by function, on the device: `cargo test -p lapidary-proxy_geometry`.
+//! `wgsl/proxy_geometry.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-proxy_geometry`.
 
 use lapidary_proxy_geometry::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/proxy_geometry.wgsl"), formulas())
+    let module = concat!(
+        include_str!("../../../wgsl/proxy_geometry.wgsl"),
+        "\n",
+        include_str!("../../../wgsl/naive/proxy_geometry.wgsl")
+    );
+    lapidary_assay::module::test(module, formulas())
 }

@@ -1,7 +1,12 @@
-//! `wgsl/refraction.wgsl`, function by function, on the device: `cargo test -p lapidary-refraction`.
+//! `wgsl/refraction.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-refraction`.
 
 use lapidary_refraction::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/refraction.wgsl"), formulas())
+    let module = concat!(
+        include_str!("../../../wgsl/refraction.wgsl"),
+        "\n",
+        include_str!("../../../wgsl/naive/refraction.wgsl")
+    );
+    lapidary_assay::module::test(module, formulas())
 }

@@ -1,7 +1,8 @@
-//! `wgsl/srgb.wgsl`, function by function, on the device: `cargo test -p lapidary-srgb`.
+//! `wgsl/srgb.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-srgb`.
 
 use lapidary_srgb::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/srgb.wgsl"), formulas())
+    let module = concat!(include_str!("../../../wgsl/srgb.wgsl"), "\n", include_str!("../../../wgsl/naive/srgb.wgsl"));
+    lapidary_assay::module::test(module, formulas())
 }

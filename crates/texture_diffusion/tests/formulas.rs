@@ -1,7 +1,12 @@
-//! `wgsl/texture_diffusion.wgsl`, function by function, on the device: `cargo test -p lapidary-texture_diffusion`.
+//! `wgsl/texture_diffusion.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-texture_diffusion`.
 
 use lapidary_texture_diffusion::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/texture_diffusion.wgsl"), formulas())
+    let module = concat!(
+        include_str!("../../../wgsl/texture_diffusion.wgsl"),
+        "\n",
+        include_str!("../../../wgsl/naive/texture_diffusion.wgsl")
+    );
+    lapidary_assay::module::test(module, formulas())
 }

@@ -1,7 +1,9 @@
-//! `wgsl/veins.wgsl`, function by function, on the device: `cargo test -p lapidary-veins`.
+//! `wgsl/veins.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-veins`.
 
 use lapidary_veins::formulas::formulas;
 
 fn main() -> std::process::ExitCode {
-    lapidary_assay::module::test(include_str!("../../../wgsl/veins.wgsl"), formulas())
+    let module =
+        concat!(include_str!("../../../wgsl/veins.wgsl"), "\n", include_str!("../../../wgsl/naive/veins.wgsl"));
+    lapidary_assay::module::test(module, formulas())
 }

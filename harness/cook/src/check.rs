@@ -338,7 +338,7 @@ pub fn run_keeping<'gpu>(
 fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
     match source {
         Source::Cookbook => {
-            let text = cookbook::module(formula.module).map_or("", |module| module.source);
+            let text = cookbook::module(formula.module).map_or("", |module| module.whole);
             (format!("wgsl/{}.wgsl", formula.module), text)
         }
         Source::Copy(path, text) => (path.to_owned(), text),

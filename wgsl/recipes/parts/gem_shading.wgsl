@@ -1,6 +1,7 @@
 // gem_shading: the shading that every gem recipe shares, so that the recipes differ in geometry alone.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
+// compares: dispersion
 //
 // A geometry recipe adds: the parts mesh and surroundings, struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
 // struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of Ray Traversal on
 //   GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
+// compares: bvh_trace
 //
 // A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes`, array<BvhTraceNode>, the root first, the two
 // children of a node side by side; and `indices`, array<u32>, three a triangle, counter-clockwise from outside, in the order of

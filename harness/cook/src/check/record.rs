@@ -179,7 +179,7 @@ impl Record {
 
 /// A hash of a module's text, as its version line has it.
 fn text_hash(module: &str) -> String {
-    cookbook::module(module).map_or_else(String::new, |module| release::text_hash(module.source))
+    cookbook::module(module).map_or_else(String::new, |module| release::text_hash(module.whole))
 }
 
 impl Row {

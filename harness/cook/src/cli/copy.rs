@@ -1,6 +1,7 @@
 //! `cook copy`.
 
 use super::{Failure, Outcome, output};
+use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
 use lapidary_cook::cookbook::marks::{effect_of, effects, override_of};
 use lapidary_cook::cookbook::translate::{Target, translate};
@@ -116,9 +117,10 @@ fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
 fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
     if to == Target::Wgsl {
         // A function may call its module's others; WGSL needs no entry point, so the module is the copy.
-        return Ok(module.source.as_bytes().to_vec());
+        let is_naive = module.function(function).is_some_and(|function| function.accuracy == Accuracy::Naive);
+        return Ok(if is_naive { module.whole } else { module.source }.as_bytes().to_vec());
     }
-    let kernel = KernelModule::reflect(module.source, module.name, function)?;
+    let kernel = KernelModule::reflect(module.whole, module.name, function)?;
     let mut ir = kernel.module;
     naga::compact::compact(&mut ir, naga::compact::KeepUnused::No);
     let info = lapidary_specialise::validate(&ir).map_err(|error| Failure(error.to_string()))?;

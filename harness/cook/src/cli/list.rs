@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let mut rows = Vec::new();
     for module in cookbook::modules() {
-        let (ir, _) = dispatch::parse(module.source, module.name)?;
+        let (ir, _) = dispatch::parse(module.whole, module.name)?;
         for function in &module.functions {
             rows.push(Row {
                 module: module.name,

@@ -15,8 +15,9 @@ pub(super) struct Arguments {
 }
 
 /// The technique's files, and what they hold, with `NAME` for the name.
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 8] = [
     ("wgsl/NAME.wgsl", include_str!("new/module.wgsl")),
+    ("wgsl/naive/NAME.wgsl", include_str!("new/naive.wgsl")),
     ("crates/NAME/Cargo.toml", include_str!("new/manifest.toml")),
     ("crates/NAME/src/lib.rs", include_str!("new/lib.rs.txt")),
     ("crates/NAME/src/oracle.rs", include_str!("new/oracle.rs.txt")),

@@ -79,8 +79,10 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
         return Err(fault(at, "expected `// Source: <paper, book or specification, with equation numbers>`"));
     };
     // A source may run on, up to an empty comment line or the end of the comment.
-    let more =
-        lines.map_while(|line| line.strip_prefix("// ").map(str::trim)).filter(|line| !line.starts_with("requires:"));
+    let needs = ["requires:", "parts:", "compares:"];
+    let more = lines
+        .map_while(|line| line.strip_prefix("// ").map(str::trim))
+        .filter(|line| !needs.iter().any(|need| line.starts_with(need)));
     let source = std::iter::once(source_line.trim()).chain(more).collect::<Vec<_>>().join(" ");
     Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), version, source })
 }

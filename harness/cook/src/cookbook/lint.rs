@@ -3,6 +3,7 @@
 use super::header::{self, Header};
 use super::marks;
 use super::precedence::mixed_operators;
+use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::dispatch;
 use lapidary_assay::dispatch::signature::of_type;
 use naga::{Expression, Function, Handle};
@@ -17,6 +18,8 @@ pub enum Rule {
     Header,
     /// Every function has its tags, and its accuracy line fits its result.
     FunctionComment,
+    /// Naive forms, and no others, stand in `wgsl/naive/`.
+    Place,
     /// Functions, structs and consts only.
     PureFunctions,
     /// Every global name starts with the module's.
@@ -54,25 +57,48 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Checks one module against every rule that concerns it alone.
-pub fn lint(name: &str, source: &str) -> Vec<Finding> {
+/// Checks one module, with the naive forms that follow it, against every rule that concerns it alone.
+pub fn lint(name: &str, source: &str, naive: &str) -> Vec<Finding> {
+    let lines = source.lines().count();
+    let whole = if naive.is_empty() { source.to_owned() } else { format!("{}\n\n{naive}", source.trim_end()) };
     let mut findings = Vec::new();
     let mut report = |rule, line, message: String| {
-        findings.push(Finding { rule, module: name.to_owned(), line, message });
+        let (module, line) = match line > lines {
+            true => (format!("naive/{name}"), line - lines - 1),
+            false => (name.to_owned(), line),
+        };
+        findings.push(Finding { rule, module, line, message });
     };
     check_header(name, source, &mut report);
-    check_literals(source, &mut report);
-    findings_of_operators(source, &mut report);
+    check_places(&whole, lines, &mut report);
+    check_whole(name, &whole, &mut report);
+    findings
+}
+
+/// What fails is not pasted.
+fn check_places(whole: &str, lines: usize, report: &mut Report<'_>) {
+    // A comment that breaks the contract is another rule's.
+    for function in header::parse_functions(whole).unwrap_or_default() {
+        let is_naive = function.accuracy == Accuracy::Naive;
+        if is_naive != (function.line > lines) {
+            let folder = if is_naive { "wgsl/naive" } else { "wgsl" };
+            report(Rule::Place, function.line, format!("`{}` belongs in {folder}", function.name));
+        }
+    }
+}
+
+fn check_whole(name: &str, source: &str, report: &mut Report<'_>) {
+    check_literals(source, report);
+    findings_of_operators(source, report);
     match dispatch::parse(source, &format!("wgsl/{name}.wgsl")) {
         Err(error) => report(Rule::Valid, 0, error.to_string()),
         Ok((module, _)) => {
-            check_functions(source, &module, &mut report);
-            check_purity(source, &module, &mut report);
-            check_names(name, source, &module, &mut report);
-            check_self_comparison(source, &module, &mut report);
+            check_functions(source, &module, report);
+            check_purity(source, &module, report);
+            check_names(name, source, &module, report);
+            check_self_comparison(source, &module, report);
         }
     }
-    findings
 }
 
 /// Checks what no module is: the text of a recipe with its parts, each by itself. `effects` are those that its marks may

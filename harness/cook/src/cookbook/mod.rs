@@ -16,13 +16,17 @@ use std::sync::OnceLock;
 pub struct Module {
     /// Its name, the same in `wgsl/`, `crates/`, `docs/` and `snapshots/`.
     pub name: &'static str,
-    /// Its WGSL.
+    /// Its WGSL, as it is pasted.
     pub source: &'static str,
+    /// The forms that fail, which follow it.
+    pub naive: &'static str,
+    /// Both, as they are tested.
+    pub whole: &'static str,
     /// Its doc page, Markdown.
     pub page: &'static str,
     /// What its header says.
     pub header: Header,
-    /// What its functions' comments say, in order of the file.
+    /// What its functions' comments say, in order of the files: lines are those of `whole`.
     pub functions: Vec<FunctionDoc>,
 }
 
@@ -50,9 +54,11 @@ pub fn modules() -> &'static [Module] {
             .map(|module| Module {
                 name: module.name,
                 source: module.source,
+                naive: module.naive,
+                whole: module.whole,
                 page: module.page,
                 header: header::parse_header(module.source).unwrap_or_else(|e| fault(module.name, e)),
-                functions: header::parse_functions(module.source).unwrap_or_else(|e| fault(module.name, e)),
+                functions: header::parse_functions(module.whole).unwrap_or_else(|e| fault(module.name, e)),
             })
             .collect()
     })

@@ -19,14 +19,17 @@ pub fn module(module: &Module, placed: &[Placed<'_>]) -> String {
     let figures = figures(name, placed);
     let rows: String = module.functions.iter().map(|function| row(module, function)).collect();
     let (purpose, source) = (prose(&module.header.purpose), prose(&module.header.source));
-    let listing = listing(&format!("{name}.wgsl"), module.source);
+    let mut listings = listing(&format!("{name}.wgsl"), module.source);
+    if !module.naive.is_empty() {
+        listings += &listing(&format!("naive/{name}.wgsl"), module.naive);
+    }
     let check = command(&format!("./cook check {name}"));
     let notes = framed("<div class=\"notes\">\n", &page.rest, "</div>\n");
     format!(
         r##"<section id="{name}" class="module">
 <h2>{name} <a class="anchor" href="#{name}" aria-label="Link to {name}">#</a></h2>
 <p class="purpose">{purpose}</p>
-{lead}{equation}{listing}<p class="dim citation">After {source}</p>
+{lead}{equation}{listings}<p class="dim citation">After {source}</p>
 <h3>Functions</h3>
 <table class="functions">
 <thead><tr><th scope="col">Function</th><th scope="col"><a href="#accuracy">Accuracy</a></th></tr></thead>
@@ -58,7 +61,7 @@ fn row(module: &Module, function: &FunctionDoc) -> String {
 </tr>
 "#,
         escape(&function.name),
-        signature(module.source, function),
+        signature(module.whole, function),
         prose(&function.summary),
         accuracy(&function.accuracy)
     )

@@ -131,7 +131,7 @@ const READY: &str = "ready";
 /// A function's mutants, the same in coordinator and workers.
 fn mutants_of(formula: &Formula) -> Mutants {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    mutate::of_function(module.source, module.name, formula.function).expect("the cookbook's WGSL is valid")
+    mutate::of_function(module.whole, module.name, formula.function).expect("the cookbook's WGSL is valid")
 }
 
 fn coordinate(filter: &str, choice: Choice, is_recorded: bool) -> ExitCode {
@@ -416,7 +416,7 @@ fn worker() {
 /// The tests of a formula, kept for all of the mutants that they judge.
 fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
-    let judge = Judge::new(gpu, formula, (module.source, module.name), check::tolerance(gpu, formula), &[]);
+    let judge = Judge::new(gpu, formula, (module.whole, module.name), check::tolerance(gpu, formula), &[]);
     let judge = judge.expect("the cookbook's WGSL is valid");
     if formula.benign.is_some() {
         judge

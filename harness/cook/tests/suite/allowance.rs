@@ -27,7 +27,7 @@ fn unfitting(
     let mut found = Vec::new();
     for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
         let module = cookbook::module(formula.module).expect("its module");
-        let program = Program::new(module.source, module.name, formula.function).expect("valid");
+        let program = Program::new(module.whole, module.name, formula.function).expect("valid");
         let allowance = allowance::of_formula(&program, formula, &tolerance(formula), accuracy, settings);
         let allowance = allowance.expect("the interpreter runs it");
         assert!(allowance.rows > 0 || formula.arguments.is_empty(), "{}: first order says nothing", formula.function);

@@ -88,9 +88,9 @@ fn differences(name: &str, source: &str) -> Vec<String> {
 fn every_const_has_its_mirrors_value() {
     let mut count = 0;
     for module in cookbook::modules() {
-        let faults = differences(module.name, module.source);
+        let faults = differences(module.name, module.whole);
         assert!(faults.is_empty(), "wgsl/{}.wgsl:\n{}", module.name, faults.join("\n"));
-        count += module.source.lines().filter(|line| line.starts_with("const ")).count();
+        count += module.whole.lines().filter(|line| line.starts_with("const ")).count();
     }
     assert_eq!(count, mirrors().len());
 }

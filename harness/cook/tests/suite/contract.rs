@@ -12,13 +12,14 @@ use std::path::Path;
 
 #[test]
 fn every_module_keeps_the_contract() {
-    let findings: Vec<Finding> = modules().iter().flat_map(|module| lint(module.name, module.source)).collect();
+    let findings: Vec<Finding> =
+        modules().iter().flat_map(|module| lint(module.name, module.source, module.naive)).collect();
     assert!(findings.is_empty(), "{}", spell(&findings));
 }
 
 #[test]
 fn all_modules_compile_as_one() {
-    let sources: Vec<(&str, &str)> = modules().iter().map(|module| (module.name, module.source)).collect();
+    let sources: Vec<(&str, &str)> = modules().iter().map(|module| (module.name, module.whole)).collect();
     let findings = lint_composition(&sources);
     assert!(findings.is_empty(), "{}", spell(&findings));
 }
@@ -46,7 +47,7 @@ fn every_function_has_one_formula_and_every_formula_a_function() {
 #[test]
 fn every_signature_is_the_mirrors() {
     for module in modules() {
-        let (ir, _) = dispatch::parse(module.source, module.name).unwrap_or_else(|error| panic!("{error}"));
+        let (ir, _) = dispatch::parse(module.whole, module.name).unwrap_or_else(|error| panic!("{error}"));
         for formula in formulas::all().iter().filter(|formula| formula.module == module.name) {
             let signature = Signature::reflect(&ir, formula.function).unwrap_or_else(|error| panic!("{error}"));
             signature.expect(&formula.arguments, &formula.result).unwrap_or_else(|error| panic!("{error}"));
@@ -81,7 +82,7 @@ fn every_function_can_be_written_in_every_language() {
     let entry = Some((ENTRY_POINT, naga::ShaderStage::Compute));
     for formula in formulas::all() {
         let module = modules().iter().find(|module| module.name == formula.module).expect("a formula's module");
-        let kernel = KernelModule::reflect(module.source, module.name, formula.function).expect("valid WGSL");
+        let kernel = KernelModule::reflect(module.whole, module.name, formula.function).expect("valid WGSL");
         let info = lapidary_specialise::validate(&kernel.module).expect("valid IR");
         for target in [Target::Wgsl, Target::Spirv, Target::Hlsl, Target::Msl, Target::Glsl] {
             let bytes = translate(&kernel.module, &info, target, entry)
@@ -145,7 +146,7 @@ fn changed(from: &str, to: &str) -> String {
 /// Asserts that the change makes findings, all by `rule`, and returns them.
 fn breaks(rule: Rule, from: &str, to: &str) -> Vec<Finding> {
     let source = changed(from, to);
-    let findings = lint("sample", &source);
+    let findings = lint("sample", &source, "");
     assert!(!findings.is_empty(), "nothing is found in\n{source}");
     assert!(findings.iter().all(|finding| finding.rule == rule), "{}{source}", spell(&findings));
     findings
@@ -163,7 +164,7 @@ fn declaration_breaks(rule: Rule, declaration: &str) {
 
 #[test]
 fn a_correct_module_gives_no_finding() {
-    let findings = lint("sample", SAMPLE);
+    let findings = lint("sample", SAMPLE, "");
     assert!(findings.is_empty(), "{}", spell(&findings));
 }
 
@@ -215,7 +216,7 @@ fn a_wrong_function_comment_is_found() {
 #[test]
 fn a_function_without_a_result_is_found() {
     let nothing = "// Does nothing.\n// Returns: nothing.\n// Units: none.\n// Domain: any.\n// Outside: none is.\n\
-        // Accuracy: naive\nfn sample_nothing(first: f32) {\n}\n\n// Halves both";
+        // Accuracy: lavapipe 1 ulp; portable 1 ulp\nfn sample_nothing(first: f32) {\n}\n\n// Halves both";
     let findings = breaks(Rule::FunctionComment, "// Halves both", nothing);
     assert!(findings[0].message.contains("`sample_nothing` returns nothing"), "{}", spell(&findings));
 }
@@ -293,9 +294,23 @@ fn what_only_looks_like_a_literal_is_not_found() {
         "let number = -3i;",
         "let number = 0x10u;",
     ] {
-        let findings = lint("sample", &changed(BODY, &format!("    {statement}\n{BODY}")));
+        let findings = lint("sample", &changed(BODY, &format!("    {statement}\n{BODY}")), "");
         assert!(findings.is_empty(), "{statement}: {}", spell(&findings));
     }
+}
+
+#[test]
+fn what_fails_is_not_pasted() {
+    let naive = "// Halves the first.\n// Returns: half of it.\n// Units: none.\n// Domain: any.\n// Outside: none is.\n\
+        // Accuracy: naive\nfn sample_half_naive(first: f32) -> f32 {\n    return first / 2.0f;\n}\n";
+    let findings = lint("sample", SAMPLE, naive);
+    assert!(findings.is_empty(), "{}", spell(&findings));
+    let findings = lint("sample", &format!("{SAMPLE}\n{naive}"), "");
+    assert!(matches!(&findings[..], [finding] if finding.rule == Rule::Place), "{}", spell(&findings));
+    let stable = naive.replace("Accuracy: naive", "Accuracy: lavapipe 1 ulp; portable 3 ulp");
+    let findings = lint("sample", SAMPLE, &stable);
+    assert!(matches!(&findings[..], [finding] if finding.rule == Rule::Place), "{}", spell(&findings));
+    assert!(findings[0].to_string().starts_with("wgsl/naive/sample.wgsl:7: "), "{}", findings[0]);
 }
 
 #[test]
@@ -310,7 +325,7 @@ fn a_comparison_with_itself_is_found() {
         statement_breaks(Rule::SelfComparison, statement);
     }
     let different = "let pair = SamplePair(first, second);\n    let odd = pair.first != pair.second;";
-    assert!(lint("sample", &changed(BODY, &format!("    {different}\n{BODY}"))).is_empty());
+    assert!(lint("sample", &changed(BODY, &format!("    {different}\n{BODY}")), "").is_empty());
     // Two calls of one function.
     let calls = "\
 // The same, twice.
@@ -325,7 +340,7 @@ fn sample_quarter(first: f32, second: f32) -> f32 {
     return select(0.0f, SAMPLE_HALF * one.first, one.first != other.first);
 }
 ";
-    let findings = lint("sample", &format!("{SAMPLE}\n{calls}"));
+    let findings = lint("sample", &format!("{SAMPLE}\n{calls}"), "");
     assert!(findings.is_empty(), "{}", spell(&findings));
 }
 

@@ -153,7 +153,7 @@ fn draw(gpu: &Gpu, mesh: &[[f32; 6]], axes: Vec3, eye: Vec3) -> Vec<Pixel> {
             let view = buffer(&bytes_of(&view), wgpu::BufferUsages::UNIFORM);
             let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("curvature"),
-                source: wgpu::ShaderSource::Wgsl(format!("{}{SHADER}", module.source).into()),
+                source: wgpu::ShaderSource::Wgsl(format!("{}{SHADER}", module.whole).into()),
             });
             let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("curvature"),

@@ -35,7 +35,7 @@ const SQUARE: &str = "(relative_index * relative_index - 1.0f)";
 /// The module's text with one function rewritten.
 fn rewritten(function: &str, before: &str, after: &str) -> String {
     let formula = formulas::of_function(function).unwrap_or_else(|| panic!("no formula of `{function}`"));
-    let source = cookbook::module(formula.module).expect("a module").source;
+    let source = cookbook::module(formula.module).expect("a module").whole;
     let start = source.find(&format!("fn {function}(")).unwrap_or_else(|| panic!("no function `{function}`"));
     let end = start + source[start..].find("\n}\n").expect("a function ends");
     let body = source[start..end].replacen(before, after, 1);

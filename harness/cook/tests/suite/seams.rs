@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 
 fn program(formula: &Formula) -> Program {
     let module = cookbook::module(formula.module).expect("a formula's module");
-    Program::new(module.source, formula.module, formula.function).expect("the cookbook's WGSL is valid")
+    Program::new(module.whole, formula.module, formula.function).expect("the cookbook's WGSL is valid")
 }
 
 fn promised() -> impl Iterator<Item = &'static Formula> {
@@ -104,7 +104,7 @@ fn every_branch_is_straddled_and_continuous_or_says_why_not() {
 fn planted(function: &str, from: &str, to: &str) -> Vec<Fault> {
     let gpu = super::gpu();
     let formula = formulas::of_function(function).expect("a formula");
-    let source = cookbook::module(formula.module).expect("its module").source;
+    let source = cookbook::module(formula.module).expect("its module").whole;
     assert_eq!(source.matches(from).count(), 1, "`{from}`");
     let source = source.replace(from, to);
     let program = Program::new(&source, "planted.wgsl", function).expect("valid");

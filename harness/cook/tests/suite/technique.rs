@@ -40,12 +40,13 @@ fn a_new_technique_keeps_the_contract_and_is_known_to_cargo() {
     let before = files(copy.path()).len();
     let said = succeeds(copy.path(), &["new", "thin_film", "--in", "."]).stdout;
     let read = |file: &str| std::fs::read_to_string(copy.path().join(file)).unwrap_or_else(|e| panic!("{file}: {e}"));
-    assert_eq!(files(copy.path()).len(), before + 7, "{said}");
+    assert_eq!(files(copy.path()).len(), before + 8, "{said}");
     let source = with_version(&read("wgsl/thin_film.wgsl"));
-    let findings = lint("thin_film", &source);
+    let naive = read("wgsl/naive/thin_film.wgsl");
+    let findings = lint("thin_film", &source, &naive);
     assert!(findings.is_empty(), "{}", findings.iter().map(ToString::to_string).collect::<String>());
     assert_eq!(parse_header(&source).expect("a header").name, "thin_film");
-    assert_eq!(parse_functions(&source).expect("comments").len(), 2);
+    assert_eq!(parse_functions(&(source + &naive)).expect("comments").len(), 2);
     for (file, line) in [
         ("Cargo.toml", "lapidary-thin_film = { path = \"crates/thin_film\" }"),
         ("harness/cook/Cargo.toml", "lapidary-thin_film = { workspace = true, features = [\"formulas\"] }"),

@@ -18,7 +18,7 @@ fn signatures_and_accuracies_are_as_they_were() {
     settings.set_omit_expression(true);
     settings.bind(|| {
         for module in cookbook::modules() {
-            let (ir, _) = dispatch::parse(module.source, module.name).expect("the cookbook's WGSL is valid");
+            let (ir, _) = dispatch::parse(module.whole, module.name).expect("the cookbook's WGSL is valid");
             let mut text = String::new();
             for function in &module.functions {
                 let signature = Signature::reflect(&ir, &function.name).expect("a function of the module");

@@ -322,7 +322,7 @@ fn a_failure_is_shown_as_literals_with_what_is_allowed() {
 #[test]
 fn every_call_is_valid_wgsl() {
     for formula in formulas::all() {
-        let source = cookbook::module(formula.module).expect("a formula's module").source;
+        let source = cookbook::module(formula.module).expect("a formula's module").whole;
         for row in 0..20 {
             let arguments = formula.domain.row(Settings::default().seed, row);
             let call = call(Language::Wgsl, formula, &arguments);

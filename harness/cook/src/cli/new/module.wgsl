@@ -12,13 +12,3 @@
 fn NAME_difference(a: f32, b: f32) -> f32 {
     return (a - b) * (a + b);
 }
-
-// The same as the formula is printed.
-// Returns: a^2 - b^2.
-// Units: as NAME_difference.
-// Domain: a in [2, 4], b in [0, 1].
-// Outside: as the formula gives.
-// Accuracy: naive
-fn NAME_difference_naive(a: f32, b: f32) -> f32 {
-    return a * a - b * b;
-}

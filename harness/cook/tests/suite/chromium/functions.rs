@@ -22,7 +22,7 @@ fn every_function_holds_in_chromium() {
     let mut faults = Vec::new();
     for formula in names {
         let module = cookbook::module(formula.module).expect("its module");
-        let text = KernelText::of_function(module.source, module.name, formula.function).expect("the cookbook's WGSL");
+        let text = KernelText::of_function(module.whole, module.name, formula.function).expect("the cookbook's WGSL");
         let tolerance = check::tolerance(On::Slack(Reassociation::Written), formula);
         let hard: Vec<Words> = formula.hard_cases.iter().map(|case| case.arguments.clone()).collect();
         let mut runner = InBrowser::new(&browser, text);

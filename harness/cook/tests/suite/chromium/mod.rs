@@ -74,7 +74,7 @@ impl Judged {
 /// All that is asked, in one start of Chromium: the planted texts first.
 fn texts() -> Vec<(String, String)> {
     let planted = PLANTED.iter().map(|planted| (format!("planted: {}", planted.word), planted.text.to_owned()));
-    let each = modules().iter().map(|module| (module.name.to_owned(), module.source.to_owned()));
+    let each = modules().iter().map(|module| (module.name.to_owned(), module.whole.to_owned()));
     let names: Vec<&str> = modules().iter().map(|module| module.name).collect();
     let together = ("all modules".to_owned(), compose(&names, ""));
     let whole = RECIPES.iter().map(|recipe| (recipe.name.to_owned(), recipe.compose()));

@@ -1,0 +1,63 @@
+// cdrf: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/cdrf.wgsl, and use its structs and functions.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+
+// cdrf_sigma: the product as it stands in the paper.
+// Returns: sigma0 curvature.
+// Units: as cdrf_sigma.
+// Domain: sigma0, curvature in [0, 1e18].
+// Outside: negative, a NaN or infinite.
+// Accuracy: naive
+fn cdrf_sigma_naive(sigma0: f32, curvature: f32) -> f32 {
+    return sigma0 * curvature;
+}
+
+// cdrf_edge to first order, with the quotient as it stands.
+// Returns: max(cosine, 0) blurred as if the cosine were a straight line.
+// Units: as cdrf_edge.
+// Domain: cosine in [-1, 1]; sigma in [0.01, 0.3].
+// Outside: 0/0 at the terminator for sigma = 0.
+// Accuracy: naive
+fn cdrf_edge_naive(cosine: f32, sigma: f32) -> f32 {
+    let u = cosine / sigma;
+    return cosine * cdrf_normal_share(u) + sigma * cdrf_normal_density(u);
+}
+
+// cdrf_series alone, four terms for every sigma: short of terms where the Gaussian is narrow.
+// Returns: cdrf_accurate(...) to 1.5e-5 for sigma >= 0.35.
+// Units: sigma in radians.
+// Domain: cosine in [-1, 1]; sigma in [0.35, 8].
+// Outside: 0.035 off at the terminator for sigma = 0, negative in the shadow.
+// Accuracy: naive
+fn cdrf_series_naive(cosine: f32, sigma: f32) -> f32 {
+    return cdrf_series(cosine, sigma, 4u);
+}
+
+// The single edge for every sigma, not wrapped round: the light that comes from behind is missing.
+// Returns: cdrf_accurate(...) for sigma <= 0.3.
+// Units: sigma in radians.
+// Domain: cosine in [-1, 1]; sigma in [0, 0.3].
+// Outside: 0.025 off at sigma = 1, 0.39 at 2.
+// Accuracy: naive
+fn cdrf_accurate_naive(cosine: f32, sigma: f32) -> f32 {
+    return cdrf_edge(cosine, sigma);
+}
+
+// The reflectance from the angle, as the formula is written: what acos is off by enters with the function's whole slope.
+// Returns: cdrf_accurate(...) to 6.8e-5, or to 4.9e-4 where acos is as bad as WGSL lets it be.
+// Units: sigma in radians.
+// Domain: cosine in [-1, 1]; any sigma.
+// Outside: acos of more than 1 is not a number.
+// Accuracy: naive
+fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
+    return cdrf_accurate(cos(acos(cosine)), sigma);
+}
+
+// cdrf_texture_coordinates without the half texel: every lookup is drawn towards the table's middle.
+// Returns: coordinates.
+// Units: fractions of the texture.
+// Domain: coordinates in [0, 1].
+// Outside: the same.
+// Accuracy: naive
+fn cdrf_texture_coordinates_naive(coordinates: vec2f) -> vec2f {
+    return coordinates;
+}

@@ -1,0 +1,27 @@
+// convex_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/convex_trace.wgsl, and use its structs and functions.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+
+// convex_trace_step with an epsilon against meeting the face that was left, as one finds it.
+// Returns: this plane's ConvexTraceHit if it is met nearer than `hit` and farther than 1e-4, else `hit`.
+// Units: lengths in units of the ray's direction.
+// Domain: stones of size 1 about the origin, the next plane farther than 1e-4, the ray not nearly parallel to it.
+// Outside: misses facets beside edges, all facets of small stones and those that the ray starts outside of by rounding;
+//   meets the face that was left again, far away, at grazing incidence.
+// Accuracy: naive
+fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32) -> ConvexTraceHit {
+    let distance = (plane.w - dot(plane.xyz, position)) / dot(plane.xyz, direction);
+    if (distance > 1e-4f && distance < hit.distance) {
+        return ConvexTraceHit(distance, face);
+    }
+    return hit;
+}
+
+// The point along the ray, left where rounding puts it.
+// Returns: position + distance direction.
+// Units: lengths.
+// Domain: as above, where `distance` is that of the plane and all are of one size.
+// Outside: off the plane by units in the last place of the largest of position and distance.
+// Accuracy: naive
+fn convex_trace_point_naive(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
+    return position + distance * direction;
+}

@@ -1,0 +1,25 @@
+// reflective_shadow_map: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/reflective_shadow_map.wgsl, and use its structs and functions.
+// SPDX-License-Identifier: MIT-0 OR Apache-2.0
+
+// The axes as one finds them, by a cross product with the vertical. Kept to show where it fails: under a light from straight above, the most
+// usual one, there is no such product.
+// Returns: two unit vectors.
+// Units: none.
+// Domain: |axis| = 1, away from +y and -y.
+// Outside: 0 / 0 for a vertical axis.
+// Accuracy: naive
+fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
+    let right = normalize(cross(vec3f(0.0f, 1.0f, 0.0f), axis));
+    return ReflectiveShadowMapBasis(right, cross(axis, right));
+}
+
+// The usual test: how much nearer to the light the seen point is than the point itself. Kept to show where it fails: on a plane that light
+// grazes, the neighbouring texel is nearly as much nearer as it is wide, so that no bias serves both the plane and a thin body's shadow.
+// Returns: distance along the light.
+// Units: world units.
+// Domain: coordinates up to 1e6, |toward_light| = 1.
+// Outside: as the formula gives.
+// Accuracy: naive
+fn reflective_shadow_map_height_naive(seen: vec3f, position: vec3f, toward_light: vec3f) -> f32 {
+    return dot(seen, toward_light) - dot(position, toward_light);
+}
