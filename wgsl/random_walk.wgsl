@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash f0b92d672622054c
+// Version: 0.2.0, hash d920d470516d925e
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
@@ -15,7 +15,7 @@ const RANDOM_WALK_ABSORBED = 1u;
 const RANDOM_WALK_PASSED = 2u;
 // A majorant counts as at least this: what is thinner ends no path within 1e30.
 const RANDOM_WALK_THINNEST: f32 = 1e-30f;
-// The anisotropy counts as at most this, of either sign: light turns by a few thousandths of a degree there, and the next floats would make it none.
+// The anisotropy counts as at most this, of either sign: light turns by a thousandth of a degree in the mean there, and the next floats would make it none.
 const RANDOM_WALK_STRAIGHTEST: f32 = 0.999999f;
 
 struct RandomWalkBasis {

@@ -1,5 +1,12 @@
 //! The cookbook's WGSL, and its composition: for the harness and for Rust engines. `recipe("gem")` has a whole shader in
 //! [`Recipe::compose`]; a module's `source` is pasted as it is.
+//!
+//! ```
+//! let shader = lapidary_wgsl::recipe("gem").expect("a recipe").compose();
+//! assert!(shader.contains("fn gem_fragment"));
+//! let module = lapidary_wgsl::module("refraction").expect("a module");
+//! assert!(module.source.contains("fn refraction_refract(") && module.naive.contains("fn refraction_refract_naive("));
+//! ```
 
 include!(concat!(env!("OUT_DIR"), "/folder.rs"));
 

@@ -2,6 +2,16 @@
 //! of Beer and Lambert.
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_absorption::{coefficient, transmittance};
+//!
+//! // A glass that lets half of the green light through one centimetre, and all of the red.
+//! let coefficient = coefficient(Vec3::new(1.0, 0.5, 0.25), 0.01);
+//! let left = transmittance(coefficient, 0.02);
+//! assert!((left - Vec3::new(1.0, 0.25, 0.0625)).abs().max_element() < 1e-6);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

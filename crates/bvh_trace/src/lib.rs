@@ -3,6 +3,17 @@
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
 //! [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
+//!
+//! ```
+//! use glam::{Vec3, vec3};
+//! use lapidary_bvh_trace::{ray, start, triangle};
+//!
+//! let (lower, upper) = (Vec3::ZERO, vec3(1.0, 1.0, 1.0));
+//! let ray = ray(vec3(0.25, 0.25, 0.0), Vec3::Z, lower, upper);
+//! // The seventh triangle of a mesh, seen from inside.
+//! let hit = triangle(start(1e30), ray, Vec3::Z, vec3(1.0, 0.0, 1.0), vec3(0.0, 1.0, 1.0), 7, u32::MAX);
+//! assert_eq!((hit.triangle, hit.distance), (7, 1.0));
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,14 @@
 //! Rust mirror of `wgsl/cdrf.wgsl`, line by line: curvature-dependent reflectance. Units, domain and accuracy stand above
 //! the WGSL functions.
+//!
+//! ```
+//! use lapidary_cdrf::{accurate, lambert, sigma};
+//!
+//! // Skin that scatters light over 2 mm, on a finger of 8 mm radius: light beyond the terminator.
+//! let sigma = sigma(0.002, 1.0 / 0.008);
+//! assert_eq!(lambert(-0.1), 0.0);
+//! assert!(accurate(-0.1, sigma) > 0.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

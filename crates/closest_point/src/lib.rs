@@ -1,5 +1,16 @@
 //! Rust mirror of `wgsl/closest_point.wgsl`, line by line: the centre of a gem's proxy sphere, from the closest points
 //! of the lines along a triangle's vertex normals. Units, domain and accuracy stand above the WGSL functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_closest_point::centre;
+//!
+//! // The normals of a sphere meet in its centre.
+//! let corners = [Vec3::X, Vec3::Y, Vec3::Z];
+//! let [a, b, c] = corners;
+//! let centre = centre(a, a, b, b, c, c);
+//! assert!(centre.length() < 0.01, "{centre}");
+//! ```
 
 use glam::{Vec2, Vec3};
 

@@ -2,6 +2,17 @@
 //! Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7.
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//!
+//! ```
+//! use glam::{Vec3, vec4};
+//! use lapidary_convex_trace::trace;
+//!
+//! // A cube about the origin: outward normal and distance of each face.
+//! let planes = [1.0, -1.0].into_iter().flat_map(|s| [vec4(s, 0.0, 0.0, 1.0), vec4(0.0, s, 0.0, 1.0), vec4(0.0, 0.0, s, 1.0)]);
+//! let planes: Vec<_> = planes.collect();
+//! let hit = trace(&planes, Vec3::ZERO, Vec3::X, u32::MAX);
+//! assert_eq!((hit.face, hit.distance), (0, 1.0));
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

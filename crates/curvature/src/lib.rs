@@ -3,6 +3,15 @@
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it. `position_x`
 //! stands for the derivative of the position along the screen's x axis, and so on.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_curvature::mean;
+//!
+//! // A sphere of radius 2, a pixel along x and along y: the normal turns by half of what the position moves.
+//! let [x, y] = [Vec3::new(0.01, 0.0, 0.0), Vec3::new(0.0, 0.01, 0.0)];
+//! assert!((mean(x, y, 0.5 * x, 0.5 * y) - 0.5).abs() < 1e-6);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -2,6 +2,13 @@
 //! wavelengths. Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12), and the exact derivative of Snell's law.
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//!
+//! ```
+//! use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_DIAMOND, DISPERSION_RED, sellmeier};
+//!
+//! let [red, blue] = [DISPERSION_RED, DISPERSION_BLUE].map(|wavelength| sellmeier(DISPERSION_DIAMOND, wavelength));
+//! assert!(2.40 < red && red < blue && blue < 2.46);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

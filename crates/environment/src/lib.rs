@@ -1,5 +1,14 @@
 //! Mirror of `wgsl/environment.wgsl`: coordinates and texels of a latitude-longitude map, and a procedural studio. The
 //! shader's comments hold the reasons, domains and accuracies.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_environment::{direction_from_uv, uv_from_direction};
+//!
+//! let direction = Vec3::new(0.6, 0.0, 0.8);
+//! let uv = uv_from_direction(direction);
+//! assert!(direction_from_uv(uv).distance(direction) < 1e-6);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,15 @@
 //! Rust mirror of `wgsl/fresnel.wgsl`, line by line: the share of unpolarised light that an interface between two
 //! dielectrics reflects. Units, domain and accuracy stand above the WGSL functions.
+//!
+//! ```
+//! use lapidary_fresnel::{dielectric, normal_incidence};
+//!
+//! // From air into glass: 4 % straight on, all at grazing incidence.
+//! assert!((normal_incidence(1.5) - 0.04).abs() < 1e-7);
+//! assert_eq!(dielectric(0.0, 1.5), 1.0);
+//! // From inside, beyond the critical angle.
+//! assert_eq!(dielectric(0.5, 1.0 / 1.5), 1.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,14 @@
 //! Rust mirror of `wgsl/microfacet.wgsl`, line by line: the highlight of a rough dielectric surface. Units, domain and
 //! accuracy stand above the WGSL functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_microfacet::reflectance;
+//!
+//! // Towards the mirror direction and away from it, at a roughness of 0.3 squared.
+//! let (light, eye) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.6, 0.8, 0.0));
+//! assert!(reflectance(Vec3::Y, light, eye, 0.09, 0.04) > 10.0 * reflectance(Vec3::Y, light, Vec3::Y, 0.09, 0.04));
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,15 @@
 //! Rust mirror of `wgsl/optical_path.wgsl`, line by line: the path of least optical depth from the light to every voxel of a
 //! body. Units, domain and accuracy stand above the WGSL functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_optical_path::{edge, godunov};
+//!
+//! // A step of 2 mm through matter of 500 and 700 per metre: an optical depth of 1.2.
+//! assert!((edge(500.0, 700.0, 0.002) - 1.2).abs() < 1e-6);
+//! // A front that runs along x alone costs one step more than its neighbour.
+//! assert_eq!(godunov(Vec3::new(1.0, 1e30, 1e30), 0.5), 1.5);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -2,6 +2,14 @@
 //! "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9).
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//!
+//! ```
+//! use glam::{Vec3, vec3};
+//! use lapidary_proxy_geometry::face_normal;
+//!
+//! let normal = face_normal(Vec3::ZERO, vec3(1e-20, 0.0, 0.0), vec3(0.0, 1e-20, 0.0));
+//! assert_eq!(normal, Vec3::Z);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

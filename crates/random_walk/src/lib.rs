@@ -1,5 +1,16 @@
 //! Rust mirror of `wgsl/random_walk.wgsl`, line by line: light followed through scattering matter by chance. Units, domain and
 //! accuracy stand above the WGSL functions. [`slab`] mirrors the recipe `random_walk_slab`.
+//!
+//! ```
+//! use glam::UVec4;
+//! use lapidary_random_walk::{free_path, random};
+//!
+//! // Four numbers in [0, 1) from a pixel, a sample and a step.
+//! let u = random(UVec4::new(640, 480, 7, 0));
+//! assert!(u.min_element() >= 0.0 && u.max_element() < 1.0);
+//! // Half of all photons travel farther than ln 2 mean free paths.
+//! assert!((free_path(0.5, 1.0) - std::f32::consts::LN_2).abs() < 1e-6);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,15 @@
 //! Rust mirror of `wgsl/reflective_shadow_map.wgsl`, line by line: a light's view of a scene. Units, domain and accuracy stand
 //! above the WGSL functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_reflective_shadow_map::{ReflectiveShadowMapView, clip};
+//!
+//! // A sun that shines down on a scene of radius 1.
+//! let view = ReflectiveShadowMapView { origin: Vec3::ZERO, lamp: 0, axis: Vec3::NEG_Y, extent: 1.0, near: -1.0, far: 1.0 };
+//! let clip = clip(view, Vec3::new(0.0, 1.0, 0.0));
+//! assert_eq!(clip.z / clip.w, 0.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

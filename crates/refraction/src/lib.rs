@@ -2,6 +2,15 @@
 //! explicit result. Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7).
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//!
+//! ```
+//! use glam::{Vec3, vec3};
+//! use lapidary_refraction::refract;
+//!
+//! // From diamond into air, at 45 degrees: total internal reflection.
+//! let hit = refract(vec3(0.70710677, -0.70710677, 0.0), Vec3::Y, 1.0 / 2.42);
+//! assert!(hit.total && hit.direction.y > 0.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

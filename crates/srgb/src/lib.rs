@@ -1,5 +1,13 @@
 //! Mirror of `wgsl/srgb.wgsl`: from scene radiance to display code values. The shader's comments hold the reasons,
 //! domains and accuracies.
+//!
+//! ```
+//! use lapidary_srgb::{decode, encode};
+//!
+//! // Middle grey.
+//! assert!((255.0 * encode(0.18) - 117.6).abs() < 0.1);
+//! assert!((decode(encode(0.18)) - 0.18).abs() < 1e-6);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

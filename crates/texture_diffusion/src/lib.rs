@@ -1,5 +1,16 @@
 //! Rust mirror of `wgsl/texture_diffusion.wgsl`, line by line: diffusion of light along a surface as a blur of its texture. Units,
 //! domain and accuracy stand above the WGSL functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_texture_diffusion::{pairs, tap};
+//!
+//! // Skin: red light spreads farthest. One side of the blur's taps, each with its weights.
+//! let sigma0 = Vec3::new(0.02, 0.01, 0.005);
+//! let pairs = pairs(sigma0);
+//! let weights: Vec3 = (0..pairs).map(|index| tap(index, pairs, sigma0).weight).sum();
+//! assert!(weights.min_element() > 0.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,5 +1,14 @@
 //! Rust mirror of `wgsl/veins.wgsl`, line by line: density of veined stone. Units, domain and accuracy stand above the WGSL
 //! functions.
+//!
+//! ```
+//! use glam::Vec3;
+//! use lapidary_veins::noise;
+//!
+//! // Gradient noise is 0 at the corners of its lattice.
+//! assert_eq!(noise(Vec3::new(1.0, 2.0, 3.0), 42), 0.0);
+//! assert_ne!(noise(Vec3::new(1.5, 2.25, 3.125), 42), 0.0);
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

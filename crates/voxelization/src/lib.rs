@@ -3,6 +3,17 @@
 //!
 //! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
 //! [`kernels`] mirrors the recipe `wgsl/recipes/voxelization.wgsl`.
+//!
+//! ```
+//! use glam::{Vec3, vec2, vec3};
+//! use lapidary_voxelization::column;
+//!
+//! // Two triangles of a square share a diagonal. A column on it meets one of them.
+//! let [a, b, c, d] = [vec3(2.0, 0.0, 0.0), vec3(2.0, 4.0, 0.0), vec3(2.0, 4.0, 4.0), vec3(2.0, 0.0, 4.0)];
+//! let met = [[a, b, c], [a, c, d]].map(|[a, b, c]: [Vec3; 3]| column(a, b, c, vec2(1.5, 1.5)));
+//! assert_eq!(met.iter().filter(|crossing| crossing.inside).count(), 1);
+//! assert!(met.iter().any(|crossing| crossing.depth == 2.0));
+//! ```
 
 #[cfg(feature = "formulas")]
 pub mod formulas;

@@ -1,4 +1,12 @@
 //! The device that everything runs on: which adapter, why that one, and how bytes come back from it.
+//!
+//! ```no_run
+//! use lapidary_gpu::{AdapterChoice, Gpu};
+//!
+//! let gpu = Gpu::shared(&AdapterChoice::from_environment())?;
+//! println!("{}", gpu.describe());
+//! # Ok::<(), lapidary_gpu::GpuError>(())
+//! ```
 
 pub mod capture;
 mod device;

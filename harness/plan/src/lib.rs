@@ -1,6 +1,18 @@
 //! What a scene calls for: each material's technique and rung, and its effects, each with the property that calls for it or rules it out.
 //!
 //! The words of rendering are here ([`Rung`], [`Effect`], [`Quality`], [`Note`]), and the decisions ([`Decisions`]) that the renderer compiles by.
+//!
+//! ```
+//! use lapidary_plan::{Decisions, Request};
+//! use lapidary_scene::Scene;
+//!
+//! let scene = Scene::open("brilliant")?;
+//! let request = Request::of_size([640, 480]);
+//! for object in &scene.objects {
+//!     println!("{}: {}", object.name, Decisions::of(object, &scene, &request).rung);
+//! }
+//! # Ok::<(), lapidary_scene::SceneError>(())
+//! ```
 
 mod choice;
 mod decision;

@@ -1,4 +1,15 @@
 //! Reference pictures, computed on the CPU in f64: [`spectral`] for clear stones, [`random_walk`] for what scatters light.
+//!
+//! ```
+//! use lapidary_reference::spectral::{Settings, render};
+//! use lapidary_scene::Scene;
+//!
+//! let scene = Scene::open("brilliant")?;
+//! let settings = Settings { wavelengths: 7, samples: 1, ..Settings::of_size(16, 16) };
+//! let rendering = render(&scene, &settings, &|_, _| {})?;
+//! println!("{} pixels", rendering.linear.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod random_walk;
 pub mod spectral;

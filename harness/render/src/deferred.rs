@@ -4,7 +4,8 @@ use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
-use glam::{Mat4, Vec3};
+use crate::record::Record;
+use glam::{Mat4, UVec2, Vec3};
 use lapidary_gpu::{Encoder, Gpu};
 
 /// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
@@ -82,9 +83,10 @@ impl<'gpu> DeferredPass<'gpu> {
         gem.draw(encoder, &gem.view(clip_from_world, eye), &target);
         let device = &self.gpu.device;
         // In f64: the inverse of a perspective matrix loses digits that the depth still holds.
-        let mut values = clip_from_world.as_dmat4().inverse().as_mat4().to_cols_array().to_vec();
-        values.extend([eye.x, eye.y, eye.z, 0.0, size[0] as f32, size[1] as f32]);
-        let uniform = device::uniform(device, "composite's view", &values);
+        let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
+        let view = Record::new("GemCompositeView").with("world_from_clip", world_from_clip).with("eye", eye);
+        let view = view.with("size", UVec2::from(size).as_vec2());
+        let uniform = device::uniform(device, "composite's view", &view.bytes());
         let textures = [(2, &self.emission), (3, &self.normal), (4, &self.reflectance), (5, &self.depth)];
         let environment = self.environment.as_ref().map(|view| (1, view));
         let mut resources = vec![(0, uniform.as_entire_binding())];

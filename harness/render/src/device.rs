@@ -140,20 +140,14 @@ pub(super) fn mesh_vertices<'a>(
     u32::try_from(indices.len()).map_err(|_| too_large(size_of_val(indices) as u64))
 }
 
-/// A uniform buffer; uniform structs are padded to 16 bytes.
-pub(super) fn uniform(device: &Device, what: &str, values: &[f32]) -> wgpu::Buffer {
-    structure(device, what, values, wgpu::BufferUsages::UNIFORM)
+/// A uniform buffer.
+pub(super) fn uniform(device: &Device, what: &str, contents: &[u8]) -> wgpu::Buffer {
+    buffer(device, what, contents, wgpu::BufferUsages::UNIFORM)
 }
 
 /// The same to be read as storage: a body's own, see the recipes' `material`.
-pub(super) fn record(device: &Device, what: &str, values: &[f32]) -> wgpu::Buffer {
-    structure(device, what, values, wgpu::BufferUsages::STORAGE)
-}
-
-fn structure(device: &Device, what: &str, values: &[f32], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    let mut contents = values.to_vec();
-    contents.resize(values.len().next_multiple_of(4), 0.0);
-    buffer(device, what, bytemuck::cast_slice(&contents), usage)
+pub(super) fn storage(device: &Device, what: &str, contents: &[u8]) -> wgpu::Buffer {
+    buffer(device, what, contents, wgpu::BufferUsages::STORAGE)
 }
 
 /// A texture that can be drawn to, `size` being width and height.

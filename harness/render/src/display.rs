@@ -3,6 +3,8 @@
 use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
+use crate::record::Record;
+use glam::{UVec2, Vec2};
 use lapidary_gpu::{Encoder, Gpu};
 
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -79,10 +81,11 @@ impl<'gpu> DisplayPass<'gpu> {
         settings: &Settings,
         picture: &mut Picture,
     ) -> Result<(), RenderError> {
-        let frame =
-            [tile.left as f32, tile.top as f32, settings.width as f32, settings.height as f32, settings.exposure];
+        let [corner, size] =
+            [[tile.left, tile.top], [settings.width, settings.height]].map(|of| UVec2::from(of).as_vec2());
+        let contents = frame(corner, size, settings.exposure);
         let [linear, encoded] = self.gpu.guarded("displaying a tile", |device| {
-            let uniform = device::uniform(device, "frame", &frame);
+            let uniform = device::uniform(device, "frame", &contents);
             let samples = wgpu::BindingResource::TextureView(&self.samples_view);
             let group = self.pipeline.bind(device, 0, &[(0, uniform.as_entire_binding()), (1, samples)]);
             self.draw(&mut encoder, tile, group.as_ref());
@@ -168,6 +171,11 @@ impl Readback {
         })?;
         Ok(())
     }
+}
+
+/// `DisplayFrame` of the recipe: the corner of a tile and the picture's size, in pixels.
+pub(super) fn frame(tile: Vec2, size: Vec2, exposure: f32) -> Vec<u8> {
+    Record::new("DisplayFrame").with("tile", tile).with("size", size).with("exposure", exposure).bytes()
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget, View};
 use super::{RenderError, Settings, Stage, device, scene_pass};
 use crate::solver::Status;
+use glam::{UVec2, Vec2};
 use lapidary_gpu::{Encoder, Gpu, GpuError};
 use lapidary_scene::Scene;
 use std::time::{Duration, Instant};
@@ -44,7 +45,7 @@ impl Display {
         let pipeline = device::pipeline(gpu, &source)?;
         let size = [settings.width, settings.height];
         let (group, targets) = gpu.guarded("allocating a screen", |device| {
-            let values = [0.0, 0.0, size[0] as f32, size[1] as f32, settings.exposure];
+            let values = super::display::frame(Vec2::ZERO, UVec2::from(size).as_vec2(), settings.exposure);
             let frame = device::uniform(device, "frame", &values);
             let resources = [(0, frame.as_entire_binding()), (1, wgpu::BindingResource::TextureView(color))];
             let target =

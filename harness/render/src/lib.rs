@@ -1,4 +1,17 @@
 //! A scene to a picture: the rung's recipe over tiles, supersampled, then the display recipe; or the reference.
+//!
+//! ```no_run
+//! use lapidary_gpu::{AdapterChoice, Gpu};
+//! use lapidary_plan::Rung;
+//! use lapidary_render::{Settings, render};
+//! use lapidary_scene::Scene;
+//!
+//! let gpu = Gpu::shared(&AdapterChoice::from_environment())?;
+//! let settings = Settings { rung: Rung::ByMaterial, ..Settings::of_size(640, 480) };
+//! let picture = render(gpu, &Scene::open("brilliant")?, &settings)?;
+//! println!("{} x {} pixels, sRGB in `picture.encoded`", picture.width, picture.height);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod camera;
 pub mod cdrf;
@@ -19,6 +32,7 @@ mod optical_path;
 mod pass;
 pub mod pixel;
 pub mod plan;
+mod record;
 mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
@@ -51,7 +65,7 @@ use shadows::Shadows;
 use std::borrow::Cow;
 use std::sync::Mutex;
 pub use stone::geometry_bytes;
-pub(crate) use stone::{material as material_uniform, wavelengths as wavelength_table};
+pub(crate) use stone::{GemMaterial, GemWavelength, wavelengths};
 use variant::Part;
 pub(crate) use variant::names as object_names;
 

@@ -4,7 +4,8 @@
 use super::device::{Pipeline, buffer, uniform};
 use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
-use glam::Vec3;
+use crate::record::Record;
+use glam::{Vec3, Vec4};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
 use lapidary_scene::light::Falloff;
@@ -37,8 +38,7 @@ impl<'a> Lighting<'a> {
     pub(super) fn lights(&self) -> Result<&wgpu::Buffer, RenderError> {
         once(&self.lights, || {
             let lights = lights(self.scene);
-            let upload =
-                |device: &_| buffer(device, "lights", bytemuck::cast_slice(&lights), wgpu::BufferUsages::STORAGE);
+            let upload = |device: &_| buffer(device, "lights", &lights, wgpu::BufferUsages::STORAGE);
             Ok(self.gpu.guarded("uploading lights", upload)?)
         })
     }
@@ -47,9 +47,10 @@ impl<'a> Lighting<'a> {
     pub(super) fn harmonics(&self) -> Result<&wgpu::Buffer, RenderError> {
         once(&self.harmonics, || {
             let coefficients = harmonics::project(&self.settings.environment);
-            let coefficients: Vec<f32> =
-                coefficients.iter().flat_map(|coefficient| coefficient.as_vec3().extend(0.0).to_array()).collect();
-            Ok(self.gpu.guarded("uploading lights", |device| uniform(device, "harmonics", &coefficients))?)
+            let coefficients: Vec<Vec4> =
+                coefficients.iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();
+            let harmonics = Record::new("Harmonics").with("coefficients", &coefficients[..]).bytes();
+            Ok(self.gpu.guarded("uploading lights", |device| uniform(device, "harmonics", &harmonics))?)
         })
     }
 
@@ -80,17 +81,17 @@ fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, RenderError>) ->
     Ok(cell.get_or_init(|| made))
 }
 
-/// `Light` of the recipe, 12 floats each; one black light where there is none.
-fn lights(scene: &Scene) -> Vec<f32> {
+/// `Light` of the recipe, one after the other; one black light where there is none.
+fn lights(scene: &Scene) -> Vec<u8> {
     // No axis, and all directions within the edge.
     let everywhere = (Vec3::ZERO, Falloff { edge: -1.0, slope: 1.0 });
     let entry = |place: Vec3, point: f32, power: Vec3, (axis, falloff): (Vec3, Falloff)| {
         // Of the narrowest cones the slope is beyond f32.
         let [edge, slope] = [falloff.edge as f32, falloff.slope.min(f32::MAX.into()) as f32];
-        let (place, power, axis) = (place.extend(point), power.extend(edge), axis.extend(slope));
-        [place.to_array(), power.to_array(), axis.to_array()]
+        let record = Record::new("Light").with("place", place).with("point", point).with("power", power);
+        record.with("edge", edge).with("axis", axis).with("slope", slope).bytes()
     };
-    let mut entries: Vec<[[f32; 4]; 3]> = scene
+    let mut entries: Vec<Vec<u8>> = scene
         .lights
         .iter()
         .map(|light| match *light {
@@ -104,5 +105,5 @@ fn lights(scene: &Scene) -> Vec<f32> {
     if entries.is_empty() {
         entries.push(entry(Vec3::Y, 0.0, Vec3::ZERO, everywhere));
     }
-    entries.as_flattened().concat()
+    entries.concat()
 }

@@ -12,6 +12,7 @@ use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, 
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
+use crate::record::Record;
 use crate::solver::{Solver, Status};
 use crate::voxel_grid::VoxelGrid;
 use crate::voxelization::{MOST_TRIANGLES, Voxelizer};
@@ -283,13 +284,10 @@ fn extinction(material: &Material, settings: &Settings) -> Vec3 {
 
 /// `OpticalPathBody` of the recipe.
 fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Vec<u8> {
-    let tail = [
-        material.base_color.extend(material.ior),
-        extinction.extend(material.roughness * material.roughness),
-        largest.extend(0.0),
-    ];
-    let tail = tail.map(|row| row.to_array()).concat();
-    bytemuck::cast_slice(&[&grid.words()[..], &tail].concat()).to_vec()
+    let record = grid.fill(Record::new("OpticalPathBody"), "grid.");
+    let record = record.with("base_color", material.base_color).with("index", material.ior);
+    let record = record.with("extinction", extinction).with("alpha", material.roughness * material.roughness);
+    record.with("largest", largest).bytes()
 }
 
 impl OpticalPaths<'_> {

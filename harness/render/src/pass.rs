@@ -5,6 +5,7 @@ use super::device::{self, Pipeline};
 use super::diffusion::Diffusion;
 use super::optical_path::OpticalPaths;
 use super::shadows::Shadows;
+use crate::record::Record;
 use glam::{Mat4, Vec3};
 use lapidary_gpu::capture::OfObject;
 use lapidary_gpu::{Encoder, Gpu, RenderPass};
@@ -107,9 +108,9 @@ impl<'gpu> ScenePass<'gpu> {
     /// The recipes' group 0 as `eye` sees it.
     pub(super) fn view(&self, clip_from_world: Mat4, eye: Vec3) -> View {
         let device = &self.gpu.device;
-        let mut values = clip_from_world.to_cols_array().to_vec();
-        values.extend(eye.to_array());
-        let uniform = device::uniform(device, "view", &values);
+        // All recipes' views are alike.
+        let view = Record::new("GemView").with("clip_from_world", clip_from_world).with("eye", eye);
+        let uniform = device::uniform(device, "view", &view.bytes());
         let of_variant = |variant: &Variant| {
             let mut resources = vec![(0, uniform.as_entire_binding())];
             resources.extend(variant.shared.iter().map(|(binding, shared)| (*binding, shared.resource())));

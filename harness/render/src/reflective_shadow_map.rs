@@ -4,6 +4,7 @@ use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource, buffer};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
+use crate::record::Record;
 use lapidary_gpu::capture::OfObject;
 use lapidary_gpu::{Encoder, Gpu};
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
@@ -63,7 +64,8 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
             );
             let depth = device::view(&depth);
             let group = |view: &LightView| {
-                let uniform = buffer(device, "view of a light", &bytes(view.view), wgpu::BufferUsages::UNIFORM);
+                let contents = fill(view.view, Record::new("ReflectiveShadowMapView"), "").bytes();
+                let uniform = buffer(device, "view of a light", &contents, wgpu::BufferUsages::UNIFORM);
                 pipeline.bind(device, 0, &[(0, uniform.as_entire_binding())])
             };
             (texture, depth, views.iter().map(group).collect())
@@ -141,16 +143,16 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
 
 /// The part `light_views`: `array<LightView>`.
 pub(super) fn view_buffer(gpu: &Gpu, views: &[LightView]) -> Result<wgpu::Buffer, RenderError> {
-    let entry = |from: &LightView| [bytes(from.view), [from.light, 0, 0, 0].map(u32::to_ne_bytes).concat()].concat();
+    let entry = |from: &LightView| fill(from.view, Record::new("LightView"), "view.").with("light", from.light).bytes();
     let views: Vec<u8> = views.iter().flat_map(entry).collect();
     Ok(gpu
         .guarded("uploading views", |device| buffer(device, "views of lights", &views, wgpu::BufferUsages::STORAGE))?)
 }
 
-/// `ReflectiveShadowMapView` as WGSL lays it out in a uniform.
-fn bytes(view: ReflectiveShadowMapView) -> Vec<u8> {
+/// Fills the fields of a `ReflectiveShadowMapView`, which are named `prefix` and their own name.
+fn fill(view: ReflectiveShadowMapView, record: Record, prefix: &str) -> Record {
     let ReflectiveShadowMapView { origin, lamp, axis, extent, near, far } = view;
-    let words =
-        [origin.x, origin.y, origin.z, f32::from_bits(lamp), axis.x, axis.y, axis.z, extent, near, far, 0.0, 0.0];
-    bytemuck::cast_slice(&words).to_vec()
+    let name = |field: &str| format!("{prefix}{field}");
+    let record = record.with(&name("origin"), origin).with(&name("lamp"), lamp).with(&name("axis"), axis);
+    record.with(&name("extent"), extent).with(&name("near"), near).with(&name("far"), far)
 }

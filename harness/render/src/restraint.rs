@@ -39,8 +39,7 @@ pub fn largest_radiance(environment: &Environment) -> f32 {
 pub fn largest_weight(material: &Material, spectrum: Spectrum) -> f64 {
     let Spectrum::Separate(_) = spectrum else { return 1.0 };
     let table = stone::wavelengths(material, spectrum);
-    let row =
-        |row: usize| table.iter().flat_map(|w| [w[row], w[4 + row], w[8 + row]]).map(|w| f64::from(w.abs())).sum();
+    let row = |row: usize| table.iter().flat_map(|w| w.weights.row(row).to_array()).map(|w| f64::from(w.abs())).sum();
     (0..3).map(row).fold(0.0, f64::max)
 }
 

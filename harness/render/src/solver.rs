@@ -1,6 +1,7 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
 use crate::compute::Kernel;
+use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Encoder, Gpu};
@@ -159,10 +160,11 @@ impl<'gpu> Solver<'gpu> {
         let whole = [cells / SWEEP_GROUP, cells / SWEEP_GROUP, cells];
         let begin = if self.method.is_tiled() { [(cells / TILE).pow(3).div_ceil(GROUP), 1, 1] } else { whole };
         self.gpu.guarded("recording a solve", |device| {
-            let words = [cells, extinction.to_bits(), self.grid.spacing.to_bits(), 0];
+            let grid = Record::new("OpticalPathGrid").with("cells", cells).with("extinction", extinction);
+            let grid = grid.with("spacing", self.grid.spacing).bytes();
             let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("solve"),
-                contents: bytemuck::cast_slice(&words),
+                contents: &grid,
                 usage: wgpu::BufferUsages::UNIFORM,
             });
             let mut buffers = vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];

@@ -1,10 +1,11 @@
 //! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{Pipeline, buffer, mesh_vertices, record};
+use super::device::{self, Pipeline, buffer, mesh_vertices};
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{RenderError, Settings, restraint};
-use glam::{DMat3, Vec3};
+use crate::record::Record;
+use glam::{DMat3, Mat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
@@ -26,10 +27,11 @@ pub(super) fn upload(
     let Geometries { indices, own, steps } = Geometries::of(object, rung)?;
     check_steps(gpu, rung, steps)?;
     let wavelengths = wavelengths(&object.material, rung.spectrum());
+    let wavelengths: Vec<u8> = wavelengths.iter().flat_map(GemWavelength::bytes).collect();
     let shared: [(&str, &[u8]); 3] = [
         ("positions", bytemuck::cast_slice(&mesh.positions)),
         ("indices", bytemuck::cast_slice(&indices)),
-        ("wavelengths", bytemuck::cast_slice(&wavelengths)),
+        ("wavelengths", &wavelengths),
     ];
     let own = own.iter().map(|(what, part)| (*what, &part[..]));
     let parts = (1..).zip(shared).map(|(binding, part)| (1, binding, part));
@@ -37,7 +39,8 @@ pub(super) fn upload(
     let parts: Vec<_> = parts.into_iter().filter(|(group, binding, _)| pipeline.binds(*group, *binding)).collect();
     let vertices = mesh_vertices(gpu, object, &indices, parts.iter().map(|(_, _, (_, contents))| *contents))?;
     let groups = gpu.guarded("uploading a mesh", |device| {
-        let material = record(device, "material", &material(&object.material, rung, settings));
+        let material = GemMaterial::of(&object.material, rung, settings).bytes();
+        let material = device::storage(device, "material", &material);
         let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
             (group, binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
         };
@@ -119,16 +122,37 @@ pub fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
 }
 
 /// `GemMaterial` of the recipe.
-pub(crate) fn material(material: &Material, rung: Rung, settings: &Settings) -> [f32; 16] {
-    let [r, g, b] = material.base_color.to_array();
-    let [ar, ag, ab] =
-        lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance).to_array();
-    let [red, green, blue] = channel_indices(material).to_array();
-    // Nothing travels as far as this.
-    let limit = settings.distance_limit.unwrap_or(f32::MAX);
-    let strength = settings.dispersion_strength;
-    let throughput_limit = restraint::throughput_limit(material, rung, settings);
-    [r, g, b, material.ior, ar, ag, ab, limit, red, green, blue, strength, throughput_limit, 0.0, 0.0, 0.0]
+pub(crate) struct GemMaterial {
+    pub(crate) base_color: Vec3,
+    pub(crate) index: f32,
+    pub(crate) absorption: Vec3,
+    pub(crate) distance_limit: f32,
+    pub(crate) channel_indices: Vec3,
+    pub(crate) dispersion_strength: f32,
+    pub(crate) throughput_limit: f32,
+}
+
+impl GemMaterial {
+    pub(crate) fn of(material: &Material, rung: Rung, settings: &Settings) -> Self {
+        Self {
+            base_color: material.base_color,
+            index: material.ior,
+            absorption: lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance),
+            // Nothing travels as far as this.
+            distance_limit: settings.distance_limit.unwrap_or(f32::MAX),
+            channel_indices: channel_indices(material),
+            dispersion_strength: settings.dispersion_strength,
+            throughput_limit: restraint::throughput_limit(material, rung, settings),
+        }
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let record = Record::new("GemMaterial").with("base_color", self.base_color).with("index", self.index);
+        let record = record.with("absorption", self.absorption).with("distance_limit", self.distance_limit);
+        let record = record.with("channel_indices", self.channel_indices);
+        let record = record.with("dispersion_strength", self.dispersion_strength);
+        record.with("throughput_limit", self.throughput_limit).bytes()
+    }
 }
 
 /// The indices at the wavelengths that stand for the three channels.
@@ -139,17 +163,21 @@ pub(crate) fn channel_indices(material: &Material) -> Vec3 {
     )
 }
 
-/// `GemWavelength` of the recipe, 16 floats each.
-pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<[f32; 16]> {
-    let entry = |weights: DMat3, index: f32| {
-        let columns = weights.as_mat3().to_cols_array_2d();
-        let mut values = [0f32; 16];
-        for (start, column) in (0..).step_by(4).zip(columns) {
-            values[start..start + 3].copy_from_slice(&column);
-        }
-        values[12] = index;
-        values
-    };
+/// `GemWavelength` of the recipe.
+pub(crate) struct GemWavelength {
+    pub(crate) weights: Mat3,
+    pub(crate) index: f32,
+}
+
+impl GemWavelength {
+    fn bytes(&self) -> Vec<u8> {
+        Record::new("GemWavelength").with("weights", self.weights).with("index", self.index).bytes()
+    }
+}
+
+/// The wavelengths that rays of their own are followed at.
+pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<GemWavelength> {
+    let entry = |weights: DMat3, index: f32| GemWavelength { weights: weights.as_mat3(), index };
     match spectrum {
         // Without separate wavelengths one entry fills the binding.
         Spectrum::One | Spectrum::Paper | Spectrum::Tracker => vec![entry(DMat3::IDENTITY, material.ior)],

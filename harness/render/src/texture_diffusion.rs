@@ -2,7 +2,8 @@
 
 use super::RenderError;
 use super::device::{self, Pipeline, PipelineSource};
-use glam::{Vec2, Vec3};
+use crate::record::Record;
+use glam::{Vec2, Vec3, Vec4};
 use lapidary_gpu::{Encoder, Gpu};
 use lapidary_texture_diffusion as mirror;
 
@@ -32,7 +33,7 @@ pub struct Taps {
     /// Of the widest channel, in units of length.
     sigma0: f32,
     /// Offset and weights of each pair.
-    pairs: Vec<[f32; 4]>,
+    pairs: Vec<Vec4>,
 }
 
 impl Taps {
@@ -46,20 +47,19 @@ impl Taps {
         let pairs = pairs.clamp(1, MOST_PAIRS);
         let tap = |index| {
             let tap = mirror::tap(index, pairs, sigma0);
-            [tap.offset, tap.weight.x, tap.weight.y, tap.weight.z]
+            Vec4::new(tap.offset, tap.weight.x, tap.weight.y, tap.weight.z)
         };
         Taps { sigma0: mirror::sigma(sigma0).max_element(), pairs: (1..=pairs).map(tap).collect() }
     }
 
     /// The uniform of a pass.
     fn uniform(&self, direction: Vec2, low: Vec2, high: Vec2) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        bytes.extend_from_slice(bytemuck::bytes_of(&[direction.x, direction.y, self.sigma0]));
-        bytes.extend_from_slice(bytemuck::bytes_of(&(self.pairs.len() as u32)));
-        bytes.extend_from_slice(bytemuck::bytes_of(&[low.x, low.y, high.x, high.y]));
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.pairs));
-        bytes.resize(bytes.len() + 16 * (MOST_PAIRS as usize - self.pairs.len()), 0);
-        bytes
+        let mut taps = [Vec4::ZERO; MOST_PAIRS as usize];
+        taps[..self.pairs.len()].copy_from_slice(&self.pairs);
+        let record = Record::new("TextureDiffusionBlur").with("direction", direction).with("sigma0", self.sigma0);
+        let record =
+            record.with("pairs", self.pairs.len() as u32).with("chart", Vec4::new(low.x, low.y, high.x, high.y));
+        record.with("taps", &taps[..]).bytes()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, and what is opaque, under the scene's lights and the environment.
 
-use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices, record};
+use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices};
 use super::diffusion::{Diffusion, MeshBuffers};
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
@@ -9,6 +9,7 @@ use super::shadows::Shadows;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
 use crate::cdrf::table;
+use crate::record::Record;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_gpu::capture::OfObject;
@@ -125,7 +126,7 @@ fn upload<'gpu>(
         };
         read()
             .map(|part| cast(part.0).unwrap_or_else(|| storage(part)))
-            .chain([(0, record(device, "material", &record_of(material)))])
+            .chain([(0, device::storage(device, "material", &record_of(material)))])
             .collect()
     })?;
     let mut textures = Vec::new();
@@ -168,11 +169,11 @@ fn upload<'gpu>(
 }
 
 /// `CdrfMaterial` of the recipe.
-fn record_of(material: &Material) -> [f32; 12] {
-    let [r, g, b] = material.base_color.to_array();
+fn record_of(material: &Material) -> Vec<u8> {
     let sigma0 = safe_sigma0(material);
-    let alpha = material.roughness * material.roughness;
-    [r, g, b, material.ior, sigma0.x, sigma0.y, sigma0.z, sigma0.max_element(), alpha, 0.0, 0.0, 0.0]
+    let record = Record::new("CdrfMaterial").with("base_color", material.base_color).with("index", material.ior);
+    let record = record.with("sigma0", sigma0).with("table_sigma0", sigma0.max_element());
+    record.with("alpha", material.roughness * material.roughness).bytes()
 }
 
 /// The material's widths, made safe.

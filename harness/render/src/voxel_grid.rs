@@ -1,5 +1,6 @@
 //! A cube of cubic voxels about a body: what the passes over voxels agree on.
 
+use crate::record::Record;
 use glam::{UVec3, Vec3};
 use lapidary_scene::Bounds;
 use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
@@ -33,11 +34,16 @@ impl VoxelGrid {
         Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
     }
 
-    /// `VoxelizationGrid` as WGSL lays it out in a uniform, with what fills it up to 32 bytes.
-    #[must_use]
-    pub fn words(&self) -> [f32; 8] {
+    /// Fills the fields of a `VoxelizationGrid`, which are named `prefix` and their own name.
+    pub(crate) fn fill(&self, record: Record, prefix: &str) -> Record {
         let Self { origin, spacing, cells } = *self;
-        [origin.x, origin.y, origin.z, spacing, f32::from_bits(cells), 0.0, 0.0, 0.0]
+        let name = |field: &str| format!("{prefix}{field}");
+        record.with(&name("origin"), origin).with(&name("spacing"), spacing).with(&name("cells"), cells)
+    }
+
+    /// `VoxelizationGrid` of the recipes.
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        self.fill(Record::new("VoxelizationGrid"), "").bytes()
     }
 
     /// How many voxels there are.

@@ -104,7 +104,7 @@ impl<'gpu> Voxelizer<'gpu> {
                 status: storage("voxel counts", STATUS_BYTES),
             }
         })?;
-        gpu.queue.write_buffer(&voxelizer.grid, 0, bytemuck::cast_slice(&grid.words()));
+        gpu.queue.write_buffer(&voxelizer.grid, 0, &grid.bytes());
         Ok(voxelizer)
     }
 

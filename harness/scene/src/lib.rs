@@ -3,6 +3,16 @@
 //! A [`Scene`] is a list of triangle meshes with materials, and a camera. [`Scene::open`] takes what a
 //! user types: the name of a built-in scene or the path of a file. World space is glTF's: right-handed,
 //! y up.
+//!
+//! ```
+//! use lapidary_scene::Scene;
+//!
+//! let scene = Scene::open("brilliant")?;
+//! for object in &scene.objects {
+//!     println!("{}: {} triangles, index {}", object.name, object.mesh.triangle_count(), object.material.ior);
+//! }
+//! # Ok::<(), lapidary_scene::SceneError>(())
+//! ```
 
 use std::ffi::{OsStr, OsString};
 use std::path::Path;

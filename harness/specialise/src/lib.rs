@@ -25,6 +25,7 @@
 mod arguments;
 mod dead;
 mod fold;
+pub mod layout;
 mod operands;
 pub mod spirv_counts;
 mod stages;

@@ -1,5 +1,7 @@
 //! Where each word of a value lies in a buffer: naga's own offsets, strides and sizes.
 
+use lapidary_specialise::layout::word_offsets;
+
 /// The byte size of one element of a storage array and the byte offset of each of its words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -27,12 +29,12 @@ impl Layout {
     pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Layout {
         let mut offsets = Vec::new();
         if let naga::TypeInner::Array { base, size: naga::ArraySize::Dynamic, stride } = module.types[ty].inner {
-            collect(module, base, 0, &mut offsets);
+            word_offsets(module, base, 0, &mut offsets);
             return Layout { stride: stride as usize, offsets };
         }
         let mut layouter = naga::proc::Layouter::default();
         layouter.update(module.to_ctx()).expect("a validated module has layouts");
-        collect(module, ty, 0, &mut offsets);
+        word_offsets(module, ty, 0, &mut offsets);
         Layout { stride: layouter[ty].to_stride() as usize, offsets }
     }
 
@@ -56,32 +58,5 @@ impl Layout {
                 words.push(u32::from_ne_bytes(word));
             }
         }
-    }
-}
-
-fn collect(module: &naga::Module, ty: naga::Handle<naga::Type>, base: usize, offsets: &mut Vec<usize>) {
-    match &module.types[ty].inner {
-        naga::TypeInner::Scalar(_) | naga::TypeInner::Atomic(_) => offsets.push(base),
-        naga::TypeInner::Vector { size, .. } => {
-            offsets.extend((0..*size as usize).map(|index| base + 4 * index));
-        }
-        naga::TypeInner::Matrix { columns, rows, .. } => {
-            // WGSL aligns a column of three like one of four.
-            let column_stride = if *rows == naga::VectorSize::Bi { 8 } else { 16 };
-            for column in 0..*columns as usize {
-                offsets.extend((0..*rows as usize).map(|row| base + column * column_stride + 4 * row));
-            }
-        }
-        naga::TypeInner::Array { base: element, size: naga::ArraySize::Constant(length), stride } => {
-            for index in 0..length.get() as usize {
-                collect(module, *element, base + index * *stride as usize, offsets);
-            }
-        }
-        naga::TypeInner::Struct { members, .. } => {
-            for member in members {
-                collect(module, member.ty, base + member.offset as usize, offsets);
-            }
-        }
-        other => unreachable!("Shape::of_type refuses {other:?}"),
     }
 }

@@ -1,6 +1,7 @@
 //! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
 
 use crate::compute::{self, Binding, RecipeRun};
+use crate::record::Record;
 use crate::shader::ShaderError;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_cdrf as mirror;
@@ -42,13 +43,13 @@ pub fn texture(format: Format, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>
 /// Where the device refuses the recipe or the memory.
 pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError> {
     // A vec3f is aligned to 16 bytes.
-    let words = [size.x, size.y, 0, 0, tint.x.to_bits(), tint.y.to_bits(), tint.z.to_bits(), 0];
+    let bake = Record::new("CdrfTableBake").with("size", size).with("tint", tint).bytes();
     let bytes = u64::from(size.x) * u64::from(size.y) * 16;
     let run = RecipeRun {
         recipe: "cdrf_table",
         entry: "cdrf_table_bake",
         constants: &[],
-        bindings: &[&[Binding::Uniform(bytemuck::cast_slice(&words)), Binding::Result(bytes)]],
+        bindings: &[&[Binding::Uniform(&bake), Binding::Result(bytes)]],
         workgroups: [size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1],
     };
     compute::run_recipe(gpu, &run, |bytes| {

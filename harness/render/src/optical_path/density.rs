@@ -3,6 +3,7 @@
 use super::super::RenderError;
 use super::super::device::{self, buffer, view};
 use crate::compute::Kernel;
+use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Encoder, Gpu};
 use lapidary_scene::{Density, DensityGrid};
@@ -42,7 +43,7 @@ impl Densities {
                 mapped_at_creation: false,
             });
             let uniform = |what, bytes: &[u8]| buffer(device, what, bytes, wgpu::BufferUsages::UNIFORM);
-            let place = uniform("grid of densities", bytemuck::cast_slice(&grid.words()));
+            let place = uniform("grid of densities", &grid.bytes());
             let first =
                 [(0, place.as_entire_binding()), (1, matter.as_entire_binding()), (2, of_voxels.as_entire_binding())];
             let group = match source {
@@ -52,8 +53,9 @@ impl Densities {
                 }
                 Source::Texture(values) => {
                     let texture = view(&texture(gpu, values));
-                    let [least, greatest] = values.bounds().map(|corner| corner.extend(0.0).to_array());
-                    let extent = uniform("box of densities", bytemuck::cast_slice(&[least, greatest]));
+                    let [least, greatest] = values.bounds();
+                    let extent = Record::new("OpticalPathBox").with("least", least).with("greatest", greatest);
+                    let extent = uniform("box of densities", &extent.bytes());
                     let own = [(4, wgpu::BindingResource::TextureView(&texture)), (5, extent.as_entire_binding())];
                     kernel.bind(device, 0, &[&first[..], &own].concat())
                 }
@@ -80,11 +82,11 @@ enum Source<'a> {
     Texture(&'a DensityGrid),
 }
 
-/// `VeinsPattern` as WGSL lays it out.
+/// `VeinsPattern` of the recipe.
 fn pattern_bytes(pattern: VeinsPattern) -> Vec<u8> {
     let VeinsPattern { frequency, width, least, greatest, octaves, seed } = pattern;
-    let words = [frequency, width, least, greatest].map(f32::to_bits);
-    bytemuck::cast_slice(&[&words[..], &[octaves, seed, 0, 0]].concat()).to_vec()
+    let record = Record::new("VeinsPattern").with("frequency", frequency).with("width", width);
+    record.with("least", least).with("greatest", greatest).with("octaves", octaves).with("seed", seed).bytes()
 }
 
 fn texture(gpu: &Gpu, grid: &DensityGrid) -> wgpu::Texture {

@@ -2,6 +2,7 @@
 
 use crate::compute::Kernel;
 use crate::device::buffer;
+use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Device, Encoder, Gpu};
@@ -88,9 +89,11 @@ impl Seeds {
 impl Seeded<'_> {
     /// `OpticalPathSeeding` of the recipe.
     fn bytes(&self) -> Vec<u8> {
+        let Self { grid, extinction, largest, channel, .. } = *self;
+        let record = grid.fill(Record::new("OpticalPathSeeding"), "grid.");
         // No light has a share of nothing.
-        let tail = [self.extinction, self.largest.max(f32::MIN_POSITIVE), f32::from_bits(self.channel), 0.0];
-        bytemuck::cast_slice(&[&self.grid.words()[..], &tail].concat()).to_vec()
+        let largest = largest.max(f32::MIN_POSITIVE);
+        record.with("extinction", extinction).with("largest", largest).with("channel", channel).bytes()
     }
 }
 

@@ -11,9 +11,9 @@ pub use geometry::Stone;
 pub use surface::{SurfacePoint, Viewer};
 
 use crate as render;
-use crate::Settings;
+use crate::{GemMaterial, GemWavelength, Settings};
 use geometry::{Entry, Hit, Place};
-use glam::{Mat3, UVec2, Vec3};
+use glam::{UVec2, Vec3};
 use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
 use lapidary_environment as environment;
@@ -43,21 +43,10 @@ pub struct Pixel {
 /// The recipe's uniforms and overrides.
 pub struct Shading<'a> {
     material: GemMaterial,
-    wavelengths: Vec<(Mat3, f32)>,
+    wavelengths: Vec<GemWavelength>,
     settings: &'a Settings,
     absorbs: bool,
     limits_throughput: bool,
-}
-
-/// `GemMaterial` of the recipe.
-struct GemMaterial {
-    base_color: Vec3,
-    index: f32,
-    absorption: Vec3,
-    distance_limit: f32,
-    channel_indices: Vec3,
-    dispersion_strength: f32,
-    throughput_limit: f32,
 }
 
 /// `GemRay` of the recipe, and what it met.
@@ -104,24 +93,9 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
 impl<'a> Shading<'a> {
     /// The shading of `material` under `settings`.
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
-        let [r, g, b, index, ar, ag, ab, distance_limit, red, green, blue, dispersion_strength, throughput_limit, ..] =
-            render::material_uniform(material, settings.rung, settings);
-        let wavelengths = render::wavelength_table(material, settings.rung.spectrum());
-        let matrix = |w: &[f32; 16]| {
-            let column = |k: usize| Vec3::new(w[k], w[k + 1], w[k + 2]);
-            (Mat3::from_cols(column(0), column(4), column(8)), w[12])
-        };
         Self {
-            material: GemMaterial {
-                base_color: Vec3::new(r, g, b),
-                index,
-                absorption: Vec3::new(ar, ag, ab),
-                distance_limit,
-                channel_indices: Vec3::new(red, green, blue),
-                dispersion_strength,
-                throughput_limit,
-            },
-            wavelengths: wavelengths.iter().map(matrix).collect(),
+            material: GemMaterial::of(material, settings.rung, settings),
+            wavelengths: render::wavelengths(material, settings.rung.spectrum()),
             settings,
             absorbs: !settings.without.has(Effect::Absorption) && material.absorbs(),
             limits_throughput: render::restraint::limits_throughput(settings.rung, settings),
@@ -289,7 +263,7 @@ impl<'a> Shading<'a> {
         let mut rays = Vec::new();
         if let Spectrum::Separate(_) = self.settings.rung.spectrum() {
             let (mut surface, mut inside) = (Vec3::ZERO, Vec3::ZERO);
-            for &(weights, index) in &self.wavelengths {
+            for &GemWavelength { weights, index } in &self.wavelengths {
                 let reflectance = fresnel::dielectric(cosine, index);
                 surface += weights * (reflectance * reflected);
                 if transmits {
