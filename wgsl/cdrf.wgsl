@@ -1,27 +1,32 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 70592c9f1310752c
+// Version: 0.2.0, hash 9c1b16dee2bc15fc
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
 //
-// Every reflectance takes the cosine N . L, of either sign, since that is what a shader has, and sigma in radians. They are to be
-// multiplied by albedo / pi and by the light's irradiance; the cosine is in them already.
+// Every reflectance function takes the cosine N . L, of either sign, because that is what a shader
+// has, and sigma in radians. Multiply the result by albedo / pi and by the light's irradiance; it
+// already contains the cosine.
 
-// From this sigma on the Fourier series is summed, below it the form at one edge: where both are within 6e-8 of the truth.
+// From this sigma on the Fourier series is summed; below it the single-edge form is used. At the
+// switch both are within 6e-8 of the truth.
 const CDRF_SWITCH: f32 = 0.3f;
-// The same for the cheap form, whose two pieces are within 1.3e-5 and 1.4e-5 there.
+// The same switch for the cheap form, whose two pieces are within 1.3e-5 and 1.4e-5 there.
 const CDRF_CHEAP_SWITCH: f32 = 0.35f;
-// The same for the spherical form: its pieces are within 1.2e-6 and 4e-8 there.
+// The same switch for the spherical form, whose pieces are within 1.2e-6 and 4e-8 there.
 const CDRF_SPHERICAL_SWITCH: f32 = 0.1f;
-// Wider Gaussians count as this one: e^(-8 * 8 / 2) is 1e-14, so that what is left is the mean, to the last place.
+// Wider Gaussians count as this one: e^(-8 * 8 / 2) is 1e-14, so only the mean is left, to the last
+// place.
 const CDRF_WIDEST: f32 = 8.0f;
-// Divisors are at least this: 2^-126, the smallest that an implementation may not flush to zero.
+// Lower limit of divisors: 2^-126, the smallest number that an implementation may not flush to
+// zero.
 const CDRF_SMALLEST: f32 = 1.1754943508222875e-38f;
 
-// A number that may come from anywhere, such as a vertex attribute or a quotient of derivatives, made safe to calculate with.
-// By its bits: WGSL may assume that there are neither NaNs nor infinities, and then a comparison finds none.
-// Returns: `value`; 0 for a NaN; +-1e18 beyond that and for infinities.
+// Makes a number from any source, such as a vertex attribute or a quotient of derivatives, safe to
+// calculate with. It tests the bits, because WGSL may assume that there are neither NaNs nor
+// infinities, and a comparison then finds none.
+// Returns: `value`; 0 for a NaN; +-1e18 for larger magnitudes and infinities.
 // Units: that of `value`.
 // Domain: any bits.
 // Outside: none is; a subnormal may count as zero.
@@ -32,14 +37,15 @@ fn cdrf_finite(value: f32) -> f32 {
     if magnitude > 0x7f800000u {
         return 0.0f;
     }
-    // 0x5d5e0b6b are the bits of 1e18. Positive floats are ordered as their bits are.
+    // 0x5d5e0b6b is the bit pattern of 1e18. Positive floats have the same order as their bits.
     return bitcast<f32>((bits & 0x80000000u) | min(magnitude, 0x5d5e0b6bu));
 }
 
-// Width of the Gaussian from the material's scattering and the surface's curvature.
-// A hollow blurs as much as a ridge: the normal turns as fast. So the curvature's sign does not matter.
-// Returns: max(sigma0, 0) |curvature| in [0, 1e36], finite whatever comes in; 0, which is Lambert's law, where either is 0 or a NaN.
-// Units: radians; sigma0 in a length (about the scattering's reach), curvature in its inverse.
+// Width of the Gaussian from the material's scattering and the surface's curvature. The sign of the
+// curvature does not matter: a hollow blurs as much as a ridge, because the normal turns as fast.
+// Returns: max(sigma0, 0) |curvature| in [0, 1e36], finite for any input; 0, which is Lambert's
+//   law, if either is 0 or a NaN.
+// Units: radians; sigma0 in a length (about the scattering distance), curvature in its inverse.
 // Domain: any bits; magnitudes count as at most 1e18.
 // Outside: none is.
 // Accuracy: lavapipe 1 ulp; portable 1 ulp
@@ -47,9 +53,9 @@ fn cdrf_sigma(sigma0: f32, curvature: f32) -> f32 {
     return max(cdrf_finite(sigma0), 0.0f) * abs(cdrf_finite(curvature));
 }
 
-// Angle whose sine is given. WGSL grants its own asin an absolute error of 6.8e-5, or what 4096 ulp of an arctangent make; and at a
-// sharp terminator the angle counts in units of sigma.
-// A polynomial up to 1/2; beyond it the half-angle formula, whose 1 - |sine| is exact.
+// Angle from its sine. WGSL allows the built-in asin an absolute error of 6.8e-5, or the error of
+// an arctangent that is off by 4096 ulp; at a sharp terminator the angle counts in units of sigma.
+// It is a polynomial up to 1/2 and the half-angle formula beyond, whose 1 - |sine| is exact.
 // Returns: angle in [-pi/2, pi/2].
 // Units: radians.
 // Domain: any sine, clamped to [-1, 1].
@@ -68,8 +74,9 @@ fn cdrf_arcsine(sine: f32) -> f32 {
     return sign(sine) * angle;
 }
 
-// Distance from the terminator in standard deviations. 12 away nothing of a Gaussian is left, whatever the quotient.
-// Returns: x / sigma, within [-12, 12]; 0 at the terminator, for sigma = 0 as well.
+// Distance from the terminator in standard deviations. At the limit of 12 nothing of a Gaussian is
+// left, whatever the quotient.
+// Returns: x / sigma, within [-12, 12]; 0 at the terminator, also for sigma = 0.
 // Units: x and sigma in radians.
 // Domain: x in [-pi/2, pi/2], sigma >= 0.
 // Outside: finite while the quotient is; a negative sigma counts as 0.
@@ -89,7 +96,7 @@ fn cdrf_normal_density(u: f32) -> f32 {
 }
 
 // Standard normal distribution: the share of a Gaussian below `u` standard deviations.
-// Returns: share in [0, 1], to 7.5e-8 and rounding; exactly 1 from 6 on.
+// Returns: share in [0, 1], accurate to 7.5e-8 and rounding; exactly 1 from 6 on.
 // Units: none.
 // Domain: any finite u, clamped to [-12, 12].
 // Outside: none is.
@@ -112,11 +119,13 @@ fn cdrf_lambert(cosine: f32) -> f32 {
     return clamp(cosine, 0.0f, 1.0f);
 }
 
-// Wrap lighting, the second rung: the cosine is moved up by `wrap` and scaled so that a sphere receives as much as it did.
-// wrap = sigma / 2 keeps closest to the convolution up to sigma = 0.5, of the multiples of sigma.
-// Returns: max(cosine + wrap, 0) / (1 + wrap)^2 in [0, 1] with wrap = min(sigma / 2, 1); Lambert's, divided by 1, for sigma = 0.
+// Wrap lighting, the second rung: the cosine is shifted up by `wrap` and scaled so that a sphere
+// receives as much light as before. Among the multiples of sigma, wrap = sigma / 2 stays closest to
+// the convolution up to sigma = 0.5.
+// Returns: max(cosine + wrap, 0) / (1 + wrap)^2 in [0, 1] with wrap = min(sigma / 2, 1); Lambert's
+//   law, divided by 1, for sigma = 0.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; any sigma, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
 // Outside: none is.
 // Accuracy: lavapipe 5 ulp; portable 13 ulp
 fn cdrf_wrap(cosine: f32, sigma: f32) -> f32 {
@@ -125,9 +134,11 @@ fn cdrf_wrap(cosine: f32, sigma: f32) -> f32 {
     return min(max(min(cosine, 1.0f) + wrap, 0.0f) / (spread * spread), 1.0f);
 }
 
-// Fourier series of the convolution, cut off. On the whole line the clamped cosine is periodic, and a Gaussian
-// damps its harmonic of order m by e^(-m^2 sigma^2 / 2). With cos 2nt (-1)^n = T_n(1 - 2c^2), T_n Chebyshev's, no angle is needed.
-// Returns: 1/pi + e^(-sigma^2/2) c / 2 - 2/pi sum of e^(-2 n^2 sigma^2) T_n(1 - 2c^2) / (4n^2 - 1) for n from 1 to `terms`.
+// Truncated Fourier series of the convolution. Over the whole line the clamped cosine is periodic,
+// and a Gaussian damps its harmonic of order m by e^(-m^2 sigma^2 / 2). Since
+// cos 2nt (-1)^n = T_n(1 - 2c^2), with T_n the Chebyshev polynomials, no angle is needed.
+// Returns: 1/pi + e^(-sigma^2/2) c / 2 - 2/pi sum of e^(-2 n^2 sigma^2) T_n(1 - 2c^2) / (4n^2 - 1)
+//   for n from 1 to `terms`.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma clamped to [0, 8]; terms up to 16.
 // Outside: none is, but the time that more terms take.
@@ -138,7 +149,7 @@ fn cdrf_series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     let variance = s * s;
     let decay = exp(-2.0f * variance);
     let decay_squared = decay * decay;
-    // decay^(n^2): from one n to the next the exponent grows by 2n + 1.
+    // decay^(n^2): the exponent grows by 2n + 1 from each n to the next.
     var weight = decay;
     var ratio = decay_squared * decay;
     let twice_y = 2.0f - 4.0f * c * c;
@@ -157,13 +168,16 @@ fn cdrf_series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     return 0.31830987f + 0.5f * exp(-0.5f * variance) * c - 0.63661975f * sum;
 }
 
-// The convolution next to one terminator, for a Gaussian so narrow that it never meets the other: the light
-// below x = pi/2 - t, u = x / sigma standard deviations away, and what the Gaussian carries across the edge.
-//   e^(-sigma^2/2) c P(u) + sigma p(u) K(x, sigma), K = integral over w in [0, 1] of e^(-sigma^2 (1 - w^2) / 2) cos(x (1 - w))
-// is exact for a single edge, P and p being the normal distribution and its density; K is expanded to the sixth order.
+// The convolution near one terminator, for a Gaussian too narrow to reach the other: the light
+// below x = pi/2 - t, which is u = x / sigma standard deviations away, and the light that the
+// Gaussian carries across the edge.
+//   e^(-sigma^2/2) c P(u) + sigma p(u) K(x, sigma),
+//   K = integral over w in [0, 1] of e^(-sigma^2 (1 - w^2) / 2) cos(x (1 - w))
+// This is exact for a single edge; P and p are the normal distribution and its density. K is
+// expanded to the sixth order.
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; sigma at most 0.3, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; sigma at most 0.3, negative values count as 0.
 // Outside: not negative and finite, ever less accurate: off by 4.8e-7 at 0.35, 1.2e-4 at 0.5.
 // Accuracy: lavapipe 5e-7 abs; portable 1.2e-6 abs
 fn cdrf_edge(cosine: f32, sigma: f32) -> f32 {
@@ -176,15 +190,17 @@ fn cdrf_edge(cosine: f32, sigma: f32) -> f32 {
     let sixth = q * q * q + v * (20.0f * q * q + v * (87.0f * q + 48.0f * v));
     let fourth = q * q + v * (9.0f * q + 8.0f * v);
     let carried = 1.0f - (q + 2.0f * v) / 6.0f + fourth / 120.0f - sixth / 5040.0f;
-    // e^(-v/2) by its series, which is exactly 1 at 0; the last coefficient, 1/48 there, takes on what is left, to 3e-8.
+    // Power series of e^(-v/2), exactly 1 at 0. The last coefficient, 1/48 in the series, is
+    // adjusted to make up for the remainder, to 3e-8.
     let decay = 1.0f - v * (0.5f - v * (0.125f - v * 0.02064f));
     return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
-// The convolution, accurate: at one edge while the Gaussian is narrow, the wrapped form's series when it is wide.
+// The accurate convolution: the single-edge form if the Gaussian is narrow, the series of the
+// wrapped form if it is wide.
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; 1/pi from sigma = 8 on.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; any sigma, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
 // Outside: none is.
 // Accuracy: lavapipe 5e-7 abs; portable 1.5e-6 abs
 fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
@@ -194,14 +210,15 @@ fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
     return max(cdrf_series(cosine, sigma, 7u), 0.0f);
 }
 
-// The convolution, cheap: no angle, no loop, one exponential and one division.
-// It is Lambert's law, damped, and a bump about the terminator. While the Gaussian is narrow the bump is sigma h(|c| / sigma, sigma^2) with an
-// h that falls as a Gaussian does, and its fourth root is nearly a polynomial: a least largest error fit of degrees 5, 3 and 2. When it is wide, four terms
-// of the series, whose weights are powers of one another.
-// Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate, and so neither falling nor continuous to more than that; max(cosine, 0) for
-//   sigma = 0.
+// The cheap convolution: no angle, no loop, one exponential and one division.
+// It is a damped Lambert's law plus a bump around the terminator. If the Gaussian is narrow, the
+// bump is sigma h(|c| / sigma, sigma^2), where h falls off like a Gaussian and its fourth root is
+// nearly a polynomial. The fit has degrees 5, 3 and 2 and minimises the largest error. If the
+// Gaussian is wide, four terms of the series are summed, whose weights are powers of one another.
+// Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate, so it is monotonic and continuous
+//   only to that accuracy; max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
-// Domain: cosine in [-1, 1]; any sigma, negative ones count as 0.
+// Domain: cosine in [-1, 1]; any sigma, negative values count as 0.
 // Outside: the formula goes on, up to 1: off by rounding where the cosine is; finite up to 10.
 // Accuracy: lavapipe 1.5e-5 abs; portable 1.7e-5 abs
 fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
@@ -209,7 +226,8 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let s = clamp(sigma, 0.0f, CDRF_WIDEST);
     let v = s * s;
     let decay = exp(-0.5f * v);
-    // |c| / sigma, finite for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    // |c| / sigma, finite for sigma = 0. The bump ends where its root reaches 0, about six standard
+    // deviations away, and is 0 beyond.
     let u = abs(c) / (s + 1e-7f);
     let still = 0.79465324f + u * (-0.24850852f + u * (-0.017153223f + u * (0.0062746328f + u * (0.0022976348f - u * 0.00039362809f))));
     let first = -0.063232761f + u * (0.033584461f + u * (0.0047414034f - u * 0.037048171f));
@@ -217,7 +235,7 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     let root = still + v * (first + v * second);
     let root_squared = select(0.0f, root * root, root > 0.0f);
     let narrow = decay * select(0.0f, c, c > 0.0f) + s * root_squared * root_squared;
-    // Weights of the series are powers of this one: 1, 4, 9 and 16.
+    // The weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;
     let weight_squared = weight * weight;
@@ -233,10 +251,10 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
     return min(abs(select(wide, narrow, s < CDRF_CHEAP_SWITCH)), 1.0f);
 }
 
-// The accurate convolution for a material whose channels scatter differently far.
+// The accurate convolution for a material whose channels scatter over different distances.
 // Returns: reflectance of each channel in [0, 1]; never a NaN for any sigma0 or curvature.
 // Units: sigma0 in a length, curvature in its inverse.
-// Domain: any cosine, clamped to [-1, 1]; sigma0 and curvature as cdrf_sigma.
+// Domain: any cosine, clamped to [-1, 1]; sigma0 and curvature as for cdrf_sigma.
 // Outside: none is.
 // Accuracy: lavapipe 5e-7 abs; portable 1.5e-6 abs
 fn cdrf_rgb(cosine: f32, sigma0: vec3f, curvature: f32) -> vec3f {
@@ -247,10 +265,12 @@ fn cdrf_rgb(cosine: f32, sigma0: vec3f, curvature: f32) -> vec3f {
     );
 }
 
-// Sine of an angle in turns, of any size: WGSL holds its own to an absolute 2^-11, and only within one turn.
-// The angle is brought to the nearest whole turn, then folded at +-1/4, both without rounding; there it is a polynomial in
-// odd powers, fitted by Remez's exchange to least relative error of sin(2 pi t), 4.2e-8 with rounded coefficients.
-// Returns: sin(2 pi turns) in [-1, 1], to rounding; exactly 0 at every half turn.
+// Sine of an angle of any size, in turns. WGSL guarantees the built-in sine only to an absolute
+// 2^-11, and only within one turn.
+// The nearest whole turn is subtracted and the rest is folded at +-1/4, both without rounding. A
+// polynomial in odd powers follows, fitted by Remez exchange to minimise the relative error of
+// sin(2 pi t), which is 4.2e-8 with rounded coefficients.
+// Returns: sin(2 pi turns) in [-1, 1], accurate to rounding; exactly 0 at every half turn.
 // Units: turns.
 // Domain: any finite angle.
 // Outside: none is.
@@ -262,9 +282,10 @@ fn cdrf_sine(turns: f32) -> f32 {
     return folded * (6.2831855f - s * (41.34168f - s * (81.602234f - s * (76.57499f - s * 39.710918f))));
 }
 
-// The convolution by numerical quadrature, the slow rung: it is what the definition says and needs no theory.
-// Over the standard deviations t of the Gaussian, lit half turn by lit half turn, so that no kink lies inside a panel: 16
-// panels of Gauss's three points on each half turn within six standard deviations.
+// The convolution by numerical quadrature, the slow rung: it follows the definition directly and
+// needs no theory. It integrates over the standard deviations t of the Gaussian, one lit half turn
+// at a time, so that no panel contains a kink. Each half turn within six standard deviations has 16
+// panels of Gauss's three-point rule.
 // Returns: reflectance, within rounding of [0, 1].
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma clamped to [2^-120, 8].
@@ -276,7 +297,8 @@ fn cdrf_quadrature(cosine: f32, sigma: f32) -> f32 {
     let reach = i32(ceil(s));
     var sum = 0.0f;
     for (var lobe = -reach; lobe <= reach; lobe++) {
-        // The sine of x - s t is positive from the lobe's end, where it is 0, half a turn back.
+        // The sine of x - s t is positive from the end of the lobe, where it is 0, to half a turn
+        // before it.
         let end = (x + 6.2831855f * f32(lobe)) / s;
         let low = max(end - 3.1415927f / s, -6.0f);
         let high = min(end, 6.0f);
@@ -295,10 +317,10 @@ fn cdrf_quadrature(cosine: f32, sigma: f32) -> f32 {
     return 0.3989423f * sum;
 }
 
-// The spherical form's local piece: the edge of a hemisphere instead of a half turn's.
+// Local piece of the spherical form: the edge of a hemisphere instead of that of a half turn.
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; sigma at most 0.1, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; sigma at most 0.1, negative values count as 0.
 // Outside: not negative and finite, ever less accurate.
 // Accuracy: lavapipe 1.8e-6 abs; portable 2.5e-6 abs
 fn cdrf_spherical_edge(cosine: f32, sigma: f32) -> f32 {
@@ -312,12 +334,14 @@ fn cdrf_spherical_edge(cosine: f32, sigma: f32) -> f32 {
     return clamp(decay * c * cdrf_normal_share(u) + s * cdrf_normal_density(u) * carried, 0.0f, 1.0f);
 }
 
-// The energy-conserving choice: the clamped cosine diffused over the sphere of directions, not over a circle.
-// The paper's convolution keeps the mean over a circle; over a sphere of normals it adds light, 4 % at sigma = 0.3, 23 % at 1.
-// Diffusion on the sphere damps the Legendre polynomial of degree l by e^(-l (l + 1) sigma^2 / 2), and keeps the mean.
-// Returns: reflectance in [0, 1], exactly max(cosine, 0) for sigma = 0; tends to 1/4, the mean over the sphere.
+// The energy-conserving choice: the clamped cosine diffused over the sphere of directions instead
+// of a circle. The paper's convolution preserves the mean over a circle; over a sphere of normals
+// it adds light, 4 % at sigma = 0.3, 23 % at 1. Diffusion on the sphere damps the Legendre
+// polynomial of degree l by e^(-l (l + 1) sigma^2 / 2) and preserves the mean.
+// Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; tends to 1/4, the mean over
+//   the sphere.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; any sigma, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
 // Outside: none is.
 // Accuracy: lavapipe 1.8e-6 abs; portable 2.5e-6 abs
 fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
@@ -327,14 +351,14 @@ fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
     let c = clamp(cosine, -1.0f, 1.0f);
     let s = min(sigma, CDRF_WIDEST);
     let decay = exp(-s * s);
-    // decay^(l (l + 1) / 2): from one degree to the next the exponent grows by the next degree.
+    // decay^(l (l + 1) / 2): the exponent grows by the next degree from each degree to the next.
     var weight = decay;
     var ratio = decay * decay;
-    // Polynomials of degree l - 2 and l - 1.
+    // Legendre polynomials of degree l - 2 and l - 1.
     var previous = 1.0f;
     var current = c;
     var sum = 0.25f + 0.5f * weight * c;
-    // Integral of c P_l(c) over [0, 1]; it vanishes for every other odd degree.
+    // Integral of c P_l(c) over [0, 1]; it is 0 for every odd degree above 1.
     var moment = 0.125f;
     for (var l = 2u; l <= 44u; l += 2u) {
         let degree = f32(l);
@@ -351,13 +375,16 @@ fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
     return max(sum, 0.0f);
 }
 
-// How strongly the spherical form answers to each degree of the light around: the integral of the form with any radiance is the sum over
-// the degrees of these, times the radiance's harmonics of that degree in the direction of the normal (Funk and Hecke).
-// Degree 3 and all higher odd ones have no part in a clamped cosine; what the even ones from 6 on hold, pi / 64
-// and less each, is left out: of one small light up to 0.06 at the terminator without blur, nothing to speak of from sigma = 0.5 on.
-// Returns: the factors of degrees 0, 1, 2 and 4: pi, 2 pi / 3 d, pi / 4 d^3, -pi / 24 d^10 with d = e^(-sigma^2).
+// Response of the spherical form to each degree of the surrounding light. The integral of the form
+// times any radiance is the sum over the degrees of these factors times the radiance's harmonics of
+// that degree in the direction of the normal (Funk and Hecke).
+// A clamped cosine has no part of degree 3 or any higher odd degree. The even degrees from 6 on,
+// pi / 64 or less each, are left out: for one small light this is an error of up to 0.06 at the
+// terminator without blur, and a negligible one from sigma = 0.5 on.
+// Returns: factors of degrees 0, 1, 2 and 4: pi, 2 pi / 3 d, pi / 4 d^3, -pi / 24 d^10 with
+//   d = e^(-sigma^2).
 // Units: steradians; sigma in radians.
-// Domain: any sigma; negative ones count as 0.
+// Domain: any sigma; negative values count as 0.
 // Outside: none is.
 // Accuracy: lavapipe 7.3e-7 abs; portable 1.5e-6 abs
 fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
@@ -367,13 +394,15 @@ fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
     return vec4f(3.1415927f, 2.0943952f * decay, 0.7853982f * cube, -0.1308997f * cube * cube * cube * decay);
 }
 
-// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.
-// The first coordinate is linear in the cosine, so that a table of odd width has a texel on the terminator, where the
-// function is not smooth for a small sigma, and its first row is Lambert's law exactly. The second is sigma / (1 + sigma):
-// all of [0, infinity), the rows closest together where the function changes most.
-// Returns: coordinates in [0, 1]: 0 for cosine -1 and for sigma 0.
+// Position of a reflectance in the lookup table, as fractions of the distance from the centre of
+// the first texel to the centre of the last.
+// The first coordinate is linear in the cosine. A table of odd width therefore has a texel on the
+// terminator, where the function is not smooth for a small sigma, and its first row is exactly
+// Lambert's law. The second coordinate is sigma / (1 + sigma): it covers all of [0, infinity), with
+// the rows closest together where the function changes most.
+// Returns: coordinates in [0, 1]; 0 for cosine -1 and for sigma 0.
 // Units: sigma in radians.
-// Domain: any cosine, clamped to [-1, 1]; sigma up to 1e36, negative ones count as 0.
+// Domain: any cosine, clamped to [-1, 1]; sigma up to 1e36, negative values count as 0.
 // Outside: none is.
 // Accuracy: lavapipe 3 ulp + 1 backward; portable 5 ulp + 1 backward
 fn cdrf_table_coordinates(cosine: f32, sigma: f32) -> vec2f {
@@ -381,11 +410,14 @@ fn cdrf_table_coordinates(cosine: f32, sigma: f32) -> vec2f {
     return vec2f(0.5f + 0.5f * clamp(cosine, -1.0f, 1.0f), min(s / (1.0f + s), 1.0f));
 }
 
-// Value of a texel of the table, one sigma for all of a material's channels: `tint` holds each channel's sigma0 as a share of the
-// largest, and the table is looked up with the largest's sigma. (1, 1, 1) makes a table of one channel for any material.
-// Cosine and sigma are quotients of whole numbers, not taken from coordinates: 1 - v would cancel in the last rows.
-// Returns: reflectance of each channel in [0, 1]; the last row is that of sigma = infinity, where tint is not 0.
-// Units: texels from 0.
+// Value of a texel of the table. One sigma serves all channels of a material: `tint` holds each
+// channel's sigma0 as a share of the largest, and the table is looked up with the sigma of the
+// largest. A tint of (1, 1, 1) makes a single-channel table for any material.
+// Cosine and sigma are computed as quotients of whole numbers, not from coordinates, because 1 - v
+// would cancel in the last rows.
+// Returns: reflectance of each channel in [0, 1]; the last row is for sigma = infinity if tint is
+//   not 0.
+// Units: texels, counted from 0.
 // Domain: texel below size; size from 1 to 16384 on each side; tint 0 or in [1e-20, 1].
 // Outside: a texel beyond the last counts as the last. A size below 2 counts as 2.
 // Accuracy: lavapipe 8e-7 abs; portable 2e-6 abs
@@ -394,7 +426,8 @@ fn cdrf_table_texel(texel: vec2u, size: vec2u, tint: vec3f) -> vec3f {
     let place = vec2f(min(texel, last));
     let end = vec2f(last);
     let cosine = (2.0f * place.x - end.x) / end.x;
-    // 1e-30 stands for 0: times the least tint the last row's sigma is at least 1e10; from 8 on the reflectance is that of infinity.
+    // 1e-30 stands for 0: multiplied by the smallest tint, the sigma of the last row is at least
+    // 1e10, and from 8 on the reflectance is that of infinity.
     let sigma = place.y / max(end.y - place.y, 1e-30f);
     return vec3f(
         cdrf_accurate(cosine, tint.x * sigma),
@@ -403,7 +436,8 @@ fn cdrf_table_texel(texel: vec2u, size: vec2u, tint: vec3f) -> vec3f {
     );
 }
 
-// The sampler's coordinates of a place of the table. A texel's value sits in its middle, half a texel from the texture's edge.
+// Sampler coordinates of a position in the table. A texel's value is at its centre, half a texel
+// from the edge of the texture.
 // Returns: coordinates in [1/2, size - 1/2] / size.
 // Units: fractions of the texture.
 // Domain: coordinates in [0, 1]; size from 1 to 16384.
@@ -414,13 +448,13 @@ fn cdrf_texture_coordinates(coordinates: vec2f, size: vec2u) -> vec2f {
     return (coordinates * (whole - 1.0f) + 0.5f) / whole;
 }
 
-// The four texels around a place of the table and how to blend them.
+// The four texels around a position in the table and their blend weights.
 struct CdrfTexels {
     // Column and row of the texel at the lower coordinates.
     lower: vec2u,
     // Column and row of the texel at the higher coordinates.
     upper: vec2u,
-    // Share of `upper` in each direction.
+    // Share of `upper` in each direction, in [0, 1].
     weight: vec2f,
 }
 
@@ -433,13 +467,13 @@ struct CdrfTexels {
 fn cdrf_texels(coordinates: vec2f, size: vec2u) -> CdrfTexels {
     let at = clamp(coordinates, vec2f(0.0f), vec2f(1.0f)) * (vec2f(size) - 1.0f);
     let lower = vec2u(at);
-    // floor sees the rounded product, a fused difference the exact one, which may be below it.
+    // floor sees the rounded product, a fused difference the exact one, which may be smaller.
     return CdrfTexels(lower, min(lower + 1u, size - 1u), max(at - floor(at), vec2f(0.0f)));
 }
 
 // Blends four texels.
-// Returns: the bilinear mean: lower left where weight is 0, upper right where it is 1.
-// Units: those of the texels.
+// Returns: bilinear mean: lower left if weight is 0, upper right if it is 1.
+// Units: that of the texels.
 // Domain: weight in [0, 1]; texels of magnitude at most 1e18.
 // Outside: extrapolates.
 // Accuracy: lavapipe 6e-7 rel; portable 1e-6 rel

@@ -1,21 +1,26 @@
 // fresnel: the share of unpolarised light that an interface between two dielectrics reflects.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e34233202eb98ef6
+// Version: 0.2.0, hash d5c94bbfe9165c73
 // Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as docs/fresnel.md shows.
 //   Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, eq. (15).
 
-// Reflectance of a dielectric interface, exact for unpolarised light, with total internal reflection. A Fresnel
-// amplitude is a quotient (x - y) / (x + y) that cancels for an index near 1 and at grazing incidence. Multiplied by
-// (x + y) / (x + y), its numerator x^2 - y^2 has a closed form, free of square roots and proportional to n^2 - 1.
-// Returns: reflectance in [0, 1]: the mean of the two polarisations; 1 under total internal reflection.
-// Units: none. `cosine` is that of the angle of incidence, -dot(normal, incident); `relative_index` is n_transmitted / n_incident.
-// Domain: relative_index in [1/4, 4]; any cosine, clamped to [0, 1]: below 0, where an interpolated normal turns away
-//   at a silhouette, counts as grazing; above 1 by rounding counts as normal incidence. relative_index = 1 gives 0,
-//   at grazing incidence too, where n -> 1 and cosine -> 0 have no common limit.
+// Reflectance of a dielectric interface, exact for unpolarised light, with total internal
+// reflection. A Fresnel amplitude is a quotient (x - y) / (x + y), which cancels for an index near
+// 1 and at grazing incidence. If it is multiplied by (x + y) / (x + y), its numerator x^2 - y^2 has
+// a closed form that contains no square roots and is proportional to n^2 - 1.
+// Returns: reflectance in [0, 1], the mean of the two polarisations; 1 under total internal
+//   reflection.
+// Units: none. `cosine` is the cosine of the angle of incidence, -dot(normal, incident);
+//   `relative_index` is n_transmitted / n_incident.
+// Domain: relative_index in [1/4, 4]; any cosine, clamped to [0, 1]. A cosine below 0, as occurs at
+//   a silhouette if an interpolated normal faces away, counts as grazing incidence; a cosine above
+//   1, caused by rounding, counts as normal incidence. relative_index = 1 gives 0, even at grazing
+//   incidence, where n -> 1 and cosine -> 0 have no common limit.
 // Outside: finite and in [0, 1] for relative_index in [2^-30, 2^30].
 // Accuracy: lavapipe 19.5 ulp + 0.92 backward; portable 128 ulp + 8 backward; order kept
 fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
-    // n^2 - 1 in two factors: the difference of two nearby floats is exact, that of their squares is not.
+    // n^2 - 1 as two factors: the difference of two nearby floats is exact, the difference of their
+    // squares is not.
     let m = (relative_index - 1.0f) * (relative_index + 1.0f);
     if m == 0.0f {
         return 0.0f;
@@ -24,17 +29,19 @@ fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
     let sine_squared = (1.0f - c) * (1.0f + c);
     let n_squared = relative_index * relative_index;
     let nc_squared = n_squared * c * c;
-    // n times the cosine of refraction; 0 from the critical angle on. Of the ways to write m + c^2 this one keeps both
-    // terms small where their sum is: c^2 would be rounded near 1 for a small n, where the sum is n^2.
+    // n times the cosine of the angle of refraction; 0 from the critical angle on. Of the ways to
+    // write m + c^2, this one keeps both terms small if their sum is small. In m + c^2 itself, with
+    // a small n, c^2 would be rounded near 1 although the sum is only n^2.
     let g = sqrt(max(nc_squared + m * sine_squared, 0.0f));
-    // |amplitude| = 1 is total reflection. Beyond the critical angle each numerator exceeds its denominator,
-    // and on this side never: so the larger of the two as denominator is both the branch and the bound.
+    // |amplitude| = 1 is total reflection. Each numerator exceeds its denominator beyond the
+    // critical angle, and never does so on this side of it. Taking the larger of the two as the
+    // denominator therefore replaces the branch and also bounds the amplitude.
     let s_root = c + g;
     let s = m / max(s_root * s_root, abs(m));
     let p_root = n_squared * c + g;
     let p_numerator = m * (nc_squared - sine_squared);
     let p = p_numerator / max(p_root * p_root, abs(p_numerator));
-    // WGSL lets a quotient of equals exceed 1.
+    // WGSL allows a quotient of equal values to exceed 1.
     return min(0.5f * (s * s + p * p), 1.0f);
 }
 
@@ -49,12 +56,14 @@ fn fresnel_normal_incidence(relative_index: f32) -> f32 {
     return min(amplitude * amplitude, 1.0f);
 }
 
-// Schlick's approximation, the cheap rung: a fifth power joins the exact value at normal incidence to 1 at grazing
-// incidence. The cosine that enters is the one in the optically thinner medium, which is the smaller of the two:
-// so light that leaves the denser side reaches 1 at the critical angle, not at 90 degrees, and stays 1 beyond it.
+// Schlick's approximation, the cheap rung: a fifth power joins the exact value at normal incidence
+// to 1 at grazing incidence. It uses the cosine in the optically thinner medium, which is the
+// smaller of the two cosines. Light that leaves the denser side therefore reaches a reflectance of
+// 1 at the critical angle instead of at 90 degrees, and stays at 1 beyond it.
 // Returns: reflectance in [0, 1]; 1 under total internal reflection.
-// Units: as fresnel_dielectric.
-// Domain: as fresnel_dielectric. relative_index = 1 gives (1 - cosine)^5, not 0: the model knows no vanishing interface.
+// Units: the same as for fresnel_dielectric.
+// Domain: the same as for fresnel_dielectric. relative_index = 1 gives (1 - cosine)^5 instead of 0:
+//   the approximation does not vanish when the interface does.
 // Outside: finite and in [0, 1] for relative_index in [2^-30, 2^30].
 // Accuracy: lavapipe 10 ulp + 2 backward; portable 32 ulp + 16 backward
 fn fresnel_schlick(cosine: f32, relative_index: f32) -> f32 {

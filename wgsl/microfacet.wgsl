@@ -1,25 +1,31 @@
 // microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 6812aee2f9744745
+// Version: 0.2.0, hash 764baff354e3e9a9
 // Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, eq. (20), (33);
 //   Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, eq. (72), (99);
 //   Lagrange's identity for the squared sine: Guy and Agopian, "Physically Based Rendering in Filament", 4.4.1.
 //
-// `alpha` is the width of the distribution, a slope: glTF's roughness squared. The share of light that a facet reflects, Fresnel's, is
-// not calculated here but passed in: it is that of the cosine between `microfacet_half` and the light.
+// `alpha` is the width of the distribution, a slope: the square of glTF's roughness. The Fresnel
+// reflectance of a facet is not computed here but passed in: evaluate it at the cosine between
+// `microfacet_half` and the light.
 
-// Smoother surfaces count as this one: on a mirror a point light has no highlight that a pixel could meet.
+// Smaller values of alpha count as this one: on a mirror, the highlight of a point light is too
+// small for any pixel to hit.
 const MICROFACET_SMOOTHEST: f32 = 0.001f;
-// The divisor of the visibility is at least this. It is met where light and eye are both within 1e-21 of grazing, and keeps the product
-// with the peak of the distribution, 3.2e5, finite.
+// Lower limit of the divisor of the visibility. The limit takes effect if light and eye are both
+// within 1e-21 of grazing. It keeps the product with the peak of the distribution, 3.2e5, finite.
 const MICROFACET_GRAZING: f32 = 1e-24f;
-// The squared sum of two unit vectors that counts as the least. The vectors' own rounding is 1e-7.
+// Lower limit of the squared length of the sum of two unit vectors. The rounding error of the
+// vectors themselves is 1e-7.
 const MICROFACET_OPPOSITE: f32 = 1e-30f;
 
-// Distribution of the facets' normals, by Trowbridge and Reitz: alpha^2 / (pi (alpha^2 cos^2 + sin^2)^2) of the angle to the normal.
-// The squared sine is |normal x half|^2: 1 - cos^2 knows next to nothing of it where it counts, at angles near alpha.
-// Returns: area of facets per area of surface and solid angle, in [0, 1 / (pi alpha^2)], even in `half`; 0 where a vector is 0.
-// Units: 1/sr; alpha a slope.
+// Distribution of the facets' normals by Trowbridge and Reitz: alpha^2 / (pi (alpha^2 cos^2 +
+// sin^2)^2), with the cosine and sine of the angle between `normal` and `half`. The squared sine is
+// computed as |normal x half|^2, because 1 - cos^2 loses nearly all its digits at the angles that
+// matter, those near alpha.
+// Returns: area of facets per area of surface and solid angle, in [0, 1 / (pi alpha^2)]; even in
+//   `half`; 0 if either vector is 0.
+// Units: 1/sr; alpha is a slope.
 // Domain: normal and half of any length in [1e-4, 1e4], or 0; any alpha, clamped to [0.001, 1].
 // Outside: finite and not negative as long as the fourth power of the product of the lengths is finite; 0 where its square underflows.
 // Accuracy: lavapipe 35 ulp + 1 backward; portable 75 ulp + 2 backward; order kept
@@ -30,21 +36,25 @@ fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     let cosine_squared = cosine * cosine;
     let sine_squared = dot(across, across);
     let spread = a * a * cosine_squared + sine_squared;
-    // A subnormal may be flushed where it is divided by.
+    // A subnormal divisor may be flushed to zero.
     if (spread < 1.2e-38f) {
         return 0.0f;
     }
-    // The sum of both squares is 1 for unit vectors. With it, only directions count, and the quotient cannot exceed 1 / alpha.
+    // For unit vectors the sum of both squares is 1. Including it makes the result depend on
+    // directions only, and keeps the quotient at or below 1 / alpha.
     let quotient = a * (cosine_squared + sine_squared) / spread;
     return 0.31830987f * quotient * quotient;
 }
 
-// Smith's share of facets that both light and eye reach, for facets whose heights hide them from both alike, over 4 (n . l) (n . v), the
-// divisor of the reflectance. In the quotient all that tends to 0 at grazing incidence but one sum cancels.
+// Smith's height-correlated masking and shadowing, divided by 4 (n . l) (n . v), the divisor of the
+// reflectance. Masking and shadowing give the share of facets that the light reaches and the eye
+// sees; the height of a facet hides it from both alike. In this form all factors that tend to 0 at
+// grazing incidence have cancelled, except for one sum.
 // Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 + (1 - alpha^2) n.v^2)), in [1/4, 5e23].
-// Units: none; cosines to the surface's normal, alpha a slope.
-// Domain: any cosines, clamped to [0, 1]: one below 0, where an interpolated normal turns away at a silhouette, counts as grazing.
-//   Any alpha, clamped to [0.001, 1]. A divisor below 1e-24 counts as that.
+// Units: none; the cosines are relative to the surface normal, alpha is a slope.
+// Domain: any cosines, clamped to [0, 1]. A cosine below 0, as occurs at a silhouette if an
+//   interpolated normal faces away, counts as grazing. Any alpha, clamped to [0.001, 1]. A divisor
+//   below 1e-24 counts as 1e-24.
 // Outside: none is.
 // Accuracy: lavapipe 7 ulp; portable 24 ulp
 fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
@@ -58,9 +68,10 @@ fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 
     return 0.5f / max(shadowing + masking, MICROFACET_GRAZING);
 }
 
-// Normal of the facets that reflect the light into the eye: halfway between both.
-// Returns: unit direction of toward_light + toward_eye; shorter where that sum is below 1e-15, and 0 for exactly opposite directions,
-//   so that its cosine with either is 0, as it is where they are nearly opposite.
+// Normal of the facets that reflect the light into the eye: the direction halfway between the two.
+// Returns: unit direction of toward_light + toward_eye. The result is shorter if the length of that
+//   sum is below 1e-15. It is 0 for exactly opposite directions, so that its cosine with either is
+//   0, as it is for nearly opposite directions.
 // Units: none; unit vectors.
 // Domain: |toward_light| = |toward_eye| = 1.
 // Outside: the direction of the sum, for lengths up to 1e18.
@@ -70,12 +81,15 @@ fn microfacet_half(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     return sum / sqrt(max(dot(sum, sum), MICROFACET_OPPOSITE));
 }
 
-// What of a light's irradiance, measured across its direction, the rough surface reflects into the eye: BRDF times n . l. To be multiplied by
-// that irradiance, and added to the diffuse light of the body below.
-// Returns: D F G2 / (4 n.l n.v) n.l in [0, fresnel / (2 pi alpha^3)]; 0 where the light is below the surface or the normal is 0.
-// Units: 1/sr; alpha a slope, fresnel a share of light.
-// Domain: unit vectors, the normal also 0; any alpha, clamped to [0.001, 1]; fresnel in [0, 1], by the cosine of half and light.
-//   An eye below the surface counts as grazing.
+// Share of a light's irradiance, measured perpendicular to its direction, that the rough surface
+// reflects into the eye: BRDF times n . l. Multiply it by that irradiance and add the product to
+// the diffuse light of the body below the surface.
+// Returns: D F G2 / (4 n.l n.v) n.l in [0, fresnel / (2 pi alpha^3)]; 0 if the light is below the
+//   surface or the normal is 0.
+// Units: 1/sr; alpha is a slope, fresnel a share of light.
+// Domain: unit vectors, and the normal may also be 0; any alpha, clamped to [0.001, 1]; fresnel in
+//   [0, 1], evaluated at the cosine between half and light. An eye below the surface counts as
+//   grazing.
 // Outside: for vectors of other lengths finite, but no reflectance; proportional to fresnel.
 // Accuracy: lavapipe 45 ulp + 4 backward; portable 105 ulp + 8 backward
 fn microfacet_reflectance(normal: vec3f, toward_light: vec3f, toward_eye: vec3f, alpha: f32, fresnel: f32) -> f32 {

@@ -1,13 +1,13 @@
 // refraction: a ray refracted at a plane interface, with total internal reflection as an explicit result.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 5337808d69cf31a2
+// Version: 0.2.0, hash b87e624b99be471f
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of Optics, 7th ed., section 1.5.
 //
-// `relative_index` is n = n_transmitted / n_incident, the paper's 1 / eta: 2.417 into a diamond, 1 / 2.417 out
-// of it. `normal` is the unit normal on the side that the ray comes from.
+// `relative_index` is n = n_transmitted / n_incident, the paper's 1 / eta: 2.417 into a diamond,
+// 1 / 2.417 out of it. `normal` is the unit normal on the side from which the ray arrives.
 
 struct RefractionHit {
-    // Unit direction of the refracted ray, or of the reflected one where nothing is refracted.
+    // Unit direction of the refracted ray, or of the reflected ray if nothing is refracted.
     direction: vec3f,
     // True under total internal reflection: all light stays on the incident side.
     total: bool,
@@ -23,7 +23,8 @@ fn refraction_relative_index(index_incident: f32, index_transmitted: f32) -> f32
     return index_transmitted / index_incident;
 }
 
-// Mirror direction of `incident` at a plane of normal `normal`; either side of the normal serves.
+// Mirror direction of `incident` at a plane with the normal `normal`. The normal may point to
+// either side.
 // Returns: unit direction of the reflected ray.
 // Units: none; unit vectors.
 // Domain: |incident| = |normal| = 1.
@@ -33,10 +34,11 @@ fn refraction_reflect(incident: vec3f, normal: vec3f) -> vec3f {
     return incident - 2.0f * dot(normal, incident) * normal;
 }
 
-// Radicand of eq. (6), the squared cosine of the angle of refraction. With m = (n - 1)(n + 1) it is (m + c²) / n²: the
-// difference n - 1 is exact in f32 near n = 1, where 1 - eta² (1 - c²) cancels to rounding noise.
+// Radicand of eq. (6), the squared cosine of the angle of refraction. With m = (n - 1)(n + 1) it is
+// (m + c²) / n². The difference n - 1 is exact in f32 near n = 1, where 1 - eta² (1 - c²) cancels
+// to rounding noise.
 // Returns: cos² of the angle of refraction; negative under total internal reflection.
-// Units: none; `cosine` is that of the angle of incidence, `relative_index` a ratio.
+// Units: none; `cosine` is the cosine of the angle of incidence, `relative_index` a ratio.
 // Domain: cosine in [0, 1], relative_index in [1/4, 4].
 // Outside: the same quotient; finite for |cosine| < 1e9 and relative_index in [1e-9, 1e18].
 // Accuracy: lavapipe 5 ulp + 2 backward; portable 12 ulp + 4 backward
@@ -45,10 +47,11 @@ fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
     return (excess + cosine * cosine) / (relative_index * relative_index);
 }
 
-// Refracts `incident` at a plane of normal `normal`, or reflects it where refraction is impossible. Eq. (6) with
-// c = -normal . incident and g = n cos(angle of refraction) = sqrt(m + c²) is r' = (r + (c - g) n) / n; here c - g is
-// written -m / (c + g), which does not cancel as n -> 1.
-// Returns: RefractionHit; `direction` is unit on either branch.
+// Refracts `incident` at a plane with the normal `normal`, or reflects it if refraction is
+// impossible. Eq. (6) with c = -normal . incident and g = n cos(angle of refraction) = sqrt(m + c²)
+// is r' = (r + (c - g) n) / n. Here c - g is written as -m / (c + g), which does not cancel as
+// n -> 1.
+// Returns: RefractionHit; `direction` is a unit vector in both branches.
 // Units: none; unit vectors and a ratio.
 // Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4].
 // Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0): finite, but not unit.
@@ -61,7 +64,8 @@ fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> Re
         return RefractionHit(incident + 2.0f * cosine * normal, true);
     }
     if (excess == 0.0f) {
-        // Equal indices do not bend. Said apart, because at grazing incidence the quotient below would be 0 / 0.
+        // Equal indices do not bend the ray. This case is handled separately because the quotient
+        // below would be 0 / 0 at grazing incidence.
         return RefractionHit(incident, false);
     }
     let bend = excess / (cosine + sqrt(radicand));

@@ -1,33 +1,35 @@
 // veins: density of veined stone at a point of space: the surfaces on which gradient noise is 0, blurred.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 366710648b89520b
+// Version: 0.2.0, hash 119f3d5b53134669
 // Source: Perlin, "Improving Noise", SIGGRAPH 2002 (fade and gradients); Jarzynski and Olano, "Hash Functions for GPU Rendering",
 //   JCGT 9(3), 2020 (pcg4d); Ebert et al., "Texturing and Modeling", 3rd ed., 2003, ch. 2 (octaves, marble).
 //
-// The density never leaves its bounds, so that the greatest serves delta tracking as majorant.
+// The density stays within its bounds, so the greater bound is a majorant for delta tracking.
 
-// Positions count as at most this many cells from the origin, on each axis: beyond it a float leaves a cell only two steps and fewer.
+// Positions are clamped to this many cells from the origin on each axis. Beyond it, a cell spans at
+// most two steps of a float.
 const VEINS_FARTHEST: f32 = 4194304.0f;
-// A vein's width counts as at least this, in units of the noise.
+// The minimum width of a vein, in units of the noise; smaller widths are clamped to it.
 const VEINS_NARROWEST: f32 = 0.0009765625f;
-// And as at most this, 2^20, so that its square is finite: from there on all is vein, to the last place.
+// The maximum width, 2^20, whose square is finite; larger widths are clamped to it. From this width
+// on, everything is vein, to the last place.
 const VEINS_WIDEST: f32 = 1048576.0f;
-// The most octaves that are summed.
+// The maximum number of octaves.
 const VEINS_MOST_OCTAVES = 8u;
 
 struct VeinsCell {
     // Corner of the cell at the lower coordinates.
     corner: vec3i,
-    // From that corner, in [0, 1].
+    // Position relative to that corner, in [0, 1].
     offset: vec3f,
 }
 
 struct VeinsPattern {
-    // Cells of the first octave per unit of length.
+    // Number of cells of the first octave per unit of length.
     frequency: f32,
-    // Value of the noise at which a vein's density has fallen half way.
+    // Value of the noise at which a vein's density has fallen halfway to `least`.
     width: f32,
-    // Density between the veins, and the bound that it never goes below where `greatest` is the greater.
+    // Density between the veins; also the lower bound of the density if `greatest` is larger.
     least: f32,
     // Density in the middle of a vein.
     greatest: f32,
@@ -36,7 +38,8 @@ struct VeinsPattern {
 }
 
 // Cell of the noise at a point.
-// Returns: VeinsCell; an offset just below a cell's upper border may be rounded to 1, where the next cell's 0 gives the same noise.
+// Returns: VeinsCell. An offset just below the upper border of a cell may be rounded to 1; an
+//   offset of 0 in the next cell gives the same noise.
 // Units: cells.
 // Domain: any position, clamped to +-4194304 on each axis.
 // Outside: none is.
@@ -47,7 +50,7 @@ fn veins_cell(position: vec3f) -> VeinsCell {
     return VeinsCell(vec3i(lower), p - lower);
 }
 
-// Random bits of a corner of the grid, by pcg4d: the same on every device.
+// Random bits for a corner of the grid, by pcg4d; identical on every device.
 // Returns: 32 bits.
 // Units: none.
 // Domain: any corner and seed.
@@ -63,14 +66,14 @@ fn veins_hash(corner: vec3i, seed: u32) -> u32 {
     return v.x + v.y * v.w;
 }
 
-// One of the twelve directions from a cube's middle to its edges' middles.
-// Returns: a vector with one component 0 and two of +-1.
+// One of the twelve directions from the centre of a cube to the middles of its edges.
+// Returns: a vector with one component 0 and the other two +-1.
 // Units: none.
 // Domain: any bits.
 // Outside: none is.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn veins_gradient(bits: u32) -> vec3f {
-    // The highest bits are the best mixed.
+    // The highest bits are mixed best.
     let first = select(1.0f, -1.0f, (bits & 0x80000000u) != 0u);
     let second = select(1.0f, -1.0f, (bits & 0x40000000u) != 0u);
     let axis = bits % 3u;
@@ -83,18 +86,19 @@ fn veins_gradient(bits: u32) -> vec3f {
     return vec3f(first, second, 0.0f);
 }
 
-// A corner's part in the noise, before it is faded: a plane through 0 at that corner.
-// Returns: gradient . (offset - corner), within [-2, 2].
+// The contribution of one corner to the noise, before fading: a plane through 0 at that corner.
+// Returns: gradient . (offset - corner), in [-2, 2].
 // Units: none.
-// Domain: a cell within +-4194304, an offset in [0, 1], `corner` of zeros and ones.
+// Domain: a cell within +-4194304, an offset in [0, 1], `corner` with components 0 or 1.
 // Outside: the plane goes on.
 // Accuracy: lavapipe 2.4e-7 abs; portable 2.4e-7 abs
 fn veins_corner(cell: VeinsCell, corner: vec3i, seed: u32) -> f32 {
     return dot(veins_gradient(veins_hash(cell.corner + corner, seed)), cell.offset - vec3f(corner));
 }
 
-// Gradient noise. Perlin's fade of the fifth degree makes value, slope and curvature continuous across the borders of cells.
-// Returns: noise in [-1.1, 1.1], 0 at the corners of the grid, of mean 0.
+// Gradient noise. Perlin's fade of degree five makes value, slope and curvature continuous across
+// cell borders.
+// Returns: noise in [-1.1, 1.1], 0 at the corners of the grid, with mean 0.
 // Units: position in cells.
 // Domain: any position, clamped to +-4194304 on each axis.
 // Outside: none is.
@@ -120,10 +124,11 @@ fn veins_noise(position: vec3f, seed: u32) -> f32 {
     return along_y.x + fade.z * (along_y.y - along_y.x);
 }
 
-// Octaves of the noise, each of twice the frequency and half the amplitude of the one before, and of another seed.
-// Returns: their sum, within [-2.2, 2.2].
+// A sum of octaves of the noise. Each has twice the frequency and half the amplitude of the one
+// before, and a different seed.
+// Returns: the sum, in [-2.2, 2.2].
 // Units: position in cells of the first octave.
-// Domain: positions within +-32768; octaves up to 8.
+// Domain: positions within +-32768; up to 8 octaves.
 // Outside: positions up to 2^120 are clamped for each octave; more octaves count as 8.
 // Accuracy: lavapipe 8e-6 abs; portable 2e-5 abs
 fn veins_fractal(position: vec3f, octaves: u32, seed: u32) -> f32 {
@@ -138,11 +143,12 @@ fn veins_fractal(position: vec3f, octaves: u32, seed: u32) -> f32 {
     return sum;
 }
 
-// A vein where the noise passes 0: Lorentz's curve, which has no crease. As a quotient of squares: an error of the quotient value / width would be
-// doubled, and added to that of a second division.
-// Returns: share of a vein in (0, 1]: 1 for a value of 0, 1/2 for one of +-width.
-// Units: value and width in those of the noise.
-// Domain: values within +-4; any width, one below 2^-10 counts as that, one above 2^20 as that.
+// A vein where the noise passes through 0: a Lorentzian curve, which has no crease. It is computed
+// as a quotient of squares, because the error of a quotient value / width would be doubled and
+// added to the error of a second division.
+// Returns: share of vein in (0, 1]: 1 at value 0, 1/2 at +-width.
+// Units: value and width in units of the noise.
+// Domain: values within +-4; any width, clamped to [2^-10, 2^20].
 // Outside: anything where the value's square overflows.
 // Accuracy: lavapipe 4 ulp; portable 9 ulp
 fn veins_fold(value: f32, width: f32) -> f32 {
@@ -151,10 +157,12 @@ fn veins_fold(value: f32, width: f32) -> f32 {
     return min(squared / (squared + value * value), 1.0f);
 }
 
-// Density of veined stone: what scattering and absorption coefficient are multiplied by.
-// Returns: density between pattern.least and pattern.greatest; the first between veins, the second in their middle. Either may be the greater.
-// Units: position in a length, density none.
-// Domain: |position| frequency within 32768; width in [1/16, 4], densities in [0, 4], octaves up to 8.
+// Density of veined stone: the factor for the scattering and absorption coefficients.
+// Returns: density between pattern.least (between the veins) and pattern.greatest (in the middle of
+//   a vein). Either may be the greater.
+// Units: position in a unit of length; density none.
+// Domain: |position| frequency at most 32768; width in [1/16, 4], densities in [0, 4], up to 8
+//   octaves.
 // Outside: as veins_fractal and veins_fold; a width of less is as right as the noise, whose error it magnifies by its inverse.
 // Accuracy: lavapipe 4e-4 abs + 1 backward; portable 1e-3 abs + 1 backward
 fn veins_density(position: vec3f, pattern: VeinsPattern) -> f32 {

@@ -1,26 +1,30 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 741230ddfb12f53c
+// Version: 0.2.0, hash a0fd4a83e7712620
 // Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
 //   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //
-// A grid has `cells` voxels along each edge. Its own coordinates count voxels: voxel (i, j, k) is the cube from (i, j, k) to (i + 1, j + 1,
-// k + 1), and its centre lies at + 1/2. A column is the line along x through the centres of the voxels (., j, k); it has the place (j + 1/2,
-// k + 1/2) in y and z.
+// A grid has `cells` voxels along each edge. Grid coordinates are in voxels: voxel (i, j, k) is the
+// cube from (i, j, k) to (i + 1, j + 1, k + 1), and its centre lies at + 1/2. A column is the line
+// along x through the centres of the voxels (., j, k), at (j + 1/2, k + 1/2) in y and z.
 //
-// Whether a column meets a triangle is decided in integers, for each edge alone, on a lattice of 2^-14 voxels. So the triangles that share an edge
-// agree about it on every device; and where each edge belongs to an even number of triangles, each column meets an even number of triangles.
+// Whether a column meets a triangle is decided in integers, for each edge separately, on a lattice
+// of 2^-14 voxels. Triangles that share an edge therefore agree about it on every device, and if
+// each edge belongs to an even number of triangles, each column meets an even number of triangles.
 
-// Points of the lattice along a voxel's edge.
+// Lattice points along a voxel's edge.
 const VOXELIZATION_LATTICE: f32 = 16384.0f;
-// How far the lattice reaches from the grid's origin, in voxels: so far that differences of its points have at most 2^29 steps.
+// The extent of the lattice from the grid's origin, in voxels. It is chosen so that differences of
+// lattice points are at most 2^29 steps.
 const VOXELIZATION_REACH: f32 = 16384.0f;
-// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2^-19. With e = 2^-23, by which WGSL lets + - * be
-// off, since it lets them round either way: a grid coordinate is off by 3.5 e of itself (a difference, and 2.5 e of a division); a projection
-// onto a separating axis by 4 e times the corner's distance from the voxel, which is at most twice the largest coordinate and 1 where both are
-// near; its half size by 3 e. The sum, 11.5 e and 7 e, is under 16 e.
+// The margin by which a triangle is enlarged, relative to its largest coordinate or to a voxel,
+// 2^-19. WGSL lets + - * round either way, so each has a relative error of up to e = 2^-23. A grid
+// coordinate has an error of 3.5 e of itself (a difference, and 2.5 e of a division). A projection
+// onto a separating axis has an error of 4 e times the corner's distance from the voxel, which is
+// at most twice the largest coordinate, and 1 if both are near; the voxel's projected half size has
+// an error of 3 e. The sums, 11.5 e and 7 e, are under 16 e.
 const VOXELIZATION_MARGIN: f32 = 1.9073486328125e-6f;
-// Steeper planes than this are cut off by the triangle's own extent, whatever the grid.
+// The steepest plane; steeper ones are cut off by the triangle's own extent, whatever the grid.
 const VOXELIZATION_STEEPEST: f32 = 1048576.0f;
 
 // A cube of voxels.
@@ -33,7 +37,7 @@ struct VoxelizationGrid {
     cells: u32,
 }
 
-// An integer of more bits than 32: high 2^30 + low.
+// An integer of more than 32 bits: high 2^30 + low.
 struct VoxelizationInteger {
     high: i32,
     // From 0 to 2^30 - 1.
@@ -42,21 +46,22 @@ struct VoxelizationInteger {
 
 // An edge as seen from a column.
 struct VoxelizationEdge {
-    // 1 where it runs counterclockwise about the column, with y to the right and z upwards; -1 where clockwise; 0 for an edge without length.
+    // 1 if the edge runs counterclockwise about the column, with y to the right and z upwards; -1
+    // if clockwise; 0 for an edge without length.
     turn: i32,
     // Twice the area of the triangle between the edge and the column, in squares of the lattice.
     area: f32,
 }
 
-// Where a triangle crosses a column.
+// The crossing of a triangle and a column.
 struct VoxelizationColumn {
-    // Whether it does.
+    // True if they cross.
     inside: bool,
-    // x of the place; 0 where there is none.
+    // The x coordinate of the crossing; 0 if there is none.
     depth: f32,
 }
 
-// The number of a voxel, x running fastest.
+// The index of a voxel, with x varying fastest.
 // Returns: x + cells (y + cells z).
 // Units: none.
 // Domain: voxel below cells; cells up to 1024.
@@ -76,7 +81,7 @@ fn voxelization_centre(grid: VoxelizationGrid, voxel: vec3u) -> vec3f {
     return grid.origin + (vec3f(voxel) + 0.5f) * grid.spacing;
 }
 
-// A position in the grid's own coordinates.
+// A position in grid coordinates.
 // Returns: (position - origin) / spacing.
 // Units: voxels; position in world units.
 // Domain: spacing above 0, quotient finite.
@@ -86,7 +91,7 @@ fn voxelization_local(grid: VoxelizationGrid, position: vec3f) -> vec3f {
     return (position - grid.origin) / grid.spacing;
 }
 
-// The voxel that holds a position, or the nearest one.
+// The voxel that contains a position, or the nearest one.
 // Returns: coordinates of a voxel, from 0 to cells - 1.
 // Units: none; position in world units.
 // Domain: spacing above 0, cells at least 1; any position.
@@ -97,9 +102,10 @@ fn voxelization_voxel(grid: VoxelizationGrid, position: vec3f) -> vec3u {
     return min(vec3u(clamp(voxelization_local(grid, position), vec3f(0.0f), vec3f(f32(last)))), vec3u(last));
 }
 
-// The nearest point of the lattice on which inside and outside are decided. The product by a power of two and the rounding are exact, so that a
-// position has the same point on every device.
-// Returns: 2^14 position, rounded to whole numbers, halves to the even one.
+// The nearest point of the lattice on which inside and outside are decided. Multiplication by a
+// power of two and rounding to whole numbers are exact, so a position maps to the same point on
+// every device.
+// Returns: 2^14 position, rounded to whole numbers, with halves rounded to even.
 // Units: steps of the lattice; position in voxels.
 // Domain: coordinates up to 16384.
 // Outside: the lattice's last point, on the position's side.
@@ -109,7 +115,8 @@ fn voxelization_lattice(position: vec2f) -> vec2i {
     return vec2i(round(within * VOXELIZATION_LATTICE));
 }
 
-// The cross product of two vectors of whole numbers, all of its bits. In halves of 15 bits no sum of products leaves 32 bits.
+// The cross product of two integer vectors, with all of its bits. In halves of 15 bits no sum of
+// products exceeds 32 bits.
 // Returns: p.x q.y - p.y q.x.
 // Units: none.
 // Domain: components up to 2^29.
@@ -126,10 +133,11 @@ fn voxelization_cross(p: vec2i, q: vec2i) -> VoxelizationInteger {
     return VoxelizationInteger(high, ((middle & 32767i) << 15u) | (low & 32767i));
 }
 
-// An edge as seen from a column. On the edge's line, the column counts as a little higher in z, and in y by less than that; so it never lies on the
-// line of an edge, and an edge named the other way round turns the other way.
+// An edge as seen from a column. A column on the edge's line counts as a little higher in z, and in
+// y by less than that. So it never lies on the line of an edge, and an edge with its ends exchanged
+// turns the other way.
 // Returns: VoxelizationEdge.
-// Units: `from_point` and `to_point` in steps of the lattice, from the column.
+// Units: `from_point` and `to_point` in steps of the lattice, relative to the column.
 // Domain: components up to 2^29, and their differences.
 // Outside: turn from -1 to 1, area from 0 to 2^62.
 // Accuracy: lavapipe turn 0 ulp, area 2 ulp; portable turn 0 ulp, area 4 ulp
@@ -138,15 +146,16 @@ fn voxelization_edge(from_point: vec2i, to_point: vec2i) -> VoxelizationEdge {
     let way = to_point - from_point;
     let turn_beside = select(sign(way.x), -sign(way.y), way.x == 0i);
     let turn = select(sign(area.high), select(turn_beside, 1i, area.low > 0i), area.high == 0i);
-    // Without the sign: a small difference of two large parts would lose its digits.
+    // The magnitude: with the sign, a small difference of two large parts would lose its digits.
     let high = select(area.high, -1i - area.high, area.high < 0i);
     let low = select(area.low, 1073741824i - area.low, area.high < 0i);
     return VoxelizationEdge(turn, f32(high) * 1073741824.0f + f32(low));
 }
 
-// Where a triangle crosses a column: all three edges turn about it the same way. The decision is exact for the corners and the column moved to their
-// nearest points of the lattice, at most 2^-15 voxels in y and in z: no shared edge is counted twice or missed, on any device. A triangle without area
-// on the lattice is never crossed, so that no sum of weights is 0.
+// The crossing of a triangle and a column, which exists if all three edges turn about the column
+// the same way. The decision is exact for the corners and the column moved to their nearest lattice
+// points, by at most 2^-15 voxels in y and in z: no shared edge is counted twice or missed, on any
+// device. A triangle without area on the lattice is never crossed, so no sum of weights is 0.
 // Returns: VoxelizationColumn; `depth` within the triangle's extent.
 // Units: voxels; `column` is y and z of the column.
 // Domain: y and z up to 16384, x up to 1e18.
@@ -163,25 +172,26 @@ fn voxelization_column(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> Voxelizat
     if ab.turn == 0i || ab.turn != bc.turn || bc.turn != ca.turn {
         return VoxelizationColumn(false, 0.0f);
     }
-    // Each corner weighs as much as the edge across from it.
+    // Each corner's weight is the area of the opposite edge.
     let weights = vec3f(bc.area, ca.area, ab.area);
     let depth = dot(weights, vec3f(a.x, b.x, c.x)) / (weights.x + weights.y + weights.z);
     return VoxelizationColumn(true, clamp(depth, min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x))));
 }
 
-// The first voxel of a row whose centre lies at a coordinate or beyond it.
-// Returns: its number, or `cells` where there is none.
+// The first voxel of a row whose centre lies at or beyond a coordinate.
+// Returns: the voxel's number, or `cells` if there is none.
 // Units: coordinate in voxels.
 // Domain: any coordinate; cells up to 2^22.
 // Outside: none is; from 0 to cells whatever comes in.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn voxelization_first(coordinate: f32, cells: u32) -> u32 {
-    // Far off the half would overflow.
+    // Clamped first, because subtracting the half could overflow for a huge coordinate.
     let near = clamp(coordinate, 0.0f, f32(cells));
     return min(u32(ceil(near - 0.5f)), cells);
 }
 
-// Bits that change at each bit that is set, the least first: what lies inside, from where a surface is crossed.
+// The running parity of bits, from the least on: it turns the crossings of a surface into the
+// inside.
 // Returns: bit i is the parity of bits 0 to i.
 // Units: none.
 // Domain: any bits.
@@ -195,7 +205,8 @@ fn voxelization_prefix(bits: u32) -> u32 {
     return sixteen ^ (sixteen << 16u);
 }
 
-// The length of a way along the axes: how far a cube of half size 1 reaches along a vector, times the vector's length.
+// The taxicab length of a vector: the reach of a cube of half size 1 along the vector, times the
+// vector's length.
 // Returns: |x| + |y| + |z|.
 // Units: those of the vector.
 // Domain: sum below 3e38.
@@ -206,7 +217,8 @@ fn voxelization_taxicab(vector: vec3f) -> f32 {
     return size.x + size.y + size.z;
 }
 
-// How far beyond itself a triangle touches voxels, so that rounding misses none.
+// The margin around a triangle within which it counts as touching voxels, so that rounding misses
+// none.
 // Returns: 2^-19 (1 + the largest coordinate).
 // Units: voxels.
 // Domain: coordinates up to 1e30.
@@ -218,7 +230,7 @@ fn voxelization_margin(a: vec3f, b: vec3f, c: vec3f) -> f32 {
 }
 
 // The voxels of a row that an interval meets.
-// Returns: the first of them, and the one after the last; the same number twice where there are none.
+// Returns: the first of them, and the one after the last; the same number twice if there are none.
 // Units: low and high in voxels.
 // Domain: low <= high, of any size; cells up to 2^22.
 // Outside: none for low > high + 1; from 0 to cells whatever comes in.
@@ -229,11 +241,14 @@ fn voxelization_range(low: f32, high: f32, cells: u32) -> vec2u {
     return vec2u(min(u32(clamp(low, 0.0f, most)), end), end);
 }
 
-// The interval along x in which a triangle's plane passes over the square of a column, `corner` to `corner` + 1 in y and z, cut off by the
-// triangle's own extent. A voxel that voxelization_overlaps finds meets it, so that no other need be looked at.
-// Returns: low and high; low > high where the plane passes the extent by. The absolute error is that of half a length of 64, which may be taken from as
-//   much: a product, a quotient and a sum, 3 units of 2^-24 where each is rounded to nearest. By WGSL's guarantees the half has e + 2.5 e + e with
-//   e = 2^-23, and what it is taken from another 2.5 e of its quotient: 7 e of 64.
+// The interval along x in which a triangle's plane passes over the square of a column, `corner` to
+// `corner` + 1 in y and z, cut off by the triangle's own extent. Every voxel that
+// voxelization_overlaps finds meets this interval, so no other voxel need be tested.
+// Returns: low and high; low > high if the plane misses the extent. The absolute error is that of a
+//   half length of 64, subtracted from a value as large: a product, a quotient and a sum, 3 units
+//   of 2^-24 if each is rounded to nearest. By WGSL's guarantees the half length has an error of e
+//   + 2.5 e + e with e = 2^-23, and the value that it is subtracted from another 2.5 e from its
+//   quotient: 7 e of 64.
 // Units: voxels.
 // Domain: coordinates up to 1e9.
 // Outside: finite for coordinates from 1e-6 to 1e11, or 0.
@@ -251,16 +266,19 @@ fn voxelization_span(a: vec3f, b: vec3f, c: vec3f, corner: vec2f) -> vec2f {
         return extent;
     }
     let middle = a.x - dot(normal.yz, (corner + 0.5f) - a.yz) / normal.x;
-    // What quotients round goes with them.
+    // The rounding error of a quotient is proportional to it, hence the factor.
     let half = (1.0f + VOXELIZATION_MARGIN) * width / slope + margin;
     return vec2f(max(extent.x, middle - half), min(extent.y, middle + half));
 }
 
-// Whether a triangle touches a voxel, its faces, edges and corners included, or comes within the margin of it. By separating axes: those of the
-// voxel, the products of its axes and the triangle's edges, and the triangle's normal.
-// Returns: never false where they touch; true only where they are nearer than a few margins, for a thin triangle its thickness.
+// Whether a triangle touches a voxel, including its faces, edges and corners, or comes within the
+// margin of it. The test uses separating axes: those of the voxel, the cross products of its axes
+// and the triangle's edges, and the triangle's normal.
+// Returns: never false if they touch; true only if they are within a few margins of each other, or
+//   for a thin triangle within its thickness.
 // Units: voxels; `corner` is the voxel's corner with the least coordinates.
-// Domain: coordinates up to 1e9. The accuracy is for triangles at least 1/8 as thick as long, as large as their distance from the origin lets be.
+// Domain: coordinates up to 1e9. The accuracy is for triangles at least 1/8 as thick as long, and
+//   large enough for f32 to resolve at their distance from the origin.
 // Outside: as long as products of three coordinates are finite.
 // Accuracy: lavapipe 128 backward; portable 128 backward
 fn voxelization_overlaps(a: vec3f, b: vec3f, c: vec3f, corner: vec3f) -> bool {
@@ -276,7 +294,8 @@ fn voxelization_overlaps(a: vec3f, b: vec3f, c: vec3f, corner: vec3f) -> bool {
     let ab = b - a;
     let bc = c - b;
     let ca = a - c;
-    // Component i of edge x corner is the corner's projection onto axis i x edge; both ends of the edge have the same.
+    // Component i of edge x corner is the corner's projection onto axis i x edge; both ends of the
+    // edge have the same projection.
     let ab_p = cross(ab, p);
     let ab_r = cross(ab, r);
     let bc_q = cross(bc, q);
@@ -291,7 +310,8 @@ fn voxelization_overlaps(a: vec3f, b: vec3f, c: vec3f, corner: vec3f) -> bool {
         || any(min(ca_r, ca_q) > ca_half) || any(max(ca_r, ca_q) < -ca_half) {
         return false;
     }
-    // The normal of a thin triangle is rounding for the most part, by as much as its edges are long.
+    // The normal of a thin triangle is mostly rounding error, in proportion to the lengths of its
+    // edges.
     let normal = cross(ab, ca);
     let slack = margin * voxelization_taxicab(ab) * voxelization_taxicab(ca);
     return abs(dot(normal, p)) <= half * voxelization_taxicab(normal) + slack;

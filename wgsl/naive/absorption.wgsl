@@ -1,9 +1,9 @@
 // absorption: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/absorption.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The coefficient by the built-in logarithm, as one writes it.
+// The coefficient with the built-in logarithm, the obvious way to write it.
 // Returns: -log(attenuation_color) / attenuation_distance.
-// Units: the inverse of the distance's.
+// Units: the inverse of the unit of `attenuation_distance`.
 // Domain: colours in [0.01, 0.9], distances in [1e-3, 1e3].
 // Outside: near a colour of 1 off by up to its whole value; infinite or not a number for a colour or a distance of 0.
 // Accuracy: naive
@@ -11,10 +11,12 @@ fn absorption_coefficient_naive(attenuation_color: vec3f, attenuation_distance: 
     return -log(attenuation_color) / attenuation_distance;
 }
 
-// The transmittance as KHR_materials_volume prints it: the colour raised to the ratio of the distances.
+// The transmittance as given in KHR_materials_volume: the colour raised to the ratio of the
+// distances.
 // Returns: pow(attenuation_color, distance / attenuation_distance).
 // Units: none; both distances in the same unit.
-// Domain: colours in [0.01, 0.9], distance at most 4 attenuation distances, those in [1e-3, 1e3].
+// Domain: colours in [0.01, 0.9], attenuation_distance in [1e-3, 1e3], distance at most 4 times
+//   attenuation_distance.
 // Outside: not a number for two distances of 0; for a colour of 0 at a distance of 0 what 2^(0 log2 0) is on the device; along many attenuation
 //   distances the error of the logarithm in pow is multiplied by their number.
 // Accuracy: naive

@@ -1,14 +1,15 @@
 // bvh_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/bvh_trace.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The epsilon of bvh_trace_triangle_naive, as one finds it.
+// The usual epsilon, used by bvh_trace_triangle_naive.
 const BVH_TRACE_NAIVE_EPSILON = 1e-6f;
 
-// The slab test as one finds it. Kept to show where it fails: a plane through the origin of a ray along it is 0 *
-// infinity, and a flat box is missed by rounding.
+// The usual slab test. Kept to show where it fails: a ray that starts in a plane of the box and
+// runs along it gives 0 * infinity, and rounding makes a ray miss a flat box.
 // Returns: BvhTraceBox.
 // Units: those of the positions.
-// Domain: components of the direction of at least 0.05; the ray passes the box's edges at 1/100 of its size or more.
+// Domain: components of the direction of at least 0.05; the ray passes the edges of the box at a
+//   distance of at least 1/100 of its size.
 // Outside: as the formula gives.
 // Accuracy: naive
 fn bvh_trace_box_naive(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> BvhTraceBox {
@@ -22,12 +23,14 @@ fn bvh_trace_box_naive(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f3
     return BvhTraceBox(entry, entry <= exit);
 }
 
-// The triangle test that one finds: Möller and Trumbore's, with an epsilon for the determinant and the distance. Kept
-// to show where it fails: the signs at an edge are rounded otherwise for each of its triangles, so that both may refuse
-// a ray between them; and the epsilon is a length and an area at once, and right for one size of mesh.
+// The usual triangle test, Möller and Trumbore's, with an epsilon for the determinant and for the
+// distance. Kept to show where it fails: the signs at an edge are rounded differently for its two
+// triangles, so both may reject a ray between them; and the same epsilon serves as a length and as
+// an area, so it is right for only one size of mesh.
 // Returns: BvhTraceHit.
 // Units: those of the positions.
-// Domain: edges in [0.01, 4], normal . direction at least 0.1, the ray at 1/100 of the triangle or more from its edges.
+// Domain: edges in [0.01, 4]; normal . direction at least 0.1; the ray at least 1/100 of the
+//   triangle's size away from its edges.
 // Outside: as the formula gives.
 // Accuracy: naive
 fn bvh_trace_triangle_naive(

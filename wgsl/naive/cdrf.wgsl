@@ -1,9 +1,9 @@
 // cdrf: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/cdrf.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// cdrf_sigma: the product as it stands in the paper.
+// cdrf_sigma as the plain product, as printed in the paper.
 // Returns: sigma0 curvature.
-// Units: as cdrf_sigma.
+// Units: as for cdrf_sigma.
 // Domain: sigma0, curvature in [0, 1e18].
 // Outside: negative, a NaN or infinite.
 // Accuracy: naive
@@ -11,9 +11,9 @@ fn cdrf_sigma_naive(sigma0: f32, curvature: f32) -> f32 {
     return sigma0 * curvature;
 }
 
-// cdrf_edge to first order, with the quotient as it stands.
-// Returns: max(cosine, 0) blurred as if the cosine were a straight line.
-// Units: as cdrf_edge.
+// cdrf_edge to first order, with an unguarded quotient.
+// Returns: max(cosine, 0), blurred as if the cosine were a straight line.
+// Units: as for cdrf_edge.
 // Domain: cosine in [-1, 1]; sigma in [0.01, 0.3].
 // Outside: 0/0 at the terminator for sigma = 0.
 // Accuracy: naive
@@ -22,7 +22,7 @@ fn cdrf_edge_naive(cosine: f32, sigma: f32) -> f32 {
     return cosine * cdrf_normal_share(u) + sigma * cdrf_normal_density(u);
 }
 
-// cdrf_series alone, four terms for every sigma: short of terms where the Gaussian is narrow.
+// cdrf_series alone, with four terms for every sigma: too few if the Gaussian is narrow.
 // Returns: cdrf_accurate(...) to 1.5e-5 for sigma >= 0.35.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; sigma in [0.35, 8].
@@ -32,7 +32,8 @@ fn cdrf_series_naive(cosine: f32, sigma: f32) -> f32 {
     return cdrf_series(cosine, sigma, 4u);
 }
 
-// The single edge for every sigma, not wrapped round: the light that comes from behind is missing.
+// The single-edge form for every sigma, not wrapped around: the light that comes from behind is
+// missing.
 // Returns: cdrf_accurate(...) for sigma <= 0.3.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; sigma in [0, 0.3].
@@ -42,8 +43,9 @@ fn cdrf_accurate_naive(cosine: f32, sigma: f32) -> f32 {
     return cdrf_edge(cosine, sigma);
 }
 
-// The reflectance from the angle, as the formula is written: what acos is off by enters with the function's whole slope.
-// Returns: cdrf_accurate(...) to 6.8e-5, or to 4.9e-4 where acos is as bad as WGSL lets it be.
+// The reflectance computed from the angle, as the formula is written: the error of acos enters with
+// the full slope of the function.
+// Returns: cdrf_accurate(...) to 6.8e-5, or to 4.9e-4 if acos is as inaccurate as WGSL allows.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; any sigma.
 // Outside: acos of more than 1 is not a number.
@@ -52,8 +54,9 @@ fn cdrf_angle_naive(cosine: f32, sigma: f32) -> f32 {
     return cdrf_accurate(cos(acos(cosine)), sigma);
 }
 
-// cdrf_texture_coordinates without the half texel: every lookup is drawn towards the table's middle.
-// Returns: coordinates.
+// cdrf_texture_coordinates without the half texel: every lookup is shifted towards the middle of
+// the table.
+// Returns: `coordinates`, unchanged.
 // Units: fractions of the texture.
 // Domain: coordinates in [0, 1].
 // Outside: the same.

@@ -1,8 +1,8 @@
 // closest_point: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/closest_point.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The direction by the built-in function.
-// Returns: `vector` at unit length.
+// The direction from the built-in `normalize`.
+// Returns: `vector` scaled to unit length.
 // Units: none.
 // Domain: lengths in [1e-15, 1e15].
 // Outside: 0 / 0 for the zero vector and wherever the square underflows, 0 where it overflows.
@@ -11,10 +11,10 @@ fn closest_point_direction_naive(vector: vec3f) -> vec3f {
     return normalize(vector);
 }
 
-// The parameters by dot products, eq. (A.4). Kept to show where it fails: its determinant is 1 - cos^2 of the
-// normals' angle, which has lost all digits at 2^-12 rad.
+// The parameters from dot products, eq. (A.4). Kept to show where it fails: its determinant is
+// 1 - cos^2 of the angle between the normals, which has lost all digits at 2^-12 rad.
 // Returns: (t_i, t_j); 0 / 0 for parallel normals.
-// Units: as closest_point_parameters.
+// Units: as for closest_point_parameters.
 // Domain: unit normals at an angle in [0.5, 2.6].
 // Outside: as the formula gives.
 // Accuracy: naive
@@ -28,10 +28,11 @@ fn closest_point_parameters_dot(origin_i: vec3f, normal_i: vec3f, origin_j: vec3
     return vec2f(jj * xi - ij * xj, ij * xi - ii * xj) / (ii * jj - ij * ij);
 }
 
-// The parameters by eq. (3) as it is printed: the numerator crosses with n_h where (A.6) has the other normal, so t_i
-// and t_j are swapped. On a sphere they are equal and nothing shows.
+// The parameters from eq. (3) as printed: the numerator has the cross product with n_h where (A.6)
+// has the other normal, so t_i and t_j are swapped. On a sphere they are equal, and the mistake
+// does not show.
 // Returns: (t_j, t_i) of closest_point_parameters; 0 / 0 for parallel normals.
-// Units: as closest_point_parameters.
+// Units: as for closest_point_parameters.
 // Domain: unit normals at an angle in [0.5, 2.6].
 // Outside: as the formula gives.
 // Accuracy: naive
@@ -42,11 +43,12 @@ fn closest_point_parameters_literal(origin_i: vec3f, normal_i: vec3f, origin_j: 
     return t / dot(normal_i, cross(normal_j, across));
 }
 
-// The fallback as one writes it first. Kept to show where it fails: the cross product's square underflows for edges
-// below 1e-10 and overflows above 1e9, and a triangle without area has no direction to normalise.
+// The straightforward form of the fallback. Kept to show where it fails: the square of the cross
+// product underflows for edges below 1e-10 and overflows above 1e9, and a triangle without area has
+// no direction to normalise.
 // Returns: centroid - n longest_edge; 0 / 0 if the vertices are collinear.
 // Units: those of the positions.
-// Domain: edges in [1e-4, 1e4], altitudes of at least 1/10 of the longest edge.
+// Domain: edges in [1e-4, 1e4], altitudes at least 1/10 of the longest edge.
 // Outside: as the formula gives.
 // Accuracy: naive
 fn closest_point_fallback_naive(position_a: vec3f, position_b: vec3f, position_c: vec3f) -> vec3f {
@@ -56,10 +58,12 @@ fn closest_point_fallback_naive(position_a: vec3f, position_b: vec3f, position_c
     return (position_a + position_b + position_c) / 3.0f - longest * normalize(cross(edge_b, edge_c));
 }
 
-// The paper's centre, eq. (4), (5), with eq. (3) corrected: for each vertex the point of its line closest to the next
-// vertex's, averaged by the sines of the normals' angles. Kept for comparison: as normals become parallel, weight times
-// parameter tends to a limit that depends on the direction of approach while the sum of weights vanishes, so the point
-// runs off to infinity; and since only one of each pair's two points counts, it depends on the winding.
+// The paper's centre, eq. (4), (5), with eq. (3) corrected: for each vertex, the point of its line
+// closest to the next vertex's line; the three points are averaged with the sines of the angles
+// between the normals as weights. Kept for comparison: as the normals become parallel, weight times
+// parameter tends to a limit that depends on the direction of approach, while the sum of the
+// weights vanishes, so the point runs off to infinity. Only one of each pair's two points counts,
+// so the result depends on the winding.
 // Returns: o; closest_point_fallback if all three normals are parallel.
 // Units: those of the positions.
 // Domain: unit normals at angles in [0.3, 2.8] from each other.
@@ -88,8 +92,8 @@ fn closest_point_centre_paper(
     return (weight.x * point_a + weight.y * point_b + weight.z * point_c) / total;
 }
 
-// The paper's centre with eq. (3) as printed. Each vertex's point lies at the distance that belongs to its neighbour:
-// right on a sphere, wrong on any other stone.
+// The paper's centre with eq. (3) as printed. The point of each vertex lies at its neighbour's
+// distance, which is right on a sphere and wrong on any other stone.
 // Returns: o with t_i and t_j swapped; 0 / 0 as soon as two normals are parallel.
 // Units: those of the positions.
 // Domain: unit normals at angles in [0.3, 2.8] from each other.

@@ -1,10 +1,13 @@
 // convex_trace: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/convex_trace.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// convex_trace_step with an epsilon against meeting the face that was left, as one finds it.
-// Returns: this plane's ConvexTraceHit if it is met nearer than `hit` and farther than 1e-4, else `hit`.
-// Units: lengths in units of the ray's direction.
-// Domain: stones of size 1 about the origin, the next plane farther than 1e-4, the ray not nearly parallel to it.
+// convex_trace_step in its usual form, with an epsilon to avoid hitting the face that the ray has
+// just left.
+// Returns: this plane's ConvexTraceHit if the ray meets it at a shorter distance than `hit` and
+//   beyond 1e-4, otherwise `hit`.
+// Units: lengths are in units of the length of the ray's direction.
+// Domain: stones of size 1 around the origin, with the next plane farther than 1e-4 and the ray not
+//   nearly parallel to it.
 // Outside: misses facets beside edges, all facets of small stones and those that the ray starts outside of by rounding;
 //   meets the face that was left again, far away, at grazing incidence.
 // Accuracy: naive
@@ -16,10 +19,11 @@ fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3
     return hit;
 }
 
-// The point along the ray, left where rounding puts it.
+// The point along the ray, not corrected for rounding.
 // Returns: position + distance direction.
 // Units: lengths.
-// Domain: as above, where `distance` is that of the plane and all are of one size.
+// Domain: the same as for convex_trace_step_naive, with `distance` the distance to the plane and
+//   all lengths of similar size.
 // Outside: off the plane by units in the last place of the largest of position and distance.
 // Accuracy: naive
 fn convex_trace_point_naive(position: vec3f, direction: vec3f, distance: f32) -> vec3f {

@@ -1,9 +1,9 @@
 // curvature: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/curvature.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// What dpdx(normalize(normal)) computes: the difference of two neighbours' unit normals.
+// The result of dpdx(normalize(normal)): the difference of two neighbours' unit normals.
 // Returns: n(x + 1) - n(x).
-// Units: one over the screen's.
+// Units: the inverse of the screen's unit.
 // Domain: |normal| in [1e-3, 1e3], neighbours at an angle of 0.1 or more.
 // Outside: loses digits as 2^-24 / angle; 0 / 0 for the zero vector.
 // Accuracy: naive
@@ -11,9 +11,9 @@ fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f 
     return normalize(normal + derivative) - normalize(normal);
 }
 
-// The mean curvature as the textbook writes it. Kept to show where it fails.
+// The mean curvature in its textbook form. Kept to show where it fails.
 // Returns: (eG - 2fF + gE) / (2 (EG - F^2)).
-// Units: one over the position's.
+// Units: the inverse of the position's unit.
 // Domain: position derivatives of length 1e-4 to 1e4, at an angle with a sine of 0.3 or more.
 // Outside: EG - F^2 is rounding noise at sines below 2^-11; 0 / 0 where it is 0 or underflows, infinity over infinity above 1e9.
 // Accuracy: naive
@@ -25,10 +25,10 @@ fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f
     return 0.5f * (second.x * first.z - 2.0f * second.y * first.y + second.z * first.x) / determinant;
 }
 
-// The Gaussian curvature as the textbook writes it. Kept to show where it fails.
+// The Gaussian curvature in its textbook form. Kept to show where it fails.
 // Returns: (eg - f^2) / (EG - F^2).
-// Units: one over the position's, squared.
-// Domain: as curvature_mean_textbook.
+// Units: the inverse of the position's unit, squared.
+// Domain: as for curvature_mean_textbook.
 // Outside: as curvature_mean_textbook.
 // Accuracy: naive
 fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
@@ -38,11 +38,11 @@ fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: v
     return (second.x * second.z - second.y * second.y) / (first.x * first.z - first.y * first.y);
 }
 
-// The normal curvature along the light by the normal equations of t = alpha p_x + beta p_y, whose determinant cancels in the quotient. Kept
-// to show where it fails.
+// The normal curvature along the light from the normal equations of t = alpha p_x + beta p_y, whose
+// determinant cancels in the quotient. Kept to show where it fails.
 // Returns: (alpha^2 e + 2 alpha beta f + beta^2 g) / (alpha^2 E + 2 alpha beta F + beta^2 G).
-// Units: one over the position's.
-// Domain: as curvature_mean_textbook, with a light at 0.1 or more from the normal.
+// Units: the inverse of the position's unit.
+// Domain: as for curvature_mean_textbook, with a light at 0.1 or more from the normal.
 // Outside: 0 / 0 for a light along the normal; otherwise as curvature_mean_textbook.
 // Accuracy: naive
 fn curvature_towards_textbook(
@@ -63,10 +63,11 @@ fn curvature_towards_textbook(
     return dot(weight, second) / dot(weight, first);
 }
 
-// The usual rung, |dN| / |dP|: length(fwidth(normal)) / length(fwidth(position)). It is right on a sphere. Elsewhere it depends on the view, on
-// the screen's axes and, through fwidth, even on how the world's axes lie; it has no sign, and on a saddle it never vanishes.
-// Returns: some mean of the principal curvatures' magnitudes.
-// Units: one over the position's.
+// The usual rung, |dN| / |dP|: length(fwidth(normal)) / length(fwidth(position)). It is right on a
+// sphere. Elsewhere it depends on the view, on the screen's axes and, through fwidth, even on the
+// orientation of the world's axes. It has no sign, and on a saddle it never vanishes.
+// Returns: some mean of the magnitudes of the principal curvatures.
+// Units: the inverse of the position's unit.
 // Domain: position derivatives of length 1e-4 to 1e4.
 // Outside: 0 / 0 where both position derivatives are 0.
 // Accuracy: naive

@@ -1,10 +1,12 @@
 // dispersion: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/dispersion.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The derivative of refraction as one writes it from eq. (6), with eta = 1 / n. Kept to be compared with.
+// The derivative of refraction in its usual form from eq. (6), with eta = 1 / n. Kept for
+// comparison.
 // Returns: the gradient after refraction.
-// Units: as dispersion_refract.
-// Domain: as dispersion_refract, where a ray is refracted, away from the critical angle and from relative_index = 1 at grazing incidence.
+// Units: as for dispersion_refract.
+// Domain: as for dispersion_refract if the ray is refracted, away from the critical angle and from
+//   relative_index = 1 at grazing incidence.
 // Outside: infinite at the critical angle, not a number under total internal reflection.
 // Accuracy: naive
 fn dispersion_refract_naive(
@@ -27,19 +29,21 @@ fn dispersion_refract_naive(
 // Eq. (10) as printed.
 // Returns: unit vector.
 // Units: none; unit vectors.
-// Domain: |direction| = |refracted| = 1, apart by 1e-3 or more.
+// Domain: |direction| = |refracted| = 1, at least 1e-3 apart.
 // Outside: noise of unit length where they nearly coincide; not a number where they do.
 // Accuracy: naive
 fn dispersion_paper_enter_naive(direction: vec3f, refracted: vec3f) -> vec3f {
     return normalize(refracted - direction);
 }
 
-// Eq. (11) for a refraction: the ray and one turned towards the spread are both refracted, and their difference is
-// normalized. The second ray's length is restored to first order, which is all of it in f32 for epsilon up to 2^-12. The first ray chooses
-// between refraction and reflection; where the second would be totally reflected, it is taken along the surface.
-// Returns: unit vector; 0 where the difference is 0, as for a spread of 0.
+// Eq. (11) for a refraction: both the ray and a ray turned towards the spread are refracted, and
+// their difference is normalized. The length of the second ray is restored to first order, which is
+// complete in f32 for epsilon up to 2^-12. The first ray chooses between refraction and reflection.
+// If the second would be totally reflected, it is taken along the surface.
+// Returns: unit vector; 0 if the difference is 0, as for a spread of 0.
 // Units: none; unit vectors and a ratio.
-// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in [1/4, 4], epsilon in [1e-4, 1e-3].
+// Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in
+//   [1/4, 4], epsilon in [1e-4, 1e-3].
 // Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence and near relative_index = 1.
 // Accuracy: naive
 fn dispersion_paper_refract(
@@ -70,8 +74,8 @@ fn dispersion_paper_refract(
 
 // Eq. (11) for a refraction as printed, with the built-in `refract` for eq. (6).
 // Returns: unit vector.
-// Units: as dispersion_paper_refract.
-// Domain: as dispersion_paper_refract, with spread . direction = 0 and both rays refracted.
+// Units: as for dispersion_paper_refract.
+// Domain: as for dispersion_paper_refract, with spread . direction = 0 and both rays refracted.
 // Outside: not a number for a spread of 0; where one ray is totally reflected, the other's direction; where both are, not a number.
 // Accuracy: naive
 fn dispersion_paper_refract_naive(
@@ -85,9 +89,9 @@ fn dispersion_paper_refract_naive(
     return normalize(refract(direction + epsilon * spread, normal, eta) - refract(direction, normal, eta));
 }
 
-// Eq. (11) for a reflection. Reflection is linear: but for noise and for the spread's part along the ray this is
-// dispersion_reflect of the spread.
-// Returns: unit vector; 0 where the difference is 0, as for a spread of 0.
+// Eq. (11) for a reflection. Reflection is linear, so this is dispersion_reflect of the spread,
+// except for noise and for the spread's part along the ray.
+// Returns: unit vector; 0 if the difference is 0, as for a spread of 0.
 // Units: none; unit vectors.
 // Domain: |direction| = |normal| = 1, |spread| = 1 or 0, epsilon in [1e-4, 1e-3].
 // Outside: finite.
@@ -102,12 +106,15 @@ fn dispersion_paper_reflect(direction: vec3f, spread: vec3f, normal: vec3f, epsi
     return difference / sqrt(squared);
 }
 
-// Eq. (12): the direction at another frequency. It holds no index of refraction, and a length, the path through the stone: the
-// same stone modelled in other units disperses otherwise.
-// Returns: unit direction. `strength` is ours: 1 is the paper's, other values are fitted to a material and to the size of a model.
-// Units: `distance` in the model's units, from where the ray entered to where it leaves; `frequency_ratio` is lambda / lambda_0 in the paper, which are
-//   frequencies: wavelength_0 / wavelength.
-// Domain: |direction| = 1, |spread| = 1 or 0, |spread . direction| <= 3/4, |strength distance (frequency_ratio - 1)| up to 1e18.
+// Eq. (12): the direction at another frequency. It contains a length, the path through the stone,
+// but no index of refraction, so the same stone modelled in other units disperses differently.
+// Returns: unit direction. `strength` is our addition: 1 is the paper's value; other values are
+//   fitted to a material and to the size of a model.
+// Units: `distance` in the model's units, from the point where the ray enters to the point where it
+//   leaves; `frequency_ratio` is lambda / lambda_0 in the paper, where these are frequencies:
+//   wavelength_0 / wavelength.
+// Domain: |direction| = 1, |spread| = 1 or 0, |spread . direction| <= 3/4, |strength distance
+//   (frequency_ratio - 1)| up to 1e18.
 // Outside: not a number where the sum is 0.
 // Accuracy: naive
 fn dispersion_paper_direction(

@@ -1,10 +1,11 @@
 // environment: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/environment.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// environment_uv_from_direction by normalize and acos, as it is usually written: acos amplifies the rounding of y without bound at the poles.
-// Returns: environment_uv_from_direction(direction), v to about 1e-4 near the poles.
+// environment_uv_from_direction with normalize and acos, the usual form: acos amplifies the
+// rounding of y without bound at the poles.
+// Returns: environment_uv_from_direction(direction), with v to about 1e-4 near the poles.
 // Units: fractions of the map.
-// Domain: lengths in [1e-15, 1e15], angle to the poles at least 0.1 radians.
+// Domain: lengths in [1e-15, 1e15], at least 0.1 radians from the poles.
 // Outside: v jumps to the pole within 3e-4 radians of it, up to 1.1e-4 off; at the pole u is 1 for x = -0; lengths whose square
 // over- or underflows (1e-23, 1e19) give another direction or no number.
 // Accuracy: naive
@@ -13,7 +14,8 @@ fn environment_uv_from_direction_naive(direction: vec3f) -> vec2f {
     return vec2f(0.5f + atan2(unit.z, unit.x) * 0.15915494f, acos(unit.y) * 0.31830987f);
 }
 
-// environment_texels with both coordinates clamped, as a sampler left at its default does: a seam down the -x meridian.
+// environment_texels with both coordinates clamped, as in a sampler left at its default: this
+// leaves a seam along the -x meridian.
 // Returns: environment_texels(uv, size) away from the borders.
 // Units: texels.
 // Domain: u in [1 / size.x, 1 - 1 / size.x], v in [1 / size.y, 1 - 1 / size.y].
@@ -26,10 +28,11 @@ fn environment_texels_naive(uv: vec2f, size: vec2u) -> EnvironmentTexels {
     return EnvironmentTexels(lower, upper, corner - floor(corner));
 }
 
-// environment_softbox without a look at the sign of the depth: every light shines a second time, from behind.
+// environment_softbox without the test of the depth's sign: every light appears a second time, on
+// the opposite side.
 // Returns: environment_softbox(...) for axis . direction > 0.
-// Units: as environment_softbox.
-// Domain: as environment_softbox, and axis . direction > 0.
+// Units: as for environment_softbox.
+// Domain: as for environment_softbox, with axis . direction > 0.
 // Outside: the light's mirror image for axis . direction < 0.
 // Accuracy: naive
 fn environment_softbox_naive(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {

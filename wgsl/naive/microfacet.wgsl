@@ -1,11 +1,11 @@
 // microfacet: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/microfacet.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The distribution as one finds it, from the cosine alone. Kept to show where it fails: next to the normal the cosine rounds to 1, and
-// of alpha^2 little is left beside the 1 that it is added to.
+// The usual form of the distribution, from the cosine alone. Kept to show where it fails: close to
+// the normal the cosine rounds to 1, and alpha^2 loses most of its digits when it is added to 1.
 // Returns: alpha^2 / (pi (cosine^2 (alpha^2 - 1) + 1)^2).
-// Units: 1/sr; alpha a slope.
-// Domain: cosine in [0, 1], alpha in (0, 1]; of use for alpha above 0.1.
+// Units: 1/sr; alpha is a slope.
+// Domain: cosine in [0, 1], alpha in (0, 1]; usable for alpha above 0.1.
 // Outside: as the formula gives; 0 / 0 for alpha = 0 at cosine = 1.
 // Accuracy: naive
 fn microfacet_distribution_naive(cosine: f32, alpha: f32) -> f32 {
@@ -14,10 +14,10 @@ fn microfacet_distribution_naive(cosine: f32, alpha: f32) -> f32 {
     return squared / (3.1415927f * spread * spread);
 }
 
-// The visibility, numerator and divisor each by itself, as Heitz's eq. (72) and (99) read. Kept to show where it fails: at grazing
-// incidence it is 0 / 0.
+// The visibility with numerator and divisor computed separately, as in Heitz's eq. (72) and (99).
+// Kept to show where it fails: at grazing incidence it is 0 / 0.
 // Returns: 1 / (1 + Lambda(l) + Lambda(v)) / (4 n.l n.v), with Lambda = (sqrt(1 + alpha^2 tan^2) - 1) / 2.
-// Units: as microfacet_visibility.
+// Units: the same as for microfacet_visibility.
 // Domain: cosines in (0, 1], alpha in (0, 1].
 // Outside: no number where a cosine is below 1e-19: its square underflows.
 // Accuracy: naive
@@ -30,7 +30,7 @@ fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -
     return 1.0f / (1.0f + lambda_light + lambda_eye) / (4.0f * cosine_light * cosine_eye);
 }
 
-// The half vector: the sum normalized. Kept to show where it fails: a sum of 0 has no direction.
+// The half vector as the normalized sum. Kept to show where it fails: a sum of 0 has no direction.
 // Returns: unit direction of toward_light + toward_eye.
 // Units: none; unit vectors.
 // Domain: unit vectors that are not opposite.

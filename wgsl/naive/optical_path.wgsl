@@ -1,9 +1,10 @@
 // optical_path: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/optical_path.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// Cost of an edge as it stands in the paper: the extinction, whatever the edge's length. So it depends on the grid how deep a body is.
+// The cost of an edge as in the paper: the extinction, whatever the edge's length. The depth of a
+// body thus depends on the grid.
 // Returns: (extinction_a + extinction_b) / 2.
-// Units: that of the extinctions.
+// Units: those of the extinctions.
 // Domain: extinctions in [0, 1e15].
 // Outside: finite while the sum is.
 // Accuracy: naive
@@ -11,7 +12,7 @@ fn optical_path_edge_paper(extinction_a: f32, extinction_b: f32) -> f32 {
     return 0.5f * (extinction_a + extinction_b);
 }
 
-// optical_path_godunov by the quadratic formula in T itself, case by case, as one writes it.
+// optical_path_godunov by the quadratic formula in T itself, case by case, as usually written.
 // Returns: optical_path_godunov(...).
 // Units: none.
 // Domain: least in [0, 2], slowness in [0.5, 2].
@@ -38,7 +39,7 @@ fn optical_path_godunov_naive(least: vec3f, slowness: f32) -> f32 {
     return (sum + sqrt(sum * sum - 3.0f * (squares - slowness * slowness))) / 3.0f;
 }
 
-// optical_path_seed as one writes it.
+// optical_path_seed as usually written.
 // Returns: -ln(irradiance_share) + extinction offset.
 // Units: as optical_path_seed.
 // Domain: share in [0.01, 0.9], extinction and offset in [0, 10].

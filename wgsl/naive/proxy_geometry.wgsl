@@ -1,7 +1,7 @@
 // proxy_geometry: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/proxy_geometry.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The normal as one writes it: normalize(cross).
+// The straightforward form of the normal: normalize(cross).
 // Returns: unit normal.
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-4, 1e4], sine of the angle at the first vertex at least 1e-2.
@@ -11,10 +11,10 @@ fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3
     return normalize(cross(position_second - position_first, position_third - position_first));
 }
 
-// The intersection without its cases.
-// Returns: ProxyGeometryHit with `hit` true always.
+// The intersection without the special cases.
+// Returns: ProxyGeometryHit; `hit` is always true.
 // Units: lengths; `direction` and `normal` are unit vectors.
-// Domain: as above, for a ray that does meet the plane ahead of it.
+// Domain: as for proxy_geometry_intersect, for a ray that does meet the plane ahead of it.
 // Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind it.
 // Accuracy: naive
 fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
@@ -22,7 +22,8 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
     return ProxyGeometryHit(position + distance * direction, distance, true);
 }
 
-// The coordinates by the Gram matrix of the edges, as barycentric coordinates are usually computed.
+// The coordinates from the Gram matrix of the edges, the usual way to compute barycentric
+// coordinates.
 // Returns: the two coordinates.
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-3, 1e3], sine of the angle at least 0.1.
@@ -41,10 +42,10 @@ fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec
     ) / (first_first * second_second - first_second * first_second);
 }
 
-// The tile by the sum of the fractions, as one writes it.
+// The tile from the sum of the fractions, the straightforward form.
 // Returns: ProxyGeometryCell.
 // Units: lattice coordinates.
-// Domain: coordinates up to 2^23, away from the edges of tiles.
+// Domain: coordinates up to 2^23, away from the edges of the tiles.
 // Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points beside a vertex get the wrong half.
 // Accuracy: naive
 fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
@@ -53,7 +54,7 @@ fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
     return ProxyGeometryCell(vec2i(corner), within.x + within.y > 1.0f);
 }
 
-// The normal of a tile by eq. (8) and (9) as they stand.
+// The normal of a tile from eq. (8) and (9) exactly as written.
 // Returns: unit normal.
 // Units: lengths in, none out.
 // Domain: distance between centroid and centre in [1e-15, 1e15].

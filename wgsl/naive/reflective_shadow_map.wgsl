@@ -1,8 +1,8 @@
 // reflective_shadow_map: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/reflective_shadow_map.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The axes as one finds them, by a cross product with the vertical. Kept to show where it fails: under a light from straight above, the most
-// usual one, there is no such product.
+// The axes in their usual form, by a cross product with the vertical. Kept to show where it fails:
+// for a light from straight above, the most common one, the cross product is 0.
 // Returns: two unit vectors.
 // Units: none.
 // Domain: |axis| = 1, away from +y and -y.
@@ -13,8 +13,10 @@ fn reflective_shadow_map_basis_naive(axis: vec3f) -> ReflectiveShadowMapBasis {
     return ReflectiveShadowMapBasis(right, cross(axis, right));
 }
 
-// The usual test: how much nearer to the light the seen point is than the point itself. Kept to show where it fails: on a plane that light
-// grazes, the neighbouring texel is nearly as much nearer as it is wide, so that no bias serves both the plane and a thin body's shadow.
+// The usual test: the distance along the light by which the seen point is closer to the light than
+// the point itself. Kept to show where it fails: on a plane at grazing incidence, the neighbouring
+// texel is closer by almost its own width, so no single bias works for both the plane and the
+// shadow of a thin body.
 // Returns: distance along the light.
 // Units: world units.
 // Domain: coordinates up to 1e6, |toward_light| = 1.

@@ -1,9 +1,10 @@
 // srgb: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/srgb.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// Encodes with the power piece alone, unclamped, as much code does to save the branch.
-// Returns: srgb_encode(light) from 0.0031308 to 1; below it a value that is too dark, negative under 0.00083.
-// Units: as srgb_encode.
+// Encodes with the power piece alone and without a clamp, as much code does to avoid the branch.
+// Returns: srgb_encode(light) from 0.0031308 to 1; below that a value that is too dark, and
+//   negative under 0.00083.
+// Units: the same as for srgb_encode.
 // Domain: [0.0031308, 1].
 // Outside: -0.055 at 0, where the code value is 0; NaN for negative light, beyond 1 above 1.
 // Accuracy: naive
@@ -11,9 +12,10 @@ fn srgb_encode_naive(light: f32) -> f32 {
     return 1.055f * pow(light, 1.0f / 2.4f) - 0.055f;
 }
 
-// Decodes with the threshold of the standard's drafts, 0.03928, which is still the most copied one.
+// Decodes with 0.03928, the threshold of the standard's drafts, which is still the value copied
+// most often.
 // Returns: srgb_decode(encoded), except between 0.03928 and 0.04045.
-// Units: as srgb_encode.
+// Units: the same as for srgb_encode.
 // Domain: [0, 0.03928] and [0.04045, 1].
 // Outside: up to 2.5e-4 relative off between the two thresholds; negative below 0, without bound above 1.
 // Accuracy: naive
@@ -24,9 +26,9 @@ fn srgb_decode_naive(encoded: f32) -> f32 {
     return pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-// The tone curve as Khronos publishes it.
-// Returns: srgb_tone_curve(color) where the smallest channel is not small.
-// Units: as srgb_tone_curve.
+// The tone curve as published by Khronos.
+// Returns: srgb_tone_curve(color), unless the smallest channel is small.
+// Units: the same as for srgb_tone_curve.
 // Domain: channels in [0.01, 100].
 // Outside: a dark grey x comes out with an absolute error of x 2^-24 where its value is 6.25 x^2; a negative grey, darker than
 // black, comes out bright (-1 as 0.99), since the square in the toe forgets the sign.

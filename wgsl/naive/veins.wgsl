@@ -1,8 +1,8 @@
 // veins: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/veins.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// The cell by conversion to integers, as one writes it. Kept to show where it fails: conversion cuts towards 0, so that the cells about the origin are
-// two wide and mirrored.
+// The cell by conversion to integers, as usually written. Kept to show where it fails: conversion
+// truncates towards 0, so the cells around the origin are two wide and mirrored.
 // Returns: VeinsCell.
 // Units: cells.
 // Domain: positions above 0, up to 1e6.
@@ -13,9 +13,10 @@ fn veins_cell_naive(position: vec3f) -> VeinsCell {
     return VeinsCell(corner, position - vec3f(corner));
 }
 
-// The vein by the absolute value, as turbulence has it. Kept to show where it fails: it has a crease in the middle, and is negative away from it.
+// A vein by the absolute value, as in turbulence. Kept to show where it fails: it has a crease in
+// the middle of the vein and is negative away from it.
 // Returns: 1 - |value| / (2 width).
-// Units: as veins_fold.
+// Units: as for veins_fold.
 // Domain: |value| at most 1, width in [0.1, 1].
 // Outside: negative from twice the width on, so that no majorant bounds a density made of it.
 // Accuracy: naive

@@ -1,10 +1,11 @@
 // voxelization: the forms that one finds elsewhere, kept to show where they fail. They follow wgsl/voxelization.wgsl, and use its structs and functions.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 
-// voxelization_column in floats, as one finds it: each triangle counts the columns on its edges, and rounding decides which columns these are.
+// voxelization_column in floats, as usually written: each triangle counts the columns on its edges,
+// and rounding decides which columns these are.
 // Returns: VoxelizationColumn.
 // Units: as voxelization_column.
-// Domain: triangles that have an area as seen along x.
+// Domain: triangles with an area as seen along x.
 // Outside: columns on a shared edge count for both triangles; seen edge-on, depth is 0/0.
 // Accuracy: naive
 fn voxelization_column_naive(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> VoxelizationColumn {

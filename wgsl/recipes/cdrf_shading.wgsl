@@ -5,25 +5,30 @@
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 // compares: curvature
 //
-// Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space: what scales a mesh unevenly has been
-// applied to both (to normals by the inverse transpose), so that curvatures are those of the surface that is seen.
+// Draw 3 vertices per triangle without a vertex buffer. Positions and normals are in world space,
+// with any uneven scale of the mesh already applied to both (to normals by the inverse transpose),
+// so that curvatures are those of the visible surface.
 
-// Light that crosses inside from the lit side to the dark one. Called for by extras.lapidary.sigma0 above 0.
+// Light crosses inside the material from the lit side to the dark side. Called for by
+// extras.lapidary.sigma0 above 0.
 override EFFECT_CDRF: bool = true;  //+cdrf
-// Its form: 0 wrap lighting, 1 a table through a sampler, 2 a table by hand (formats that no sampler filters), 3 cheap, 4 accurate,
-// 5 quadrature, 6 spherical.
+// The form of the reflectance: 0 wrap lighting, 1 a table through a sampler, 2 a table filtered by
+// hand (for formats that no sampler filters), 3 cheap, 4 accurate, 5 quadrature, 6 spherical.
 override CDRF_FORM: u32 = 4u;  //+cdrf
-// Curvature: 0 mean, 1 of the section towards each light, 2 mean by the usual |dN| / |dP|, all from the pixel's derivatives; 3 mean, given for each
-// vertex. Derivatives need no data and jump from triangle to triangle of a coarse mesh; what vertices hold does not.
+// The source of the curvature. From the pixel's derivatives: 0 mean, 1 of the section towards each
+// light, 2 mean by the usual |dN| / |dP|. From the vertices: 3 mean. Derivatives need no data, but
+// jump between the triangles of a coarse mesh; curvatures given at the vertices do not.
 override CURVATURE_FORM: u32 = 0u;
-// All that arrives was drawn into the mesh's own texture and blurred there, instead: the recipes texture_irradiance and texture_diffusion.
+// Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
+// texture_irradiance and texture_diffusion.
 override EFFECT_TEXTURE_DIFFUSION: bool = false;  //+texture_diffusion
-// Bodies keep a light from one another and from themselves: the recipe reflective_shadow_map draws what each light sees before. Called for by the rung
-// lambert-shadowed, or by the user.
+// Bodies cast shadows on one another and on themselves: the recipe reflective_shadow_map draws each
+// light's view beforehand. Called for by the rung lambert-shadowed, or by the user.
 override EFFECT_SHADOW: bool = false;  //+shadow
-// Light from all around, beside the lights. Called for by an environment.
+// Light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;  //+environment
-// Its harmonics are summed for each vertex and interpolated, instead of for each pixel: they are smooth over any triangle that is.
+// Sums the environment's harmonics per vertex and interpolates them, instead of summing them per
+// pixel: over a triangle with smooth normals they are smooth too.
 override ENVIRONMENT_AT_VERTICES: bool = true;  //+environment
 
 //+cdrf {
@@ -44,35 +49,38 @@ struct CdrfView {
 }
 
 struct CdrfMaterial {
-    // Linear RGB: what the surface sends back of diffuse light.
+    // Diffuse reflectance of the surface, linear RGB.
     base_color: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
-    // In units of length, one for each channel; made safe by the host, once, as cdrf_sigma(sigma0, 1) makes it.
+    // sigma0 of each channel, in units of length; the host makes it safe once, as
+    // cdrf_sigma(sigma0, 1) does.
     sigma0: vec3f,
-    // The largest of the three: what a table that was baked for this material is looked up with.
+    // The largest of the three, for lookups in a table that was baked for this material.
     table_sigma0: f32,
     // Width of the microfacets' slopes, the square of the roughness; 0 for a polished surface.
     alpha: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: CdrfView;
-// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+// Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
+// which costs megabytes per body.
 @group(1) @binding(0) var<storage, read> material: CdrfMaterial;
-// Three floats a vertex.
+// Three floats per vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
 // Baked by the recipe cdrf_table with this material's tint.
 @group(1) @binding(4) var table: texture_2d<f32>;  //+cdrf
 @group(1) @binding(5) var table_sampler: sampler;  //+cdrf
-// Baked with the tint (1, 1, 1) for every material, of one channel, in a format that no sampler filters.
+// Baked with the tint (1, 1, 1) for all materials: one channel, in a format that no sampler
+// filters.
 @group(1) @binding(6) var table_texels: texture_2d<f32>;  //+cdrf
-// Mean curvature of each vertex, for the form that takes it from there; per unit of length.
+// Mean curvature of each vertex, for CURVATURE_FORM_VERTEX; per unit of length.
 @group(1) @binding(7) var<storage, read> curvatures: array<f32>;
-// Two floats a vertex, for texture diffusion.
+// Two floats per vertex, for texture diffusion.
 @group(1) @binding(8) var<storage, read> uvs: array<f32>;  //+texture_diffusion
-// Irradiance, blurred.
+// Blurred irradiance.
 @group(1) @binding(9) var diffused: texture_2d<f32>;  //+texture_diffusion
 @group(1) @binding(10) var diffused_sampler: sampler;  //+texture_diffusion
 
@@ -81,7 +89,7 @@ struct CdrfVertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) curvature: f32,
-    // HarmonicsAround, where it is summed for each vertex.
+    // HarmonicsAround, if it is summed per vertex.
     @location(3) around_zeroth: vec3f,  //+environment
     @location(4) around_first: vec3f,  //+environment
     @location(5) around_second: vec3f,  //+environment
@@ -124,7 +132,7 @@ fn cdrf_vertex(@builtin(vertex_index) vertex: u32) -> CdrfVertex {
     );
 }
 
-// The derivatives of a pixel, and what curvature follows from them.
+// The derivatives at a pixel, and the curvature that follows from them.
 struct CdrfSurface {
     position_x: vec3f,
     position_y: vec3f,
@@ -133,7 +141,7 @@ struct CdrfSurface {
     curvature: f32,
 }
 
-// Outside of every branch: derivatives need the neighbouring pixels.
+// The surface at a pixel. Call it outside all branches: derivatives need the neighbouring pixels.
 fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     let position_x = dpdx(input.position);
     let position_y = dpdy(input.position);
@@ -148,21 +156,22 @@ fn cdrf_surface(input: CdrfVertex) -> CdrfSurface {
     return CdrfSurface(position_x, position_y, normal_x, normal_y, curvature);
 }
 
-// The unit normal. Where interpolation between opposite normals leaves none, the surface counts as facing the eye.
+// The unit normal. If interpolation between opposite normals leaves no direction, the surface
+// counts as facing the eye.
 fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     let squared = dot(normal, normal);
     return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 }
 
 //+cdrf {
-// Width of the Gaussian for each channel: cdrf_sigma, of which sigma0's half is done.
+// Width of the Gaussian for each channel: cdrf_sigma, with sigma0 already made safe by the host.
 fn cdrf_sigmas(curvature: f32) -> vec3f {
     return material.sigma0 * abs(cdrf_finite(curvature));
 }
 //+cdrf }
 
 //+cdrf {
-// The table by hand, blended between four texels.
+// Looks up the table by hand, blending four texels.
 fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
     let texels = cdrf_texels(cdrf_table_coordinates(cosine, sigma), textureDimensions(table_texels));
     return cdrf_blend(
@@ -175,7 +184,7 @@ fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
 }
 //+cdrf }
 
-// The reflectance towards one light, for each channel.
+// The reflectance towards one light, per channel.
 fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     if (!EFFECT_CDRF) {  //+cdrf
         return vec3f(cdrf_lambert(cosine));
@@ -206,7 +215,8 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
 }
 
 //+shadow {
-// The share of a light that nothing keeps away. A surface that turns away from the light is in the dark by itself.
+// The visible share of a light. A surface that faces away from the light needs no shadow to be
+// dark, so it gets 1.
 fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 {
     if (cosine <= 0.0f) {
         return 1.0f;
@@ -214,8 +224,9 @@ fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 
     return shadow_of_light(light, position, normal);
 }
 
-// A reflectance without the light that is kept from the point itself, the clamped cosine; what came in beside it stays. So nothing changes at the
-// terminator, where a mask over the whole reflectance would have an edge.
+// The reflectance without the shadowed share of the light that falls on the point itself, the
+// clamped cosine; light that entered nearby stays. So nothing changes at the terminator, where a
+// mask over the whole reflectance would have an edge.
 fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
     return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
 }
@@ -261,7 +272,7 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
 }
 
 //+microfacet {
-// What the surface sends of each light towards the eye, unspread.
+// Radiance that the surface reflects from all lights towards the eye, without spreading it.
 fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
     for (var index = 0u; index < arrayLength(&lights); index++) {

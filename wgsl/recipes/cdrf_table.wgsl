@@ -3,17 +3,19 @@
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function": the lookup table.
 // requires: cdrf
 //
-// Whoever uploads the texels converts them to the texture's format. An odd width puts a column on the terminator.
+// The host converts the texels to the texture's format when it uploads them. An odd width puts a
+// column on the terminator.
 
 struct CdrfTableBake {
-    // Columns are cosines from -1 to 1, rows are sigma / (1 + sigma) from 0 to 1.
+    // Size of the table: columns are cosines from -1 to 1, rows are sigma / (1 + sigma) from 0 to
+    // 1.
     size: vec2u,
-    // Each channel's sigma0 as a share of the largest.
+    // sigma0 of each channel as a share of the largest.
     tint: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> bake: CdrfTableBake;
-// Row by row; alpha is 1.
+// Texels row by row; alpha is 1.
 @group(0) @binding(1) var<storage, read_write> texels: array<vec4f>;
 
 @compute @workgroup_size(8, 8)

@@ -3,20 +3,23 @@
 // Source: IEC 61966-2-1:1999 (encoding); Khronos PBR Neutral tone mapper.
 // requires: srgb
 //
-// sRGB is encoded here rather than by an `*-srgb` target, so that every driver rounds alike.
+// sRGB is encoded here rather than by an `*-srgb` target, so that every driver rounds in the same
+// way.
 //
-// The tone curve comes before the average: a pixel of the display emits the mean of the light that its samples would emit. After the average it
-// would come too late: one sample of radiance 20 among fifteen dark ones is 1.25 in the mean and almost white, and a bright edge a staircase.
-// The same as a mean of radiance with each sample weighted by the ratio of its curve's value to its radiance.
+// The tone curve comes before the average: a pixel of the display emits the mean of the light that
+// its samples would emit. After the average the curve would come too late: one sample of radiance
+// 20 among fifteen dark ones has a mean of 1.25, which is almost white, and a bright edge becomes a
+// staircase. The result is that of averaging radiance with each sample weighted by the ratio of its
+// curve's value to its radiance.
 
 // Samples along each side of a pixel.
 override SAMPLES: u32 = 4u;
 
 struct DisplayFrame {
-    // Where this tile starts in the picture, and the picture's size, in pixels.
+    // Start of this tile in the picture, and size of the picture, in pixels.
     tile: vec2f,
     size: vec2f,
-    // Radiance is multiplied by this before the tone curve.
+    // Factor for radiance before the tone curve.
     exposure: f32,
 }
 
@@ -24,9 +27,10 @@ struct DisplayFrame {
 @group(0) @binding(1) var samples: texture_2d<f32>;
 
 struct DisplayOutput {
-    // The plain mean of linear radiance before the exposure, without the backdrop; alpha is the share of samples that are covered.
+    // Plain mean of linear radiance before the exposure, without the backdrop; alpha is the share
+    // of covered samples.
     @location(0) linear: vec4f,
-    // The mean of the tone-mapped samples, encoded, opaque.
+    // Mean of the tone-mapped samples, encoded, opaque.
     @location(1) encoded: vec4f,
 }
 
@@ -37,7 +41,8 @@ fn display_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4
     return vec4f(4.0f * corner - 1.0f, 0.0f, 1.0f);
 }
 
-// A dark seamless paper: a soft light behind the stone that falls off towards the picture's edges. Linear RGB.
+// A backdrop of dark seamless paper, with a soft light behind the stone that falls off towards the
+// picture's edges. Linear RGB.
 fn display_backdrop(pixel: vec2f) -> vec3f {
     let shorter = min(frame.size.x, frame.size.y);
     let from_light = (pixel - vec2f(0.5f, 0.55f) * frame.size) / shorter;

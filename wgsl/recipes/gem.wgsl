@@ -5,21 +5,22 @@
 // parts: mesh, mesh_normals, surroundings, gem_shading
 // compares: closest_point
 //
-// Draw 3 vertices per triangle without a vertex buffer: the mesh itself is read from storage buffers, so that
-// each vertex sees its whole triangle and the proxy needs no further data and no further pass.
+// Draw 3 vertices per triangle without a vertex buffer: the mesh is read from storage buffers, so
+// that each vertex sees its whole triangle and the proxy needs no further data and no further pass.
 
-// Light through the stone; off, only its surface reflects (the paper's Fig. 2). Called for by KHR_materials_transmission.
+// Light passes through the stone; if off, only its surface reflects (the paper's Fig. 2). Called
+// for by KHR_materials_transmission.
 override EFFECT_PROXY_GEOMETRY: bool = true;  //+proxy_geometry
-// The proxy's centre by the paper's eq. (4) instead of the stable form.
+// Computes the proxy's centre by the paper's eq. (4) instead of the stable form.
 override CENTRE_PAPER: bool = false;  //+proxy_geometry
 
-// Three floats a vertex, shared by the facets that meet there, averaged by angle.
+// Three floats per vertex: normals shared by the facets that meet there, averaged by angle.
 @group(2) @binding(0) var<storage, read> normals: array<f32>;  //+proxy_geometry
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
-    // The rest is one value a triangle.
+    // The remaining members have one value per triangle.
     @location(1) @interpolate(flat, either) face_normal: vec3f,
     @location(2) @interpolate(flat, either) centre: vec3f,  //+proxy_geometry
     @location(3) @interpolate(flat, either) plane_origin: vec3f,  //+proxy_geometry
@@ -52,7 +53,8 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     var centre = position_a;
     if (EFFECT_PROXY_GEOMETRY) {
         centre = gem_centre(indices[first], indices[first + 1u], indices[first + 2u]);
-        // Where normals spread inwards, at a dent, the lines meet outside. Such a triangle takes the fallback.
+        // At a dent, where normals diverge inwards, the lines meet outside. Such a triangle takes
+        // the fallback.
         if (dot(face_normal, position_a - centre) <= 0.0f) {
             centre = closest_point_fallback(position_a, position_b, position_c);
         }
@@ -71,7 +73,8 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
 }
 
 //+proxy_geometry {
-// A ray inside: the plane that it travels towards. All planes of a triangle's proxy are parallel to it.
+// The place of a ray inside: the plane that it travels towards. All planes of a triangle's proxy
+// are parallel to the triangle.
 struct GemPlace {
     plane: ProxyGeometryPlane,
     centre: vec3f,
@@ -82,7 +85,8 @@ fn gem_enter(input: GemVertex) -> GemPlace {
     return GemPlace(ProxyGeometryPlane(input.plane_origin, input.edge_first, input.edge_second), input.centre, input.face_normal);
 }
 
-// The tile of the plane that the ray meets. A ray that a tile has turned away from the next plane, or along it, meets none.
+// The hit on a tile of the plane. A ray misses the next plane if a tile has turned it away from
+// that plane or parallel to it.
 fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) -> GemHit {
     let plane = (*place).plane;
     let hit = proxy_geometry_intersect(position, direction, plane.origin, (*place).normal);
@@ -112,7 +116,8 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     return vec4f(radiance.surface, 1.0f);
 }
 
-// For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
+// For a deferred renderer, in place of gem_fragment; gem_composite shows how the lighting pass uses
+// it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
     return gem_geometry_buffer(input, EFFECT_PROXY_GEOMETRY);  //+proxy_geometry

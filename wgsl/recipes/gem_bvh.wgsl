@@ -4,11 +4,13 @@
 // requires: absorption, bvh_trace, dispersion, environment, fresnel, proxy_geometry, refraction
 // parts: mesh, surroundings, trace_nearest, gem_shading
 //
-// Draw as the recipe `gem`, with the index buffer in the order of the leaves, and bind the nodes besides.
+// Draw it like the recipe `gem`, with the index buffer in the order of the leaves, and also bind
+// the nodes.
 
-// Light through the stone; off, only its surface reflects. Called for by KHR_materials_transmission.
+// Light passes through the stone; if off, only its surface reflects. Called for by
+// KHR_materials_transmission.
 override EFFECT_BVH_TRACE: bool = true;  //+bvh_trace
-// The root first; the two children of a node side by side.
+// The root is first; the two children of a node are side by side.
 @group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;  //+bvh_trace
 
 struct GemVertex {
@@ -39,7 +41,8 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
 }
 
 //+bvh_trace {
-// A ray inside: the triangle that it left last, which it cannot meet again at once.
+// The place of a ray inside: the triangle that it left last, which it cannot meet again
+// immediately.
 struct GemPlace {
     triangle: u32,
 }
@@ -74,7 +77,8 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     return vec4f(radiance.surface, 1.0f);
 }
 
-// For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
+// For a deferred renderer, in place of gem_fragment; gem_composite shows how the lighting pass uses
+// it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
     return gem_geometry_buffer(input, EFFECT_BVH_TRACE);  //+bvh_trace

@@ -4,12 +4,13 @@
 // requires: environment, refraction
 // parts: surroundings
 //
-// The stone is lit like any other surface: its emission is added to what its surface reflects. The position comes back from depth.
+// The stone is lit like any other surface: its emission is added to the reflection in its surface.
+// The position is reconstructed from the depth.
 
 struct GemCompositeView {
     world_from_clip: mat4x4f,
     eye: vec3f,
-    // Of the geometry buffer, in texels.
+    // Size of the geometry buffer in texels.
     size: vec2f,
 }
 
@@ -26,7 +27,7 @@ fn gem_composite_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(position
     return vec4f(4.0f * corner - 1.0f, 0.0f, 1.0f);
 }
 
-// The point of the world that a texel of the depth buffer shows. `texel` is its middle.
+// The world position that a texel of the depth buffer shows. `texel` is the centre of that texel.
 fn gem_composite_position(texel: vec2f, depth_value: f32) -> vec3f {
     let clip = vec4f(2.0f * texel.x / view.size.x - 1.0f, 1.0f - 2.0f * texel.y / view.size.y, depth_value, 1.0f);
     let world = view.world_from_clip * clip;

@@ -4,14 +4,16 @@
 // requires: absorption, convex_trace, dispersion, environment, fresnel, proxy_geometry, refraction
 // parts: mesh, surroundings, gem_shading
 //
-// Draw as the recipe `gem`, and bind the stone's facet planes besides. One stone a draw, and a convex one.
+// Draw it like the recipe `gem`, and also bind the stone's facet planes. Each draw takes one stone,
+// which must be convex.
 
-// Light through the stone; off, only its surface reflects. Called for by KHR_materials_transmission.
+// Light passes through the stone; if off, only its surface reflects. Called for by
+// KHR_materials_transmission.
 override EFFECT_CONVEX_TRACE: bool = true;  //+convex_trace
 
-// Outward unit normal and distance from the origin, in world space.
+// Outward unit normal of each facet plane and its distance from the origin, in world space.
 @group(2) @binding(0) var<storage, read> planes: array<vec4f>;
-// The plane that each triangle lies in.
+// The number of each triangle's plane.
 @group(2) @binding(1) var<storage, read> face_of_triangle: array<u32>;
 
 struct GemVertex {
@@ -34,7 +36,7 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
 }
 
 //+convex_trace {
-// A ray inside: the facet that it left last, which it cannot meet again at once.
+// The place of a ray inside: the facet that it left last, which it cannot meet again immediately.
 struct GemPlace {
     face: u32,
 }
@@ -73,7 +75,8 @@ fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     return vec4f(radiance.surface, 1.0f);
 }
 
-// For a deferred renderer, in place of gem_fragment; gem_composite shows how its lighting pass uses it.
+// For a deferred renderer, in place of gem_fragment; gem_composite shows how the lighting pass uses
+// it.
 @fragment
 fn gem_deferred_fragment(input: GemVertex) -> GemGeometryBuffer {
     return gem_geometry_buffer(input, EFFECT_CONVEX_TRACE);  //+convex_trace

@@ -10,7 +10,7 @@
 override DENSITY_FROM_TEXTURE: bool = false;
 
 struct OpticalPathBox {
-    // Of the texture, in world units.
+    // The corners of the texture's box, in world units.
     least: vec3f,
     greatest: vec3f,
 }
@@ -26,7 +26,9 @@ fn optical_path_texel(texel: vec3u) -> f32 {
     return textureLoad(densities, texel, 0).x;
 }
 
-// Between the middles of texels linearly, by hand: 32-bit float textures need not be filterable. Outside of those the nearest counts.
+// The density at a position, interpolated linearly between texel centres. The interpolation is done
+// by hand because 32-bit float textures need not be filterable. Outside the texel centres the
+// nearest value counts.
 fn optical_path_sampled(position: vec3f) -> f32 {
     let size = textureDimensions(densities);
     let place = (position - extent.least) / (extent.greatest - extent.least) * vec3f(size) - 0.5f;
@@ -47,8 +49,9 @@ fn optical_path_sampled(position: vec3f) -> f32 {
     return mix(near, far, weight.z);
 }
 
-// Whether there is matter in a voxel or about it, where shading interpolates: in the same word of the nine rows about it. What is in the next word is
-// not looked for; at a word's ends there may always be some.
+// Whether there is matter in or next to a voxel, where shading interpolates. Only the same word of
+// the nine rows around it is read, not the next word; a voxel at either end of a word always counts
+// as near matter.
 fn optical_path_near_matter(voxel: vec3u) -> bool {
     let lower = max(voxel.yz, vec2u(1u)) - 1u;
     let upper = min(voxel.yz + 1u, vec2u(grid.cells - 1u));

@@ -4,29 +4,31 @@
 // requires: optical_path, reflective_shadow_map, voxelization
 // parts: lights, light_views, matter
 //
-// Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed_texel with an invocation for each texel of each map. One channel at a
-// time: costs are those of red, green or blue.
+// Dispatch optical_path_clear with (1, cells, cells) workgroups, then optical_path_seed_texel with
+// an invocation for each texel of each map. Process one channel at a time: costs are those of red,
+// green or blue.
 
-// Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
+// The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
+// densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
 
 struct OpticalPathSeeding {
     grid: VoxelizationGrid,
-    // Per unit of length, in this channel, where the density is 1.
+    // Extinction per unit of length in this channel, where the density is 1.
     extinction: f32,
-    // The irradiance whose cost is 0: at least as much as arrives anywhere.
+    // The irradiance whose cost is 0: at least the greatest that arrives anywhere.
     largest: f32,
-    // 0 red, 1 green, 2 blue.
+    // The channel: 0 red, 1 green, 2 blue.
     channel: u32,
 }
 
 @group(0) @binding(0) var<uniform> seeding: OpticalPathSeeding;
-// Bindings 2, 4 and 5 are the parts'.
+// Bindings 2, 4 and 5 belong to the parts.
 @group(1) @binding(0) var<storage, read_write> costs: array<atomic<u32>>;
 @group(1) @binding(1) var<storage, read> matter: array<u32>;
 @group(1) @binding(2) var<storage, read> density: array<f32>;  //+extinction_per_voxel
 
-// Nothing is reached as yet.
+// Sets all voxels to unreached.
 @compute @workgroup_size(64)
 fn optical_path_clear(@builtin(local_invocation_index) invocation: u32, @builtin(workgroup_id) row: vec3u) {
     for (var x = invocation; x < seeding.grid.cells; x += 64u) {
@@ -44,7 +46,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     if (seen.w <= 0.0f) {
         return;
     }
-    // The map shows other bodies too.
+    // The map also shows other bodies.
     let inside = voxelization_local(seeding.grid, seen.xyz);
     if (any(inside < vec3f(0.0f)) || any(inside > vec3f(f32(seeding.grid.cells)))) {
         return;
@@ -57,7 +59,8 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     let share = arrival.irradiance[seeding.channel] * seen.w / seeding.largest;
     let own = optical_path_extinction_at(voxel);  //+extinction_per_voxel
     let last = vec3i(i32(seeding.grid.cells) - 1i);
-    // Where a front begins, solvers err most. So all voxels about the texel begin with their true distances from it.
+    // Solvers have their largest errors where a front begins, so all voxels around the texel start
+    // with their true distances from it.
     for (var index = 0i; index < 27i; index++) {
         let step = vec3i(index % 3i, (index / 3i) % 3i, index / 9i) - 1i;
         let place = vec3i(voxel) + step;
@@ -75,7 +78,7 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
         let offset = distance(seen.xyz, voxelization_centre(seeding.grid, near));
         let cost = optical_path_encode(optical_path_seed(share, extinction, offset));
         let node = voxelization_index(seeding.grid, near);
-        // A look at what is there spares most of the writes, which are dear.
+        // Reading first avoids most of the atomic writes, which are expensive.
         if (cost < atomicLoad(&costs[node])) {
             atomicMin(&costs[node], cost);
         }

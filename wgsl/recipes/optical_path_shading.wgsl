@@ -4,16 +4,20 @@
 // requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 //
-// Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes voxelization, reflective_shadow_map,
-// optical_path_seed and a solver have filled the costs.
+// Draw 3 vertices per triangle without a vertex buffer, in world space, after the recipes
+// voxelization, reflective_shadow_map, optical_path_seed and a solver have filled the costs.
 
-// Light through the body; off, only what falls on the surface itself is sent back. Called for by extras.lapidary.scattering and absorption.
+// Light through the body. If off, only light that falls on the surface itself is reflected
+// diffusely. Called for by extras.lapidary.scattering and absorption.
 override EFFECT_OPTICAL_PATH: bool = true;  //+optical_path
-// Red, green and blue each have costs of their own; off, the first serves all three. Called for by an extinction or a light that is not grey.
+// Separate costs for red, green and blue. If off, the first serves all three. Called for by an
+// extinction or a light that is not grey.
 override EFFECT_COLOR: bool = true;  //+color
-// Extinction differs from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of densities.
+// The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
+// densities.
 override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
-// Diffuse light from all around, beside the lights. It goes no way through the body. Called for by an environment.
+// Diffuse light from all around, in addition to the lights. It does not travel through the body.
+// Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;  //+environment
 
 struct OpticalPathView {
@@ -23,23 +27,25 @@ struct OpticalPathView {
 
 struct OpticalPathBody {
     grid: VoxelizationGrid,
-    // Linear RGB: what the surface sends back of diffuse light.
+    // The surface's diffuse reflectance, linear RGB.
     base_color: vec3f,
     // Index of refraction, relative to the medium outside.
     index: f32,
-    // Per unit of length, where the density is 1; with the scale in it.
+    // Extinction per unit of length where the density is 1, including the scale.
     extinction: vec3f,
-    // Width of the microfacets' slopes, the square of the roughness; 0 for a polished surface.
+    // Width of the distribution of microfacet slopes, the square of the roughness; 0 for a polished
+    // surface.
     alpha: f32,
     // The irradiance whose cost is 0, for each channel.
     largest: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> view: OpticalPathView;
-// Bindings 1 to 5 are the parts'.
-// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+// Bindings 1 to 5 belong to the parts.
+// The body is not a uniform because lavapipe compiles the shader anew for each uniform buffer that
+// it is drawn with, which takes megabytes for every body.
 @group(1) @binding(0) var<storage, read> body: OpticalPathBody;
-// Three floats a vertex.
+// Three floats per vertex.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
@@ -63,7 +69,7 @@ fn optical_path_vertex(@builtin(vertex_index) vertex: u32) -> OpticalPathVertex 
 
 //+optical_path {
 //+extinction_per_voxel {
-// Density at a point, between the middles of voxels linearly.
+// The density at a point, interpolated linearly between voxel centres.
 fn optical_path_density(position: vec3f) -> f32 {
     let place = (position - body.grid.origin) / body.grid.spacing - 0.5f;
     let inside = clamp(place, vec3f(0.0f), vec3f(f32(body.grid.cells - 1u)));
@@ -89,7 +95,8 @@ fn optical_path_density(position: vec3f) -> f32 {
 }
 //+extinction_per_voxel }
 
-// What is left of the largest irradiance along the cheapest way from the 27 voxels about a point.
+// The share of the largest irradiance that reaches a point along the cheapest path through the 27
+// voxels around it.
 fn optical_path_along(position: vec3f) -> vec3f {
     let around = vec3i(voxelization_voxel(body.grid, position));
     let last = i32(body.grid.cells) - 1i;
@@ -133,7 +140,8 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
 
     var received = vec3f(0.0f);
     var highlights = vec3f(0.0f);  //+microfacet
-    // A light's views lie one after another. On the seam of two both see the point, and it counts once.
+    // The views of a light are consecutive. At a seam between two views both see the point, but it
+    // counts once.
     var counted = arrayLength(&lights);
     for (var layer = 0u; layer < arrayLength(&views); layer++) {
         let light = views[layer].light;
@@ -153,7 +161,7 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
     }
     //+optical_path {
     if (EFFECT_OPTICAL_PATH) {
-        // What falls on the point itself is one of the ways, of no length.
+        // Light that falls on the point itself takes one of the paths, of length 0.
         received = max(received, body.largest * optical_path_along(input.position));
     }
     //+optical_path }

@@ -5,16 +5,20 @@
 // parts: matter, optical_path_grid
 // compares: optical_path
 //
-// 1. `optical_path_sweep_begin`.
-// 2. As often as passes are granted: `optical_path_sweep_next`, one workgroup, then, by the arguments that it has written,
-//    - `optical_path_sweep_pull`, with `costs` and `work` exchanged in every second pass, an even number of times: every voxel takes the least that its neighbours offer;
-//    - or `optical_path_sweep_push`, the paper's: every voxel that was written in the last pass offers its value to its six neighbours.
-//    After the first pass that changes nothing the others have no workgroups.
+// 1. Dispatch `optical_path_sweep_begin`.
+// 2. For each pass of the budget, dispatch `optical_path_sweep_next` with one workgroup, then, with
+//    the indirect arguments that it has written, either
+//    - `optical_path_sweep_pull`, with `costs` and `work` exchanged in every second pass, for an
+//      even number of passes: every voxel takes the least that its neighbours offer; or
+//    - `optical_path_sweep_push`, the paper's method: every voxel that was written in the last pass
+//      offers its value to its six neighbours.
+//    After the first pass that changes nothing, the remaining passes have no workgroups.
 
-// Pull: what `costs` becomes in this pass. Push: the number of the pass in which the voxel's cost is to be offered.
+// Pull: the new `costs` of this pass. Push: the number of the pass in which the voxel's cost is to
+// be offered.
 @group(0) @binding(6) var<storage, read_write> work: array<atomic<u32>>;
 
-// Whether this solve is the paper's.
+// Solves by the paper's method.
 override OPTICAL_PATH_PAPER: bool = false;
 
 @compute @workgroup_size(8, 8, 1)
@@ -66,7 +70,7 @@ fn optical_path_sweep_pull(@builtin(global_invocation_id) voxel: vec3u) {
                 let axes = u32(abs(x) + abs(y) + abs(z));
                 let place = vec3u(vec3i(voxel) + vec3i(x, y, z));
                 let in_stencil = axes == 1u || (axes == 2u && OPTICAL_PATH_STENCIL >= 18u) || (axes == 3u && OPTICAL_PATH_STENCIL == 26u);
-                // Below 0 wraps round.
+                // Coordinates below 0 wrap round to large ones.
                 if in_stencil && all(place < vec3u(grid.cells)) {
                     let neighbour = optical_path_voxel(place);
                     let length = grid.spacing * select(select(1.7320508f, 1.4142135f, axes == 2u), 1.0f, axes == 1u);
@@ -99,7 +103,7 @@ fn optical_path_sweep_push(@builtin(global_invocation_id) voxel: vec3u) {
             let edge = optical_path_edge_paper(extinction, optical_path_extinction(neighbour));
             let offered = optical_path_encode(optical_path_relax(OPTICAL_PATH_UNREACHED, cost, edge));
             if offered < atomicMin(&costs[neighbour], offered) {
-                // Twice in a pass is once in the next.
+                // A voxel written twice in a pass is listed once for the next.
                 if atomicExchange(&work[neighbour], progress.step + 1u) != progress.step + 1u {
                     atomicAdd(&progress.listed[progress.step & 1u], 1u);
                 }

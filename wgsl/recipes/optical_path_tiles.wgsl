@@ -4,31 +4,36 @@
 // requires: optical_path
 // parts: matter, optical_path_grid
 //
-// 1. `optical_path_tiles_begin`, an invocation for each tile.
-// 2. As often as passes are granted: `optical_path_tiles_next`, one workgroup, then `optical_path_tiles_update` by the arguments that it has
-//    written: an invocation for each listed tile. Once no tile is listed the passes have no workgroups.
+// 1. `optical_path_tiles_begin`, one invocation per tile.
+// 2. For each allowed pass: `optical_path_tiles_next`, one workgroup, then
+//    `optical_path_tiles_update`, dispatched indirectly with the arguments that the former has
+//    written: one invocation per listed tile. Once no tile is listed, the passes have no
+//    workgroups.
 //
-// An invocation holds its tile and the voxels about it in registers, so that nothing waits for anything. It lists the tiles that its changes may lower, and
-// itself if it is not done. A tile may read a neighbour's costs before or after these change in the same pass: in the next it reads them again.
+// An invocation holds its tile and the voxels around it in registers, so that nothing waits. It
+// lists the tiles that its changes may lower, and its own tile if that is not done. A tile may read
+// a neighbour's costs before or after these change in the same pass; in the next pass it reads them
+// again.
 
-// Costs by the Eikonal equation instead of along edges.
+// Computes costs by the Eikonal equation instead of along edges.
 override OPTICAL_PATH_GODUNOV: bool = false;
 
-// Rounds over a tile in a pass.
+// Rounds over a tile per pass.
 const OPTICAL_PATH_ROUNDS: u32 = 2u;
-// Invocations of a workgroup.
+// Invocations per workgroup.
 const OPTICAL_PATH_GROUP: u32 = 32u;
-// Godunov's costs count as changed from this on, and from this share of theirs: in f32 they never come to rest by themselves.
+// Tolerance of Godunov's costs, absolute for costs up to 1 and relative above. A smaller decrease
+// does not count as a change: in f32 these costs never settle by themselves.
 const OPTICAL_PATH_TOLERANCE: f32 = 1e-5f;
 
-// By tile: 64 bits of matter.
+// 64 bits of matter per tile.
 @group(0) @binding(6) var<storage, read_write> tile_matter: array<vec2u>;
-// By tile: the last pass for which it was listed.
+// The last pass for which each tile was listed.
 @group(0) @binding(7) var<storage, read_write> tile_listed: array<atomic<u32>>;
-// Two lists, one after the other: for passes of even and of odd number.
+// Two lists, one after the other: for passes with even and with odd numbers.
 @group(0) @binding(8) var<storage, read_write> lists: array<u32>;
 
-// Four voxels along x, with those before and after.
+// Four voxels along x, with the voxels before and after them.
 struct OpticalPathRow {
     before: f32,
     inner: vec4f,
@@ -37,7 +42,7 @@ struct OpticalPathRow {
 
 // Six rows along y.
 alias OpticalPathPlane = array<OpticalPathRow, 6>;
-// A row in the middle and those about it: y within z.
+// A row in the middle and the eight rows around it: y within z.
 alias OpticalPathNine = array<OpticalPathRow, 9>;
 
 fn optical_path_tiles_side() -> u32 {
@@ -49,7 +54,7 @@ fn optical_path_tile_corner(tile: u32) -> vec3u {
     return 4u * vec3u(tile % side, tile / side % side, tile / side / side);
 }
 
-// Lists a tile for the pass of number `pass_number`, once.
+// Lists a tile for the pass with the number `pass_number`, at most once.
 fn optical_path_list(tile: u32, pass_number: u32) {
     if atomicExchange(&tile_listed[tile], pass_number + 1u) != pass_number + 1u {
         let parity = pass_number & 1u;
@@ -71,7 +76,7 @@ fn optical_path_tiles_begin(@builtin(global_invocation_id) invocation: vec3u) {
     var least = unreached;
     for (var row = 0u; row < 16u; row++) {
         let first = corner + vec3u(0u, row & 3u, row >> 2u);
-        // A row of a tile never lies in two words.
+        // A row of a tile never spans two words.
         let word = matter_word(grid.cells, first);
         let four = (word >> (first.x & 31u)) & 15u;
         bits[row >> 3u] |= four << (4u * (row & 7u));
@@ -102,10 +107,10 @@ fn optical_path_cost(inside: bool, index: u32) -> f32 {
     return select(OPTICAL_PATH_UNREACHED, optical_path_decode(atomicLoad(&costs[select(0u, index, inside)])), inside);
 }
 
-// The row of a tile at `corner`, one voxel further out on every side: y and z from 0 to 5.
+// A row of the tile at `corner`, extended by one voxel on every side: y and z run from 0 to 5.
 fn optical_path_row(corner: vec3u, y: u32, z: u32) -> OpticalPathRow {
     let place = corner.yz + vec2u(y, z) - 1u;
-    // Below 0 wraps round.
+    // Values below 0 wrap around.
     let inside = all(place < vec2u(grid.cells));
     let index = optical_path_voxel(vec3u(corner.x, place));
     return OpticalPathRow(
@@ -131,7 +136,7 @@ fn optical_path_plane(corner: vec3u, z: u32) -> OpticalPathPlane {
     );
 }
 
-// Extinctions in the place of costs.
+// The same for extinctions instead of costs.
 fn optical_path_row_extinctions(corner: vec3u, y: u32, z: u32) -> OpticalPathRow {
     let place = min(max(corner.yz + vec2u(y, z), vec2u(1u)) - 1u, vec2u(grid.cells - 1u));
     let index = optical_path_voxel(vec3u(corner.x, place));
@@ -184,17 +189,17 @@ fn optical_path_after(row: OpticalPathRow) -> vec4f {
     return vec4f(row.inner.yzw, row.after);
 }
 
-// The lesser of the neighbours before and after.
+// The smaller of the neighbours before and after.
 fn optical_path_beside(row: OpticalPathRow) -> vec4f {
     return min(optical_path_before(row), optical_path_after(row));
 }
 
-// What neighbours of other extinctions offer, along edges of one length.
+// Costs after the offers of neighbours with other extinctions, along edges of one length.
 fn optical_path_offered(cost: vec4f, extinction: vec4f, neighbours: vec4f, extinctions: vec4f, length: f32) -> vec4f {
     return optical_path_relax_four(cost, neighbours, optical_path_edge_four(extinction, extinctions, length));
 }
 
-// The same of a row that shares faces with this one.
+// The same for neighbours in a row that shares faces with this one.
 fn optical_path_from_beside(cost: vec4f, extinction: vec4f, row: OpticalPathRow, others: OpticalPathRow) -> vec4f {
     let slant = grid.spacing * 1.4142135f;
     var least = optical_path_offered(cost, extinction, row.inner, others.inner, grid.spacing);
@@ -205,7 +210,7 @@ fn optical_path_from_beside(cost: vec4f, extinction: vec4f, row: OpticalPathRow,
     return least;
 }
 
-// The same of a row that shares edges with this one.
+// The same for neighbours in a row that shares edges with this one.
 fn optical_path_from_across(cost: vec4f, extinction: vec4f, row: OpticalPathRow, others: OpticalPathRow) -> vec4f {
     let slant = grid.spacing * 1.7320508f;
     var least = optical_path_offered(cost, extinction, row.inner, others.inner, grid.spacing * 1.4142135f);
@@ -216,7 +221,7 @@ fn optical_path_from_across(cost: vec4f, extinction: vec4f, row: OpticalPathRow,
     return least;
 }
 
-// A row once more, from itself and the eight about it: the next costs of its four voxels.
+// Relaxes a row once, from itself and the eight rows around it: the next costs of its four voxels.
 fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bits: u32) -> vec4f {
     let row = rows[4];
     var cost = row.inner;
@@ -248,7 +253,8 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
         }
     //+extinction_per_voxel }
     } else {
-        // Edges of one length cost the same: the least neighbour along them offers most.
+        // Edges of one length cost the same, so the neighbour with the smallest cost offers the
+        // most.
         let sigma = grid.extinction;
         let near = min(
             optical_path_beside(row),
@@ -277,7 +283,8 @@ fn optical_path_relaxed(rows: OpticalPathNine, extinctions: OpticalPathNine, bit
     return select(vec4f(OPTICAL_PATH_UNREACHED), cost, is_matter);
 }
 
-// The four inner rows of a plane, one after the other, each from what the one before has become; `low`, `same` and `high` hold extinctions.
+// Relaxes the four inner rows of a plane one after the other, each from the updated row before it;
+// `low`, `same` and `high` hold extinctions.
 fn optical_path_rising(below: OpticalPathPlane, own: OpticalPathPlane, above: OpticalPathPlane, low: OpticalPathPlane, same: OpticalPathPlane, high: OpticalPathPlane, bits: u32) -> OpticalPathPlane {
     var plane = own;
     plane[1].inner = optical_path_relaxed(
@@ -303,7 +310,7 @@ fn optical_path_rising(below: OpticalPathPlane, own: OpticalPathPlane, above: Op
     return plane;
 }
 
-// The same from the last row to the first.
+// The same, from the last row to the first.
 fn optical_path_falling(below: OpticalPathPlane, own: OpticalPathPlane, above: OpticalPathPlane, low: OpticalPathPlane, same: OpticalPathPlane, high: OpticalPathPlane, bits: u32) -> OpticalPathPlane {
     var plane = own;
     plane[4].inner = optical_path_relaxed(
@@ -329,7 +336,7 @@ fn optical_path_falling(below: OpticalPathPlane, own: OpticalPathPlane, above: O
     return plane;
 }
 
-// A bit for each of the plane's sixteen voxels whose cost has changed.
+// One bit for each of the plane's sixteen voxels, set if its cost has changed.
 fn optical_path_changed(before: OpticalPathPlane, after: OpticalPathPlane) -> u32 {
     return optical_path_changed_four(before[1].inner, after[1].inner)
         | (optical_path_changed_four(before[2].inner, after[2].inner) << 4u)
@@ -346,7 +353,8 @@ fn optical_path_changed_four(before: vec4f, after: vec4f) -> u32 {
     return bits.x | bits.y | bits.z | bits.w;
 }
 
-// The same for a pass that begins with what the seeds have changed.
+// The plane before a pass. The first pass compares with unreached, so that the seeds count as
+// changes.
 fn optical_path_before_seeds(plane: OpticalPathPlane, is_first: bool) -> OpticalPathPlane {
     var before = plane;
     let unreached = vec4f(OPTICAL_PATH_UNREACHED);
@@ -357,7 +365,7 @@ fn optical_path_before_seeds(plane: OpticalPathPlane, is_first: bool) -> Optical
     return before;
 }
 
-// The least of a plane's inner costs whose bit is set.
+// The smallest of a plane's inner costs whose bit is set.
 fn optical_path_least(plane: OpticalPathPlane, bits: u32) -> f32 {
     let four = min(
         min(optical_path_where(plane[1].inner, bits), optical_path_where(plane[2].inner, bits >> 4u)),
@@ -385,7 +393,8 @@ fn optical_path_store(corner: vec3u, z: u32, plane: OpticalPathPlane) {
     optical_path_store_row(corner, 3u, z, plane[4].inner);
 }
 
-// The tiles about a tile that see a voxel of which the bit is set, a bit for each of 3 x 3 x 3, x first.
+// The tiles around a tile that see a voxel whose bit is set: one bit for each of 3 x 3 x 3, x
+// first.
 fn optical_path_affected(bits: vec2u) -> u32 {
     var affected = 0u;
     for (var place = 0u; place < 27u; place++) {
@@ -467,14 +476,14 @@ fn optical_path_tiles_update(@builtin(global_invocation_id) invocation: vec3u) {
         min(optical_path_least(c, changed.y), optical_path_least(d, changed.y >> 16u)),
     );
     var affected = optical_path_affected(changed);
-    // Itself, where the last round still changed something.
+    // The tile itself, if the last round still changed something.
     affected = select(affected & ~(1u << 13u), affected | (1u << 13u), (moving.x | moving.y) != 0u);
     var some = false;
     while affected != 0u {
         let place = firstTrailingBit(affected);
         affected &= affected - 1u;
         let there = corner / 4u + vec3u(place % 3u, place / 3u % 3u, place / 9u) - 1u;
-        // Below 0 wraps round.
+        // Values below 0 wrap around.
         if all(there < vec3u(side)) {
             let neighbour = there.x + side * (there.y + side * there.z);
             let its = tile_matter[neighbour];

@@ -3,24 +3,26 @@
 // Source: Chandrasekhar, "Radiative Transfer", 1950: what a half space must give back; Woodcock et al., 1965: delta tracking.
 // requires: random_walk, veins
 //
-// The slab lies below z = 0. Light comes in at the origin, along x and downwards. A walk ends where light leaves, is absorbed, or after `most` tentative
-// collisions; counts of how walks end are shares of light.
+// The slab lies below z = 0. Light enters at the origin, travelling along x and downwards. A walk
+// ends when its light leaves, when it is absorbed, or after `most` tentative collisions; the
+// numbers of walks with each outcome give shares of light.
 
 struct RandomWalkSlab {
-    // Of the angle to the normal under which light comes in, above 0.
+    // Cosine of the angle between the incoming light and the normal, above 0.
     entry_cosine: f32,
     thickness: f32,
-    // Coefficients at density 1.
+    // Scattering and absorption coefficients at density 1.
     scattering: f32,
     absorption: f32,
     // Henyey and Greenstein's g.
     anisotropy: f32,
-    // Of the stone to what is about it; 1 for a boundary that neither bends nor reflects.
+    // Refractive index of the stone relative to its surroundings; 1 for a boundary that neither
+    // refracts nor reflects.
     relative_index: f32,
     walks: u32,
     most: u32,
     seed: u32,
-    // The density: VeinsPattern's members. Without octaves it is `greatest` everywhere.
+    // The density: the members of VeinsPattern. Without octaves it is `greatest` everywhere.
     octaves: u32,
     pattern_seed: u32,
     frequency: f32,
@@ -31,11 +33,12 @@ struct RandomWalkSlab {
 
 struct RandomWalkSlabExit {
     outcome: u32,
-    // Real ones, by which light was scattered.
+    // Number of real collisions that scattered the light.
     scatterings: u32,
-    // Of the direction outside to the normal of the face through which light left; 0 where it did not.
+    // Cosine of the angle between the direction outside and the normal of the face through which
+    // light left; 0 if it did not leave.
     cosine: f32,
-    // x of the place where it left.
+    // x of the point where light left.
     place: f32,
 }
 

@@ -4,11 +4,11 @@
 // requires: reflective_shadow_map
 // parts: mesh, mesh_normals
 //
-// Draw 3 vertices per triangle with a depth test and without culling into one layer of an rgba32float texture, cleared to
-// (0, 0, 0, REFLECTIVE_SHADOW_MAP_NOTHING).
+// Draw 3 vertices per triangle, with a depth test and without culling, into one layer of an
+// rgba32float texture cleared to (0, 0, 0, REFLECTIVE_SHADOW_MAP_NOTHING).
 
 @group(0) @binding(0) var<uniform> view: ReflectiveShadowMapView;
-// Three floats a vertex, in world space.
+// Three floats per vertex, in world space.
 @group(1) @binding(0) var<storage, read> positions: array<f32>;
 @group(1) @binding(1) var<storage, read> indices: array<u32>;
 @group(1) @binding(2) var<storage, read> normals: array<f32>;
@@ -32,7 +32,8 @@ fn reflective_shadow_map_fragment(input: ReflectiveShadowMapVertex, @builtin(fro
     if (view.lamp == 1u) {
         toward_light = normalize(view.origin - input.position);
     }
-    // Light that falls on a surface from behind has come through a hole of the mesh: it makes a shadow and enters nowhere.
+    // Light that falls on a surface from behind has come through a hole in the mesh: the surface
+    // casts a shadow, but no light enters there.
     let cosine = select(0.0f, reflective_shadow_map_cosine(input.normal, toward_light), front);
     return vec4f(input.position, cosine);
 }

@@ -4,36 +4,43 @@
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
 // requires: texture_diffusion
 //
-// 1. A pass of the host's draws the mesh into its own texture: positions by texture_diffusion_clip of the texture coordinates, no culling, no
-//    depth test, one sample a pixel, both targets cleared to 0. It writes, before albedo and view come in,
-//    - the irradiance, cosine and shadow included, by way of texture_diffusion_half to an rgba16float target; alpha is 1;
+// 1. The host draws the mesh into its own texture, in a pass of its own: positions by
+//    texture_diffusion_clip of the texture coordinates, no culling, no depth test, one sample per
+//    pixel, both targets cleared to 0. Leaving out albedo and the view, it writes
+//    - the irradiance, including cosine and shadow, through texture_diffusion_half to an
+//      rgba16float target, with an alpha of 1;
 //    - texture_diffusion_stretch of dpdx and dpdy of the world position to an rg32float target.
-//    Triangles that cross the edge of a texture which repeats are to be drawn on both sides of it.
-// 2. `texture_diffusion_blur` along u, then the same along v, each into the other of two rgba16float textures that were cleared to 0. Once for
-//    each chart, with its own uniform, and with its rectangle as the scissor; charts' rectangles lie one texel or more apart.
-// 3. `texture_diffusion_dilate`, unless the charts fill the texture. What it leaves is the irradiance, to be looked up with a linear sampler and to
-//    be multiplied by albedo / pi.
+//    Triangles that cross the edge of a repeating texture must be drawn on both sides of it.
+// 2. `texture_diffusion_blur` along u, then along v, each time from one of two rgba16float
+//    textures, both cleared to 0 beforehand, into the other. Run it once per chart, with the
+//    chart's own uniform and its rectangle as the scissor; the charts' rectangles must lie one
+//    texel or more apart.
+// 3. `texture_diffusion_dilate`, unless the charts fill the texture. The result is the irradiance:
+//    look it up with a linear sampler and multiply it by albedo / pi.
 
-// How many texels round a chart are filled: one is what a bilinear lookup needs, two with slivers that cover no texel's middle.
+// Number of texels filled around a chart: a bilinear lookup needs one, or two if slivers cover no
+// texel's centre.
 const TEXTURE_DIFFUSION_GUTTER: i32 = 2i;
 
 struct TextureDiffusionBlur {
     // (1, 0) along u, (0, 1) along v.
     direction: vec2f,
-    // Of the widest channel, a length.
+    // sigma0 of the widest channel, a length.
     sigma0: f32,
-    // How many of the taps are used.
+    // Number of taps in use.
     pairs: u32,
-    // Lower and upper corner of the chart's rectangle in texels. Taps beyond it find nothing. A direction that repeats has no bounds: +-1e9.
+    // Lower and upper corner of the chart's rectangle in texels. Taps outside it find nothing. A
+    // repeating direction has no bounds: +-1e9.
     chart: vec4f,
     // texture_diffusion_tap for index 1 to `pairs`: offset, then weights.
     taps: array<vec4f, 23>,
 }
 
-// Times coverage in alpha.
+// Irradiance times the coverage in alpha.
 @group(0) @binding(0) var irradiance: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> blur: TextureDiffusionBlur;
-// Linear; it repeats along a direction in which the surface closes, otherwise it clamps to the edge.
+// Linear. It repeats along a direction in which the surface closes; otherwise it clamps to the
+// edge.
 @group(0) @binding(2) var linear_sampler: sampler;
 // World length of a texel along u and along v.
 @group(0) @binding(3) var stretch: texture_2d<f32>;
@@ -45,7 +52,7 @@ fn texture_diffusion_vertex(@builtin(vertex_index) vertex: u32) -> @builtin(posi
     return vec4f(4.0f * corner - 1.0f, 0.0f, 1.0f);
 }
 
-// Irradiance, times coverage, and coverage.
+// Irradiance times coverage in RGB, coverage in alpha.
 @fragment
 fn texture_diffusion_blur(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(position.xy);
@@ -74,7 +81,7 @@ fn texture_diffusion_blur(@builtin(position) position: vec4f) -> @location(0) ve
     return vec4f(texture_diffusion_half(centre.a * texture_diffusion_normalize(sum, coverage)), centre.a);
 }
 
-// Irradiance and 1 on the charts and in their gutters; 0 elsewhere.
+// Irradiance, and 1 in alpha, on the charts and in their gutters; 0 elsewhere.
 @fragment
 fn texture_diffusion_dilate(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2i(position.xy);

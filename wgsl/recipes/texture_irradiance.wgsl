@@ -5,14 +5,15 @@
 // requires: cdrf, environment, reflective_shadow_map, texture_diffusion
 // parts: mesh, mesh_normals, lights, light_views, shadow, harmonics
 //
-// Draw 3 vertices per triangle, without culling or depth test, into two targets that were cleared to 0: rgba16float and rg32float.
+// Draw 3 vertices per triangle, without culling or depth test, into two targets cleared to 0:
+// rgba16float and rg32float.
 
-// Bodies keep a light from one another and from themselves. Called for by the user.
+// Bodies cast shadows on one another and on themselves. Called for by the user.
 override EFFECT_SHADOW: bool = false;  //+shadow
-// Light from all around, beside the lights. Called for by an environment.
+// Light from all around, in addition to the lights. Called for by an environment.
 override EFFECT_ENVIRONMENT: bool = true;  //+environment
 
-// Three floats a vertex, in world space; two of texture coordinates.
+// Positions and normals: three floats per vertex, in world space. Texture coordinates: two.
 @group(1) @binding(0) var<storage, read> positions: array<f32>;
 @group(1) @binding(1) var<storage, read> indices: array<u32>;
 @group(1) @binding(2) var<storage, read> normals: array<f32>;
@@ -25,7 +26,7 @@ struct TextureIrradianceVertex {
 }
 
 struct TextureIrradianceTexel {
-    // Times coverage, which is 1.
+    // Irradiance times coverage, which is 1.
     @location(0) irradiance: vec4f,
     // World length of a texel along u and along v.
     @location(1) stretch: vec2f,
@@ -41,7 +42,8 @@ fn texture_irradiance_vertex(@builtin(vertex_index) vertex: u32) -> TextureIrrad
 @fragment
 fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradianceTexel {
     let stretch = texture_diffusion_stretch(dpdx(input.position), dpdy(input.position));
-    // Interpolation between opposite normals may leave none: the triangle's own, since texels run to the right and down as seen from outside.
+    // Interpolation between opposite normals may leave no direction; the triangle's own normal then
+    // replaces it. Its sign follows from texels running right and down as seen from outside.
     let flat = cross(dpdy(input.position), dpdx(input.position));
     let given = select(flat, input.normal, dot(input.normal, input.normal) > 1e-12f);
     let normal = given * inverseSqrt(max(dot(given, given), 1.1754944e-38f));

@@ -4,18 +4,19 @@
 // requires: bvh_trace
 // parts: mesh, trace_nearest
 //
-// Whatever traces inside a shader of its own takes these two parts and the bindings of group 0.
+// A shader that traces rays itself uses these two parts and the bindings of group 0.
 
-// The root first; the two children of a node side by side. At least one node.
+// The root is first; the two children of a node are side by side. At least one node.
 @group(0) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;
-// Three floats a vertex.
+// Three floats per vertex.
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Three a triangle, counter-clockwise from outside, in the order of the leaves. A triangle's number is its place here.
+// Three per triangle, counter-clockwise from outside, in the order of the leaves. A triangle's
+// number is its position here.
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 
 struct TraceQuery {
     origin: vec3f,
-    // The triangle that the ray has just left; BVH_TRACE_NONE if it starts inside.
+    // The triangle that the ray has just left; BVH_TRACE_NONE if the ray starts inside.
     left: u32,
     direction: vec3f,
 }

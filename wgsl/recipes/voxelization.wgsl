@@ -4,24 +4,27 @@
 // requires: voxelization
 // parts: mesh
 //
-// A frame: the host sets `matter`, `surface`, `beyond`, `large` and `status` to 0; then
-// 1. `voxelization_vertices`, a thread for each vertex, or fewer. It brings each into the grid's coordinates, once, so that the triangles that share a
-//    vertex have the same one to the last bit.
-// 2. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the bit of the first voxel behind it changes;
-//    what it touches is set in `surface`. Triangles over many columns are put on a list.
-// 3. `voxelization_large`, any number of workgroups, which share the triangles of that list among them.
-// 4. `voxelization_finish`, a thread for each row along x. From each bit that changed, all behind it change. A row whose column was crossed an odd
-//    number of times belongs to an open mesh: nothing of it is filled, so that no streak runs through the grid, and it is counted.
+// In each frame the host sets `matter`, `surface`, `beyond`, `large` and `status` to 0, then runs:
+// 1. `voxelization_vertices`, a thread for each vertex, or fewer. It converts each vertex to grid
+//    coordinates once, so that triangles that share a vertex get the same position to the last bit.
+// 2. `voxelization_triangles`, a thread for each triangle. Where a triangle crosses a column, the
+//    bit of the first voxel behind it flips; the voxels that it touches are set in `surface`.
+//    Triangles over many columns are put on a list.
+// 3. `voxelization_large`, any number of workgroups, which share the triangles of that list.
+// 4. `voxelization_finish`, a thread for each row along x. Each bit that is set flips all bits
+//    behind it. A row whose column was crossed an odd number of times belongs to an open mesh: it
+//    is counted and not filled, so that no streak runs through the grid.
 // A voxel is filled if its centre is inside or if the surface touches it.
 //
-// No position makes it write elsewhere than in its buffers. What lies outside of the grid is cut off; a body that begins before it is solid from the
-// first voxel on.
+// No position makes it write outside its buffers. The parts of a mesh outside the grid are cut off;
+// a body that begins before the grid is solid from the first voxel on.
 
-// The surface is set too: parts thinner than a voxel, and bodies that are one's size, hold on to their voxels. Without it there is what has its
-// centre inside, whose number goes with the volume.
+// Also fills the voxels that the surface touches, so that parts thinner than a voxel and bodies the
+// size of a voxel are kept. If off, only voxels whose centre is inside are filled; their number is
+// proportional to the volume.
 override EFFECT_SURFACE: bool = true;  //+surface
 
-// A triangle over more columns than this is shared among threads.
+// The number of columns above which a triangle is shared among threads.
 override VOXELIZATION_LARGE: u32 = 64u;
 const VOXELIZATION_WORKGROUP: u32 = 64u;
 
@@ -42,22 +45,24 @@ struct VoxelizationStatus {
 @group(0) @binding(0) var<uniform> grid: VoxelizationGrid;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
-// Voxels along x, 32 a word, the least bit first. A row begins at a word.
+// Voxels along x, 32 per word, from the least bit on. Each row starts at a new word.
 @group(0) @binding(3) var<storage, read_write> matter: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;  //+surface
-// A bit for each column: whether it is crossed an odd number of times behind its last centre.
+// A bit for each column, set if the column is crossed an odd number of times behind its last
+// centre.
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> large: VoxelizationList;
 @group(0) @binding(7) var<storage, read_write> status: VoxelizationStatus;
-// The vertices in the grid's coordinates, three numbers each, as many as in `positions`. No pass binds more than six of the storage buffers.
+// The vertices in grid coordinates, three numbers each, as many as in `positions`. No pass binds
+// more than six of the storage buffers.
 @group(0) @binding(8) var<storage, read_write> corners: array<f32>;
 
-// A triangle in the grid's coordinates, and the columns that it may touch.
+// A triangle in grid coordinates, and the columns that it may touch.
 struct VoxelizationTriangle {
     a: vec3f,
     b: vec3f,
     c: vec3f,
-    // In y and z.
+    // The first column and the number of columns, in y and z.
     lower: vec2u,
     size: vec2u,
 }
@@ -82,7 +87,7 @@ fn voxelization_load(triangle: u32) -> VoxelizationTriangle {
     return VoxelizationTriangle(a, b, c, vec2u(y.x, z.x), vec2u(y.y - y.x, z.y - z.x));
 }
 
-// Every `step`th of a triangle's columns, from the one numbered `first` on.
+// Processes every `step`th of a triangle's columns, starting with the one numbered `first`.
 fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
     let a = triangle.a;
     let b = triangle.b;
@@ -141,7 +146,8 @@ fn voxelization_triangles(@builtin(global_invocation_id) invocation: vec3u) {
     }
 }
 
-// As many workgroups take a triangle together as there are for each; with more triangles than workgroups each takes several in turn.
+// The workgroups are divided evenly among the triangles; if there are more triangles than
+// workgroups, each workgroup takes several in turn.
 @compute @workgroup_size(VOXELIZATION_WORKGROUP)
 fn voxelization_large(
     @builtin(workgroup_id) group: vec3u,

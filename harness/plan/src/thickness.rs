@@ -92,7 +92,7 @@ fn inwards(mesh: &Mesh, bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option
 
 /// The width that spreads light over a curved body of this medium, for red, green and blue in units of length: what a material has for `sigma0` that
 /// does not say. Random walks through spheres of ten mean free paths give (0.5 + 4.3 albedo) mean free paths within 4 % for the albedos of skin, wax
-/// and jade: docs/cdrf.md.
+/// and jade.
 #[must_use]
 pub fn sigma0_of(medium: &Medium) -> Vec3 {
     let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());

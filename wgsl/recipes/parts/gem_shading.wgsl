@@ -3,31 +3,36 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts mesh and surroundings, struct GemVertex with `position` and `face_normal` among its members, the entry point gem_vertex,
-// struct GemPlace (where a ray is inside the stone), gem_enter (the place of a ray that enters), and gem_hit (the next facet).
+// A geometry recipe adds: the parts mesh and surroundings; struct GemVertex, whose members include
+// `position` and `face_normal`; the entry point gem_vertex; struct GemPlace (the place of a ray
+// inside the stone); gem_enter (the place of a ray that enters); and gem_hit (the next facet).
 
-// A wall without an inside: the environment behind it is seen as it is, below the reflection. Called for by KHR_materials_transmission without a
-// thickness of KHR_materials_volume.
+// A wall without an interior: the environment behind it shows undeflected below the reflection.
+// Called for by KHR_materials_transmission without a thickness from KHR_materials_volume.
 override EFFECT_THIN_WALL: bool = false;  //+thin_wall
-// Light inside is absorbed on its way. Called for by KHR_materials_volume: an attenuation colour below white.
+// Light is absorbed on its way through the inside. Called for by KHR_materials_volume with an
+// attenuation colour below white.
 override EFFECT_ABSORPTION: bool = false;  //+absorption
 //+dispersion {
 // The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
 override EFFECT_DISPERSION: bool = false;
-// How dispersion is followed: 0 the paper's tracker, 1 the exact first-order tracker, 2 each wavelength by a ray of its own.
+// How dispersion is traced: 0 the paper's tracker, 1 the exact first-order tracker, 2 one ray per
+// wavelength.
 override DISPERSION_FORM: u32 = 1u;
-// Entries of `wavelengths` that form 2 follows.
+// Number of entries of `wavelengths` that form 2 traces.
 override WAVELENGTHS: u32 = 3u;
 //+dispersion }
 //+bvh_trace,convex_trace,proxy_geometry {
-// Internal hits that are followed.
+// Number of internal hits that are followed.
 override BOUNCES: u32 = 1u;
-// What a ray still carries when its following ends (at the last bounce, at the distance limit, or where it met no facet): taken
-// from the environment along the ray, which keeps the energy and guesses the direction, or dropped, which darkens the stone.
+// The light that a ray still carries when it ends (at the last bounce, at the distance limit, or
+// because it met no facet) is taken from the environment along the ray, which keeps the energy and
+// guesses the direction. If false, that light is dropped, which darkens the stone.
 override REST_FROM_ENVIRONMENT: bool = true;
-// A ray also ends when it has travelled material.distance_limit inside.
+// A ray also ends once it has travelled farther than material.distance_limit inside.
 override LIMIT_DISTANCE: bool = false;
-// A ray also ends when what it carries can no longer be seen: when no channel's throughput reaches material.throughput_limit.
+// A ray also ends when its light can no longer be seen: when no channel's throughput reaches
+// material.throughput_limit.
 override LIMIT_THROUGHPUT: bool = false;
 //+bvh_trace,convex_trace,proxy_geometry }
 
@@ -42,37 +47,41 @@ struct GemView {
 }
 
 struct GemMaterial {
-    // Linear RGB that light through the surface is multiplied by.
+    // Factor for light that passes through the surface, linear RGB.
     base_color: vec3f,
-    // Index of refraction, relative to the medium outside, at the d line.
+    // Index of refraction at the d line, relative to the medium outside.
     index: f32,
-    // Per unit of length: absorption_coefficient of the attenuation colour and distance.
+    // Absorption per unit of length: absorption_coefficient of the attenuation colour and distance.
     absorption: vec3f,
-    // Where a ray ends, with LIMIT_DISTANCE; in units of length.
+    // Distance inside at which LIMIT_DISTANCE ends a ray, in units of length.
     distance_limit: f32,
-    // Indices at DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE.
+    // Indices of refraction at DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE.
     channel_indices: vec3f,
-    // The paper's tracker: factor of eq. (12); 1 as printed.
+    // Factor of eq. (12) in the paper's tracker; 1 as printed.
     dispersion_strength: f32,
-    // Where a ray ends, with LIMIT_THROUGHPUT: the least difference that can be seen, over exposure, largest base colour and largest radiance
-    // of the environment; with separate wavelengths also over the largest sum of absolute values in a row of all their weights.
+    // Throughput below which LIMIT_THROUGHPUT ends a ray: the smallest visible difference, divided
+    // by the exposure, the largest base colour and the largest radiance of the environment. With
+    // separate wavelengths it is also divided by the largest sum of absolute values in a row, taken
+    // over all their weights.
     throughput_limit: f32,
 }
 
 //+dispersion {
-// One wavelength of form 2.
+// One of the wavelengths that form 2 traces.
 struct GemWavelength {
-    // What its radiance, linear RGB, adds to the pixel's; all matrices together add up to the identity.
+    // Contribution of its radiance to the pixel's, both in linear RGB; the matrices of all
+    // wavelengths add up to the identity.
     weights: mat3x3f,
-    // Index of refraction.
+    // Index of refraction at this wavelength.
     index: f32,
 }
 //+dispersion }
 
 @group(0) @binding(0) var<uniform> view: GemView;
-// Not a uniform: lavapipe compiles the shader anew for each uniform buffer that it is drawn with, megabytes for every body.
+// Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
+// which costs megabytes per body.
 @group(1) @binding(0) var<storage, read> material: GemMaterial;
-// Three floats a vertex, in world space.
+// Three floats per vertex, in world space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;  //+dispersion
@@ -81,19 +90,19 @@ struct GemWavelength {
 // The next facet that a ray meets inside the stone.
 struct GemHit {
     point: vec3f,
-    // Unit normal that faces the ray.
+    // Unit normal, facing the ray.
     normal: vec3f,
-    // Along the ray.
+    // Distance along the ray.
     distance: f32,
     hit: bool,
 }
 
-// What absorption leaves of light over a distance inside.
+// The share of light that absorption leaves over a distance inside.
 fn gem_transmittance(distance: f32) -> vec3f {  //+absorption
     return absorption_transmittance(material.absorption, distance);  //+absorption
 }  //+absorption
 
-// Where a ray goes that leaves through a facet, and what share of it does.
+// The direction of a ray that leaves through a facet, and its share of the light.
 struct GemExit {
     direction: vec3f,
     // 0 under total internal reflection.
@@ -108,7 +117,7 @@ fn gem_exit(inside: vec3f, normal: vec3f, index: f32) -> GemExit {
     return GemExit(leaving.direction, 1.0f - fresnel_dielectric(-dot(normal, inside), 1.0f / index));
 }
 
-// Whether a ray's following ends after it has travelled so far.
+// Whether a ray ends after it has travelled this distance.
 fn gem_ends(travelled: f32) -> bool {
     return LIMIT_DISTANCE && travelled > material.distance_limit;
 }
@@ -116,15 +125,15 @@ fn gem_ends(travelled: f32) -> bool {
 // A ray inside the stone.
 struct GemRay {
     position: vec3f,
-    // Unit.
+    // Unit vector.
     direction: vec3f,
     // Distance inside so far.
     travelled: f32,
-    // Share of each channel's light that it still carries.
+    // Share of light that the ray still carries, per channel.
     throughput: vec3f,
-    // What it has found so far.
+    // Radiance found so far.
     radiance: vec3f,
-    // False once it has ended; what it carries then is its rest.
+    // False once the ray has ended; its throughput then weights the rest.
     followed: bool,
 }
 
@@ -132,8 +141,8 @@ fn gem_ray(position: vec3f, direction: vec3f) -> GemRay {
     return GemRay(position, direction, 0.0f, vec3f(1.0f), vec3f(0.0f), true);
 }
 
-// Follows a ray to the next facet. The loops below have a `break` with LIMIT_THROUGHPUT alone: without one a compiler may unroll them, and few
-// rays end before the last bounce for other reasons.
+// Follows a ray to the next facet. The loops below `break` only with LIMIT_THROUGHPUT: without a
+// `break` a compiler may unroll them, and few rays end before the last bounce for other reasons.
 fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHit {
     let hit = gem_hit(place, (*ray).position, (*ray).direction);
     if ((*ray).followed) {
@@ -146,13 +155,13 @@ fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHi
     return hit;
 }
 
-// A share of each channel leaves and meets the radiance outside.
+// Lets a share of each channel leave and adds the radiance that it meets outside.
 fn gem_leave(ray: ptr<function, GemRay>, share: vec3f, outside: vec3f) {
     (*ray).radiance += share * (*ray).throughput * outside;
     (*ray).throughput *= 1.0f - share;
 }
 
-// The rest is reflected, and followed further where it can be seen.
+// Reflects the rest, which is followed further if it can be seen.
 fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
     (*ray).position = hit.point;
     (*ray).direction = refraction_reflect((*ray).direction, hit.normal);
@@ -162,13 +171,13 @@ fn gem_reflect(ray: ptr<function, GemRay>, hit: GemHit) {
     }
 }
 
-// All that a ray has found when its following has ended, with the environment in place of what was not followed.
+// The total radiance of a ray that has ended: the radiance found, and the environment for the rest.
 fn gem_end(ray: GemRay, outside: vec3f) -> vec3f {
     return ray.radiance + ray.throughput * outside;
 }
 
-// Radiance that a ray of one refractive index finds inside the stone. At each facet a share leaves and meets the environment; the
-// rest is reflected and followed further.
+// Radiance that a ray of one refractive index finds inside the stone. At each facet, a share leaves
+// and meets the environment; the rest is reflected and followed further.
 fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     var place = gem_enter(input);
     var ray = gem_ray(input.position, refraction_refract(direction, input.face_normal, index).direction);
@@ -192,14 +201,15 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
 }
 
 //+dispersion {
-// Radiance from three directions, one a channel.
+// Radiance of the environment from three directions, one per channel.
 fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
     return vec3f(surroundings_radiance(red).r, surroundings_radiance(green).g, surroundings_radiance(blue).b);
 }
 
-// The same for three channels by one ray at the d line and its derivative by the refractive index. The derivative gives each channel's
-// ray inside; at a facet that ray is refracted with the channel's own index, so total internal reflection and reflectance
-// are the channel's own, and the derivative's pole at the critical angle is never met.
+// Radiance of three channels inside the stone, from one ray at the d line and its derivative with
+// respect to the refractive index. The derivative gives each channel's ray inside. At a facet that
+// ray is refracted with the channel's own index, so total internal reflection and reflectance are
+// the channel's own, and the derivative's pole at the critical angle never occurs.
 fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     let offsets = material.channel_indices - material.index;
     var place = gem_enter(input);
@@ -232,7 +242,8 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
     return ray.radiance;
 }
 
-// Radiance around a red ray, with green and blue moved along the paper's direction of dispersion, eq. (12).
+// Radiance around a red ray, with green and blue shifted along the paper's direction of dispersion,
+// eq. (12).
 fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
     return gem_environment_channels(
         red,
@@ -241,7 +252,8 @@ fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
     );
 }
 
-// The same by the paper's tracker, eq. (10) to (12): a red ray and a direction of dispersion.
+// Radiance of three channels by the paper's tracker, eq. (10) to (12): a red ray and a direction of
+// dispersion.
 fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     let index = material.channel_indices.r;
     var place = gem_enter(input);
@@ -270,18 +282,18 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
 //+dispersion }
 //+bvh_trace,convex_trace,proxy_geometry }
 
-// What a stone sends to the eye.
+// Radiance that a stone sends to the eye.
 struct GemRadiance {
-    // The environment in its surface.
+    // Reflection of the environment in the surface.
     surface: vec3f,
-    // What comes from inside.
+    // Light from inside.
     inside: vec3f,
-    // Of the surface, for each channel.
+    // Reflectance of the surface, per channel.
     reflectance: vec3f,
 }
 
 //+dispersion {
-// The surface's reflectance for each channel's own index.
+// Reflectance of the surface at each channel's own index.
 fn gem_reflectance_channels(cosine: f32) -> vec3f {
     return vec3f(
         fresnel_dielectric(cosine, material.channel_indices.r),
@@ -291,7 +303,7 @@ fn gem_reflectance_channels(cosine: f32) -> vec3f {
 }
 //+dispersion }
 
-// With `transmits` false the surface alone.
+// Radiance of the stone towards the eye. If `transmits` is false, only the surface contributes.
 fn gem_radiance(
     input: GemVertex,
     transmits: bool,  //+bvh_trace,convex_trace,proxy_geometry
@@ -314,7 +326,7 @@ fn gem_radiance(
             let index = wavelengths[wavelength].index;
             let reflectance = fresnel_dielectric(cosine, index);
             separate.surface += weights * (reflectance * reflected);
-            // To white light.
+            // Reflectance for white light.
             separate.reflectance += weights * vec3f(reflectance);
             if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
                 separate.inside += weights * ((1.0f - reflectance) * gem_trace(input, direction, index));  //+bvh_trace,convex_trace,proxy_geometry
@@ -351,13 +363,15 @@ fn gem_radiance(
     //-bvh_trace,convex_trace,proxy_geometry return GemRadiance(reflectance * reflected, vec3f(0.0f), reflectance);
 }
 
-// What a deferred renderer keeps of the stone (the paper's section 4.3.4); depth is the depth buffer's.
+// Geometry buffer of the stone for a deferred renderer (the paper's section 4.3.4); depth is in the
+// depth buffer.
 struct GemGeometryBuffer {
-    // What comes from inside; the renderer adds it as it adds light that a surface emits. Alpha is 1 where a stone is.
+    // Light from inside, which the renderer adds like light that a surface emits. Alpha is 1 on a
+    // stone.
     @location(0) emission: vec4f,
-    // The facet's normal.
+    // Normal of the facet.
     @location(1) normal: vec4f,
-    // Reflectance of the surface for the eye.
+    // Reflectance of the surface as seen from the eye.
     @location(2) reflectance: vec4f,
 }
 

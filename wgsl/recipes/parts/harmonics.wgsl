@@ -5,14 +5,15 @@
 // A recipe adds: the modules cdrf and environment. The coefficients are bound here.
 
 //+environment {
-// The environment's spherical harmonics, linear RGB: one of degree 0, three of 1, five of 2, nine of 4. Degree 3 has no part in a clamped cosine.
+// Spherical harmonics of the environment, linear RGB: one coefficient of degree 0, three of degree
+// 1, five of degree 2, nine of degree 4. A clamped cosine has no component of degree 3.
 struct Harmonics {
     coefficients: array<vec4f, 18>,
 }
 
 @group(0) @binding(3) var<uniform> harmonics: Harmonics;
 
-// What the environment's harmonics add up to along a normal, by degree, linear RGB.
+// Sums of the environment's harmonics along a normal, by degree, linear RGB.
 struct HarmonicsAround {
     zeroth: vec3f,
     first: vec3f,
@@ -42,8 +43,8 @@ fn harmonics_around(normal: vec3f) -> HarmonicsAround {
     return HarmonicsAround(basis.zeroth * harmonics.coefficients[0].rgb, first, second, fourth);
 }
 
-// Irradiance, where each channel answers to the degrees by its own weights (cdrf_harmonic_weights). A few degrees cannot follow a small light: they
-// swing below 0 opposite to it, and are cut off there.
+// Irradiance, with the degrees weighted separately for each channel (cdrf_harmonic_weights). A few
+// degrees cannot follow a small light: their sum falls below 0 opposite to it and is clamped there.
 fn harmonics_irradiance(around: HarmonicsAround, red: vec4f, green: vec4f, blue: vec4f) -> vec3f {
     let sum = around.zeroth * vec3f(red.x, green.x, blue.x)
         + around.first * vec3f(red.y, green.y, blue.y)

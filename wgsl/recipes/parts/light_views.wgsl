@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //
-// A recipe adds: the module reflective_shadow_map. The maps, which the recipe of that name draws, are bound here.
+// A recipe adds: the module reflective_shadow_map. The maps are drawn by the recipe of that name
+// and bound here.
 
 //+shadow {
 struct LightView {
     view: ReflectiveShadowMapView,
-    // Its light's number.
+    // Number of the light that it belongs to.
     light: u32,
 }
 
-// A view for each layer of the maps.
+// One view per layer of the maps.
 @group(0) @binding(4) var<storage, read> views: array<LightView>;
 @group(0) @binding(5) var maps: texture_2d_array<f32>;
 //+shadow }

@@ -2,36 +2,39 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own; the three kinds are those of glTF's KHR_lights_punctual without a range.
 //
-// A recipe adds: its own way to shade. Nothing here casts a shadow. The list is bound here; it has one black light where there is none.
+// A recipe adds: its own shading. Nothing here casts a shadow. The list is bound here; if there are
+// no lights, it holds one black light.
 
-// Lights that shine into a cone. Called for by a spot of KHR_lights_punctual.
+// Lights that shine into a cone. Called for by a spot light of KHR_lights_punctual.
 override EFFECT_SPOT: bool = false;  //+spot
 
 struct Light {
-    // Towards a sun, unit; or where a point or spot is.
+    // Unit vector towards a sun, or position of a point or spot light.
     place: vec3f,
-    // 0 for a sun, 1 for a point or spot.
+    // 0 for a sun, 1 for a point or spot light.
     point: f32,
-    // Linear RGB: a sun's irradiance square to it, a point's radiant intensity, a spot's about its axis.
+    // Linear RGB: the irradiance of a sun on a surface facing it, the radiant intensity of a point
+    // light, the radiant intensity of a spot light along its axis.
     power: vec3f,
-    // Cosine of the angle from the axis at which a spot ends; -1 for the others.
+    // Cosine of the angle from the axis at which a spot light ends; -1 for other lights.
     edge: f32,
-    // Unit, along a spot's axis, away from it; 0 for the others.
+    // Unit vector along a spot light's axis, away from the light; 0 for other lights.
     axis: vec3f,
-    // One over what the cosine of a spot's inner angle has beyond the edge; 1 for the others.
+    // 1 / (cosine of a spot light's inner angle - edge); 1 for other lights.
     slope: f32,
 }
 
 @group(0) @binding(2) var<storage, read> lights: array<Light>;
 
 struct LightArrival {
-    // Unit, towards the light.
+    // Unit vector towards the light.
     direction: vec3f,
-    // On a surface square to it, linear RGB.
+    // Irradiance on a surface facing the light, linear RGB.
     irradiance: vec3f,
 }
 
-// What arrives from a light. At the very place of a point light there is no direction, and nothing arrives.
+// Light that arrives from one light. Exactly at the position of a point light there is no
+// direction, and nothing arrives.
 fn light_arrival(light: Light, position: vec3f) -> LightArrival {
     let way = light.place - light.point * position;
     let squared = dot(way, way);

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //
-// A recipe adds: the binding `matter`, array<u32>. Rows along x begin with a word of their own, the least x in its least bit; row (y, z) has the number
-// y + cells z.
+// A recipe adds: the binding `matter`, array<u32>. Each row along x begins with a word of its own,
+// with the smallest x in the lowest bit; row (y, z) has the number y + cells z.
 
-// The word that holds a voxel's bit, of a grid of so many voxels along each edge.
+// The word that holds a voxel's bit, in a grid of `cells` voxels along each edge.
 fn matter_word(cells: u32, voxel: vec3u) -> u32 {
     let words_per_row = (cells + 31u) / 32u;
     return matter[words_per_row * (voxel.y + cells * voxel.z) + voxel.x / 32u];

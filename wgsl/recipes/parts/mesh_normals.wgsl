@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: own.
 //
-// A recipe adds: the binding `normals`, array<f32>, three floats a vertex: a vec3f would take up four.
+// A recipe adds: the binding `normals`, array<f32>, three floats per vertex, since a vec3f would
+// take up four.
 
 //+proxy_geometry {
 fn mesh_normal(index: u32) -> vec3f {

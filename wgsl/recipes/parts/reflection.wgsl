@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the modules fresnel and microfacet.
 //
-// A recipe adds: the modules fresnel and microfacet, the parts lights and surroundings. Effects are a scene's, roughness is a material's: alpha is
-// the width of the microfacets' slopes, the square of the roughness, and 0 for a polished surface.
+// A recipe adds: the modules fresnel and microfacet, the parts lights and surroundings. Effects
+// belong to a scene, roughness to a material: alpha is the width of the microfacets' slopes, the
+// square of the roughness, and 0 for a polished surface.
 
-// The lights' highlights on a rough surface. Called for by KHR_materials_ior above 1 and a roughness above 0.
+// Highlights of the lights on a rough surface. Called for by KHR_materials_ior above 1 and a
+// roughness above 0.
 override EFFECT_MICROFACET: bool = false;  //+microfacet
-// The environment in the polished surface. Called for by KHR_materials_ior above 1 and a roughness of 0.
+// Reflection of the environment in a polished surface. Called for by KHR_materials_ior above 1 and
+// a roughness of 0.
 override EFFECT_REFLECTION: bool = false;  //+reflection
 
 //+microfacet {
-// What a rough surface sends of one light towards the eye.
+// Radiance that a rough surface reflects from one light towards the eye.
 fn reflection_highlight(arrival: LightArrival, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
     let half = microfacet_half(arrival.direction, toward_eye);
     let fresnel = fresnel_dielectric(dot(half, arrival.direction), index);
@@ -20,7 +23,8 @@ fn reflection_highlight(arrival: LightArrival, normal: vec3f, toward_eye: vec3f,
 //+microfacet }
 
 //+reflection {
-// Radiance from inside, with the environment over it where the surface is polished: what it reflects does not come from inside.
+// Radiance from inside, with the environment's reflection on top if the surface is polished. The
+// share of light that is reflected does not come from inside.
 fn reflection_over(radiance: vec3f, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
     if (alpha == 0.0f) {
         let reflectance = fresnel_dielectric(dot(normal, toward_eye), index);

@@ -6,7 +6,8 @@
 // A recipe adds: the module reflective_shadow_map and the part light_views.
 
 //+shadow {
-// In one view of a light: the four texels about the point, weighted by nearness; -1 beside the map.
+// Visible share in one view of a light, from the four texels around the point, weighted by
+// nearness; -1 outside the map.
 fn shadow_in_view(layer: u32, position: vec3f, normal: vec3f) -> f32 {
     let size = textureDimensions(maps).x;
     let clip = reflective_shadow_map_clip(views[layer].view, position);
@@ -14,7 +15,8 @@ fn shadow_in_view(layer: u32, position: vec3f, normal: vec3f) -> f32 {
     if (any(place < vec2f(0.0f)) || any(place > vec2f(f32(size)))) {
         return -1.0f;
     }
-    // As high as a texel is wide: w is the depth of a lamp's map, whose texels grow with it, and 1 for a sun's.
+    // As high as a texel is wide: clip.w is the depth in a lamp's map, whose texels grow with the
+    // depth, and 1 in a sun's map.
     let bias = 2.0f * views[layer].view.extent * clip.w / f32(size);
     let corner = place - 0.5f;
     let weight = fract(corner);
@@ -34,7 +36,7 @@ fn shadow_at_texel(texel: vec2i, layer: u32, position: vec3f, normal: vec3f, bia
     return select(0.0f, 1.0f, seen.w < 0.0f || height <= bias);
 }
 
-// By whichever view of the light holds the point; 1 where none does.
+// Visible share in the view of the light that contains the point; 1 if none does.
 fn shadow_of_light(light: u32, position: vec3f, normal: vec3f) -> f32 {
     for (var layer = 0u; layer < arrayLength(&views); layer++) {
         if (views[layer].light == light) {

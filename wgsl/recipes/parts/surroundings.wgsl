@@ -4,7 +4,8 @@
 //
 // A recipe adds: the module environment. The image is bound here.
 
-// An image as the environment instead of the procedural studio. Called for by the user, who has one.
+// The environment is an image instead of the procedural studio. Called for by the user, who
+// supplies the image.
 override EFFECT_ENVIRONMENT_MAP: bool = false;  //+environment_map
 
 @group(0) @binding(1) var environment_map: texture_2d<f32>;  //+environment_map

@@ -4,22 +4,24 @@
 //   GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
 // compares: bvh_trace
 //
-// A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes`, array<BvhTraceNode>, the root first, the two
-// children of a node side by side; and `indices`, array<u32>, three a triangle, counter-clockwise from outside, in the order of
-// the leaves. A triangle's number is its place there.
+// A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes` and `indices`.
+// `nodes`, array<BvhTraceNode>, has the root first and the two children of a node side by side.
+// `indices`, array<u32>, has three entries per triangle, counter-clockwise from outside, in the
+// order of the leaves. A triangle's number is its position there.
 
 //+bvh_trace {
-// A loop over all triangles instead of the hierarchy: the paper's comparator.
+// Loops over all triangles instead of the hierarchy: the paper's comparison.
 override TRAVERSAL_LOOP: bool = false;
-// Möller and Trumbore's test with an epsilon instead of the watertight one.
+// Uses Möller and Trumbore's test with an epsilon instead of the watertight test.
 override TRIANGLE_NAIVE: bool = false;
 
-// The largest number of nodes between the root and a leaf. Whoever builds the hierarchy keeps to it.
+// The largest number of nodes between the root and a leaf. The builder of the hierarchy must
+// respect this limit.
 const TRACE_DEPTH = 32u;
-// Farther than anything that a ray may meet.
+// A distance farther than any hit.
 const TRACE_FAR = 1e37f;
 
-// One triangle, by its number.
+// Tests the triangle of a given number.
 fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) -> BvhTraceHit {
     let a = mesh_position(indices[3u * triangle]);
     let b = mesh_position(indices[3u * triangle + 1u]);
@@ -30,7 +32,7 @@ fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) 
     return bvh_trace_triangle(hit, ray, a, b, c, triangle, left);
 }
 
-// The nearest triangle that a ray leaves the solid through.
+// The nearest triangle through which a ray leaves the solid.
 fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     var hit = bvh_trace_start(TRACE_FAR);
     let ray = bvh_trace_ray(origin, direction, nodes[0].lower, nodes[0].upper);
@@ -40,7 +42,7 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
         }
         return hit;
     }
-    // The farther children, and where the ray enters them.
+    // The farther children, and the distances at which the ray enters them.
     var stack: array<u32, TRACE_DEPTH>;
     var entries: array<f32, TRACE_DEPTH>;
     var depth = 0u;
@@ -51,7 +53,7 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
         if (count == 0u) {
             let box_one = bvh_trace_box(ray, nodes[first].lower, nodes[first].upper, hit.distance);
             let box_other = bvh_trace_box(ray, nodes[first + 1u].lower, nodes[first + 1u].upper, hit.distance);
-            // The nearer child first: what it finds culls the farther.
+            // The nearer child first: its hits cull the farther child.
             let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
             let near = select(first, first + 1u, other_first);
             if (box_one.hit && box_other.hit) {
@@ -67,7 +69,7 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
         for (var triangle = first; triangle < first + count; triangle += 1u) {
             hit = trace_triangle(hit, ray, triangle, left);
         }
-        // Back to the last box that may still hold something nearer.
+        // Back to the last box that may still hold a nearer hit.
         var found = false;
         while (depth > 0u && !found) {
             depth -= 1u;
