@@ -1,6 +1,6 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 9c1b16dee2bc15fc
+// Version: 0.2.0, hash 20ba09929fce32a4
 // Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
 //   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
 //   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
@@ -216,7 +216,7 @@ fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
 // nearly a polynomial. The fit has degrees 5, 3 and 2 and minimises the largest error. If the
 // Gaussian is wide, four terms of the series are summed, whose weights are powers of one another.
 // Returns: reflectance in [0, 1], within 1.5e-5 of cdrf_accurate, so it is monotonic and continuous
-//   only to that accuracy; max(cosine, 0) for sigma = 0.
+//   only to 3e-5; max(cosine, 0) for sigma = 0.
 // Units: sigma in radians.
 // Domain: cosine in [-1, 1]; any sigma, negative values count as 0.
 // Outside: the formula goes on, up to 1: off by rounding where the cosine is; finite up to 10.

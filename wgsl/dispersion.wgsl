@@ -1,6 +1,6 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a7436a7b9e634942
+// Version: 0.2.0, hash 4f94e6e9b21558b3
 // Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
 //   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
 //   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile),
@@ -84,10 +84,10 @@ const DISPERSION_PAPER_EPSILON: f32 = 2e-4f;
 const DISPERSION_PAPER_CHORD: f32 = 9.094947017729282e-13f;
 
 // The smallest n cos(angle of refraction) by which a gradient is divided. Its square changes by
-// about 2 |b| offset with the index, where b = (slope / n) sin^2 - c dc (0.1 or so out of diamond).
-// For diamond's blue, with offset 0.02, that is (1/16)^2. Closer to the critical angle, such a
-// wavelength may be totally reflected, and a first derivative, which tends to infinity, is
-// meaningless.
+// about 2 |b| offset with the index, where b = (slope / n) sin^2 + c dc as in dispersion_refract
+// (0.1 or so out of diamond). For diamond's blue, with offset 0.02, that is (1/16)^2. Closer to the
+// critical angle, such a wavelength may be totally reflected, and a first derivative, which tends
+// to infinity, is meaningless.
 const DISPERSION_CRITICAL: f32 = 0.0625f;
 
 // Index of refraction by Sellmeier's formula.

@@ -1,11 +1,12 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash c2d7d0234894b197
+// Version: 0.2.0, hash 481021f434a3412d
 // Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P
-// parallel to the triangle, and its translates tile P. A refracted ray meets P in one tile, whose
-// facet normal points from the centroid of the tile to o.
+// parallel to the triangle. Its translates, and those of the image rotated by half a turn, tile P.
+// A refracted ray meets P in one tile, whose facet normal points from the centroid of the tile to
+// o.
 
 // The image of a triangle through the centre: one tile of plane P, and the lattice of all tiles.
 struct ProxyGeometryPlane {
@@ -117,8 +118,8 @@ fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, pos
 }
 
 // Intersection of a ray with the plane through `plane_point` with unit normal `normal`. For a ray
-// that enters along r through a triangle with plane P at height h below it, the distance is
-// t = 2 h / -(n . r). The sign of the normal does not matter.
+// that enters along r through a triangle with the proxy's centre at depth h, the distance to
+// plane P is t = 2 h / -(n . r). The sign of the normal does not matter.
 // Returns: ProxyGeometryHit.
 // Units: lengths; `direction` and `normal` are unit vectors.
 // Domain: |direction| = |normal| = 1, positions up to 1e30.

@@ -1,6 +1,6 @@
 // random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 20fb0eb44d8c88c0
+// Version: 0.2.0, hash 83b386c277c48cd6
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
 //   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
 //   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
@@ -14,7 +14,7 @@
 const RANDOM_WALK_SCATTERED = 0u;
 const RANDOM_WALK_ABSORBED = 1u;
 const RANDOM_WALK_PASSED = 2u;
-// The least majorant; smaller ones count as this. A thinner medium ends no path within 1e30.
+// The least majorant; smaller ones count as this. Free paths are then at most 1.7e31 long.
 const RANDOM_WALK_THINNEST: f32 = 1e-30f;
 // The largest magnitude of the anisotropy. Light turns by a thousandth of a degree on average
 // there, and for the next floats the turn would round to none.

@@ -1,6 +1,6 @@
 // texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 0d1745ab3cb804b1
+// Version: 0.2.0, hash a8454cfe70b62636
 // Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
 //   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14: stretch, separable blur.
 //   The placement of the taps is derived in docs/texture_diffusion.md.
@@ -66,8 +66,8 @@ fn texture_diffusion_stretch(position_x: vec3f, position_y: vec3f) -> vec2f {
 // Standard deviation of the Gaussian at a texel. If a texel has no extent, as at a sphere's pole,
 // the Gaussian covers all texels that are one point there: its width is `widest`. Half the texture
 // is enough for that.
-// Returns: width in [0, widest]; 0, which is no blur, if sigma0 is 0, negative or a NaN, or if
-//   stretch is infinite.
+// Returns: width in [0, widest]; 0, which is no blur, if sigma0 is 0, negative or a NaN;
+//   sigma0 / 1e18 if stretch is infinite.
 // Units: texels; sigma0 in a length, stretch in lengths per texel.
 // Domain: any bits for sigma0 and stretch, magnitudes count as at most 1e18, a NaN stretch as 0;
 //   widest in [0, 1e6].

@@ -4,7 +4,7 @@
 // The result of dpdx(normalize(normal)): the difference of two neighbours' unit normals.
 // Returns: n(x + 1) - n(x).
 // Units: the inverse of the screen's unit.
-// Domain: |normal| in [1e-3, 1e3], neighbours at an angle of 0.1 or more.
+// Domain: |normal| in [1e-3, 1e3], neighbours at an angle of 0.1 rad or more.
 // Outside: loses digits as 2^-24 / angle; 0 / 0 for the zero vector.
 // Accuracy: naive
 fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f {
@@ -42,7 +42,7 @@ fn curvature_gaussian_textbook(position_x: vec3f, position_y: vec3f, normal_x: v
 // determinant cancels in the quotient. Kept to show where it fails.
 // Returns: (alpha^2 e + 2 alpha beta f + beta^2 g) / (alpha^2 E + 2 alpha beta F + beta^2 G).
 // Units: the inverse of the position's unit.
-// Domain: as for curvature_mean_textbook, with a light at 0.1 or more from the normal.
+// Domain: as for curvature_mean_textbook, with a light at 0.1 rad or more from the normal.
 // Outside: 0 / 0 for a light along the normal; otherwise as curvature_mean_textbook.
 // Accuracy: naive
 fn curvature_towards_textbook(

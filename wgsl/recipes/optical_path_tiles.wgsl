@@ -28,7 +28,7 @@ const OPTICAL_PATH_TOLERANCE: f32 = 1e-5f;
 
 // 64 bits of matter per tile.
 @group(0) @binding(6) var<storage, read_write> tile_matter: array<vec2u>;
-// The last pass for which each tile was listed.
+// The last pass for which each tile was listed, plus 1; 0 for never.
 @group(0) @binding(7) var<storage, read_write> tile_listed: array<atomic<u32>>;
 // Two lists, one after the other: for passes with even and with odd numbers.
 @group(0) @binding(8) var<storage, read_write> lists: array<u32>;

@@ -92,19 +92,17 @@ fn point(draws: &mut Draws<'_>) -> IVec2 {
 
 /// Two points of the lattice whose difference is within it: anywhere, or nearly on a line through the column.
 fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
-    let half = |draws: &mut Draws<'_>| point(draws) / 2;
-    if draws.below(4) == 0 {
-        let far = point(draws);
-        return (far, far / 2 + IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1));
-    }
-    let one = half(draws);
-    let other = match draws.below(4) {
-        0 => half(draws),
-        1 => one,
-        // By ratios whose products stay exact, and one step beside.
+    let beside = |draws: &mut Draws<'_>| IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1);
+    let far = point(draws);
+    let near = far / 2;
+    let (one, other) = match draws.below(8) {
+        0 | 1 => (far, near + beside(draws)),
+        2 => (near, point(draws) / 2),
+        3 => (near, near),
+        // By ratios whose products stay exact.
         _ => {
-            let ratio = draws.pick(&[(1, 1), (-1, 1), (1, 2), (-1, 2), (2, 3), (-3, 4), (0, 1)]);
-            one / (4 * ratio.1) * ratio.0 + IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1)
+            let (over, under) = draws.pick(&[(1, 1), (-1, 1), (1, 2), (-1, 2), (2, 3), (-3, 4), (0, 1)]);
+            (near, near / (4 * under) * over + beside(draws))
         }
     };
     if draws.below(2) == 0 { (one, other) } else { (other, one) }

@@ -145,7 +145,7 @@ pub(super) fn uniform(device: &Device, what: &str, contents: &[u8]) -> wgpu::Buf
     buffer(device, what, contents, wgpu::BufferUsages::UNIFORM)
 }
 
-/// The same to be read as storage: a body's own, see the recipes' `material`.
+/// A buffer to be read as storage.
 pub(super) fn storage(device: &Device, what: &str, contents: &[u8]) -> wgpu::Buffer {
     buffer(device, what, contents, wgpu::BufferUsages::STORAGE)
 }

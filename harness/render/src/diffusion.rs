@@ -62,7 +62,7 @@ impl<'gpu> Diffusion<'gpu> {
         let shared = translucent::shared(light, &pipeline)?;
         let groups = gpu.guarded("uploading a mesh", |device| {
             let contents = bytemuck::cast_slice(&drawn);
-            let indices = device::buffer(device, "indices with halos", contents, wgpu::BufferUsages::STORAGE);
+            let indices = device::storage(device, "indices with halos", contents);
             let own = [(0, mesh.positions), (1, &indices), (2, mesh.normals), (3, mesh.uvs)];
             let shared: Vec<_> = shared.iter().map(|(binding, shared)| (*binding, shared.resource())).collect();
             let own = own.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));

@@ -1,7 +1,7 @@
 //! What shines on a scene, on the device: its lights and the environment, as the recipes bind them. Each is made when
 //! the first pipeline reads it, and once for all.
 
-use super::device::{Pipeline, buffer, uniform};
+use super::device::{Pipeline, storage, uniform};
 use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
 use crate::record::Record;
@@ -38,8 +38,7 @@ impl<'a> Lighting<'a> {
     pub(super) fn lights(&self) -> Result<&wgpu::Buffer, RenderError> {
         once(&self.lights, || {
             let lights = lights(self.scene);
-            let upload = |device: &_| buffer(device, "lights", &lights, wgpu::BufferUsages::STORAGE);
-            Ok(self.gpu.guarded("uploading lights", upload)?)
+            Ok(self.gpu.guarded("uploading lights", |device| storage(device, "lights", &lights))?)
         })
     }
 

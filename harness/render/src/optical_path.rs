@@ -5,7 +5,7 @@ mod density;
 mod seeds;
 mod stage;
 
-use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices};
+use super::device::{self, Pipeline, PipelineSource, mesh_vertices, storage};
 use super::light_views;
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
@@ -182,9 +182,8 @@ impl<'gpu> Upload<'_, 'gpu> {
             ("normals", bytemuck::cast_slice(&mesh.normals)),
         ];
         let vertices = mesh_vertices(gpu, drawn.object, &mesh.indices, parts.map(|(_, contents)| contents))?;
-        let [positions, indices, normals] = gpu.guarded("uploading a mesh", |device| {
-            parts.map(|(what, part)| buffer(device, what, part, wgpu::BufferUsages::STORAGE))
-        })?;
+        let [positions, indices, normals] =
+            gpu.guarded("uploading a mesh", |device| parts.map(|(what, part)| storage(device, what, part)))?;
         maps.add(name, [&positions, &indices, &normals], vertices)?;
         let of_body = match self.seeds {
             Some(seeds) => Some(self.paths(drawn, seeds, grid, extinction, [&positions, &indices])?),
@@ -192,7 +191,7 @@ impl<'gpu> Upload<'_, 'gpu> {
         };
         let group = gpu.guarded("uploading a material", |device| {
             let record = body_bytes(grid, material, extinction, self.largest);
-            let record = buffer(device, "material", &record, wgpu::BufferUsages::STORAGE);
+            let record = storage(device, "material", &record);
             let mut buffers = vec![(0, &record), (1, &positions), (2, &indices), (3, &normals)];
             if let Some(of_body) = &of_body {
                 buffers.extend((4..).zip(of_body.channels.iter().map(|channel| &channel.costs)));
@@ -216,12 +215,7 @@ impl<'gpu> Upload<'_, 'gpu> {
     ) -> Result<BodyPaths<'gpu>, RenderError> {
         let gpu = self.gpu;
         let Drawn { object: Object { mesh, material, .. }, name, decisions } = drawn;
-        let voxelizer = Voxelizer::new(
-            gpu,
-            grid,
-            (mesh.positions.len() as u32, mesh.triangle_count() as u32),
-            &decisions.constants(),
-        )?;
+        let voxelizer = Voxelizer::new(gpu, grid, mesh, &decisions.constants())?;
         let density = material.medium.as_ref().map_or(&Density::Uniform, |medium| &medium.density);
         let density = if decisions.has(Effect::ExtinctionPerVoxel) { density } else { &Density::Uniform };
         let densities = Densities::new(gpu, grid, density, &voxelizer.matter)?;
@@ -284,7 +278,7 @@ fn extinction(material: &Material, settings: &Settings) -> Vec3 {
 
 /// `OpticalPathBody` of the recipe.
 fn body_bytes(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Vec<u8> {
-    let record = grid.fill(Record::new("OpticalPathBody"), "grid.");
+    let record = Record::new("OpticalPathBody").within("grid", |record| grid.fill(record));
     let record = record.with("base_color", material.base_color).with("index", material.ior);
     let record = record.with("extinction", extinction).with("alpha", material.roughness * material.roughness);
     record.with("largest", largest).bytes()

@@ -4,12 +4,14 @@ use glam::{Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
 use lapidary_specialise::layout::StructLayout;
 use naga::ScalarKind;
 use std::collections::BTreeMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// A struct that is being filled. Wrong names and kinds are the renderer's own faults, which its first picture shows: they panic.
 pub(crate) struct Record {
     name: &'static str,
     layout: &'static StructLayout,
+    /// What stands before the names of the fields that are being filled: those of an inner struct are named `outer.inner`.
+    outer: String,
     bytes: Vec<u8>,
     filled: Vec<bool>,
 }
@@ -18,22 +20,31 @@ impl Record {
     /// The struct of this name, which one recipe at least holds.
     pub(crate) fn new(name: &'static str) -> Self {
         let layout = layout(name);
-        Self { name, layout, bytes: vec![0; layout.size], filled: vec![false; layout.fields.len()] }
+        let (bytes, filled) = (vec![0; layout.size], vec![false; layout.fields.len()]);
+        Self { name, layout, outer: String::new(), bytes, filled }
     }
 
-    /// Fills a field; one of an inner struct is named `outer.inner`.
+    /// Fills a field.
     #[must_use]
     pub(crate) fn with(mut self, field: &str, value: impl Words) -> Self {
-        let Self { name, layout, bytes, filled } = &mut self;
-        let place = layout.fields.iter().position(|known| known.name == field);
-        let place = place.unwrap_or_else(|| panic!("`{name}` has no field `{field}`"));
+        let Self { name, layout, outer, bytes, filled } = &mut self;
+        let place = layout.fields.iter().position(|known| known.name.strip_prefix(outer.as_str()) == Some(field));
+        let place = place.unwrap_or_else(|| panic!("`{name}` has no field `{outer}{field}`"));
         let (known, (kind, words)) = (&layout.fields[place], value.words());
-        assert_eq!((kind, words.len()), (known.kind, known.offsets.len()), "`{name}.{field}`");
+        assert_eq!((kind, words.len()), (known.kind, known.offsets.len()), "`{name}.{outer}{field}`");
         for (offset, word) in known.offsets.iter().zip(words) {
             bytes[*offset..offset + 4].copy_from_slice(&word.to_ne_bytes());
         }
         filled[place] = true;
         self
+    }
+
+    /// Fills a field that is a struct itself.
+    #[must_use]
+    pub(crate) fn within(mut self, field: &str, fill: impl FnOnce(Self) -> Self) -> Self {
+        let inner = format!("{}{field}.", self.outer);
+        let outer = std::mem::replace(&mut self.outer, inner);
+        Self { outer, ..fill(self) }
     }
 
     /// Its bytes, up to a multiple of 16, as uniforms have them.
@@ -45,18 +56,21 @@ impl Record {
     }
 }
 
-/// The layout of a struct, from the first recipe that holds it.
-fn layout(name: &'static str) -> &'static StructLayout {
-    static LAYOUTS: OnceLock<Mutex<BTreeMap<&'static str, &'static StructLayout>>> = OnceLock::new();
-    let mut layouts = LAYOUTS.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
-    layouts.entry(name).or_insert_with(|| {
-        let declares = |text: &String| text.contains(&format!("struct {name} {{"));
-        let text = lapidary_wgsl::RECIPES.iter().map(lapidary_wgsl::Recipe::compose).find(declares);
-        let module = text.map(|text| lapidary_specialise::parse(&text, name));
-        let found = module.and_then(|module| StructLayout::named(&module.ok()?.0, name));
-        // Once for each struct there is.
-        Box::leak(Box::new(found.unwrap_or_else(|| panic!("no recipe holds a struct `{name}`"))))
-    })
+/// The layout of a struct, from the first recipe that holds it. Each recipe is read once at most.
+fn layout(name: &str) -> &'static StructLayout {
+    static LAYOUTS: Mutex<BTreeMap<String, &'static StructLayout>> = Mutex::new(BTreeMap::new());
+    let mut layouts = LAYOUTS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = layouts.get(name) {
+        return known;
+    }
+    let declares = |text: &String| text.contains(&format!("struct {name} {{"));
+    let text = lapidary_wgsl::RECIPES.iter().map(lapidary_wgsl::Recipe::compose).find(declares);
+    let module = text.map(|text| naga::front::wgsl::parse_str(&text).expect("the cookbook's WGSL"));
+    for (name, layout) in module.iter().flat_map(StructLayout::all) {
+        // Once for each struct that there is.
+        layouts.entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(layout)));
+    }
+    layouts.get(name).unwrap_or_else(|| panic!("no recipe holds a struct `{name}`"))
 }
 
 /// What a field may hold.
@@ -114,6 +128,18 @@ mod tests {
         let record = Record::new("OpticalPathGrid").with("spacing", 0.5).with("cells", 64u32).with("extinction", 3.0);
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&record.bytes());
         assert_eq!(words, [64, 3f32.to_bits(), 0.5f32.to_bits(), 0]);
+    }
+
+    #[test]
+    fn an_inner_struct_is_filled_by_its_own_names() {
+        let seeding = |fill: fn(Record) -> Record| {
+            let record = Record::new("OpticalPathSeeding").within("grid", fill);
+            record.with("extinction", 2.0).with("largest", 3.0).with("channel", 1u32).bytes()
+        };
+        let grid = |record: Record| record.with("origin", Vec3::X).with("spacing", 0.5).with("cells", 64u32);
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&seeding(grid));
+        let [one, half, two, three] = [1f32, 0.5, 2.0, 3.0].map(f32::to_bits);
+        assert_eq!(words, [one, 0, 0, half, 64, 0, 0, 0, two, three, 1, 0]);
     }
 
     #[test]

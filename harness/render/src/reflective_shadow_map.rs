@@ -1,7 +1,7 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
 use super::RenderError;
-use super::device::{self, Pipeline, PipelineSource, buffer};
+use super::device::{self, Pipeline, PipelineSource};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
 use crate::record::Record;
@@ -64,8 +64,8 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
             );
             let depth = device::view(&depth);
             let group = |view: &LightView| {
-                let contents = fill(view.view, Record::new("ReflectiveShadowMapView"), "").bytes();
-                let uniform = buffer(device, "view of a light", &contents, wgpu::BufferUsages::UNIFORM);
+                let contents = fill(view.view, Record::new("ReflectiveShadowMapView")).bytes();
+                let uniform = device::uniform(device, "view of a light", &contents);
                 pipeline.bind(device, 0, &[(0, uniform.as_entire_binding())])
             };
             (texture, depth, views.iter().map(group).collect())
@@ -143,16 +143,17 @@ impl<'gpu> ReflectiveShadowMaps<'gpu> {
 
 /// The part `light_views`: `array<LightView>`.
 pub(super) fn view_buffer(gpu: &Gpu, views: &[LightView]) -> Result<wgpu::Buffer, RenderError> {
-    let entry = |from: &LightView| fill(from.view, Record::new("LightView"), "view.").with("light", from.light).bytes();
+    let entry = |from: &LightView| {
+        let record = Record::new("LightView").within("view", |record| fill(from.view, record));
+        record.with("light", from.light).bytes()
+    };
     let views: Vec<u8> = views.iter().flat_map(entry).collect();
-    Ok(gpu
-        .guarded("uploading views", |device| buffer(device, "views of lights", &views, wgpu::BufferUsages::STORAGE))?)
+    Ok(gpu.guarded("uploading views", |device| device::storage(device, "views of lights", &views))?)
 }
 
-/// Fills the fields of a `ReflectiveShadowMapView`, which are named `prefix` and their own name.
-fn fill(view: ReflectiveShadowMapView, record: Record, prefix: &str) -> Record {
+/// Fills a `ReflectiveShadowMapView` of the recipes.
+fn fill(view: ReflectiveShadowMapView, record: Record) -> Record {
     let ReflectiveShadowMapView { origin, lamp, axis, extent, near, far } = view;
-    let name = |field: &str| format!("{prefix}{field}");
-    let record = record.with(&name("origin"), origin).with(&name("lamp"), lamp).with(&name("axis"), axis);
-    record.with(&name("extent"), extent).with(&name("near"), near).with(&name("far"), far)
+    let record = record.with("origin", origin).with("lamp", lamp).with("axis", axis);
+    record.with("extent", extent).with("near", near).with("far", far)
 }

@@ -1,6 +1,6 @@
 //! Shadows on what is drawn by its surface alone: what each light sees of all bodies but the clear ones, once for all of a scene.
 
-use super::device::{self, Pipeline, buffer};
+use super::device::{self, Pipeline, storage};
 use super::pass::Shared;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::Part;
@@ -50,9 +50,8 @@ impl<'gpu> Shadows<'gpu> {
             ];
             let vertices =
                 device::mesh_vertices(gpu, drawn.object, &mesh.indices, parts.map(|(_, contents)| contents))?;
-            let buffers: MeshBuffers = gpu.guarded("uploading a mesh", |device| {
-                parts.map(|(what, contents)| buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
-            })?;
+            let buffers: MeshBuffers = gpu
+                .guarded("uploading a mesh", |device| parts.map(|(what, contents)| storage(device, what, contents)))?;
             maps.add(&drawn.name, buffers.each_ref(), vertices)?;
             meshes.insert(drawn.name.clone(), buffers);
         }

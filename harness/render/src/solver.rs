@@ -1,6 +1,7 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
 use crate::compute::Kernel;
+use crate::device::uniform;
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
@@ -162,11 +163,7 @@ impl<'gpu> Solver<'gpu> {
         self.gpu.guarded("recording a solve", |device| {
             let grid = Record::new("OpticalPathGrid").with("cells", cells).with("extinction", extinction);
             let grid = grid.with("spacing", self.grid.spacing).bytes();
-            let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("solve"),
-                contents: &grid,
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
+            let uniform = uniform(device, "solve", &grid);
             let mut buffers = vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];
             buffers.extend(density.map(|density| (5, density)));
             buffers.extend((6..).zip(&self.own));

@@ -1,6 +1,6 @@
 //! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{self, Pipeline, buffer, mesh_vertices};
+use super::device::{self, Pipeline, mesh_vertices};
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{RenderError, Settings, restraint};
@@ -42,7 +42,7 @@ pub(super) fn upload(
         let material = GemMaterial::of(&object.material, rung, settings).bytes();
         let material = device::storage(device, "material", &material);
         let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
-            (group, binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
+            (group, binding, device::storage(device, what, contents))
         };
         let mut buffers = vec![(1, 0, material)];
         buffers.extend(parts.iter().map(storage));

@@ -138,7 +138,7 @@ impl<'gpu> TextureDiffusion<'gpu> {
                         };
                         let uniform =
                             taps.uniform(direction, bound(chart.low, -UNBOUNDED), bound(chart.high, UNBOUNDED));
-                        let uniform = device::buffer(device, "taps", &uniform, wgpu::BufferUsages::UNIFORM);
+                        let uniform = device::uniform(device, "taps", &uniform);
                         let resources = [
                             (0, wgpu::BindingResource::TextureView(&textures[0])),
                             (1, uniform.as_entire_binding()),

@@ -1,6 +1,6 @@
 //! The recipe `cdrf_shading`'s pass: what scatters light, and what is opaque, under the scene's lights and the environment.
 
-use super::device::{self, Pipeline, PipelineSource, buffer, mesh_vertices};
+use super::device::{self, Pipeline, PipelineSource, mesh_vertices};
 use super::diffusion::{Diffusion, MeshBuffers};
 use super::lighting::Lighting;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Shared, Variant};
@@ -121,9 +121,8 @@ fn upload<'gpu>(
         Some((binding, mesh.get(binding.checked_sub(1)? as usize)?.clone()))
     };
     let buffers: Vec<(u32, wgpu::Buffer)> = gpu.guarded("uploading a mesh", |device| {
-        let storage = |(binding, what, contents): (u32, &str, &[u8])| {
-            (binding, buffer(device, what, contents, wgpu::BufferUsages::STORAGE))
-        };
+        let storage =
+            |(binding, what, contents): (u32, &str, &[u8])| (binding, device::storage(device, what, contents));
         read()
             .map(|part| cast(part.0).unwrap_or_else(|| storage(part)))
             .chain([(0, device::storage(device, "material", &record_of(material)))])

@@ -34,16 +34,15 @@ impl VoxelGrid {
         Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
     }
 
-    /// Fills the fields of a `VoxelizationGrid`, which are named `prefix` and their own name.
-    pub(crate) fn fill(&self, record: Record, prefix: &str) -> Record {
+    /// Fills a `VoxelizationGrid` of the recipes.
+    pub(crate) fn fill(&self, record: Record) -> Record {
         let Self { origin, spacing, cells } = *self;
-        let name = |field: &str| format!("{prefix}{field}");
-        record.with(&name("origin"), origin).with(&name("spacing"), spacing).with(&name("cells"), cells)
+        record.with("origin", origin).with("spacing", spacing).with("cells", cells)
     }
 
     /// `VoxelizationGrid` of the recipes.
     pub(crate) fn bytes(&self) -> Vec<u8> {
-        self.fill(Record::new("VoxelizationGrid"), "").bytes()
+        self.fill(Record::new("VoxelizationGrid")).bytes()
     }
 
     /// How many voxels there are.

@@ -4,6 +4,7 @@ use crate::compute::Kernel;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
 use lapidary_gpu::{Encoder, Gpu};
+use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
 /// The recipe's name.
@@ -36,12 +37,12 @@ impl From<VoxelGrid> for VoxelizationGrid {
     }
 }
 
-/// Pipelines and buffers for meshes of up to so many vertices and triangles in a grid of one size.
+/// Pipelines and buffers for a mesh that may move, in a grid of one size.
 #[derive(Debug)]
 pub struct Voxelizer<'gpu> {
     gpu: &'gpu Gpu,
     cells: u32,
-    most_triangles: u32,
+    most_triangles: u64,
     /// Of each vertex, of each triangle, of those over many columns, of each row.
     kernels: [Kernel; 4],
     grid: wgpu::Buffer,
@@ -57,20 +58,16 @@ pub struct Voxelizer<'gpu> {
 }
 
 impl<'gpu> Voxelizer<'gpu> {
-    /// For meshes of up to `most_vertices` and `most_triangles`, with the effects by the names of the recipe's overrides.
+    /// For meshes of up to as many vertices and triangles as `mesh`, with the effects by the names of the recipe's overrides.
     ///
     /// # Errors
     /// Where the device refuses the recipe or the memory.
     ///
     /// # Panics
     /// For more than [`MOST_TRIANGLES`].
-    pub fn new(
-        gpu: &'gpu Gpu,
-        grid: VoxelGrid,
-        (most_vertices, most_triangles): (u32, u32),
-        effects: &[(&str, f64)],
-    ) -> Result<Self, ShaderError> {
-        assert!(most_triangles <= MOST_TRIANGLES, "{most_triangles} triangles");
+    pub fn new(gpu: &'gpu Gpu, grid: VoxelGrid, mesh: &Mesh, effects: &[(&str, f64)]) -> Result<Self, ShaderError> {
+        let (vertices, triangles) = (mesh.positions.len(), mesh.triangle_count());
+        assert!(triangles <= MOST_TRIANGLES as usize, "{triangles} triangles");
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let kernel = |entry| Kernel::new(gpu, RECIPE, &source, entry, effects);
         let kernels = [
@@ -92,13 +89,13 @@ impl<'gpu> Voxelizer<'gpu> {
             Self {
                 gpu,
                 cells: grid.cells,
-                most_triangles,
+                most_triangles: triangles as u64,
                 kernels,
                 grid: buffer("grid", 32, Usage::UNIFORM | Usage::COPY_DST),
                 beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
                 // A list of none still has a place.
-                large: storage("large triangles", 4 + 4 * u64::from(most_triangles.max(1))),
-                corners: storage("vertices in the grid", 12 * u64::from(most_vertices.max(1))),
+                large: storage("large triangles", 4 + 4 * triangles.max(1) as u64),
+                corners: storage("vertices in the grid", 12 * vertices.max(1) as u64),
                 matter: storage("matter", bits),
                 surface: holds_surface.then(|| storage("surface voxels", bits)),
                 status: storage("voxel counts", STATUS_BYTES),
@@ -121,9 +118,9 @@ impl<'gpu> Voxelizer<'gpu> {
         positions: &wgpu::Buffer,
         indices: &wgpu::Buffer,
     ) -> Result<(), ShaderError> {
-        let triangles = indices.size() / 12;
-        assert!(triangles <= u64::from(self.most_triangles), "{triangles} triangles");
-        assert!(positions.size() <= self.corners.size(), "{} vertices", positions.size() / 12);
+        let [vertices, triangles] = [positions, indices].map(|buffer| buffer.size() / 12);
+        assert!(triangles <= self.most_triangles, "{triangles} triangles");
+        assert!(positions.size() <= self.corners.size(), "{vertices} vertices");
         for buffer in [&self.matter, &self.beyond, &self.status].into_iter().chain(&self.surface) {
             encoder.clear_buffer(buffer, 0, None);
         }
@@ -154,8 +151,8 @@ impl<'gpu> Voxelizer<'gpu> {
                 ..wgpu::ComputePassDescriptor::default()
             });
             let rows = self.cells * self.cells;
-            let vertices = (positions.size() / 12).div_ceil(WORKGROUP.into()).min(MOST_WORKGROUPS.into()) as u32;
-            let workgroups = [vertices, (triangles as u32).div_ceil(WORKGROUP), LARGE_GROUPS, rows.div_ceil(WORKGROUP)];
+            let groups = |threads: u64| threads.div_ceil(WORKGROUP.into()).min(MOST_WORKGROUPS.into()) as u32;
+            let workgroups = [groups(vertices), groups(triangles), LARGE_GROUPS, groups(rows.into())];
             for (kernel, workgroups) in self.kernels.iter().zip(workgroups) {
                 pass.set_pipeline(&kernel.pipeline);
                 pass.set_bind_group(0, kernel.bind(device, 0, &resources).as_ref());

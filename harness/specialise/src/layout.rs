@@ -23,70 +23,64 @@ pub struct Field {
 }
 
 impl StructLayout {
-    /// The layout of the struct called `name`; none if the module has no such struct.
-    ///
-    /// # Panics
-    /// If the module is not valid, or the struct ends in an array of runtime size.
-    #[must_use]
-    pub fn named(module: &Module, name: &str) -> Option<StructLayout> {
-        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
-        let TypeInner::Struct { span, .. } = ty.inner else { return None };
-        let mut fields = Vec::new();
-        add_fields(module, ty, "", 0, &mut fields);
-        Some(StructLayout { size: span as usize, fields })
+    /// The layout of each struct of a module that is made of scalars of 32 bits, by its name.
+    pub fn all(module: &Module) -> impl Iterator<Item = (&str, StructLayout)> {
+        module.types.iter().filter_map(|(_, ty)| {
+            let TypeInner::Struct { span, .. } = ty.inner else { return None };
+            let mut fields = Vec::new();
+            add_fields(module, ty, "", 0, &mut fields)?;
+            Some((ty.name.as_deref()?, StructLayout { size: span as usize, fields }))
+        })
     }
 }
 
-fn add_fields(module: &Module, ty: &Type, outer: &str, base: usize, fields: &mut Vec<Field>) {
-    let TypeInner::Struct { members, .. } = &ty.inner else { unreachable!("only structs have fields") };
+/// None if one of them is not made of scalars of 32 bits.
+fn add_fields(module: &Module, ty: &Type, outer: &str, base: usize, fields: &mut Vec<Field>) -> Option<()> {
+    let TypeInner::Struct { members, .. } = &ty.inner else { return None };
     for member in members {
         let name = format!("{outer}{}", member.name.as_deref().unwrap_or_default());
         let (inner, offset) = (&module.types[member.ty], base + member.offset as usize);
         if matches!(inner.inner, TypeInner::Struct { .. }) {
-            add_fields(module, inner, &format!("{name}."), offset, fields);
+            add_fields(module, inner, &format!("{name}."), offset, fields)?;
         } else {
-            let mut offsets = Vec::new();
-            word_offsets(module, member.ty, offset, &mut offsets);
-            fields.push(Field { name, kind: kind(module, member.ty), offsets });
+            let (kind, offsets) = (kind(module, member.ty)?, word_offsets(module, member.ty, offset)?);
+            fields.push(Field { name, kind, offsets });
         }
     }
+    Some(())
 }
 
-fn kind(module: &Module, ty: Handle<Type>) -> ScalarKind {
+fn kind(module: &Module, ty: Handle<Type>) -> Option<ScalarKind> {
     match module.types[ty].inner {
         TypeInner::Array { base, .. } => kind(module, base),
-        ref inner => inner.scalar_kind().unwrap_or_else(|| unreachable!("{inner:?} has no scalars")),
+        ref inner => inner.scalar_kind(),
     }
 }
 
-/// Adds the byte offset of each word of a type that lies at `base`.
-///
-/// # Panics
-/// If the type is not made of scalars of 32 bits, or has an array of runtime size.
-pub fn word_offsets(module: &Module, ty: Handle<Type>, base: usize, offsets: &mut Vec<usize>) {
+/// The byte offset of each word of a type that lies at `base`; none if it is not made of scalars of 32 bits, or has an array of runtime size.
+pub fn word_offsets(module: &Module, ty: Handle<Type>, base: usize) -> Option<Vec<usize>> {
+    let of_parts = |parts: &mut dyn Iterator<Item = (Handle<Type>, usize)>| {
+        parts
+            .map(|(ty, offset)| word_offsets(module, ty, base + offset))
+            .collect::<Option<Vec<_>>>()
+            .map(|it| it.concat())
+    };
     match &module.types[ty].inner {
-        TypeInner::Scalar(_) | TypeInner::Atomic(_) => offsets.push(base),
-        TypeInner::Vector { size, .. } => {
-            offsets.extend((0..*size as usize).map(|index| base + 4 * index));
-        }
+        TypeInner::Scalar(_) | TypeInner::Atomic(_) => Some(vec![base]),
+        TypeInner::Vector { size, .. } => Some((0..*size as usize).map(|index| base + 4 * index).collect()),
         TypeInner::Matrix { columns, rows, .. } => {
             // WGSL aligns a column of three like one of four.
             let column_stride = if *rows == VectorSize::Bi { 8 } else { 16 };
-            for column in 0..*columns as usize {
-                offsets.extend((0..*rows as usize).map(|row| base + column * column_stride + 4 * row));
-            }
+            let column = |column: usize| (0..*rows as usize).map(move |row| base + column * column_stride + 4 * row);
+            Some((0..*columns as usize).flat_map(column).collect())
         }
         TypeInner::Array { base: element, size: ArraySize::Constant(length), stride } => {
-            for index in 0..length.get() as usize {
-                word_offsets(module, *element, base + index * *stride as usize, offsets);
-            }
+            of_parts(&mut (0..length.get()).map(|index| (*element, (index * stride) as usize)))
         }
         TypeInner::Struct { members, .. } => {
-            for member in members {
-                word_offsets(module, member.ty, base + member.offset as usize, offsets);
-            }
+            of_parts(&mut members.iter().map(|member| (member.ty, member.offset as usize)))
         }
-        other => unreachable!("{other:?} is not made of words"),
+        _ => None,
     }
 }
 
@@ -98,9 +92,13 @@ mod tests {
     fn fields_lie_where_wgsl_puts_them() {
         let source = "struct Inner { at: vec3f, size: f32, count: u32 }
             struct Outer { turn: mat3x3f, inner: Inner, last: i32, rows: array<vec4f, 2> }
-            @group(0) @binding(0) var<uniform> outer: Outer;";
+            struct Endless { count: u32, rest: array<u32> }
+            @group(0) @binding(0) var<uniform> outer: Outer;
+            @group(0) @binding(1) var<storage, read> endless: Endless;";
         let (module, _) = crate::parse(source, "layout.wgsl").expect("valid");
-        let outer = StructLayout::named(&module, "Outer").expect("there");
+        let all: Vec<(&str, StructLayout)> = StructLayout::all(&module).collect();
+        assert_eq!(all.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["Inner", "Outer"]);
+        let outer = &all[1].1;
         let found: Vec<(&str, ScalarKind, usize, usize)> =
             outer.fields.iter().map(|f| (f.name.as_str(), f.kind, f.offsets[0], f.offsets.len())).collect();
         use ScalarKind::{Float, Sint, Uint};
@@ -114,6 +112,5 @@ mod tests {
         ];
         assert_eq!((found, outer.size), (wanted.to_vec(), 128));
         assert_eq!(outer.fields[0].offsets, [0, 4, 8, 16, 20, 24, 32, 36, 40]);
-        assert_eq!(StructLayout::named(&module, "Other"), None);
     }
 }

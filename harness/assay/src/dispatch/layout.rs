@@ -27,15 +27,14 @@ impl Layout {
     /// # Panics
     /// Where the module is not valid.
     pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Layout {
-        let mut offsets = Vec::new();
+        // Other types have no shape.
+        let offsets = |ty| word_offsets(module, ty, 0).expect("a type with a shape is made of words");
         if let naga::TypeInner::Array { base, size: naga::ArraySize::Dynamic, stride } = module.types[ty].inner {
-            word_offsets(module, base, 0, &mut offsets);
-            return Layout { stride: stride as usize, offsets };
+            return Layout { stride: stride as usize, offsets: offsets(base) };
         }
         let mut layouter = naga::proc::Layouter::default();
         layouter.update(module.to_ctx()).expect("a validated module has layouts");
-        word_offsets(module, ty, 0, &mut offsets);
-        Layout { stride: layouter[ty].to_stride() as usize, offsets }
+        Layout { stride: layouter[ty].to_stride() as usize, offsets: offsets(ty) }
     }
 
     /// Spreads rows of words over the bytes of a buffer.

@@ -59,46 +59,30 @@ impl fmt::Display for Finding {
 
 /// Checks one module, with the naive forms that follow it, against every rule that concerns it alone.
 pub fn lint(name: &str, source: &str, naive: &str) -> Vec<Finding> {
-    let lines = source.lines().count();
-    let whole = if naive.is_empty() { source.to_owned() } else { format!("{}\n\n{naive}", source.trim_end()) };
+    // Of the module's own; after an empty one those of the naive forms begin.
+    let own_lines = source.lines().count();
+    let whole = format!("{source}\n{naive}");
     let mut findings = Vec::new();
     let mut report = |rule, line, message: String| {
-        let (module, line) = match line > lines {
-            true => (format!("naive/{name}"), line - lines - 1),
+        let (module, line) = match line > own_lines {
+            true => (format!("naive/{name}"), line - own_lines - 1),
             false => (name.to_owned(), line),
         };
         findings.push(Finding { rule, module, line, message });
     };
     check_header(name, source, &mut report);
-    check_places(&whole, lines, &mut report);
-    check_whole(name, &whole, &mut report);
-    findings
-}
-
-/// What fails is not pasted.
-fn check_places(whole: &str, lines: usize, report: &mut Report<'_>) {
-    // A comment that breaks the contract is another rule's.
-    for function in header::parse_functions(whole).unwrap_or_default() {
-        let is_naive = function.accuracy == Accuracy::Naive;
-        if is_naive != (function.line > lines) {
-            let folder = if is_naive { "wgsl/naive" } else { "wgsl" };
-            report(Rule::Place, function.line, format!("`{}` belongs in {folder}", function.name));
-        }
-    }
-}
-
-fn check_whole(name: &str, source: &str, report: &mut Report<'_>) {
-    check_literals(source, report);
-    findings_of_operators(source, report);
-    match dispatch::parse(source, &format!("wgsl/{name}.wgsl")) {
+    check_literals(&whole, &mut report);
+    findings_of_operators(&whole, &mut report);
+    match dispatch::parse(&whole, &format!("wgsl/{name}.wgsl")) {
         Err(error) => report(Rule::Valid, 0, error.to_string()),
         Ok((module, _)) => {
-            check_functions(source, &module, report);
-            check_purity(source, &module, report);
-            check_names(name, source, &module, report);
-            check_self_comparison(source, &module, report);
+            check_functions(&whole, own_lines, &module, &mut report);
+            check_purity(&whole, &module, &mut report);
+            check_names(name, &whole, &module, &mut report);
+            check_self_comparison(&whole, &module, &mut report);
         }
     }
+    findings
 }
 
 /// Checks what no module is: the text of a recipe with its parts, each by itself. `effects` are those that its marks may
@@ -150,7 +134,7 @@ fn check_header(name: &str, source: &str, report: &mut Report<'_>) {
     }
 }
 
-fn check_functions(source: &str, module: &naga::Module, report: &mut Report<'_>) {
+fn check_functions(source: &str, own_lines: usize, module: &naga::Module, report: &mut Report<'_>) {
     let documented = match header::parse_functions(source) {
         Err(fault) => return report(Rule::FunctionComment, fault.line, fault.message),
         Ok(functions) => functions,
@@ -161,6 +145,12 @@ fn check_functions(source: &str, module: &naga::Module, report: &mut Report<'_>)
             report(Rule::FunctionComment, 0, format!("`{name}`: `fn` must start its line, after its comment"));
             continue;
         };
+        // What fails is not pasted.
+        let is_naive = comment.accuracy == Accuracy::Naive;
+        if is_naive != (comment.line > own_lines) {
+            let folder = if is_naive { "wgsl/naive" } else { "wgsl" };
+            report(Rule::Place, comment.line, format!("`{name}` belongs in {folder}"));
+        }
         let Some(result) = &function.result else {
             report(Rule::FunctionComment, comment.line, format!("`{name}` returns nothing, so nothing can test it"));
             continue;

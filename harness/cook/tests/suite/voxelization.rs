@@ -47,8 +47,7 @@ fn buffers(mesh: &Mesh) -> [wgpu::Buffer; 2] {
 fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
     let gpu = super::gpu();
     let effects = [("EFFECT_SURFACE", f64::from(u8::from(surface)))];
-    let voxelizer = Voxelizer::new(gpu, grid, (mesh.positions.len() as u32, mesh.triangle_count() as u32), &effects)
-        .expect("the recipe");
+    let voxelizer = Voxelizer::new(gpu, grid, mesh, &effects).expect("the recipe");
     let [positions, indices] = buffers(mesh);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     // Twice: a frame must not see the one before.
@@ -468,8 +467,7 @@ fn bodies_that_meet() {
 /// The least and the median of 40 frames, in milliseconds.
 fn time(mesh: &Mesh, cells: u32, constants: &[(&str, f64)]) -> [f64; 2] {
     let gpu = super::gpu();
-    let voxelizer =
-        Voxelizer::new(gpu, about(mesh, cells), (mesh.positions.len() as u32, mesh.triangle_count() as u32), constants);
+    let voxelizer = Voxelizer::new(gpu, about(mesh, cells), mesh, constants);
     let voxelizer = voxelizer.expect("the recipe");
     let [positions, indices] = buffers(mesh);
     let frame = || {

@@ -42,7 +42,6 @@ pub fn texture(format: Format, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>
 /// # Errors
 /// Where the device refuses the recipe or the memory.
 pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError> {
-    // A vec3f is aligned to 16 bytes.
     let bake = Record::new("CdrfTableBake").with("size", size).with("tint", tint).bytes();
     let bytes = u64::from(size.x) * u64::from(size.y) * 16;
     let run = RecipeRun {

@@ -1,7 +1,7 @@
 //! The recipe `optical_path_density`: how dense a body is, voxel by voxel.
 
 use super::super::RenderError;
-use super::super::device::{self, buffer, view};
+use super::super::device::{self, uniform, view};
 use crate::compute::Kernel;
 use crate::record::Record;
 use crate::voxel_grid::VoxelGrid;
@@ -42,20 +42,19 @@ impl Densities {
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
-            let uniform = |what, bytes: &[u8]| buffer(device, what, bytes, wgpu::BufferUsages::UNIFORM);
-            let place = uniform("grid of densities", &grid.bytes());
+            let place = uniform(device, "grid of densities", &grid.bytes());
             let first =
                 [(0, place.as_entire_binding()), (1, matter.as_entire_binding()), (2, of_voxels.as_entire_binding())];
             let group = match source {
                 Source::Veins(pattern) => {
-                    let pattern = uniform("veins", &pattern_bytes(pattern));
+                    let pattern = uniform(device, "veins", &pattern_bytes(pattern));
                     kernel.bind(device, 0, &[&first[..], &[(3, pattern.as_entire_binding())]].concat())
                 }
                 Source::Texture(values) => {
                     let texture = view(&texture(gpu, values));
                     let [least, greatest] = values.bounds();
                     let extent = Record::new("OpticalPathBox").with("least", least).with("greatest", greatest);
-                    let extent = uniform("box of densities", &extent.bytes());
+                    let extent = uniform(device, "box of densities", &extent.bytes());
                     let own = [(4, wgpu::BindingResource::TextureView(&texture)), (5, extent.as_entire_binding())];
                     kernel.bind(device, 0, &[&first[..], &own].concat())
                 }

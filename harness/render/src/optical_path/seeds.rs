@@ -1,7 +1,7 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
 use crate::compute::Kernel;
-use crate::device::buffer;
+use crate::device::uniform;
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
@@ -51,7 +51,7 @@ impl Seeds {
 
     pub(super) fn bind(&self, device: &Device, lit: &Lit, seeded: &Seeded<'_>) -> Groups {
         let what = ["seeding of red", "seeding of green", "seeding of blue"][seeded.channel as usize];
-        let uniform = buffer(device, what, &seeded.bytes(), wgpu::BufferUsages::UNIFORM);
+        let uniform = uniform(device, what, &seeded.bytes());
         let resources = [
             vec![
                 (0, uniform.as_entire_binding()),
@@ -90,7 +90,7 @@ impl Seeded<'_> {
     /// `OpticalPathSeeding` of the recipe.
     fn bytes(&self) -> Vec<u8> {
         let Self { grid, extinction, largest, channel, .. } = *self;
-        let record = grid.fill(Record::new("OpticalPathSeeding"), "grid.");
+        let record = Record::new("OpticalPathSeeding").within("grid", |record| grid.fill(record));
         // No light has a share of nothing.
         let largest = largest.max(f32::MIN_POSITIVE);
         record.with("extinction", extinction).with("largest", largest).with("channel", channel).bytes()

@@ -96,7 +96,7 @@ struct Body {
 
 impl Body {
     fn new(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Self, RenderError> {
-        let voxelizer = Voxelizer::new(gpu, grid, (mesh.positions.len() as u32, mesh.triangle_count() as u32), &[])?;
+        let voxelizer = Voxelizer::new(gpu, grid, mesh, &[])?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let storage = |contents: &[u8]| {
             gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

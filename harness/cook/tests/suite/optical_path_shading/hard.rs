@@ -139,9 +139,7 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
             let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
             // What the surface alone touches may lie in the outermost voxels by rounding: a face lies on their border.
             let effects = [("EFFECT_SURFACE", 0.0)];
-            let voxelizer =
-                Voxelizer::new(gpu, grid, (mesh.positions.len() as u32, mesh.triangle_count() as u32), &effects)
-                    .expect("compiled");
+            let voxelizer = Voxelizer::new(gpu, grid, &mesh, &effects).expect("compiled");
             let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
             let usage = wgpu::BufferUsages::STORAGE;
             let [positions, indices] = parts.map(|contents| {

@@ -20,7 +20,7 @@ fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) 
     for voxel in (0..grid.count()).map(|index| grid.voxel(index)).filter(|voxel| is_matter(*voxel)) {
         bits[(words * (voxel.y + grid.cells * voxel.z) + voxel.x / 32) as usize] |= 1 << (voxel.x % 32);
     }
-    let matter = buffer(&gpu.device, "matter", bytemuck::cast_slice(&bits), wgpu::BufferUsages::STORAGE);
+    let matter = device::buffer(&gpu.device, "matter", bytemuck::cast_slice(&bits), wgpu::BufferUsages::STORAGE);
     let densities = Densities::new(gpu, grid, density, &matter).expect("compiled").expect("it differs");
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     densities.encode(&mut encoder);
@@ -82,6 +82,6 @@ fn a_voxel_beside_matter_has_its_density_too() {
 #[test]
 fn a_body_of_one_density_needs_none() {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-    let matter = buffer(&gpu.device, "matter", &[0; 4], wgpu::BufferUsages::STORAGE);
+    let matter = device::buffer(&gpu.device, "matter", &[0; 4], wgpu::BufferUsages::STORAGE);
     assert!(Densities::new(gpu, grid(16), &Density::Uniform, &matter).expect("nothing to compile").is_none());
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::Settings;
-use crate::device::texture;
+use crate::device::{self, texture};
 use crate::light_views::{self, LightView};
 use crate::lighting::Lighting;
 use crate::reflective_shadow_map::view_buffer;
@@ -97,7 +97,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let maps = texture(gpu, "maps", format, [SIDE, SIDE, views.len() as u32], bytemuck::cast_slice(&texels));
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
-    let storage = |contents: &[u8]| buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
+    let storage = |contents: &[u8]| device::buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
     let lit = Lit {
         lights: lighting.lights().expect("uploaded").clone(),
         views: view_buffer(gpu, &views).expect("uploaded"),
@@ -116,7 +116,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
         let seeds = Seeds::new(gpu, &[("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(dense)))]).expect("compiled");
         // Left over from another frame.
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let costs = buffer(&gpu.device, "costs", bytemuck::cast_slice(&vec![0u32; grid.count()]), usage);
+        let costs = device::buffer(&gpu.device, "costs", bytemuck::cast_slice(&vec![0u32; grid.count()]), usage);
         let seeded = Seeded {
             grid,
             matter: &matter_buffer,
