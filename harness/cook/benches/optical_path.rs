@@ -6,9 +6,9 @@
 #[path = "../tests/suite/optical_path/bodies.rs"]
 mod bodies;
 
-use bodies::{Case, Uploaded};
+use bodies::Case;
 use lapidary_gpu::{AdapterChoice, Gpu};
-use lapidary_render::solver::Solver;
+use lapidary_render::solver::{LoneSolver, Solve};
 use lapidary_scene::solver::Method;
 use std::time::{Duration, Instant};
 
@@ -16,15 +16,14 @@ use std::time::{Duration, Instant};
 const ROUNDS: usize = 7;
 
 /// Seeds back, then a solve; the time of the solve.
-fn run(gpu: &Gpu, solver: &Solver<'_>, case: &Case, uploaded: &Uploaded) -> Duration {
-    gpu.queue.write_buffer(&uploaded.cost, 0, bytemuck::cast_slice(&case.seeds));
+fn run(gpu: &Gpu, solver: &LoneSolver<'_>, case: &Case) -> Duration {
+    let wait = || gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    solver.set_seeds(&case.seeds);
     gpu.queue.submit([]);
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    wait();
     let start = Instant::now();
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    solver.encode(&mut encoder, &uploaded.matter, None, &uploaded.cost, case.extinction).expect("recorded");
-    gpu.queue.submit([encoder.finish()]);
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
+    solver.run().expect("run");
+    wait();
     start.elapsed()
 }
 
@@ -35,16 +34,20 @@ fn main() {
     for cells in if asked.is_empty() { vec![32, 64, 128] } else { asked } {
         let case = Case::bunny(cells, 10.0);
         println!("{cells}: {} voxels of matter", case.matter.iter().filter(|matter| **matter).count());
-        let uploaded = case.upload(gpu);
-        let solvers = Method::ALL.map(|method| Solver::new(gpu, case.grid, method, false, None).expect("it compiles"));
+        let solvers = Method::ALL.map(|method| {
+            let solve = Solve { method, heterogeneous: false, most_passes: None };
+            let solver = LoneSolver::new(gpu, case.grid, solve, case.extinction, None).expect("it compiles");
+            solver.set_body(&case.bits(), &[]);
+            solver
+        });
         let mut least = [Duration::MAX; Method::ALL.len()];
         for _ in 0..ROUNDS {
             for (solver, least) in solvers.iter().zip(&mut least) {
-                *least = run(gpu, solver, &case, &uploaded).min(*least);
+                *least = run(gpu, solver, &case).min(*least);
             }
         }
         for ((method, solver), least) in Method::ALL.iter().zip(&solvers).zip(least) {
-            run(gpu, solver, &case, &uploaded);
+            run(gpu, solver, &case);
             let status = solver.status().expect("a device");
             println!(
                 "| {method} | {:.1} ms | {} passes | {} updates |",

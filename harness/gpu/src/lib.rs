@@ -8,10 +8,6 @@
 //! # Ok::<(), lapidary_gpu::GpuError>(())
 //! ```
 
-pub mod capture;
-mod device;
-
-pub use device::{ComputePass, Device, Encoder, RenderPass};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -126,7 +122,7 @@ pub enum GpuError {
 #[derive(Debug)]
 pub struct Gpu {
     /// The device.
-    pub device: Device,
+    pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
     /// What the device is, for reports.
@@ -158,13 +154,6 @@ impl Gpu {
         Ok(SHARED.get_or_init(|| gpu))
     }
 
-    /// A device that takes everything and does nothing: what is recorded on it says what would be done.
-    pub fn without_hardware() -> Self {
-        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let info = device.adapter_info();
-        Self { device: Device(device), queue, info, chosen: AdapterChoice::Any, id: next_id() }
-    }
-
     fn open(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
         let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -184,7 +173,7 @@ impl Gpu {
                 ..wgpu::DeviceDescriptor::default()
             }))
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        Ok(Gpu { device: Device(device), queue, info, chosen: choice.clone(), id: next_id() })
+        Ok(Gpu { device, queue, info, chosen: choice.clone(), id: next_id() })
     }
 
     /// A number that no other device of this process has: what is made on one device must not be used on another.
@@ -203,7 +192,7 @@ impl Gpu {
     }
 
     /// Runs `make`, and turns what the device says against it into an error instead of a panic.
-    pub fn guarded<T>(&self, what: &str, make: impl FnOnce(&Device) -> T) -> Result<T, GpuError> {
+    pub fn guarded<T>(&self, what: &str, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);

@@ -1,60 +1,62 @@
-//! A compute entry point of a recipe, specialised, and bound by what is left of its bindings.
+//! A recipe's compute entry point, run once over buffers of its own.
 
-mod recipe;
+use crate::frame::{Builder, Executor, Workgroups};
+use crate::shader::ShaderError;
+use lapidary_gpu::Gpu;
+use wgpu::BufferUsages as Usage;
 
-pub use recipe::{Binding, RecipeRun, run_recipe};
-
-use crate::shader::{Bindings, Shader, ShaderError};
-use lapidary_gpu::{Device, Gpu, capture};
-
-/// A compiled entry point.
-#[derive(Debug)]
-pub struct Kernel {
-    /// The pipeline.
-    pub pipeline: wgpu::ComputePipeline,
-    bindings: Bindings,
+/// What stands at a binding; numbered from 0 in its group.
+#[derive(Clone, Copy, Debug)]
+pub enum Binding<'a> {
+    /// A uniform buffer with contents.
+    Uniform(&'a [u8]),
+    /// A storage buffer that is read.
+    Storage(&'a [u8]),
+    /// The storage buffer that is written and read back, with its size in bytes.
+    Result(u64),
 }
 
-impl Kernel {
-    /// Compiles `entry` of `source`, the composed text of `recipe`, with these overrides: bools as 0 or 1; those that the text does not declare are left out.
-    ///
-    /// # Errors
-    /// Where the text is not valid or the device refuses it.
-    pub fn new(
-        gpu: &Gpu,
-        recipe: &str,
-        source: &str,
-        entry: &str,
-        constants: &[(&str, f64)],
-    ) -> Result<Self, ShaderError> {
-        let shader = Shader::new(recipe, source, &[entry], constants)?;
-        let pipeline = gpu.guarded(&format!("compiling `{entry}`"), |device| {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: None,
-                module: &shader.upload(device),
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        })?;
-        capture::compute_pipeline(&pipeline, || shader.description(entry));
-        Ok(Self { pipeline, bindings: shader.bindings() })
-    }
+/// What to run, and on what.
+#[derive(Clone, Copy, Debug)]
+pub struct RecipeRun<'a> {
+    /// The recipe's name.
+    pub recipe: &'a str,
+    /// Its compute entry point.
+    pub entry: &'a str,
+    /// Values of overrides; those that it does not declare are left out.
+    pub constants: &'a [(&'a str, f64)],
+    /// By group.
+    pub bindings: &'a [&'a [Binding<'a>]],
+    /// Along each axis.
+    pub workgroups: [u32; 3],
+}
 
-    /// Whether it reads or writes this binding.
-    #[must_use]
-    pub fn binds(&self, group: u32, binding: u32) -> bool {
-        self.bindings.has(group, binding)
+/// Runs a recipe and gives the words of its [`Binding::Result`].
+///
+/// # Errors
+/// A recipe that is not valid, or that the device refuses.
+///
+/// # Panics
+/// Where no binding is a result.
+pub fn run_recipe(gpu: &Gpu, run: &RecipeRun<'_>) -> Result<Vec<u32>, ShaderError> {
+    let mut builder = Builder::new(Some(gpu));
+    let source = lapidary_wgsl::recipe_source(run.recipe);
+    let pipeline = builder.compute_pipeline(run.recipe, &source, run.entry, run.constants)?;
+    let mut result = None;
+    let mut groups = Vec::new();
+    for (group, bindings) in (0..).zip(run.bindings) {
+        let mut buffer = |binding: &Binding<'_>| match *binding {
+            Binding::Uniform(contents) => builder.filled("uniform", contents.to_vec(), Usage::UNIFORM),
+            Binding::Storage(contents) => builder.storage("input", contents),
+            Binding::Result(size) => *result.insert(builder.buffer("result", size, Usage::STORAGE | Usage::COPY_SRC)),
+        };
+        let buffers: Vec<_> = (0..).zip(bindings.iter().map(&mut buffer)).collect();
+        let resources: Vec<_> = buffers.into_iter().map(|(binding, buffer)| (binding, buffer.into())).collect();
+        groups.push(builder.bind(pipeline, group, &resources));
     }
-
-    /// The bind group of those of `resources`, by number, that the entry point reads or writes. Nothing where it has none in this group.
-    pub fn bind(
-        &self,
-        device: &Device,
-        group: u32,
-        resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> Option<wgpu::BindGroup> {
-        self.bindings.bind(device, |group| self.pipeline.get_bind_group_layout(group), group, resources)
-    }
+    let dispatch = builder.dispatch(pipeline, groups, Workgroups::Count(run.workgroups));
+    builder.compute(run.recipe, vec![dispatch], 1);
+    let executor = Executor::new(gpu, builder.finish())?;
+    executor.run(|_, _| {})?;
+    Ok(executor.words(result.expect("a binding for the result"))?)
 }

@@ -1,12 +1,11 @@
 //! The deferred way (the paper's section 4.3.4): the gem recipe fills a geometry buffer, and a lighting pass makes the picture.
 
-use super::device::{self, Pipeline, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
+use crate::frame::{Bound, Builder, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
 use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
-use lapidary_gpu::{Encoder, Gpu};
 
 /// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
 pub(super) const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -18,98 +17,88 @@ pub(super) const COMPOSITE: &str = "gem_composite";
 pub(super) const TARGETS: usize = 3;
 
 /// The geometry buffer of one tile and the lighting pass.
-pub(super) struct DeferredPass<'gpu> {
-    gpu: &'gpu Gpu,
-    pipeline: Pipeline,
-    environment: Option<wgpu::TextureView>,
-    emission: wgpu::TextureView,
-    normal: wgpu::TextureView,
-    reflectance: wgpu::TextureView,
-    depth: wgpu::TextureView,
+pub(super) struct DeferredPass {
+    pipeline: PipelineId,
+    environment: Option<Texture>,
+    emission: Texture,
+    normal: Texture,
+    reflectance: Texture,
+    depth: Texture,
 }
 
-impl<'gpu> DeferredPass<'gpu> {
+impl DeferredPass {
     /// For the settings' environment and samples; `source` is the composed recipe of the lighting pass.
     pub(super) fn new(
-        gpu: &'gpu Gpu,
+        builder: &mut Builder<'_>,
         lighting: &Lighting<'_>,
         settings: &Settings,
         source: &str,
     ) -> Result<Self, RenderError> {
         let map = f64::from(u8::from(matches!(settings.environment, Environment::Map(_))));
-        let pipeline = device::pipeline(
-            gpu,
-            &PipelineSource {
-                recipe: COMPOSITE,
-                source,
-                entries: ["gem_composite_vertex", "gem_composite_fragment"],
-                constants: &[("EFFECT_ENVIRONMENT_MAP", map)],
-                formats: &[SAMPLE_FORMAT],
-                depth: None,
-            },
-        )?;
-        let size =
-            [settings.width, settings.height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
-        let [emission, normal, reflectance, depth] = gpu.guarded("allocating a geometry buffer", |device| {
-            let usage = wgpu::TextureUsages::TEXTURE_BINDING;
-            [
-                ("emission", GEOMETRY_FORMAT),
-                ("normal", GEOMETRY_FORMAT),
-                ("reflectance", GEOMETRY_FORMAT),
-                ("geometry's depth", DEPTH_FORMAT),
-            ]
-            .map(|(what, format)| device::view(&device::target(device, what, size, format, usage)))
+        let pipeline = builder.render_pipeline(&PipelineSource {
+            recipe: COMPOSITE,
+            source,
+            entries: ["gem_composite_vertex", "gem_composite_fragment"],
+            constants: &[("EFFECT_ENVIRONMENT_MAP", map)],
+            formats: &[SAMPLE_FORMAT],
+            depth: None,
         })?;
-        let environment = pipeline.binds(0, 1).then(|| lighting.environment().cloned()).transpose()?;
-        Ok(Self { gpu, pipeline, environment, emission, normal, reflectance, depth })
+        let [width, height] =
+            [settings.width, settings.height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
+        let [emission, normal, reflectance, depth] = [
+            ("emission", GEOMETRY_FORMAT),
+            ("normal", GEOMETRY_FORMAT),
+            ("reflectance", GEOMETRY_FORMAT),
+            ("geometry's depth", DEPTH_FORMAT),
+        ]
+        .map(|(what, format)| builder.target(what, [width, height, 1], format, wgpu::TextureUsages::TEXTURE_BINDING));
+        let reads = builder.binds(pipeline, 0, 1);
+        let environment = reads.then(|| lighting.environment(builder)).transpose()?;
+        Ok(Self { pipeline, environment, emission, normal, reflectance, depth })
     }
 
     /// Fills the geometry buffer, then lights it.
     pub(super) fn draw(
         &self,
-        encoder: &mut Encoder,
-        gem: &ScenePass<'_>,
-        clip_from_world: Mat4,
-        eye: Vec3,
-        samples: &wgpu::TextureView,
+        builder: &mut Builder<'_>,
+        gem: &ScenePass,
+        (clip_from_world, eye): (Mat4, Vec3),
+        samples: Texture,
         size: [u32; 2],
     ) {
         let target = SceneTarget {
-            colors: vec![&self.emission, &self.normal, &self.reflectance],
-            depth: &self.depth,
+            colors: vec![self.emission, self.normal, self.reflectance],
+            depth: self.depth,
             keep_depth: true,
             size,
         };
-        gem.draw(encoder, &gem.view(clip_from_world, eye), &target);
-        let device = &self.gpu.device;
+        gem.draw(builder, clip_from_world, eye, &target);
         // In f64: the inverse of a perspective matrix loses digits that the depth still holds.
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
         let view = Record::new("GemCompositeView").with("world_from_clip", world_from_clip).with("eye", eye);
-        let view = view.with("size", UVec2::from(size).as_vec2());
-        let uniform = device::uniform(device, "composite's view", &view.bytes());
-        let textures = [(2, &self.emission), (3, &self.normal), (4, &self.reflectance), (5, &self.depth)];
-        let environment = self.environment.as_ref().map(|view| (1, view));
-        let mut resources = vec![(0, uniform.as_entire_binding())];
-        let textures = textures.into_iter().chain(environment);
-        resources.extend(textures.map(|(binding, view)| (binding, wgpu::BindingResource::TextureView(view))));
-        let group = self.pipeline.bind(device, 0, &resources);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("gem_composite"),
-            color_attachments: &[device::cleared(samples)],
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        pass.set_viewport([0.0, 0.0, size[0] as f32, size[1] as f32], 0.0..1.0);
-        pass.set_pipeline(&self.pipeline.raw);
-        pass.set_bind_group(0, &group);
-        pass.draw(0..3, 0..1);
+        let uniform = builder.uniform("composite's view", view.with("size", UVec2::from(size).as_vec2()));
+        let mut resources: Vec<(u32, Bound)> = vec![(0, uniform.into())];
+        resources.extend((2..).zip([self.emission, self.normal, self.reflectance, self.depth].map(Bound::from)));
+        resources.extend(self.environment.map(|environment| (1, environment.into())));
+        let group = builder.bind(self.pipeline, 0, &resources);
+        let draw = builder.draw(self.pipeline, vec![group], 3);
+        let [width, height] = size;
+        builder.pass(Pass::Render(RenderPass {
+            name: COMPOSITE.to_owned(),
+            targets: vec![Target::from(samples)],
+            depth: None,
+            viewport: Some([0, 0, width, height]),
+            draws: vec![draw],
+        }));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::COMPOSITE;
+    use crate::drawing::Texts;
     use crate::pixel::Viewer;
-    use crate::{Settings, render_from};
+    use crate::{GemOptions, Settings, render_from};
     use glam::Vec3;
     use lapidary_assay::extremum::larger;
     use lapidary_gpu::{AdapterChoice, Gpu};
@@ -129,10 +118,15 @@ mod tests {
         for name in ["brilliant", "prism", "bunny_stone"] {
             let scene = Scene::named(name).expect("built in");
             let rung = "proxy-1".parse().expect("a rung");
-            let settings = Settings { rung, samples: 1, deferred: true, ..Settings::of_size(128, 128) };
+            let settings = Settings {
+                rung,
+                samples: 1,
+                gem: GemOptions { deferred: true, ..GemOptions::default() },
+                ..Settings::of_size(128, 128)
+            };
             let gem = lapidary_wgsl::recipe_source(rung.recipe());
-            let picture =
-                render_from(gpu, &scene, &settings, (Some(&gem), &planted), &mut |_, _| {}).expect("rendered");
+            let texts = Texts { rung: Some(&gem), composite: Some(&planted) };
+            let picture = render_from(gpu, &scene, &settings, texts, &mut |_, _| {}).expect("rendered");
             let viewer = Viewer::new(&scene, 128, 128);
             let (mut worst, mut seen) = (0f32, 0);
             for (index, &[x, y, z, alpha]) in (0..).zip(&picture.linear) {

@@ -1,11 +1,9 @@
 //! Texture diffusion of one object: the recipe `texture_irradiance` draws what arrives, the recipe `texture_diffusion` blurs it.
 
 use super::RenderError;
-use super::device::{self, Pipeline, PipelineSource};
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use super::translucent::{self, Light};
-use lapidary_gpu::capture::OfObject;
-use lapidary_gpu::{Encoder, Gpu};
+use crate::frame::{BindGroupId, Buffer, Builder, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
 use lapidary_scene::Object;
 use lapidary_scene::layout::Layout;
 
@@ -15,61 +13,45 @@ const RECIPE: &str = "texture_irradiance";
 pub(super) const SIDE: u32 = 1024;
 
 /// An object's textures, and how they are filled.
-pub(super) struct Diffusion<'gpu> {
-    gpu: &'gpu Gpu,
-    textures: TextureDiffusion<'gpu>,
+pub(super) struct Diffusion {
+    textures: TextureDiffusion,
     /// Of its object.
     name: String,
-    pipeline: Pipeline,
+    pipeline: PipelineId,
     /// Lights and harmonics, then the mesh.
-    groups: [Option<wgpu::BindGroup>; 2],
+    groups: Vec<Option<BindGroupId>>,
     vertices: u32,
     taps: Taps,
     charts: Vec<Chart>,
 }
 
-/// What it reads of the mesh as it is shown.
-pub(super) struct MeshBuffers<'a> {
-    pub(super) positions: &'a wgpu::Buffer,
-    pub(super) normals: &'a wgpu::Buffer,
-    pub(super) uvs: &'a wgpu::Buffer,
-}
-
-impl<'gpu> Diffusion<'gpu> {
-    /// For `object`, which has texture coordinates, under these lights and harmonics, with the overrides that go with them.
+impl Diffusion {
+    /// For `object`, which has texture coordinates, under these lights and harmonics, with the overrides that go with them, and with the mesh's positions,
+    /// normals and texture coordinates as it is shown.
     pub(super) fn new(
-        gpu: &'gpu Gpu,
+        builder: &mut Builder<'_>,
         (object, name): (&Object, &str),
         (light, constants): (Light<'_>, &[(&str, f64)]),
-        mesh: &MeshBuffers<'_>,
+        [positions, normals, uvs]: [Buffer; 3],
     ) -> Result<Self, RenderError> {
-        let pipeline = device::pipeline(
-            gpu,
-            &PipelineSource {
-                recipe: RECIPE,
-                source: &lapidary_wgsl::recipe_source(RECIPE),
-                entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
-                constants,
-                formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
-                depth: None,
-            },
-        )?;
+        let pipeline = builder.render_pipeline(&PipelineSource {
+            recipe: RECIPE,
+            source: &lapidary_wgsl::recipe_source(RECIPE),
+            entries: ["texture_irradiance_vertex", "texture_irradiance_fragment"],
+            constants,
+            formats: &[IRRADIANCE_FORMAT, STRETCH_FORMAT],
+            depth: None,
+        })?;
         let Layout { repeats, charts } = Layout::of(&object.mesh);
-        let textures = TextureDiffusion::new(gpu, [SIDE; 2], [repeats.x, repeats.y])?;
+        let textures = TextureDiffusion::new(builder, [SIDE; 2], [repeats.x, repeats.y])?;
         // Halos first, so that of two that touch a texel the chart's own triangle stays.
         let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
-        let vertices = device::mesh_vertices(gpu, object, &drawn, [bytemuck::cast_slice(&drawn)])?;
-        let shared = translucent::shared(light, &pipeline)?;
-        let groups = gpu.guarded("uploading a mesh", |device| {
-            let contents = bytemuck::cast_slice(&drawn);
-            let indices = device::storage(device, "indices with halos", contents);
-            let own = [(0, mesh.positions), (1, &indices), (2, mesh.normals), (3, mesh.uvs)];
-            let shared: Vec<_> = shared.iter().map(|(binding, shared)| (*binding, shared.resource())).collect();
-            let own = own.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
-            [pipeline.bind(device, 0, &shared), pipeline.bind(device, 1, &own)]
-        })?;
+        let vertices = builder.mesh_vertices(object, &drawn, [bytemuck::cast_slice(&drawn)])?;
+        let shared = translucent::shared(builder, light, pipeline)?;
+        let indices = builder.storage("indices with halos", bytemuck::cast_slice(&drawn));
+        let own = [(0, positions.into()), (1, indices.into()), (2, normals.into()), (3, uvs.into())];
+        let groups = vec![builder.bind(pipeline, 0, &shared), builder.bind(pipeline, 1, &own)];
         Ok(Self {
-            gpu,
             textures,
             name: name.to_owned(),
             pipeline,
@@ -81,32 +63,23 @@ impl<'gpu> Diffusion<'gpu> {
     }
 
     /// What shading looks up.
-    pub(super) fn diffused(&self) -> wgpu::TextureView {
-        device::view(&self.textures.diffused)
+    pub(super) fn diffused(&self) -> Texture {
+        self.textures.diffused
     }
 
     /// Draws what arrives and blurs it.
-    pub(super) fn encode(&self, encoder: &mut Encoder) -> Result<(), RenderError> {
-        let _of = OfObject::named(&self.name);
-        let targets = [&self.textures.irradiance, &self.textures.stretch].map(device::view);
-        self.gpu.guarded("drawing irradiance", |_| {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(RECIPE),
-                color_attachments: &targets.each_ref().map(device::cleared),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            pass.set_pipeline(&self.pipeline.raw);
-            for (group, bind_group) in (0..).zip(&self.groups) {
-                pass.set_bind_group(group, bind_group.as_ref());
-            }
-            pass.draw(0..self.vertices, 0..1);
-        })?;
-        self.textures.encode(encoder, &self.taps, &self.charts)
-    }
-
-    /// How many draw calls it takes: the mesh, each chart along u and v, and the gutters.
-    pub(super) fn draw_calls(&self) -> usize {
-        2 + 2 * self.charts.len()
+    pub(super) fn encode(&self, builder: &mut Builder<'_>) {
+        builder.of_object(&self.name, |builder| {
+            let draw = builder.draw(self.pipeline, self.groups.clone(), self.vertices);
+            builder.pass(Pass::Render(RenderPass {
+                name: RECIPE.to_owned(),
+                targets: [self.textures.irradiance, self.textures.stretch].map(Target::from).to_vec(),
+                depth: None,
+                viewport: None,
+                draws: vec![draw],
+            }));
+            self.textures.encode(builder, &self.taps, &self.charts);
+        });
     }
 }
 

@@ -1,181 +1,158 @@
-//! The display recipe's pass, and reading a tile back.
+//! The display recipe's pass, tile by tile.
 
-use super::device::{self, Pipeline, PipelineSource};
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
+use crate::frame::{
+    BindGroupId, Bound, Builder, Executor, Pass, PipelineId, PipelineSource, Read, Readback, RenderPass, Target,
+    Texture,
+};
 use crate::record::Record;
 use glam::{UVec2, Vec2};
-use lapidary_gpu::{Encoder, Gpu};
+use lapidary_gpu::Gpu;
+use std::ops::Range;
 
+const RECIPE: &str = "display";
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Linear radiance and coverage, in f32.
+const LINEAR: &str = "linear picture";
+/// sRGB, opaque.
+pub(super) const ENCODED: &str = "encoded picture";
 
 /// Averages samples, and what the tone curve makes of them, and brings both pictures back.
-pub(super) struct DisplayPass<'gpu> {
-    gpu: &'gpu Gpu,
-    pipeline: Pipeline,
+pub(super) struct DisplayPass {
+    pipeline: PipelineId,
     /// Along each side of a pixel.
     count: u32,
-    /// Samples of one tile.
-    samples: wgpu::Texture,
-    samples_view: wgpu::TextureView,
-    linear: wgpu::Texture,
-    encoded: wgpu::Texture,
+    /// Samples of one tile: what the scene's pass draws to.
+    pub(super) samples: Texture,
+    pictures: [Texture; 2],
+    read: [Readback; 2],
 }
 
-impl<'gpu> DisplayPass<'gpu> {
-    /// With `count` samples along each side of a pixel, for tiles of a picture of this size.
-    pub(super) fn new(gpu: &'gpu Gpu, count: u32, [width, height]: [u32; 2]) -> Result<Self, RenderError> {
-        let pipeline = device::pipeline(
-            gpu,
-            &PipelineSource {
-                recipe: "display",
-                source: &lapidary_wgsl::recipe_source("display"),
-                entries: ["display_vertex", "display_fragment"],
-                constants: &[("SAMPLES", f64::from(count))],
-                formats: &[SAMPLE_FORMAT, ENCODED_FORMAT],
-                depth: None,
-            },
-        )?;
+impl DisplayPass {
+    /// For tiles of a picture of the settings' size and samples.
+    pub(super) fn new(builder: &mut Builder<'_>, settings: &Settings) -> Result<Self, RenderError> {
+        let count = settings.samples;
+        let pipeline = pipeline(builder, count, &[SAMPLE_FORMAT, ENCODED_FORMAT])?;
+        let [width, height] = [settings.width, settings.height].map(|side| side.min(Tile::side(count)));
         use wgpu::TextureUsages as Usage;
-        let [samples, linear, encoded] = gpu.guarded("allocating a tile", |device| {
-            [
-                ("samples", count, SAMPLE_FORMAT, Usage::TEXTURE_BINDING | Usage::COPY_DST),
-                ("linear picture", 1, SAMPLE_FORMAT, Usage::COPY_SRC),
-                ("encoded picture", 1, ENCODED_FORMAT, Usage::COPY_SRC),
-            ]
-            .map(|(what, times, format, usage)| {
-                device::target(
-                    device,
-                    what,
-                    [width, height].map(|side| times * side.min(Tile::side(count))),
-                    format,
-                    usage,
-                )
-            })
-        })?;
-        let samples_view = device::view(&samples);
-        Ok(Self { gpu, pipeline, count, samples, samples_view, linear, encoded })
+        let usage = Usage::TEXTURE_BINDING | Usage::COPY_DST;
+        let samples = builder.target("samples", [count * width, count * height, 1], SAMPLE_FORMAT, usage);
+        let pictures = [(LINEAR, SAMPLE_FORMAT), (ENCODED, ENCODED_FORMAT)]
+            .map(|(name, format)| builder.target(name, [width, height, 1], format, Usage::COPY_SRC));
+        let [linear, encoded] = pictures;
+        let read = [(LINEAR, linear), (ENCODED, encoded)]
+            .map(|(name, texture)| builder.readback(name, texture, [width, height]));
+        Ok(Self { pipeline, count, samples, pictures, read })
     }
 
-    /// What the scene's pass draws to.
-    pub(super) fn samples(&self) -> &wgpu::TextureView {
-        &self.samples_view
+    /// Ends a tile: from the samples to the pictures.
+    pub(super) fn encode(&self, builder: &mut Builder<'_>, tile: Tile, settings: &Settings) {
+        let corner = UVec2::new(tile.left, tile.top).as_vec2();
+        let group = group(builder, self.pipeline, self.samples, corner, settings);
+        let draw = builder.draw(self.pipeline, group, 3);
+        builder.pass(Pass::Render(RenderPass {
+            name: RECIPE.to_owned(),
+            targets: self.pictures.map(Target::from).to_vec(),
+            depth: None,
+            viewport: Some([0, 0, tile.width, tile.height]),
+            draws: vec![draw],
+        }));
+        for read in self.read {
+            builder.read(read, [tile.width, tile.height], [tile.left, tile.top]);
+        }
+    }
+}
+
+/// The display recipe for so many samples along each side of a pixel.
+pub(super) fn pipeline(
+    builder: &mut Builder<'_>,
+    count: u32,
+    formats: &[wgpu::TextureFormat],
+) -> Result<PipelineId, RenderError> {
+    Ok(builder.render_pipeline(&PipelineSource {
+        recipe: RECIPE,
+        source: &lapidary_wgsl::recipe_source(RECIPE),
+        entries: ["display_vertex", "display_fragment"],
+        constants: &[("SAMPLES", f64::from(count))],
+        formats,
+        depth: None,
+    })?)
+}
+
+/// What it reads, for a tile with this upper left corner in pixels.
+pub(super) fn group(
+    builder: &mut Builder<'_>,
+    pipeline: PipelineId,
+    samples: Texture,
+    corner: Vec2,
+    settings: &Settings,
+) -> Vec<Option<BindGroupId>> {
+    let size = UVec2::new(settings.width, settings.height).as_vec2();
+    let frame = Record::new("DisplayFrame").with("tile", corner).with("size", size);
+    let uniform = builder.uniform("frame", frame.with("exposure", settings.exposure));
+    let resources = [(0, Bound::from(uniform)), (1, samples.into())];
+    vec![builder.bind(pipeline, 0, &resources)]
+}
+
+impl Picture {
+    /// Takes a part that was read back, without gaps between rows.
+    pub(super) fn take(&mut self, read: &Read, texels: &[u8]) {
+        let ([width, _], [left, top]) = (read.size.map(|side| side as usize), read.at.map(|at| at as usize));
+        let start = |row: usize| (top + row) * self.width as usize + left;
+        if read.picture == ENCODED {
+            for (row, texels) in texels.chunks_exact(4 * width).enumerate() {
+                let pixels = start(row)..start(row) + width;
+                self.encoded[pixels].copy_from_slice(bytemuck::cast_slice(texels));
+            }
+        } else {
+            for (row, texels) in texels.chunks_exact(16 * width).enumerate() {
+                let pixels = start(row)..start(row) + width;
+                for (pixel, texel) in self.linear[pixels].iter_mut().zip(texels.chunks_exact(16)) {
+                    *pixel = bytemuck::pod_read_unaligned(texel);
+                }
+            }
+        }
+    }
+}
+
+/// Shows samples that were made elsewhere.
+pub(super) struct Display<'gpu> {
+    executor: Executor<'gpu>,
+    count: u32,
+    samples: Texture,
+    tiles: Vec<(Tile, Range<usize>)>,
+}
+
+impl<'gpu> Display<'gpu> {
+    /// For a picture of the settings' size and samples.
+    pub(super) fn new(gpu: &'gpu Gpu, settings: &Settings) -> Result<Self, RenderError> {
+        let mut builder = Builder::new(Some(gpu));
+        let pass = DisplayPass::new(&mut builder, settings)?;
+        let tile = |tile| {
+            let start = builder.frame().passes.len();
+            pass.encode(&mut builder, tile, settings);
+            (tile, start..builder.frame().passes.len())
+        };
+        let tiles = Tile::all(settings.width, settings.height, settings.samples).map(tile).collect();
+        let executor = Executor::new(gpu, builder.finish())?;
+        Ok(Self { executor, count: pass.count, samples: pass.samples, tiles })
     }
 
-    /// Fills a tile with samples that were made elsewhere, row by row.
-    pub(super) fn write(&self, tile: Tile, samples: &[[f32; 4]]) {
-        let [width, height] = [tile.width, tile.height].map(|side| side * self.count);
-        self.gpu.queue.write_texture(
-            self.samples.as_image_copy(),
-            bytemuck::cast_slice(samples),
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: Some(height) },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-    }
-
-    /// Ends a tile: from the samples to the picture.
-    pub(super) fn finish(
+    /// Fills each tile of a picture from its samples, row by row.
+    pub(super) fn show(
         &self,
-        mut encoder: Encoder,
-        tile: Tile,
-        settings: &Settings,
         picture: &mut Picture,
+        mut samples: impl FnMut(&mut Picture, Tile) -> Result<Vec<[f32; 4]>, RenderError>,
     ) -> Result<(), RenderError> {
-        let [corner, size] =
-            [[tile.left, tile.top], [settings.width, settings.height]].map(|of| UVec2::from(of).as_vec2());
-        let contents = frame(corner, size, settings.exposure);
-        let [linear, encoded] = self.gpu.guarded("displaying a tile", |device| {
-            let uniform = device::uniform(device, "frame", &contents);
-            let samples = wgpu::BindingResource::TextureView(&self.samples_view);
-            let group = self.pipeline.bind(device, 0, &[(0, uniform.as_entire_binding()), (1, samples)]);
-            self.draw(&mut encoder, tile, group.as_ref());
-            let linear = self.copy_out(&mut encoder, "linear picture to read", &self.linear, 16, tile);
-            let encoded = self.copy_out(&mut encoder, "encoded picture to read", &self.encoded, 4, tile);
-            self.gpu.queue.submit([encoder.finish()]);
-            [linear, encoded]
-        })?;
-        let width = picture.width as usize;
-        linear.read(self.gpu, tile, |row, bytes| {
-            let start = (tile.top as usize + row) * width + tile.left as usize;
-            for (pixel, bytes) in picture.linear[start..].iter_mut().zip(bytes.chunks_exact(16)) {
-                *pixel = bytemuck::pod_read_unaligned(bytes);
-            }
-        })?;
-        encoded.read(self.gpu, tile, |row, bytes| {
-            let start = (tile.top as usize + row) * width + tile.left as usize;
-            for (pixel, bytes) in picture.encoded[start..].iter_mut().zip(bytes.chunks_exact(4)) {
-                *pixel = bytemuck::pod_read_unaligned(bytes);
-            }
-        })
-    }
-
-    fn draw(&self, encoder: &mut Encoder, tile: Tile, group: Option<&wgpu::BindGroup>) {
-        let (linear, encoded) = (device::view(&self.linear), device::view(&self.encoded));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("display"),
-            color_attachments: &[device::cleared(&linear), device::cleared(&encoded)],
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        pass.set_viewport([0.0, 0.0, tile.width as f32, tile.height as f32], 0.0..1.0);
-        pass.set_pipeline(&self.pipeline.raw);
-        pass.set_bind_group(0, group);
-        pass.draw(0..3, 0..1);
-    }
-
-    /// Copies the tile's part of `texture` to a new buffer that can be mapped.
-    fn copy_out(
-        &self,
-        encoder: &mut Encoder,
-        what: &str,
-        texture: &wgpu::Texture,
-        pixel_bytes: u32,
-        tile: Tile,
-    ) -> Readback {
-        let row_bytes = (tile.width * pixel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(what),
-            size: u64::from(row_bytes) * u64::from(tile.height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row_bytes),
-                    rows_per_image: Some(tile.height),
-                },
-            },
-            wgpu::Extent3d { width: tile.width, height: tile.height, depth_or_array_layers: 1 },
-        );
-        Readback { buffer, row_bytes: row_bytes as usize, used_bytes: (tile.width * pixel_bytes) as usize }
-    }
-}
-
-/// A tile's rows on their way back.
-struct Readback {
-    buffer: wgpu::Buffer,
-    row_bytes: usize,
-    used_bytes: usize,
-}
-
-impl Readback {
-    fn read(&self, gpu: &Gpu, tile: Tile, mut row: impl FnMut(usize, &[u8])) -> Result<(), RenderError> {
-        let size = self.row_bytes as u64 * u64::from(tile.height);
-        gpu.read_back(&self.buffer, size, |bytes| {
-            for (index, bytes) in bytes.chunks_exact(self.row_bytes).enumerate() {
-                row(index, &bytes[..self.used_bytes]);
-            }
-        })?;
+        for (tile, passes) in &self.tiles {
+            let samples = samples(picture, *tile)?;
+            let size = [tile.width, tile.height].map(|side| side * self.count);
+            self.executor.write_texture(self.samples, size, bytemuck::cast_slice(&samples));
+            self.executor.run_passes(passes.clone(), |read, texels| picture.take(read, texels))?;
+        }
         Ok(())
     }
-}
-
-/// `DisplayFrame` of the recipe: the corner of a tile and the picture's size, in pixels.
-pub(super) fn frame(tile: Vec2, size: Vec2, exposure: f32) -> Vec<u8> {
-    Record::new("DisplayFrame").with("tile", tile).with("size", size).with("exposure", exposure).bytes()
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! The gem recipes' pass.
 
-use super::device::{self, PipelineSource};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
-use super::variant::{Drawn, Part};
+use super::variant::Part;
 use super::{RenderError, Settings, restraint, stone};
-use lapidary_gpu::Gpu;
+use crate::frame::{Builder, PipelineSource};
 use lapidary_plan::{Decisions, Geometry, Rung, Spectrum};
 
 /// The overrides of the gem recipes for an object.
@@ -22,37 +21,35 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
         ("DISPERSION_FORM", f64::from(form)),
         ("WAVELENGTHS", f64::from(wavelengths)),
         ("BOUNCES", f64::from(rung.hits())),
-        ("REST_FROM_ENVIRONMENT", flag(settings.rest_from_environment)),
-        ("LIMIT_DISTANCE", flag(settings.distance_limit.is_some())),
+        ("REST_FROM_ENVIRONMENT", flag(settings.gem.rest_from_environment)),
+        ("LIMIT_DISTANCE", flag(settings.gem.distance_limit.is_some())),
         ("LIMIT_THROUGHPUT", flag(restraint::limits_throughput(rung, settings))),
-        ("CENTRE_PAPER", flag(settings.paper_centre)),
+        ("CENTRE_PAPER", flag(settings.gem.paper_centre)),
     ]);
     constants
 }
 
-/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, for the effects of each stone, and uploads the stones.
-pub(super) fn pass<'gpu>(
-    gpu: &'gpu Gpu,
+/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, for the effects of each stone, and adds the stones.
+pub(super) fn pass(
+    builder: &mut Builder<'_>,
     lighting: &Lighting<'_>,
     part: &Part<'_>,
     source: &str,
     (fragment, formats): (&str, &[wgpu::TextureFormat]),
-) -> Result<ScenePass<'gpu>, RenderError> {
-    let compiled = |(constants, objects): (Vec<(&str, f64)>, Vec<&Drawn<'_>>)| {
-        let from = PipelineSource {
+) -> Result<ScenePass, RenderError> {
+    let mut pass = ScenePass::default();
+    for (constants, objects) in part.variants(|drawn| constants(&drawn.decisions, part.rung, part.settings)) {
+        let pipeline = builder.render_pipeline(&PipelineSource {
             recipe: part.rung.recipe(),
             source,
             entries: ["gem_vertex", fragment],
             constants: &constants,
             formats,
             depth: Some(DEPTH_FORMAT),
-        };
-        let pipeline = device::pipeline(gpu, &from)?;
-        let upload = |drawn: &Drawn<'_>| stone::upload(gpu, &pipeline, drawn, part.rung, part.settings);
-        let bodies = objects.into_iter().map(upload).collect::<Result<Vec<_>, _>>()?;
-        Ok(Variant { shared: lighting.shared(&pipeline)?, pipeline, bodies })
-    };
-    let variants = part.variants(|drawn| constants(&drawn.decisions, part.rung, part.settings));
-    let variants = variants.into_iter().map(compiled).collect::<Result<_, RenderError>>()?;
-    Ok(ScenePass { gpu, variants, before: Vec::new() })
+        })?;
+        let add = |drawn| stone::add(builder, pipeline, drawn, part.rung, part.settings);
+        let bodies = objects.into_iter().map(add).collect::<Result<Vec<_>, _>>()?;
+        pass.variants.push(Variant { shared: lighting.shared(builder, pipeline)?, pipeline, bodies });
+    }
+    Ok(pass)
 }

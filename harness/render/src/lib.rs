@@ -17,13 +17,13 @@ mod camera;
 pub mod cdrf;
 pub mod compute;
 mod deferred;
-mod device;
 mod diffusion;
 mod display;
+mod drawing;
 mod environment;
 mod error;
 pub mod file;
-mod frame;
+pub mod frame;
 mod gem;
 mod harmonics;
 mod light_views;
@@ -36,37 +36,38 @@ mod record;
 mod reflectance;
 mod reflective_shadow_map;
 pub mod restraint;
+mod settings;
 pub mod shader;
 mod shadows;
 pub mod solver;
 mod stone;
 pub mod texture_diffusion;
+mod timer;
 mod translucent;
 mod variant;
 pub mod voxel_grid;
 pub mod voxelization;
 
-use deferred::DeferredPass;
-use display::DisplayPass;
+use display::{Display, ENCODED};
+use drawing::{Drawing, Texts};
 pub use error::RenderError;
-pub use frame::{Frame, FrameTime};
+use frame::{Executor, Frame};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Decisions, Effect, Effects, Note, Quality, Request, Rung, Scattering};
+use lapidary_plan::{Decisions, Effect, Note, Rung};
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::random_walk::mesh::Rendering as Walked;
 use lapidary_reference::spectral::{self, Lost, Rendering, Window};
 use lapidary_scene::solver::Reflectance;
-use lapidary_scene::{Environment, LARGEST_SIDE, SAMPLES, Scene};
-use lighting::Lighting;
+use lapidary_scene::{Environment, LARGEST_SIDE, Scene};
 pub use optical_path::Stage;
-use pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 pub use reflectance::Curvature;
-use shadows::Shadows;
-use std::borrow::Cow;
+pub use settings::{
+    DiffuseOptions, EXTINCTION_SCALE, GemOptions, OpticalPathOptions, ReferenceOptions, Settings, WALKS, WalkOptions,
+};
 use std::sync::Mutex;
 pub use stone::geometry_bytes;
 pub(crate) use stone::{GemMaterial, GemWavelength, wavelengths};
-use variant::Part;
+pub use timer::{FrameTime, FrameTimer};
 pub(crate) use variant::names as object_names;
 
 /// Largest side of a tile in pixels.
@@ -75,118 +76,6 @@ const TILE: u32 = 512;
 const TILE_SAMPLES: u32 = 2048;
 /// The most samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
-
-/// Walks from each pixel, where nothing else is asked for.
-pub const WALKS: u32 = 256;
-
-/// The share of a body's extinction that light loses along its way, where nothing else is asked for: scattering takes light from the way, but
-/// much of it goes on beside it. Fitted to random walks: docs/optical_path_shading.md.
-pub const EXTINCTION_SCALE: f32 = 0.18;
-
-/// What to render.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// In pixels, 1 to [`LARGEST_SIDE`].
-    pub width: u32,
-    /// In pixels, 1 to [`LARGEST_SIDE`].
-    pub height: u32,
-    /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`].
-    pub samples: u32,
-    /// How much of the light's way is followed.
-    pub rung: Rung,
-    /// Where that is each material's own: how much time it may take.
-    pub quality: Quality,
-    /// The proxy's centre by the paper's eq. (4) instead of the stable form.
-    pub paper_centre: bool,
-    /// Factor of the paper's eq. (12); 1 as printed.
-    pub dispersion_strength: f32,
-    /// What is left out though a material calls for it.
-    pub without: Effects,
-    /// How bodies that scatter light are drawn whatever their thickness, where the rung is each material's own.
-    pub scattering: Option<Scattering>,
-    /// Whether lights cast shadows on what is drawn by its surface alone.
-    pub shadows: bool,
-    /// What a ray still carries at the last hit comes from the environment along it; dropped otherwise.
-    pub rest_from_environment: bool,
-    /// In units of length: a ray ends that has travelled farther inside.
-    pub distance_limit: Option<f32>,
-    /// A ray inside a stone ends when what it carries can no longer be seen; where nothing is said, by [`restraint::limits_throughput`].
-    pub limit_throughput: Option<bool>,
-    /// By a geometry buffer and a lighting pass instead of in one.
-    pub deferred: bool,
-    /// The environment's light is summed for each vertex, not for each pixel.
-    pub environment_at_vertices: bool,
-    /// Which curvature spreads the light of what scatters it.
-    pub curvature: Curvature,
-    /// What light loses along its way through a body is this times its extinction and twice that of diffused light.
-    pub extinction_scale: f32,
-    /// The light around the scene.
-    pub environment: Environment,
-    /// Radiance is multiplied by this before the tone curve.
-    pub exposure: f32,
-    /// Wavelengths that the reference follows, from 400 to 700 nm.
-    pub wavelengths: usize,
-    /// The share of a camera ray's energy that the reference need not follow.
-    pub energy_bound: f64,
-    /// Walks for each pixel that the reference of what scatters light follows.
-    pub walks: u32,
-    /// Where those set out.
-    pub walks_from: mesh::Origin,
-    /// What surfaces do to them.
-    pub boundary: mesh::Boundary,
-    /// Another seed gives other walks.
-    pub seed: u64,
-}
-
-impl Settings {
-    /// The paper's rung in the studio.
-    pub fn of_size(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            samples: SAMPLES,
-            rung: Rung::PAPER,
-            quality: Quality::default(),
-            paper_centre: false,
-            dispersion_strength: 1.0,
-            without: Effects::NONE,
-            scattering: None,
-            shadows: false,
-            rest_from_environment: true,
-            distance_limit: None,
-            limit_throughput: None,
-            deferred: false,
-            environment_at_vertices: true,
-            curvature: Curvature::Mean,
-            extinction_scale: EXTINCTION_SCALE,
-            environment: Environment::Studio,
-            exposure: 1.0,
-            wavelengths: spectral::WAVELENGTHS,
-            energy_bound: spectral::ENERGY_BOUND,
-            walks: WALKS,
-            walks_from: mesh::Origin::Eye,
-            boundary: mesh::Boundary::Matched,
-            seed: 1,
-        }
-    }
-}
-
-impl Settings {
-    /// What of this a plan is made by.
-    #[must_use]
-    pub fn request(&self) -> Request<'_> {
-        Request {
-            size: [self.width, self.height],
-            rung: self.rung,
-            quality: self.quality,
-            without: self.without,
-            scattering: self.scattering,
-            shadows: self.shadows,
-            environment: &self.environment,
-            exposure: self.exposure,
-        }
-    }
-}
 
 /// A rendered picture, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,7 +119,7 @@ pub fn render_reporting(
     settings: &Settings,
     progress: &mut (dyn FnMut(u64, u64) + Send),
 ) -> Result<Picture, RenderError> {
-    render_from(gpu, scene, settings, (None, &lapidary_wgsl::recipe_source(deferred::COMPOSITE)), progress)
+    render_from(gpu, scene, settings, Texts::default(), progress)
 }
 
 /// Renders `scene`, and shows its mean radiance in place of its samples': as a committed reference is shown, of which only means are kept. Pictures that
@@ -243,26 +132,44 @@ pub fn render_means(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Pic
 
 /// Renders `scene` with another text of the rung's recipe.
 pub fn render_with(gpu: &Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Picture, RenderError> {
-    let composite = lapidary_wgsl::recipe_source(deferred::COMPOSITE);
-    render_from(gpu, scene, settings, (Some(source), &composite), &mut |_, _| {})
+    render_from(gpu, scene, settings, Texts { rung: Some(source), composite: None }, &mut |_, _| {})
 }
 
-/// The same with both texts: of the rung's recipe, where it is another than the cookbook's, and of the lighting pass.
-fn render_from(
-    gpu: &Gpu,
-    scene: &Scene,
-    settings: &Settings,
-    (source, composite): (Option<&str>, &str),
-    progress: &mut (dyn FnMut(u64, u64) + Send),
-) -> Result<Picture, RenderError> {
+/// All that drawing `scene` makes and runs on a device, with tables that `gpu` computes, or none: nothing at all for the reference.
+///
+/// # Errors
+/// Where the scene cannot be drawn so.
+pub fn frame(gpu: Option<&Gpu>, scene: &Scene, settings: &Settings) -> Result<Frame, RenderError> {
+    check_size(settings)?;
+    if settings.rung == Rung::Reference {
+        return Ok(Frame::default());
+    }
+    Ok(Drawing::new(gpu, scene, settings, Texts::default())?.frame)
+}
+
+/// Refuses sizes that no device has, and numbers of samples that are not meant.
+fn check_size(settings: &Settings) -> Result<(), RenderError> {
     let (width, height) = (settings.width, settings.height);
-    let largest = LARGEST_SIDE.min(gpu.device.limits().max_texture_dimension_2d);
+    let largest = LARGEST_SIDE.min(wgpu::Limits::default().max_texture_dimension_2d);
     if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
         return Err(RenderError::Size { width, height, largest });
     }
     if !(1..=MOST_SAMPLES).contains(&settings.samples) {
         return Err(RenderError::Samples(settings.samples));
     }
+    Ok(())
+}
+
+/// The same with other texts.
+fn render_from(
+    gpu: &Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    texts: Texts<'_>,
+    progress: &mut (dyn FnMut(u64, u64) + Send),
+) -> Result<Picture, RenderError> {
+    check_size(settings)?;
+    let (width, height) = (settings.width, settings.height);
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
@@ -278,70 +185,20 @@ fn render_from(
         }
         return Ok(picture);
     }
-    let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
-    let lighting = Lighting::new(gpu, scene, settings);
-    let deferred = settings.deferred.then(|| DeferredPass::new(gpu, &lighting, settings, composite)).transpose()?;
-    let pass = scene_pass(gpu, &lighting, scene, settings, source)?;
-    let depth = gpu.guarded("allocating a tile", |device| {
-        let size = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
-        device::view(&device::target(device, "depth", size, DEPTH_FORMAT, wgpu::TextureUsages::empty()))
-    })?;
-    let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();
-    for (done, tile) in (1..).zip(&tiles) {
-        let clip_from_world = camera::clip_from_world(scene, width, height, *tile);
-        let eye = scene.camera.eye;
-        let size = [tile.width * settings.samples, tile.height * settings.samples];
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        if done == 1 {
-            pass.prepare(&mut encoder)?;
+    let Drawing { frame, pass } = Drawing::new(Some(gpu), scene, settings, texts)?;
+    let executor = Executor::new(gpu, frame)?;
+    let tiles = Tile::all(width, height, settings.samples).count() as u64;
+    let mut done = 0;
+    executor.run(|read, texels| {
+        picture.take(read, texels);
+        // The last of a tile's.
+        if read.picture == ENCODED {
+            done += 1;
+            progress(done, tiles);
         }
-        let encoder = gpu.guarded("rendering a tile", |_| {
-            if let Some(deferred) = &deferred {
-                deferred.draw(&mut encoder, &pass, clip_from_world, eye, display.samples(), size);
-            } else {
-                let target = SceneTarget { colors: vec![display.samples()], depth: &depth, keep_depth: false, size };
-                pass.draw(&mut encoder, &pass.view(clip_from_world, eye), &target);
-            }
-            encoder
-        })?;
-        display.finish(encoder, *tile, settings, &mut picture)?;
-        progress(done, tiles.len() as u64);
-    }
-    picture.notes = pass.notes()?;
+    })?;
+    picture.notes = pass.paths().map_or(Ok(Vec::new()), |paths| paths.notes(&executor))?;
     Ok(picture)
-}
-
-/// Everything that draws the scene's objects, each by its rung; `source` is another text of the recipe where they all have one.
-fn scene_pass<'gpu>(
-    gpu: &'gpu Gpu,
-    lighting: &Lighting<'_>,
-    scene: &Scene,
-    settings: &Settings,
-    source: Option<&str>,
-) -> Result<ScenePass<'gpu>, RenderError> {
-    let mut all = ScenePass::empty(gpu);
-    let parts = Part::all(scene, settings);
-    let shadows = Shadows::of(gpu, &scene.lights, &parts)?;
-    for part in &parts {
-        let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));
-        let source = &*source.map_or_else(composed, Cow::Borrowed);
-        let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
-        let forward = &[SAMPLE_FORMAT][..];
-        all.append(match part.rung {
-            Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.deferred => {
-                return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
-            }
-            Rung::Diffuse(reflectance) => {
-                translucent::pass(gpu, (lighting, shadows.as_ref()), part, reflectance, source)?
-            }
-            Rung::OpticalPath(paths) => optical_path::pass(gpu, lighting, part, paths, source)?,
-            _ if settings.deferred => gem::pass(gpu, lighting, part, source, ("gem_deferred_fragment", deferred))?,
-            _ => gem::pass(gpu, lighting, part, source, ("gem_fragment", forward))?,
-        });
-    }
-    // What is blurred in a texture is shadowed there: the maps come first.
-    all.before.splice(0..0, shadows.map(Before::Shadows));
-    Ok(all)
 }
 
 /// The overrides of the gem recipes for a scene's first object.
@@ -370,11 +227,11 @@ fn walk(
     let of_walks = mesh::Settings {
         width: settings.width,
         height: settings.height,
-        samples_per_pixel: settings.walks,
-        origin: settings.walks_from,
-        seed: settings.seed,
+        samples_per_pixel: settings.walks.walks,
+        origin: settings.walks.from,
+        seed: settings.walks.seed,
         environment: (!settings.without.has(Effect::Environment)).then_some(&settings.environment),
-        boundary: settings.boundary,
+        boundary: settings.walks.boundary,
     };
     Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)
 }
@@ -410,17 +267,16 @@ fn follow(
         return Err(RenderError::OpaqueReference { object: opaque.name.clone() });
     }
     let (width, height) = (settings.width, settings.height);
-    let display = DisplayPass::new(gpu, settings.samples, [width, height])?;
-    let tiles: Vec<Tile> = Tile::all(width, height, settings.samples).collect();
-    let rows: u64 = tiles.iter().map(|tile| u64::from(tile.height)).sum();
+    let rows: u64 = Tile::all(width, height, settings.samples).map(|tile| u64::from(tile.height)).sum();
     let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
-    for tile in tiles {
+    let mut means: Vec<(Tile, Vec<[f32; 4]>)> = Vec::new();
+    Display::new(gpu, settings)?.show(picture, |_, tile| {
         let Tile { left, top, width, height } = tile;
         let of_reference = spectral::Settings {
             window: Some(Window { left, top, width, height }),
             samples: settings.samples,
-            wavelengths: settings.wavelengths,
-            energy_bound: settings.energy_bound,
+            wavelengths: settings.reference.wavelengths,
+            energy_bound: settings.reference.energy_bound,
             environment: &settings.environment,
             ..spectral::Settings::of_size(settings.width, settings.height)
         };
@@ -428,17 +284,18 @@ fn follow(
         let (Rendering { linear, lost: of_tile, .. }, samples) =
             spectral::render_samples(scene, &of_reference, &from_any_thread(&mut of_all))?;
         done += u64::from(height);
-        display.write(tile, &samples);
-        let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        display.finish(encoder, tile, settings, picture)?;
-        // In place of the device's means, which are of f32.
+        let share: f64 = linear.iter().map(|pixel| f64::from(pixel[3])).sum();
+        covered += share;
+        lost = Lost { max: lost.max.max(of_tile.max), mean: lost.mean + share * of_tile.mean };
+        means.push((tile, linear));
+        Ok(samples)
+    })?;
+    // In place of the device's means, which are of f32.
+    for (Tile { left, top, width, .. }, linear) in means {
         for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
             let start = (row * picture.width + left) as usize;
             picture.linear[start..start + means.len()].copy_from_slice(means);
         }
-        let share: f64 = linear.iter().map(|pixel| f64::from(pixel[3])).sum();
-        covered += share;
-        lost = Lost { max: lost.max.max(of_tile.max), mean: lost.mean + share * of_tile.mean };
     }
     picture.lost = Some(Lost { mean: if covered > 0.0 { lost.mean / covered } else { 0.0 }, ..lost });
     Ok(())
@@ -446,16 +303,11 @@ fn follow(
 
 /// Fills in `encoded` from `linear`, as the display recipe shows means: of one sample a pixel.
 pub fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
-    let display = DisplayPass::new(gpu, 1, [picture.width, picture.height])?;
-    for tile in Tile::all(picture.width, picture.height, 1) {
+    let settings = Settings { width: picture.width, height: picture.height, samples: 1, ..settings.clone() };
+    Display::new(gpu, &settings)?.show(picture, |picture, tile| {
         let rows = (tile.top..tile.top + tile.height).map(|row| (row * picture.width + tile.left) as usize);
-        let means: Vec<[f32; 4]> =
-            rows.flat_map(|start| &picture.linear[start..start + tile.width as usize]).copied().collect();
-        display.write(tile, &means);
-        let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        display.finish(encoder, tile, settings, picture)?;
-    }
-    Ok(())
+        Ok(rows.flat_map(|start| &picture.linear[start..start + tile.width as usize]).copied().collect())
+    })
 }
 
 /// A rectangle of the picture in pixels.

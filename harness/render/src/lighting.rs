@@ -1,96 +1,90 @@
-//! What shines on a scene, on the device: its lights and the environment, as the recipes bind them. Each is made when
+//! What shines on a scene: its lights and the environment, as the recipes bind them. Each is put into the frame when
 //! the first pipeline reads it, and once for all.
 
-use super::device::{Pipeline, storage, uniform};
-use super::pass::Shared;
 use super::{RenderError, Settings, environment, harmonics};
+use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
 use crate::record::Record;
 use glam::{Vec3, Vec4};
-use lapidary_gpu::Gpu;
-use lapidary_gpu::capture::OfObject;
 use lapidary_scene::light::Falloff;
 use lapidary_scene::{Light, Scene};
 use std::cell::OnceCell;
 
 /// The parts `surroundings`, `lights` and `harmonics`.
 pub(super) struct Lighting<'a> {
-    gpu: &'a Gpu,
     scene: &'a Scene,
     settings: &'a Settings,
-    environment: OnceCell<wgpu::TextureView>,
-    lights: OnceCell<wgpu::Buffer>,
-    harmonics: OnceCell<wgpu::Buffer>,
+    environment: OnceCell<Texture>,
+    lights: OnceCell<Buffer>,
+    harmonics: OnceCell<Buffer>,
 }
 
 impl<'a> Lighting<'a> {
     /// The scene's lights and the settings' environment.
-    pub(super) fn new(gpu: &'a Gpu, scene: &'a Scene, settings: &'a Settings) -> Self {
+    pub(super) fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
         let (environment, lights, harmonics) = Default::default();
-        Self { gpu, scene, settings, environment, lights, harmonics }
+        Self { scene, settings, environment, lights, harmonics }
     }
 
     /// The environment's image.
-    pub(super) fn environment(&self) -> Result<&wgpu::TextureView, RenderError> {
-        once(&self.environment, || environment::texture(self.gpu, &self.settings.environment))
+    pub(super) fn environment(&self, builder: &mut Builder<'_>) -> Result<Texture, RenderError> {
+        if let Some(known) = self.environment.get() {
+            return Ok(*known);
+        }
+        // Whoever asks first, it is all objects'.
+        let made = builder.of_object("", |builder| environment::texture(builder, &self.settings.environment))?;
+        Ok(*self.environment.get_or_init(|| made))
     }
 
     /// The list of lights.
-    pub(super) fn lights(&self) -> Result<&wgpu::Buffer, RenderError> {
-        once(&self.lights, || {
+    pub(super) fn lights(&self, builder: &mut Builder<'_>) -> Buffer {
+        *self.lights.get_or_init(|| {
             let lights = lights(self.scene);
-            Ok(self.gpu.guarded("uploading lights", |device| storage(device, "lights", &lights))?)
+            builder.of_object("", |builder| builder.records("lights", lights, wgpu::BufferUsages::STORAGE))
         })
     }
 
     /// The environment's diffuse light.
-    pub(super) fn harmonics(&self) -> Result<&wgpu::Buffer, RenderError> {
-        once(&self.harmonics, || {
+    fn harmonics(&self, builder: &mut Builder<'_>) -> Buffer {
+        *self.harmonics.get_or_init(|| {
             let coefficients = harmonics::project(&self.settings.environment);
             let coefficients: Vec<Vec4> =
                 coefficients.iter().map(|coefficient| coefficient.as_vec3().extend(0.0)).collect();
-            let harmonics = Record::new("Harmonics").with("coefficients", &coefficients[..]).bytes();
-            Ok(self.gpu.guarded("uploading lights", |device| uniform(device, "harmonics", &harmonics))?)
+            let harmonics = Record::new("Harmonics").with("coefficients", &coefficients[..]);
+            builder.of_object("", |builder| builder.uniform("harmonics", harmonics))
         })
     }
 
     /// What `pipeline` reads of bindings 1 to 3 of group 0.
-    pub(super) fn shared(&self, pipeline: &Pipeline) -> Result<Vec<(u32, Shared)>, RenderError> {
+    pub(super) fn shared(
+        &self,
+        builder: &mut Builder<'_>,
+        pipeline: PipelineId,
+    ) -> Result<Vec<(u32, Bound)>, RenderError> {
         let mut shared = Vec::new();
-        if pipeline.binds(0, 1) {
-            shared.push((1, Shared::Texture(self.environment()?.clone())));
+        if builder.binds(pipeline, 0, 1) {
+            shared.push((1, self.environment(builder)?.into()));
         }
-        if pipeline.binds(0, 2) {
-            shared.push((2, Shared::Buffer(self.lights()?.clone())));
+        if builder.binds(pipeline, 0, 2) {
+            shared.push((2, self.lights(builder).into()));
         }
-        if pipeline.binds(0, 3) {
-            shared.push((3, Shared::Buffer(self.harmonics()?.clone())));
+        if builder.binds(pipeline, 0, 3) {
+            shared.push((3, self.harmonics(builder).into()));
         }
         Ok(shared)
     }
 }
 
-/// What is in the cell, made now where nothing is.
-fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, RenderError>) -> Result<&T, RenderError> {
-    if let Some(known) = cell.get() {
-        return Ok(known);
-    }
-    // Whoever asks first, it is all objects'.
-    let _of = OfObject::named("");
-    let made = make()?;
-    Ok(cell.get_or_init(|| made))
-}
-
 /// `Light` of the recipe, one after the other; one black light where there is none.
-fn lights(scene: &Scene) -> Vec<u8> {
+fn lights(scene: &Scene) -> Vec<Record> {
     // No axis, and all directions within the edge.
     let everywhere = (Vec3::ZERO, Falloff { edge: -1.0, slope: 1.0 });
     let entry = |place: Vec3, point: f32, power: Vec3, (axis, falloff): (Vec3, Falloff)| {
         // Of the narrowest cones the slope is beyond f32.
         let [edge, slope] = [falloff.edge as f32, falloff.slope.min(f32::MAX.into()) as f32];
         let record = Record::new("Light").with("place", place).with("point", point).with("power", power);
-        record.with("edge", edge).with("axis", axis).with("slope", slope).bytes()
+        record.with("edge", edge).with("axis", axis).with("slope", slope)
     };
-    let mut entries: Vec<Vec<u8>> = scene
+    let mut entries: Vec<Record> = scene
         .lights
         .iter()
         .map(|light| match *light {
@@ -104,5 +98,5 @@ fn lights(scene: &Scene) -> Vec<u8> {
     if entries.is_empty() {
         entries.push(entry(Vec3::Y, 0.0, Vec3::ZERO, everywhere));
     }
-    entries.concat()
+    entries
 }

@@ -1,17 +1,17 @@
 //! From a scene to what is compiled, bound and run for it: each material's technique, its effects with the property that calls for each or
 //! rules it out, and the passes, pipelines and resources that follow.
 //!
-//! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is not foretold but found: the renderer
-//! itself draws the scene on a device that does nothing, and everything that it makes and runs is written down.
+//! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is the frame that it runs, listed.
 
+mod listing;
 mod text;
 
 use crate as render;
+use crate::frame::Frame;
 use crate::{RenderError, Settings};
-use lapidary_gpu::Gpu;
-use lapidary_gpu::capture::{Capture, capture};
-use lapidary_plan::{Decisions, Note, Rung};
+use lapidary_plan::{Decisions, Note};
 use lapidary_scene::Scene;
+pub use listing::{Kind, Listing, Pipeline, Resource, Step};
 
 /// What one object is drawn with.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct PlannedObject {
 }
 
 /// What drawing a scene takes, and why.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     /// The scene's name.
     pub scene: String,
@@ -33,8 +33,10 @@ pub struct Plan {
     pub size: [u32; 2],
     /// The objects, in the scene's order.
     pub objects: Vec<PlannedObject>,
-    /// Passes, pipelines and resources.
-    pub capture: Capture,
+    /// What is made and run: nothing for the reference, which is computed on the CPU.
+    pub frame: Frame,
+    /// The same, summed up by name.
+    pub listing: Listing,
     /// What should be known before the scene is drawn.
     pub notes: Vec<Note>,
     /// What the scene's file asks for and nothing here draws.
@@ -42,7 +44,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What drawing `scene` with these settings takes. The reference, which is computed on the CPU, takes nothing of a device.
+    /// What drawing `scene` with these settings takes. Needs no device.
     ///
     /// # Errors
     /// Where the scene cannot be drawn so.
@@ -52,14 +54,7 @@ impl Plan {
             material: object.material.name.clone(),
             decisions: Decisions::of(object, scene, &settings.request()),
         };
-        let capture = if settings.rung == Rung::Reference {
-            Capture::default()
-        } else {
-            let gpu = Gpu::without_hardware();
-            let (picture, captured) = capture(|| render::render(&gpu, scene, settings));
-            picture?;
-            captured
-        };
+        let frame = render::frame(None, scene, settings)?;
         let objects: Vec<PlannedObject> = scene.objects.iter().zip(render::object_names(scene)).map(planned).collect();
         let decisions: Vec<&Decisions> = objects.iter().map(|planned| &planned.decisions).collect();
         Ok(Self {
@@ -67,7 +62,8 @@ impl Plan {
             size: [settings.width, settings.height],
             notes: lapidary_plan::notes(scene, &settings.request(), &decisions),
             objects,
-            capture,
+            listing: Listing::of(&frame),
+            frame,
             lacking: scene.lacking.clone(),
         })
     }

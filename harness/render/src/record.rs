@@ -47,6 +47,11 @@ impl Record {
         Self { outer, ..fill(self) }
     }
 
+    /// The struct's name and layout.
+    pub(crate) fn layout(&self) -> (&'static str, &'static StructLayout) {
+        (self.name, self.layout)
+    }
+
     /// Its bytes, up to a multiple of 16, as uniforms have them.
     pub(crate) fn bytes(mut self) -> Vec<u8> {
         let empty = self.filled.iter().position(|filled| !filled);

@@ -1,12 +1,13 @@
 //! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
 
 use super::RenderError;
-use super::device::{self, Pipeline, PipelineSource};
 use super::light_views::LightView;
 use super::pass::DEPTH_FORMAT;
+use super::shadows::MeshBuffers;
+use crate::frame::{
+    BindGroupId, Bound, Buffer, Builder, Frame, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture,
+};
 use crate::record::Record;
-use lapidary_gpu::capture::OfObject;
-use lapidary_gpu::{Encoder, Gpu};
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
 const RECIPE: &str = "reflective_shadow_map";
@@ -14,141 +15,102 @@ const RECIPE: &str = "reflective_shadow_map";
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// The maps and how they are drawn.
-pub(super) struct ReflectiveShadowMaps<'gpu> {
-    gpu: &'gpu Gpu,
-    pipeline: Pipeline,
-    texture: wgpu::Texture,
-    depth: wgpu::TextureView,
+pub(super) struct ReflectiveShadowMaps {
+    pipeline: PipelineId,
+    texture: Texture,
+    depth: Texture,
+    side: u32,
     /// One for each view, in order.
-    views: Vec<Option<wgpu::BindGroup>>,
+    views: Vec<Option<BindGroupId>>,
     /// Each object's name and mesh, and how many vertices draw it.
-    meshes: Vec<(String, Option<wgpu::BindGroup>, u32)>,
+    meshes: Vec<(String, Option<BindGroupId>, u32)>,
 }
 
-impl<'gpu> ReflectiveShadowMaps<'gpu> {
+impl ReflectiveShadowMaps {
     /// Maps of `side` texels a side for `views`, of which there is at least one; `whose` tells them from others.
-    pub(super) fn new(gpu: &'gpu Gpu, views: &[LightView], side: u32, whose: &str) -> Result<Self, RenderError> {
-        let limit = gpu.device.limits().max_texture_array_layers;
+    pub(super) fn new(
+        builder: &mut Builder<'_>,
+        views: &[LightView],
+        side: u32,
+        whose: &str,
+    ) -> Result<Self, RenderError> {
+        let limit = builder.limits().max_texture_array_layers;
         if views.len() > limit as usize {
             return Err(RenderError::TooManyViews { views: views.len(), limit });
         }
-        let pipeline = device::pipeline_culling(
-            gpu,
-            &PipelineSource {
-                recipe: RECIPE,
-                source: &lapidary_wgsl::recipe_source(RECIPE),
-                entries: ["reflective_shadow_map_vertex", "reflective_shadow_map_fragment"],
-                constants: &[],
-                formats: &[FORMAT],
-                depth: Some(DEPTH_FORMAT),
-            },
-            None,
-        )?;
-        let (texture, depth, views) = gpu.guarded("allocating reflective shadow maps", |device| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(&format!("reflective shadow maps {whose}")),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: views.len() as u32 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
-            let depth = device::target(
-                device,
-                &format!("depth of maps {whose}"),
-                [side; 2],
-                DEPTH_FORMAT,
-                wgpu::TextureUsages::empty(),
-            );
-            let depth = device::view(&depth);
-            let group = |view: &LightView| {
-                let contents = fill(view.view, Record::new("ReflectiveShadowMapView")).bytes();
-                let uniform = device::uniform(device, "view of a light", &contents);
-                pipeline.bind(device, 0, &[(0, uniform.as_entire_binding())])
-            };
-            (texture, depth, views.iter().map(group).collect())
-        })?;
-        Ok(Self { gpu, pipeline, texture, depth, views, meshes: Vec::new() })
+        let source = PipelineSource {
+            recipe: RECIPE,
+            source: &lapidary_wgsl::recipe_source(RECIPE),
+            entries: ["reflective_shadow_map_vertex", "reflective_shadow_map_fragment"],
+            constants: &[],
+            formats: &[FORMAT],
+            depth: Some(DEPTH_FORMAT),
+        };
+        let pipeline = builder.render_pipeline_culling(&source, None)?;
+        let size = [side, side, views.len() as u32];
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = builder.target(&format!("reflective shadow maps {whose}"), size, FORMAT, usage);
+        let usage = wgpu::TextureUsages::empty();
+        let depth = builder.target(&format!("depth of maps {whose}"), [side, side, 1], DEPTH_FORMAT, usage);
+        let mut group = |from: &LightView| {
+            let record = fill(from.view, Record::new("ReflectiveShadowMapView"));
+            let uniform = builder.uniform("view of a light", record);
+            builder.bind(pipeline, 0, &[(0, uniform.into())])
+        };
+        let views = views.iter().map(&mut group).collect();
+        Ok(Self { pipeline, texture, depth, side, views, meshes: Vec::new() })
     }
 
-    /// Adds an object: its name, its positions, indices and normals, and how many vertices draw it.
-    pub(super) fn add(&mut self, name: &str, mesh: [&wgpu::Buffer; 3], vertices: u32) -> Result<(), RenderError> {
-        let group = self.gpu.guarded("binding a mesh", |device| {
-            let [positions, indices, normals] = mesh.map(wgpu::Buffer::as_entire_binding);
-            self.pipeline.bind(device, 1, &[(0, positions), (1, indices), (2, normals)])
-        })?;
+    /// Adds an object: its name, its mesh, and how many vertices draw it.
+    pub(super) fn add(&mut self, builder: &mut Builder<'_>, name: &str, mesh: &MeshBuffers, vertices: u32) {
+        let MeshBuffers { positions, indices, normals } = *mesh;
+        let resources = [(0, positions.into()), (1, indices.into()), (2, normals.into())];
+        let group = builder.bind(self.pipeline, 1, &resources);
         self.meshes.push((name.to_owned(), group, vertices));
-        Ok(())
     }
 
-    /// All layers.
-    pub(super) fn view(&self) -> wgpu::TextureView {
-        self.texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..wgpu::TextureViewDescriptor::default()
-        })
+    /// All layers, to be bound.
+    pub(super) fn layers(&self) -> Bound {
+        Bound::Texture(self.texture, wgpu::TextureViewDimension::D2Array)
     }
 
     /// Width, height and layers.
     pub(super) fn size(&self) -> [u32; 3] {
-        let size = self.texture.size();
-        [size.width, size.height, size.depth_or_array_layers]
+        [self.side, self.side, self.views.len() as u32]
     }
 
     /// Draws all maps.
-    pub(super) fn encode(&self, encoder: &mut Encoder) {
-        for (layer, group) in (0..).zip(&self.views) {
-            let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: layer,
-                array_layer_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            });
-            let nothing = wgpu::Color { a: REFLECTIVE_SHADOW_MAP_NOTHING.into(), ..wgpu::Color::TRANSPARENT };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(RECIPE),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: Some(device::cleared_depth(&self.depth, wgpu::StoreOp::Discard)),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            pass.set_pipeline(&self.pipeline.raw);
-            pass.set_bind_group(0, group.as_ref());
-            for (name, mesh, vertices) in &self.meshes {
-                let _of = OfObject::named(name);
-                pass.set_bind_group(1, mesh.as_ref());
-                pass.draw(0..*vertices, 0..1);
-            }
+    pub(super) fn encode(&self, builder: &mut Builder<'_>) {
+        for (layer, view) in (0..).zip(&self.views) {
+            let draw = |(name, mesh, vertices): &(String, Option<BindGroupId>, u32)| {
+                let groups = vec![*view, *mesh];
+                builder.of_object(name, |builder| builder.draw(self.pipeline, groups, *vertices))
+            };
+            let draws = self.meshes.iter().map(draw).collect();
+            let clear = [0.0, 0.0, 0.0, REFLECTIVE_SHADOW_MAP_NOTHING.into()];
+            builder.pass(Pass::Render(RenderPass {
+                name: RECIPE.to_owned(),
+                targets: vec![Target { texture: self.texture, layer, clear }],
+                depth: Some((self.depth, false)),
+                viewport: None,
+                draws,
+            }));
         }
     }
 
     /// Bytes of the maps and their depth.
-    pub(super) fn bytes(&self) -> u64 {
-        let [width, height, layers] = self.size().map(u64::from);
-        let texel = |format: wgpu::TextureFormat| u64::from(format.block_copy_size(None).unwrap_or_default());
-        width * height * (layers * texel(FORMAT) + texel(DEPTH_FORMAT))
-    }
-
-    /// How many draw calls it takes.
-    pub(super) fn draw_calls(&self) -> usize {
-        self.views.len() * self.meshes.len()
+    pub(super) fn bytes(&self, frame: &Frame) -> u64 {
+        [self.texture, self.depth].map(|texture| frame.texture(texture).bytes()).iter().sum()
     }
 }
 
 /// The part `light_views`: `array<LightView>`.
-pub(super) fn view_buffer(gpu: &Gpu, views: &[LightView]) -> Result<wgpu::Buffer, RenderError> {
+pub(super) fn view_buffer(builder: &mut Builder<'_>, views: &[LightView]) -> Buffer {
     let entry = |from: &LightView| {
         let record = Record::new("LightView").within("view", |record| fill(from.view, record));
-        record.with("light", from.light).bytes()
+        record.with("light", from.light)
     };
-    let views: Vec<u8> = views.iter().flat_map(entry).collect();
-    Ok(gpu.guarded("uploading views", |device| device::storage(device, "views of lights", &views))?)
+    builder.records("views of lights", views.iter().map(entry).collect(), wgpu::BufferUsages::STORAGE)
 }
 
 /// Fills a `ReflectiveShadowMapView` of the recipes.

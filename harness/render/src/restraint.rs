@@ -24,7 +24,7 @@ pub const LEAST_HITS: u32 = 16;
 /// Whether rays end by their throughput.
 pub fn limits_throughput(rung: Rung, settings: &Settings) -> bool {
     let Rung::Inside { hits, .. } = rung else { return false };
-    settings.limit_throughput.unwrap_or(hits >= LEAST_HITS)
+    settings.gem.limit_throughput.unwrap_or(hits >= LEAST_HITS)
 }
 
 /// A radiance that no channel of the environment exceeds from any direction. A map's is that of a texel, since what is mixed of texels lies between them.
@@ -57,12 +57,20 @@ pub(crate) fn throughput_limit(material: &Material, rung: Rung, settings: &Setti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::GemOptions;
 
     #[test]
     fn rungs_of_many_hits_are_limited_where_nothing_is_said() {
         let limits = |rung: &str, limit_throughput| {
             let rung = rung.parse().expect(rung);
-            limits_throughput(rung, &Settings { rung, limit_throughput, ..Settings::of_size(1, 1) })
+            limits_throughput(
+                rung,
+                &Settings {
+                    rung,
+                    gem: GemOptions { limit_throughput, ..GemOptions::default() },
+                    ..Settings::of_size(1, 1)
+                },
+            )
         };
         assert_eq!(
             ["proxy-15", "convex-16", "bvh-64+3", "surface"].map(|rung| limits(rung, None)),
@@ -79,6 +87,13 @@ mod tests {
         let settings = Settings { rung, exposure: 4.0, ..Settings::of_size(1, 1) };
         let found = f64::from(throughput_limit(&material, rung, &settings));
         assert!((found * 510.0 * 4.0 * 20.4 * 0.5 - 1.0).abs() < 1e-6, "{found}");
-        assert_eq!(throughput_limit(&material, rung, &Settings { limit_throughput: Some(false), ..settings }), 0.0);
+        assert_eq!(
+            throughput_limit(
+                &material,
+                rung,
+                &Settings { gem: GemOptions { limit_throughput: Some(false), ..settings.gem }, ..settings }
+            ),
+            0.0
+        );
     }
 }

@@ -1,7 +1,6 @@
 //! A recipe specialised: some of its entry points with override values, and the bindings that are left of it.
 
-use lapidary_gpu::capture::Pipeline;
-use lapidary_gpu::{Device, GpuError};
+use lapidary_gpu::GpuError;
 use lapidary_specialise::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
 use lapidary_specialise::{SourceError, SpecialiseError, declared, parse, specialise};
 use naga::valid::ModuleInfo;
@@ -22,7 +21,7 @@ pub enum ShaderError {
 }
 
 /// A recipe's specialised part.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Shader {
     recipe: String,
     entries: Vec<String>,
@@ -52,18 +51,52 @@ impl Shader {
         })
     }
 
-    /// Group and number of each binding that is left.
-    pub fn bindings(&self) -> Bindings {
-        let places = self.module.global_variables.iter().filter_map(|(_, global)| global.binding);
-        Bindings(places.map(|at| (at.group, at.binding)).collect())
+    /// The recipe's name.
+    #[must_use]
+    pub fn recipe(&self) -> &str {
+        &self.recipe
     }
 
-    /// Sends it to the device.
-    pub fn upload(&self, device: &Device) -> wgpu::ShaderModule {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(&self.recipe),
-            source: wgpu::ShaderSource::Naga(Cow::Owned(self.module.clone())),
-        })
+    /// Its entry points, in the order in which they were asked for.
+    #[must_use]
+    pub fn entries(&self) -> &[String] {
+        &self.entries
+    }
+
+    /// The override values that it is specialised to.
+    #[must_use]
+    pub fn overrides(&self) -> &[(String, f64)] {
+        &self.overrides
+    }
+
+    /// Whether another, of the same text, is the same.
+    pub(crate) fn is_specialised_as(&self, other: &Self) -> bool {
+        self.recipe == other.recipe && self.entries == other.entries && self.overrides == other.overrides
+    }
+
+    /// Group and number of each binding that is left.
+    pub fn bindings(&self) -> impl Iterator<Item = (u32, u32)> {
+        let bindings = self.module.global_variables.iter().filter_map(|(_, global)| global.binding);
+        bindings.map(|at| (at.group, at.binding))
+    }
+
+    /// Whether this binding is left.
+    #[must_use]
+    pub fn binds(&self, group: u32, binding: u32) -> bool {
+        self.bindings().any(|at| at == (group, binding))
+    }
+
+    /// To be sent to a device.
+    pub(crate) fn module_descriptor(&self) -> wgpu::ShaderModuleDescriptor<'static> {
+        wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Naga(Cow::Owned(self.module.clone())) }
+    }
+
+    /// As WGSL, without overrides.
+    ///
+    /// # Errors
+    /// Where naga cannot write it.
+    pub fn wgsl(&self) -> Result<String, naga::back::wgsl::Error> {
+        naga::back::wgsl::write_string(&self.module, &self.info, naga::back::wgsl::WriterFlags::empty())
     }
 
     /// What a vertex and a fragment entry point, in this order, are made of.
@@ -72,46 +105,9 @@ impl Shader {
         spirv_counts(&self.module, &self.info, vertex, fragment)
     }
 
-    /// What a capture says of a pipeline called `name`.
-    pub fn description(&self, name: &str) -> Pipeline {
-        let counts = spirv_counts::instructions(&self.module, &self.info);
-        Pipeline {
-            name: name.to_owned(),
-            recipe: self.recipe.clone(),
-            entries: self.entries.clone(),
-            overrides: self.overrides.clone(),
-            bindings: self.bindings().0,
-            instructions: counts,
-        }
-    }
-}
-
-/// The bindings of a shader: group and number.
-#[derive(Clone, Debug, Default)]
-pub struct Bindings(Vec<(u32, u32)>);
-
-impl Bindings {
-    /// Whether there is this one.
-    pub fn has(&self, group: u32, binding: u32) -> bool {
-        self.0.contains(&(group, binding))
-    }
-
-    /// The bind group of those of `resources`, by number, that there are. Nothing where there is none in this group.
-    pub fn bind(
-        &self,
-        device: &Device,
-        layout: impl FnOnce(u32) -> wgpu::BindGroupLayout,
-        group: u32,
-        resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> Option<wgpu::BindGroup> {
-        let used = resources.iter().filter(|(binding, _)| self.has(group, *binding));
-        let entries: Vec<wgpu::BindGroupEntry<'_>> = used
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
-            .collect();
-        if entries.is_empty() {
-            return None;
-        }
-        let layout = &layout(group);
-        Some(device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries }))
+    /// Instructions of its SPIR-V.
+    #[must_use]
+    pub fn instructions(&self) -> usize {
+        spirv_counts::instructions(&self.module, &self.info)
     }
 }

@@ -1,11 +1,10 @@
 //! A solver's pipelines, its buffers, and the passes that it records.
 
-use crate::compute::Kernel;
-use crate::device::uniform;
+use crate::frame::{Bound, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
-use lapidary_gpu::{Encoder, Gpu};
+use lapidary_gpu::{Gpu, GpuError};
 use lapidary_optical_path::{self as mirror, OPTICAL_PATH_UNREACHED};
 use lapidary_scene::solver::Method;
 
@@ -44,58 +43,85 @@ impl Status {
     }
 }
 
-/// Solves bodies in one grid by one method, one channel at a time. The host reads nothing back.
-#[derive(Debug)]
-pub struct Solver<'gpu> {
-    gpu: &'gpu Gpu,
-    grid: VoxelGrid,
-    method: Method,
-    heterogeneous: bool,
-    most_passes: u32,
-    begin: Kernel,
-    next: Kernel,
-    pass: Kernel,
-    fresh: wgpu::Buffer,
-    progress: wgpu::Buffer,
-    workgroups: wgpu::Buffer,
-    /// From binding 6 on.
-    own: Vec<wgpu::Buffer>,
-}
-
-impl<'gpu> Solver<'gpu> {
-    /// Compiles what the method needs for a grid. `heterogeneous` is for bodies with a density by voxel. At most `most_passes` passes are recorded;
-    /// by default as many as any body needs whose paths of least cost do not wind.
+impl Status {
+    /// What was kept of a solve by the last run. Waits for it: not for every frame.
     ///
     /// # Errors
-    /// Where the device refuses a recipe or the memory.
-    pub fn new(
-        gpu: &'gpu Gpu,
-        grid: VoxelGrid,
-        method: Method,
-        heterogeneous: bool,
-        most_passes: Option<u32>,
-    ) -> Result<Self, ShaderError> {
-        let source = lapidary_wgsl::recipe_source(recipe(method));
-        Self::of_source(gpu, grid, method, heterogeneous, most_passes, &source)
+    /// Where the device is lost.
+    pub fn read(executor: &Executor<'_>, kept: Buffer) -> Result<Self, GpuError> {
+        let words = executor.words(kept)?;
+        let parity = (words[0] & 1) as usize;
+        let least = mirror::decode(words[5 + parity]);
+        Ok(Self { passes: words[1], updates: words[2], active: words[3 + parity], least })
+    }
+}
+
+/// How a body is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Solve {
+    /// By which method.
+    pub method: Method,
+    /// Whether bodies have a density by voxel.
+    pub heterogeneous: bool,
+    /// No more passes than this; by default as many as any body needs whose paths of least cost do not wind.
+    pub most_passes: Option<u32>,
+}
+
+/// Solves bodies in one grid by one method, one channel at a time. The host reads nothing back.
+#[derive(Debug)]
+pub struct Solver {
+    grid: VoxelGrid,
+    solve: Solve,
+    begin: PipelineId,
+    next: PipelineId,
+    pass: PipelineId,
+    fresh: Buffer,
+    progress: Buffer,
+    workgroups: Buffer,
+    /// From binding 6 on.
+    own: Vec<Buffer>,
+}
+
+/// What a solve reads and writes.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved {
+    /// A bit for each voxel, in rows as [`VoxelGrid::words_per_row`] says.
+    pub matter: Buffer,
+    /// Where the solver is heterogeneous, an f32 for each voxel, at least 0.
+    pub density: Option<Buffer>,
+    /// The seeds as f32, unreached elsewhere; after the passes the costs.
+    pub cost: Buffer,
+    /// In the inverse of the unit of the grid's spacing, at least 0.
+    pub extinction: f32,
+    /// How far it came, for [`Status::read`]: of [`Solver::kept`].
+    pub kept: Buffer,
+}
+
+impl Solver {
+    /// Compiles what the method needs for a grid.
+    ///
+    /// # Errors
+    /// Where the recipe is not valid.
+    pub fn new(builder: &mut Builder<'_>, grid: VoxelGrid, solve: Solve) -> Result<Self, ShaderError> {
+        Self::of_source(builder, grid, solve, &lapidary_wgsl::recipe_source(recipe(solve.method)))
     }
 
     /// The same of another text of the method's recipe.
     ///
     /// # Errors
-    /// Where the device refuses the text or the memory.
+    /// Where the text is not valid.
     pub fn of_source(
-        gpu: &'gpu Gpu,
+        builder: &mut Builder<'_>,
         grid: VoxelGrid,
-        method: Method,
-        heterogeneous: bool,
-        most_passes: Option<u32>,
+        solve: Solve,
         source: &str,
     ) -> Result<Self, ShaderError> {
+        let method = solve.method;
         let recipe = recipe(method);
         let flag = |value| f64::from(u8::from(value));
         let constants = [
             ("OPTICAL_PATH_STENCIL", f64::from(method.stencil().neighbours())),
-            ("EFFECT_EXTINCTION_PER_VOXEL", flag(heterogeneous)),
+            ("EFFECT_EXTINCTION_PER_VOXEL", flag(solve.heterogeneous)),
             ("OPTICAL_PATH_GODUNOV", flag(method == Method::Godunov)),
             ("OPTICAL_PATH_PAPER", flag(method == Method::Paper)),
         ];
@@ -104,7 +130,8 @@ impl<'gpu> Solver<'gpu> {
             Method::PingPong(_) => "pull",
             Method::Tiled(_) | Method::Godunov => "update",
         };
-        let kernel = |entry: &str| Kernel::new(gpu, recipe, source, &format!("{recipe}_{entry}"), &constants);
+        let mut kernel =
+            |entry: &str| builder.compute_pipeline(recipe, source, &format!("{recipe}_{entry}"), &constants);
         let [begin, next, pass] = [kernel("begin")?, kernel("next")?, kernel(pass)?];
         let tiles = u64::from(grid.cells / TILE).pow(3);
         let voxels = grid.count() as u64;
@@ -113,25 +140,15 @@ impl<'gpu> Solver<'gpu> {
         } else {
             vec![("work", 4 * voxels)]
         };
-        let (fresh, progress, workgroups, own) = gpu.guarded("allocating a solver's buffers", |device| {
-            use wgpu::BufferUsages as Usage;
-            let buffer = |what, size, usage| {
-                let descriptor = wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: false };
-                device.create_buffer(&descriptor)
-            };
-            let unreached = mirror::encode(OPTICAL_PATH_UNREACHED);
-            let fresh = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("fresh progress"),
-                contents: bytemuck::cast_slice(&[0, 0, 0, 0, 0, unreached, unreached]),
-                usage: Usage::COPY_SRC,
-            });
-            let progress = buffer("progress", 4 * PROGRESS_WORDS, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
-            let workgroups = buffer("workgroups", 12, Usage::STORAGE | Usage::INDIRECT);
-            let own = sizes.iter().map(|(what, size)| buffer(what, *size, Usage::STORAGE)).collect();
-            (fresh, progress, workgroups, own)
-        })?;
-        let most_passes = most_passes.unwrap_or_else(|| Self::default_passes(method, grid.cells));
-        Ok(Self { gpu, grid, method, heterogeneous, most_passes, begin, next, pass, fresh, progress, workgroups, own })
+        use wgpu::BufferUsages as Usage;
+        let unreached = mirror::encode(OPTICAL_PATH_UNREACHED);
+        let fresh: Vec<u8> = bytemuck::cast_slice(&[0, 0, 0, 0, 0, unreached, unreached]).to_vec();
+        let fresh = builder.filled("fresh progress", fresh, Usage::COPY_SRC);
+        let usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+        let progress = builder.buffer("progress", 4 * PROGRESS_WORDS, usage);
+        let workgroups = builder.buffer("workgroups", 12, Usage::STORAGE | Usage::INDIRECT);
+        let own = sizes.iter().map(|(what, size)| builder.buffer(what, *size, Usage::STORAGE)).collect();
+        Ok(Self { grid, solve, begin, next, pass, fresh, progress, workgroups, own })
     }
 
     /// As many passes as a path takes through the cube from corner to corner by faces, tiles or voxels, and back and forth once or twice more.
@@ -139,122 +156,130 @@ impl<'gpu> Solver<'gpu> {
         if method.is_tiled() { 2 * cells } else { 8 * cells }
     }
 
-    /// Records a solve. `matter` holds a bit for each voxel, in rows as [`VoxelGrid::words_per_row`] says; `density`, where the solver is heterogeneous, an
-    /// f32 for each, at least 0; `cost` the seeds as f32, unreached elsewhere, and after the passes the costs. `extinction` is in the inverse of the unit
-    /// of the grid's spacing, at least 0.
-    ///
-    /// # Errors
-    /// Where the device refuses a buffer.
+    /// A buffer for how far a solve came.
+    pub fn kept(builder: &mut Builder<'_>) -> Buffer {
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        builder.buffer("kept progress", 4 * PROGRESS_WORDS, usage)
+    }
+
+    /// Solves next.
     ///
     /// # Panics
     /// Where the solver is heterogeneous and there is no density.
-    pub fn encode(
-        &self,
-        encoder: &mut Encoder,
-        matter: &wgpu::Buffer,
-        density: Option<&wgpu::Buffer>,
-        cost: &wgpu::Buffer,
-        extinction: f32,
-    ) -> Result<(), ShaderError> {
-        assert!(density.is_some() || !self.heterogeneous, "a heterogeneous body has a density");
+    pub fn encode(&self, builder: &mut Builder<'_>, solved: &Solved) {
+        let Solve { method, heterogeneous, most_passes } = self.solve;
+        assert!(solved.density.is_some() || !heterogeneous, "a heterogeneous body has a density");
         let cells = self.grid.cells;
         let whole = [cells / SWEEP_GROUP, cells / SWEEP_GROUP, cells];
-        let begin = if self.method.is_tiled() { [(cells / TILE).pow(3).div_ceil(GROUP), 1, 1] } else { whole };
-        self.gpu.guarded("recording a solve", |device| {
-            let grid = Record::new("OpticalPathGrid").with("cells", cells).with("extinction", extinction);
-            let grid = grid.with("spacing", self.grid.spacing).bytes();
-            let uniform = uniform(device, "solve", &grid);
-            let mut buffers = vec![(0, &uniform), (1, matter), (2, cost), (3, &self.progress), (4, &self.workgroups)];
-            buffers.extend(density.map(|density| (5, density)));
-            buffers.extend((6..).zip(&self.own));
-            let bind = |kernel: &Kernel, buffers: &[(u32, &wgpu::Buffer)]| {
-                let resources: Vec<_> =
-                    buffers.iter().map(|(place, buffer)| (*place, buffer.as_entire_binding())).collect();
-                kernel.bind(device, 0, &resources)
-            };
-            let groups = [&self.begin, &self.next, &self.pass].map(|kernel| bind(kernel, &buffers));
-            // Of ping-pong, the passes back.
-            let exchanged = matches!(self.method, Method::PingPong(_)).then(|| {
-                let exchanged: Vec<(u32, &wgpu::Buffer)> = buffers
-                    .iter()
-                    .map(|(binding, buffer)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *buffer))
-                    .collect();
-                bind(&self.pass, &exchanged)
-            });
-            // Whichever way they end, the costs are where they belong.
-            let passes = if exchanged.is_some() { self.most_passes.next_multiple_of(2) } else { self.most_passes };
-            encoder.copy_buffer_to_buffer(&self.fresh, 0, &self.progress, 0, 4 * PROGRESS_WORDS);
-            let mut recorder = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("solve"),
-                ..wgpu::ComputePassDescriptor::default()
-            });
-            recorder.set_pipeline(&self.begin.pipeline);
-            recorder.set_bind_group(0, groups[0].as_ref());
-            recorder.dispatch_workgroups(begin[0], begin[1], begin[2]);
-            for pass in 0..passes {
-                recorder.set_pipeline(&self.next.pipeline);
-                recorder.set_bind_group(0, groups[1].as_ref());
-                recorder.dispatch_workgroups(1, 1, 1);
-                recorder.set_pipeline(&self.pass.pipeline);
-                let group = exchanged.as_ref().filter(|_| pass % 2 == 1).unwrap_or(&groups[2]);
-                recorder.set_bind_group(0, group.as_ref());
-                recorder.dispatch_workgroups_indirect(&self.workgroups, 0);
-            }
-        })?;
-        Ok(())
+        let begin = if method.is_tiled() { [(cells / TILE).pow(3).div_ceil(GROUP), 1, 1] } else { whole };
+        let grid = Record::new("OpticalPathGrid").with("cells", cells).with("extinction", solved.extinction);
+        let uniform = builder.uniform("solve", grid.with("spacing", self.grid.spacing));
+        let mut resources: Vec<(u32, Bound)> =
+            (0..).zip([uniform, solved.matter, solved.cost, self.progress, self.workgroups].map(Bound::from)).collect();
+        resources.extend(solved.density.map(|density| (5, density.into())));
+        resources.extend((6..).zip(self.own.iter().copied().map(Bound::from)));
+        let [begin_group, next_group, pass_group] =
+            [self.begin, self.next, self.pass].map(|kernel| vec![builder.bind(kernel, 0, &resources)]);
+        let next = builder.dispatch(self.next, next_group, Workgroups::Count([1, 1, 1]));
+        let indirect = Workgroups::Indirect(self.workgroups);
+        let mut turns = vec![next.clone(), builder.dispatch(self.pass, pass_group, indirect)];
+        let mut passes = most_passes.unwrap_or_else(|| Self::default_passes(method, cells));
+        if matches!(method, Method::PingPong(_)) {
+            // The pass back. Whichever way they end, the costs are where they belong.
+            let exchanged: Vec<(u32, Bound)> = resources
+                .iter()
+                .map(|(binding, of)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *of))
+                .collect();
+            let group = vec![builder.bind(self.pass, 0, &exchanged)];
+            turns.extend([next, builder.dispatch(self.pass, group, indirect)]);
+            passes = passes.div_ceil(2);
+        }
+        builder.pass(Pass::Copy { from: self.fresh, to: self.progress, bytes: 4 * PROGRESS_WORDS });
+        let begin = builder.dispatch(self.begin, begin_group, Workgroups::Count(begin));
+        builder.compute("solve", vec![begin], 1);
+        builder.compute("solve", turns, passes);
+        builder.pass(Pass::Copy { from: self.progress, to: solved.kept, bytes: 4 * PROGRESS_WORDS });
     }
 
     /// Bytes of its own buffers, which the costs are none of.
     #[must_use]
-    pub fn bytes(&self) -> u64 {
-        let shared = [&self.fresh, &self.progress, &self.workgroups];
-        shared.into_iter().chain(&self.own).map(wgpu::Buffer::size).sum()
+    pub fn bytes(&self, frame: &Frame) -> u64 {
+        let shared = [self.fresh, self.progress, self.workgroups];
+        shared.into_iter().chain(self.own.iter().copied()).map(|buffer| frame.buffer(buffer).bytes()).sum()
+    }
+}
+
+/// A solver in a frame of its own, for bodies that are uploaded one after the other.
+#[derive(Debug)]
+pub struct LoneSolver<'gpu> {
+    executor: Executor<'gpu>,
+    solved: Solved,
+}
+
+impl<'gpu> LoneSolver<'gpu> {
+    /// For bodies of this extinction; `source` is another text of the method's recipe, if any.
+    ///
+    /// # Errors
+    /// Where the device refuses the text or the memory.
+    pub fn new(
+        gpu: &'gpu Gpu,
+        grid: VoxelGrid,
+        solve: Solve,
+        extinction: f32,
+        source: Option<&str>,
+    ) -> Result<Self, ShaderError> {
+        let mut builder = Builder::new(Some(gpu));
+        let solver = match source {
+            Some(source) => Solver::of_source(&mut builder, grid, solve, source)?,
+            None => Solver::new(&mut builder, grid, solve)?,
+        };
+        use wgpu::BufferUsages as Usage;
+        let mut buffer = |what: &str, words: u64| {
+            builder.buffer(what, 4 * words, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)
+        };
+        let (rows, voxels) = (u64::from(grid.cells) * u64::from(grid.cells), grid.count() as u64);
+        let matter = buffer("matter", rows * u64::from(grid.words_per_row()));
+        let density = solve.heterogeneous.then(|| buffer("densities", voxels));
+        let cost = buffer("costs", voxels);
+        let solved = Solved { matter, density, cost, extinction, kept: Solver::kept(&mut builder) };
+        solver.encode(&mut builder, &solved);
+        Ok(Self { executor: Executor::new(gpu, builder.finish())?, solved })
     }
 
-    /// How far the last submitted solve came. Waits for it: not for every frame.
+    /// Sets the body: a bit for each voxel, and where the solver is heterogeneous a density for each.
+    pub fn set_body(&self, matter: &[u32], density: &[f32]) {
+        self.executor.write_buffer(self.solved.matter, bytemuck::cast_slice(matter));
+        if let Some(buffer) = self.solved.density {
+            self.executor.write_buffer(buffer, bytemuck::cast_slice(density));
+        }
+    }
+
+    /// Sets the seeds: a cost for each voxel, unreached but where there is one.
+    pub fn set_seeds(&self, seeds: &[f32]) {
+        self.executor.write_buffer(self.solved.cost, bytemuck::cast_slice(seeds));
+    }
+
+    /// Solves from the seeds, and does not wait.
     ///
     /// # Errors
     /// Where the device is lost.
-    pub fn status(&self) -> Result<Status, ShaderError> {
-        let kept = self.kept_status()?;
-        self.gpu.guarded("reading a solve's status", |device| {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.keep_status(&mut encoder, &kept);
-            self.gpu.queue.submit([encoder.finish()]);
-        })?;
-        self.status_of(&kept)
+    pub fn run(&self) -> Result<(), GpuError> {
+        self.executor.run(|_, _| {})
     }
 
-    /// A buffer for [`Solver::keep_status`].
-    ///
-    /// # Errors
-    /// Where the device refuses the memory.
-    pub fn kept_status(&self) -> Result<wgpu::Buffer, ShaderError> {
-        Ok(self.gpu.guarded("allocating a solve's status", |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("kept progress"),
-                size: 4 * PROGRESS_WORDS,
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            })
-        })?)
-    }
-
-    /// Records that how far the solve before came is kept, though others follow. Nothing waits.
-    pub fn keep_status(&self, encoder: &mut Encoder, kept: &wgpu::Buffer) {
-        encoder.copy_buffer_to_buffer(&self.progress, 0, kept, 0, 4 * PROGRESS_WORDS);
-    }
-
-    /// What was kept by the last submission. Waits for it: not for every frame.
+    /// The costs as they stand. Waits for them.
     ///
     /// # Errors
     /// Where the device is lost.
-    pub fn status_of(&self, kept: &wgpu::Buffer) -> Result<Status, ShaderError> {
-        Ok(self.gpu.read_back(kept, 4 * PROGRESS_WORDS, |bytes| {
-            let words: &[u32] = bytemuck::cast_slice(bytes);
-            let parity = (words[0] & 1) as usize;
-            let least = mirror::decode(words[5 + parity]);
-            Status { passes: words[1], updates: words[2], active: words[3 + parity], least }
-        })?)
+    pub fn costs(&self) -> Result<Vec<f32>, GpuError> {
+        Ok(self.executor.words(self.solved.cost)?.into_iter().map(f32::from_bits).collect())
+    }
+
+    /// How far the last solve came. Waits for it.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub fn status(&self) -> Result<Status, GpuError> {
+        Status::read(&self.executor, self.solved.kept)
     }
 }

@@ -1,59 +1,56 @@
-//! A stone on the device: its material, its mesh, and what its rung's geometry needs besides.
+//! A stone in a frame: its material, its mesh, and what its rung's geometry needs besides.
 
-use super::device::{self, Pipeline, mesh_vertices};
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{RenderError, Settings, restraint};
+use crate::frame::{Bound, Builder, PipelineId};
 use crate::record::Record;
 use glam::{DMat3, Mat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use lapidary_gpu::Gpu;
-use lapidary_gpu::capture::OfObject;
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Material, Object, convex, spectrum};
 use std::borrow::Cow;
 
-/// Sends an object to the device: what `pipeline` reads of it.
-pub(super) fn upload(
-    gpu: &Gpu,
-    pipeline: &Pipeline,
+/// Puts an object into the frame: what `pipeline` reads of it.
+pub(super) fn add(
+    builder: &mut Builder<'_>,
+    pipeline: PipelineId,
     Drawn { object, name, .. }: &Drawn<'_>,
     rung: Rung,
     settings: &Settings,
 ) -> Result<Body, RenderError> {
-    let _of = OfObject::named(name);
     let mesh = &object.mesh;
     let Geometries { indices, own, steps } = Geometries::of(object, rung)?;
-    check_steps(gpu, rung, steps)?;
-    let wavelengths = wavelengths(&object.material, rung.spectrum());
-    let wavelengths: Vec<u8> = wavelengths.iter().flat_map(GemWavelength::bytes).collect();
-    let shared: [(&str, &[u8]); 3] = [
-        ("positions", bytemuck::cast_slice(&mesh.positions)),
-        ("indices", bytemuck::cast_slice(&indices)),
-        ("wavelengths", &wavelengths),
+    check_steps(builder, rung, steps)?;
+    let read = |(group, binding): (u32, u32)| builder.binds(pipeline, group, binding);
+    let mut parts: Vec<(u32, u32, &str, &[u8])> = vec![
+        (1, 1, "positions", bytemuck::cast_slice(&mesh.positions)),
+        (1, 2, "indices", bytemuck::cast_slice(&indices)),
     ];
-    let own = own.iter().map(|(what, part)| (*what, &part[..]));
-    let parts = (1..).zip(shared).map(|(binding, part)| (1, binding, part));
-    let parts: Vec<_> = parts.chain((0..).zip(own).map(|(binding, part)| (2, binding, part))).collect();
-    let parts: Vec<_> = parts.into_iter().filter(|(group, binding, _)| pipeline.binds(*group, *binding)).collect();
-    let vertices = mesh_vertices(gpu, object, &indices, parts.iter().map(|(_, _, (_, contents))| *contents))?;
-    let groups = gpu.guarded("uploading a mesh", |device| {
-        let material = GemMaterial::of(&object.material, rung, settings).bytes();
-        let material = device::storage(device, "material", &material);
-        let storage = |&(group, binding, (what, contents)): &(u32, u32, (&str, &[u8]))| {
-            (group, binding, device::storage(device, what, contents))
+    parts.extend((0..).zip(&own).map(|(binding, (what, part))| (2, binding, *what, &part[..])));
+    parts.retain(|(group, binding, ..)| read((*group, *binding)));
+    let vertices = builder.mesh_vertices(object, &indices, parts.iter().map(|(.., contents)| *contents))?;
+    let wavelengths = read((1, 3)).then(|| wavelengths(&object.material, rung.spectrum()));
+    Ok(builder.of_object(name, |builder| {
+        let material = builder.record("material", GemMaterial::of(&object.material, rung, settings).record());
+        let add = |wanted: u32, bound: &mut Vec<(u32, Bound)>, builder: &mut Builder<'_>| {
+            for (_, binding, what, contents) in parts.iter().filter(|(group, ..)| *group == wanted) {
+                bound.push((*binding, builder.storage(what, contents).into()));
+            }
         };
-        let mut buffers = vec![(1, 0, material)];
-        buffers.extend(parts.iter().map(storage));
-        let of_group = |group: u32| {
-            let own = buffers.iter().filter(|(of, _, _)| *of == group);
-            let resources: Vec<_> = own.map(|(_, binding, buffer)| (*binding, buffer.as_entire_binding())).collect();
-            pipeline.bind(device, group, &resources)
-        };
-        vec![of_group(1), of_group(2)]
-    })?;
-    Ok(Body { name: name.clone(), groups, vertices })
+        let mut first = vec![(0, material.into())];
+        add(1, &mut first, builder);
+        if let Some(wavelengths) = wavelengths {
+            let wavelengths = wavelengths.iter().map(GemWavelength::record).collect();
+            first.push((3, builder.records("wavelengths", wavelengths, wgpu::BufferUsages::STORAGE).into()));
+        }
+        let mut second = Vec::new();
+        add(2, &mut second, builder);
+        let groups = vec![builder.bind(pipeline, 1, &first), builder.bind(pipeline, 2, &second)];
+        Body { name: name.clone(), groups, vertices }
+    }))
 }
 
 /// What a rung's geometry needs of a mesh, beside its positions.
@@ -70,10 +67,10 @@ struct Geometries<'a> {
 const LAVAPIPE_STEPS: u64 = 65_535;
 
 /// Refuses a rung that lavapipe would show wrongly.
-fn check_steps(gpu: &Gpu, rung: Rung, steps: u64) -> Result<(), RenderError> {
+fn check_steps(builder: &Builder<'_>, rung: Rung, steps: u64) -> Result<(), RenderError> {
     let rays = if let Spectrum::Separate(count) = rung.spectrum() { u64::from(count) } else { 1 };
     let steps = rays * (1 + u64::from(rung.hits()) * (1 + steps));
-    if gpu.is_lavapipe() && steps > LAVAPIPE_STEPS {
+    if builder.gpu().is_some_and(Gpu::is_lavapipe) && steps > LAVAPIPE_STEPS {
         return Err(RenderError::TooManySteps { rung, steps, limit: LAVAPIPE_STEPS });
     }
     Ok(())
@@ -139,19 +136,19 @@ impl GemMaterial {
             index: material.ior,
             absorption: lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance),
             // Nothing travels as far as this.
-            distance_limit: settings.distance_limit.unwrap_or(f32::MAX),
+            distance_limit: settings.gem.distance_limit.unwrap_or(f32::MAX),
             channel_indices: channel_indices(material),
-            dispersion_strength: settings.dispersion_strength,
+            dispersion_strength: settings.gem.dispersion_strength,
             throughput_limit: restraint::throughput_limit(material, rung, settings),
         }
     }
 
-    fn bytes(&self) -> Vec<u8> {
+    fn record(&self) -> Record {
         let record = Record::new("GemMaterial").with("base_color", self.base_color).with("index", self.index);
         let record = record.with("absorption", self.absorption).with("distance_limit", self.distance_limit);
         let record = record.with("channel_indices", self.channel_indices);
         let record = record.with("dispersion_strength", self.dispersion_strength);
-        record.with("throughput_limit", self.throughput_limit).bytes()
+        record.with("throughput_limit", self.throughput_limit)
     }
 }
 
@@ -170,8 +167,8 @@ pub(crate) struct GemWavelength {
 }
 
 impl GemWavelength {
-    fn bytes(&self) -> Vec<u8> {
-        Record::new("GemWavelength").with("weights", self.weights).with("index", self.index).bytes()
+    fn record(&self) -> Record {
+        Record::new("GemWavelength").with("weights", self.weights).with("index", self.index)
     }
 }
 

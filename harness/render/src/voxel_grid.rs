@@ -40,11 +40,6 @@ impl VoxelGrid {
         record.with("origin", origin).with("spacing", spacing).with("cells", cells)
     }
 
-    /// `VoxelizationGrid` of the recipes.
-    pub(crate) fn bytes(&self) -> Vec<u8> {
-        self.fill(Record::new("VoxelizationGrid")).bytes()
-    }
-
     /// How many voxels there are.
     #[must_use]
     pub fn count(&self) -> usize {

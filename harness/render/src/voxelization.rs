@@ -1,9 +1,10 @@
 //! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
 
-use crate::compute::Kernel;
+use crate::frame::{BindGroupId, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
+use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
-use lapidary_gpu::{Encoder, Gpu};
+use lapidary_gpu::GpuError;
 use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
@@ -38,38 +39,43 @@ impl From<VoxelGrid> for VoxelizationGrid {
 }
 
 /// Pipelines and buffers for a mesh that may move, in a grid of one size.
-#[derive(Debug)]
-pub struct Voxelizer<'gpu> {
-    gpu: &'gpu Gpu,
+#[derive(Clone, Debug)]
+pub struct Voxelizer {
     cells: u32,
-    most_triangles: u64,
+    vertices: u64,
+    triangles: u64,
     /// Of each vertex, of each triangle, of those over many columns, of each row.
-    kernels: [Kernel; 4],
-    grid: wgpu::Buffer,
-    beyond: wgpu::Buffer,
-    large: wgpu::Buffer,
-    corners: wgpu::Buffer,
+    kernels: [PipelineId; 4],
+    grid: Buffer,
+    beyond: Buffer,
+    large: Buffer,
+    corners: Buffer,
     /// A bit for each voxel that is filled: [`VoxelGrid::words_per_row`] words a row.
-    pub matter: wgpu::Buffer,
+    pub matter: Buffer,
     /// The same for the voxels that the surface touches, where these are set too.
-    pub surface: Option<wgpu::Buffer>,
+    pub surface: Option<Buffer>,
     /// Three counts, in the order of [`Status`].
-    pub status: wgpu::Buffer,
+    pub status: Buffer,
 }
 
-impl<'gpu> Voxelizer<'gpu> {
-    /// For meshes of up to as many vertices and triangles as `mesh`, with the effects by the names of the recipe's overrides.
+impl Voxelizer {
+    /// For meshes of as many vertices and triangles as `mesh`, with the effects by the names of the recipe's overrides.
     ///
     /// # Errors
-    /// Where the device refuses the recipe or the memory.
+    /// Where the recipe is not valid.
     ///
     /// # Panics
     /// For more than [`MOST_TRIANGLES`].
-    pub fn new(gpu: &'gpu Gpu, grid: VoxelGrid, mesh: &Mesh, effects: &[(&str, f64)]) -> Result<Self, ShaderError> {
-        let (vertices, triangles) = (mesh.positions.len(), mesh.triangle_count());
-        assert!(triangles <= MOST_TRIANGLES as usize, "{triangles} triangles");
+    pub fn new(
+        builder: &mut Builder<'_>,
+        grid: VoxelGrid,
+        mesh: &Mesh,
+        effects: &[(&str, f64)],
+    ) -> Result<Self, ShaderError> {
+        let (vertices, triangles) = (mesh.positions.len() as u64, mesh.triangle_count() as u64);
+        assert!(triangles <= MOST_TRIANGLES.into(), "{triangles} triangles");
         let source = lapidary_wgsl::recipe_source(RECIPE);
-        let kernel = |entry| Kernel::new(gpu, RECIPE, &source, entry, effects);
+        let mut kernel = |entry| builder.compute_pipeline(RECIPE, &source, entry, effects);
         let kernels = [
             kernel("voxelization_vertices")?,
             kernel("voxelization_triangles")?,
@@ -78,103 +84,73 @@ impl<'gpu> Voxelizer<'gpu> {
         ];
         let columns = u64::from(grid.cells) * u64::from(grid.cells);
         let bits = 4 * columns * u64::from(grid.words_per_row());
-        let holds_surface = kernels.iter().any(|kernel| kernel.binds(0, 4));
-        let voxelizer = gpu.guarded("allocating voxels", |device| {
-            use wgpu::BufferUsages as Usage;
-            let buffer = |what, size, usage| {
-                let descriptor = wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: false };
-                device.create_buffer(&descriptor)
-            };
-            let storage = |what, size| buffer(what, size, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
-            Self {
-                gpu,
-                cells: grid.cells,
-                most_triangles: triangles as u64,
-                kernels,
-                grid: buffer("grid", 32, Usage::UNIFORM | Usage::COPY_DST),
-                beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
-                // A list of none still has a place.
-                large: storage("large triangles", 4 + 4 * triangles.max(1) as u64),
-                corners: storage("vertices in the grid", 12 * vertices.max(1) as u64),
-                matter: storage("matter", bits),
-                surface: holds_surface.then(|| storage("surface voxels", bits)),
-                status: storage("voxel counts", STATUS_BYTES),
-            }
-        })?;
-        gpu.queue.write_buffer(&voxelizer.grid, 0, &grid.bytes());
-        Ok(voxelizer)
+        let holds_surface = kernels.iter().any(|kernel| builder.binds(*kernel, 0, 4));
+        let record = grid.fill(Record::new("VoxelizationGrid"));
+        use wgpu::BufferUsages as Usage;
+        let grid_buffer = builder.uniform("grid", record);
+        let mut storage = |what, size| builder.buffer(what, size, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+        Ok(Self {
+            cells: grid.cells,
+            vertices,
+            triangles,
+            kernels,
+            grid: grid_buffer,
+            beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
+            // A list of none still has a place.
+            large: storage("large triangles", 4 + 4 * triangles.max(1)),
+            corners: storage("vertices in the grid", 12 * vertices.max(1)),
+            matter: storage("matter", bits),
+            surface: holds_surface.then(|| storage("surface voxels", bits)),
+            status: storage("voxel counts", STATUS_BYTES),
+        })
     }
 
     /// Makes voxels of the mesh as it is then: `positions` holds three floats a vertex, `indices` three words a triangle, all of the buffer.
-    ///
-    /// # Errors
-    /// Where the device refuses the buffers.
-    ///
-    /// # Panics
-    /// Where there are more vertices or triangles than this was made for.
-    pub fn encode(
-        &self,
-        encoder: &mut Encoder,
-        positions: &wgpu::Buffer,
-        indices: &wgpu::Buffer,
-    ) -> Result<(), ShaderError> {
-        let [vertices, triangles] = [positions, indices].map(|buffer| buffer.size() / 12);
-        assert!(triangles <= self.most_triangles, "{triangles} triangles");
-        assert!(positions.size() <= self.corners.size(), "{vertices} vertices");
-        for buffer in [&self.matter, &self.beyond, &self.status].into_iter().chain(&self.surface) {
-            encoder.clear_buffer(buffer, 0, None);
+    pub fn encode(&self, builder: &mut Builder<'_>, positions: Buffer, indices: Buffer) {
+        for buffer in [self.matter, self.beyond, self.status].into_iter().chain(self.surface) {
+            builder.clear(buffer);
         }
         // What the list held does not matter, only how much.
-        encoder.clear_buffer(&self.large, 0, Some(4));
-        if triangles == 0 {
-            return Ok(());
+        builder.pass(Pass::Clear { buffer: self.large, bytes: 4 });
+        if self.triangles == 0 {
+            return;
         }
-        self.gpu.guarded("making voxels of a mesh", |device| {
-            let surface = self.surface.as_ref().map(|surface| (4, surface));
-            let buffers = [
-                (0, &self.grid),
-                (1, positions),
-                (2, indices),
-                (3, &self.matter),
-                (5, &self.beyond),
-                (6, &self.large),
-                (7, &self.status),
-                (8, &self.corners),
-            ];
-            let resources: Vec<_> = buffers
-                .into_iter()
-                .chain(surface)
-                .map(|(binding, buffer)| (binding, buffer.as_entire_binding()))
-                .collect();
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(RECIPE),
-                ..wgpu::ComputePassDescriptor::default()
-            });
-            let rows = self.cells * self.cells;
-            let groups = |threads: u64| threads.div_ceil(WORKGROUP.into()).min(MOST_WORKGROUPS.into()) as u32;
-            let workgroups = [groups(vertices), groups(triangles), LARGE_GROUPS, groups(rows.into())];
-            for (kernel, workgroups) in self.kernels.iter().zip(workgroups) {
-                pass.set_pipeline(&kernel.pipeline);
-                pass.set_bind_group(0, kernel.bind(device, 0, &resources).as_ref());
-                pass.dispatch_workgroups(workgroups, 1, 1);
-            }
-        })?;
-        Ok(())
+        let resources = [
+            (0, self.grid.into()),
+            (1, positions.into()),
+            (2, indices.into()),
+            (3, self.matter.into()),
+            (5, self.beyond.into()),
+            (6, self.large.into()),
+            (7, self.status.into()),
+            (8, self.corners.into()),
+        ];
+        let surface = self.surface.map(|surface| (4, surface.into()));
+        let resources: Vec<_> = resources.into_iter().chain(surface).collect();
+        let rows = self.cells * self.cells;
+        let groups = |threads: u64| threads.div_ceil(WORKGROUP.into()).min(MOST_WORKGROUPS.into()) as u32;
+        let workgroups = [groups(self.vertices), groups(self.triangles), LARGE_GROUPS, groups(rows.into())];
+        let dispatch = |(kernel, workgroups): (PipelineId, u32)| {
+            let group: Option<BindGroupId> = builder.bind(kernel, 0, &resources);
+            builder.dispatch(kernel, vec![group], Workgroups::Count([workgroups, 1, 1]))
+        };
+        let dispatches = self.kernels.into_iter().zip(workgroups).map(dispatch).collect();
+        builder.compute(RECIPE, dispatches, 1);
     }
 
     /// Bytes of its buffers.
     #[must_use]
-    pub fn bytes(&self) -> u64 {
-        let buffers = [&self.grid, &self.beyond, &self.large, &self.corners, &self.matter, &self.status];
-        buffers.into_iter().chain(&self.surface).map(wgpu::Buffer::size).sum()
+    pub fn bytes(&self, frame: &Frame) -> u64 {
+        let buffers = [self.grid, self.beyond, self.large, self.corners, self.matter, self.status];
+        buffers.into_iter().chain(self.surface).map(|buffer| frame.buffer(buffer).bytes()).sum()
     }
 
     /// The counts of the last frame that was submitted. It waits for the device.
     ///
     /// # Errors
     /// Where the device does.
-    pub fn status(&self) -> Result<Status, ShaderError> {
-        let words = self.gpu.words(&self.status)?;
+    pub fn status(&self, executor: &Executor<'_>) -> Result<Status, GpuError> {
+        let words = executor.words(self.status)?;
         Ok(Status { solid: words[0], surface: words[1], odd_columns: words[2] })
     }
 }

@@ -16,6 +16,8 @@ pub struct StructLayout {
 pub struct Field {
     /// Its name.
     pub name: String,
+    /// Its type, as WGSL writes it: `vec3<f32>`.
+    pub ty: String,
     /// The kind of its scalars, which are 32 bits wide.
     pub kind: ScalarKind,
     /// Byte offset of each scalar from the start of the struct, of a matrix column by column.
@@ -44,7 +46,7 @@ fn add_fields(module: &Module, ty: &Type, outer: &str, base: usize, fields: &mut
             add_fields(module, inner, &format!("{name}."), offset, fields)?;
         } else {
             let (kind, offsets) = (kind(module, member.ty)?, word_offsets(module, member.ty, offset)?);
-            fields.push(Field { name, kind, offsets });
+            fields.push(Field { name, ty: type_name(module, member.ty)?, kind, offsets });
         }
     }
     Some(())
@@ -55,6 +57,26 @@ fn kind(module: &Module, ty: Handle<Type>) -> Option<ScalarKind> {
         TypeInner::Array { base, .. } => kind(module, base),
         ref inner => inner.scalar_kind(),
     }
+}
+
+/// A type of scalars of 32 bits, as WGSL writes it.
+fn type_name(module: &Module, ty: Handle<Type>) -> Option<String> {
+    let scalar = |kind: ScalarKind| match kind {
+        ScalarKind::Float => Some("f32"),
+        ScalarKind::Sint => Some("i32"),
+        ScalarKind::Uint => Some("u32"),
+        _ => None,
+    };
+    let inner = &module.types[ty].inner;
+    Some(match *inner {
+        TypeInner::Scalar(_) => scalar(inner.scalar_kind()?)?.to_owned(),
+        TypeInner::Vector { size, .. } => format!("vec{}<{}>", size as u32, scalar(inner.scalar_kind()?)?),
+        TypeInner::Matrix { columns, rows, .. } => format!("mat{}x{}<f32>", columns as u32, rows as u32),
+        TypeInner::Array { base, size: ArraySize::Constant(length), .. } => {
+            format!("array<{}, {length}>", type_name(module, base)?)
+        }
+        _ => return None,
+    })
 }
 
 /// The byte offset of each word of a type that lies at `base`; none if it is not made of scalars of 32 bits, or has an array of runtime size.
@@ -99,16 +121,16 @@ mod tests {
         let all: Vec<(&str, StructLayout)> = StructLayout::all(&module).collect();
         assert_eq!(all.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["Inner", "Outer"]);
         let outer = &all[1].1;
-        let found: Vec<(&str, ScalarKind, usize, usize)> =
-            outer.fields.iter().map(|f| (f.name.as_str(), f.kind, f.offsets[0], f.offsets.len())).collect();
+        let found: Vec<(&str, &str, ScalarKind, usize, usize)> =
+            outer.fields.iter().map(|f| (&*f.name, &*f.ty, f.kind, f.offsets[0], f.offsets.len())).collect();
         use ScalarKind::{Float, Sint, Uint};
         let wanted = [
-            ("turn", Float, 0, 9),
-            ("inner.at", Float, 48, 3),
-            ("inner.size", Float, 60, 1),
-            ("inner.count", Uint, 64, 1),
-            ("last", Sint, 80, 1),
-            ("rows", Float, 96, 8),
+            ("turn", "mat3x3<f32>", Float, 0, 9),
+            ("inner.at", "vec3<f32>", Float, 48, 3),
+            ("inner.size", "f32", Float, 60, 1),
+            ("inner.count", "u32", Uint, 64, 1),
+            ("last", "i32", Sint, 80, 1),
+            ("rows", "array<vec4<f32>, 2>", Float, 96, 8),
         ];
         assert_eq!((found, outer.size), (wanted.to_vec(), 128));
         assert_eq!(outer.fields[0].offsets, [0, 4, 8, 16, 20, 24, 32, 36, 40]);

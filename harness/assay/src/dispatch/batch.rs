@@ -91,7 +91,7 @@ impl Kernel<'_> {
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
                 pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &bind_group);
+                pass.set_bind_group(0, &bind_group, &[]);
                 let workgroups = rows.div_ceil(workgroup);
                 pass.dispatch_workgroups(u32::try_from(workgroups).expect("at most 65,535 workgroups"), 1, 1);
             }

@@ -130,7 +130,7 @@ impl<'a> Program<'a> {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
                 pass.set_pipeline(&self.pipeline);
                 for (group, bound) in &groups {
-                    pass.set_bind_group(*group, bound);
+                    pass.set_bind_group(*group, bound, &[]);
                 }
                 let [x, y, z] = workgroups;
                 pass.dispatch_workgroups(x, y, z);

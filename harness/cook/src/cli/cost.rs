@@ -14,48 +14,37 @@ use lapidary_cook::text_file;
 use lapidary_plan::Rung;
 use lapidary_render::file;
 use serde::{Serialize, de::DeserializeOwned};
-use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
-/// What accuracy costs: the error and the time of every rung of a ladder.
-///
-/// `gem`: the gem's ladder, timed. Takes minutes. Times are the least of interleaved rounds; leave the machine alone meanwhile.
-///
-/// `cdrf`: the ladder of the curvature-dependent reflectance, timed in the same way beside Lambert's law and a blur in a texture.
-///
-/// `optical_path`: the ladder of light's ways through stone, by solver, neighbours and size of the grid. Takes minutes.
-///
-/// `effects`: each effect alone, none, and all: time, instructions and bytes.
-///
-/// `restraint`: what is saved by work that a pixel or a tile has no use for: rays that end when what they carry can no longer be seen, and ways
-/// through stone sought in tiles with matter alone; and a variant of the recipe for each material beside one for all. Takes minutes.
-///
-/// `sphere`: the curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
+/// What accuracy costs: the error and the time of every rung of a ladder. Times are the least of interleaved rounds; leave the machine
+/// alone meanwhile.
 #[derive(clap::Args)]
 #[command(
+    subcommand_required = true,
+    arg_required_else_help = true,
     after_help = "Examples:\n  ./cook cost gem\n  ./cook cost gem --rungs proxy-1,convex-1,bvh-1,triangles-1 --rounds 15\n  ./cook cost gem --json --out target/cost\n  ./cook cost gem --from docs/measurements/lavapipe/gem.json --fill docs/gem_ladder.md,docs/gem_proxy.md\n  ./cook cost cdrf --rungs lambert,table-256-rgba8,accurate,blur\n  ./cook cost optical_path --rungs lambert,tiled-26-64,godunov-64\n  ./cook cost restraint --rungs convex-64 --rounds 3\n  ./cook cost sphere --out target/cost"
 )]
 pub(super) struct Arguments {
-    /// What to measure: gem, cdrf, optical_path, effects, restraint or sphere.
-    #[arg(default_value = "gem")]
-    technique: String,
-    /// gem, cdrf, optical_path, restraint: rungs to measure, comma-separated; all where left out.
-    #[arg(long, value_delimiter = ',', value_parser = parse_rung)]
-    rungs: Vec<Rung>,
-    /// gem: views to compare in, comma-separated; all where left out.
-    #[arg(long, value_delimiter = ',', value_parser = parse_view)]
-    views: Vec<views::View>,
-    /// gem, cdrf, optical_path, effects, restraint: rounds of timing, 7 where left out, 5 of optical_path and restraint; 0 leaves times out, but of restraint.
-    #[arg(long, value_parser = number::whole(0..=u32::MAX))]
-    rounds: Option<u32>,
-    /// sphere: random walks through each sphere, 1000000 where left out.
-    #[arg(long, value_name = "N", value_parser = number::whole(NonZeroU64::MIN..=NonZeroU64::MAX))]
-    walks: Option<NonZeroU64>,
-    /// sphere: the same seed gives the same walks; 1 where left out.
-    #[arg(long, value_parser = number::whole(0..=u64::MAX))]
-    seed: Option<u64>,
+    #[command(subcommand)]
+    technique: Technique,
+}
+
+#[derive(clap::Subcommand)]
+#[command(rename_all = "snake_case")]
+enum Technique {
+    Gem(gem::Arguments),
+    Cdrf(cdrf::Arguments),
+    OpticalPath(optical_path::Arguments),
+    Effects(effects::Arguments),
+    Restraint(restraint::Arguments),
+    Sphere(sphere::Arguments),
+}
+
+/// Where a report comes from and where it goes.
+#[derive(clap::Args)]
+struct Report {
     /// Show an earlier run's NAME.json, such as gem.json, again instead of measuring.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["rungs", "views", "rounds", "walks", "seed"])]
+    #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
     /// One JSON document on stdout, a row for each thing measured, and nothing else.
     #[arg(long)]
@@ -66,10 +55,6 @@ pub(super) struct Arguments {
     /// Pages, comma-separated, whose generated tables are made anew.
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     fill: Vec<PathBuf>,
-    /// gem: where the time of the cheapest rungs goes instead: frames from which one thing after another is taken away; with --out,
-    /// gem_profile.txt.
-    #[arg(long, conflicts_with_all = ["rungs", "views", "from", "json", "fill"])]
-    profile: bool,
 }
 
 fn parse_rung(text: &str) -> Result<Rung, String> {
@@ -87,32 +72,13 @@ fn parse_view(text: &str) -> Result<views::View, String> {
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    match arguments.technique.as_str() {
-        "gem" => gem::run(context, arguments),
-        "cdrf" => cdrf::run(context, arguments),
-        "optical_path" => optical_path::run(context, arguments),
-        "effects" => effects::run(context, arguments),
-        "restraint" => restraint::run(context, arguments),
-        "sphere" => sphere::run(arguments),
-        other => Err(CostError::Technique(other.to_owned()).into()),
-    }
-}
-
-impl Arguments {
-    /// Refuses the flags that the technique would ignore: all that are some technique's but those that it obeys.
-    fn refuse_but(&self, technique: &str, obeyed: &[&str]) -> Result<(), Failure> {
-        let flags = [
-            ("--rungs", !self.rungs.is_empty()),
-            ("--views", !self.views.is_empty()),
-            ("--rounds", self.rounds.is_some()),
-            ("--walks", self.walks.is_some()),
-            ("--seed", self.seed.is_some()),
-            ("--profile", self.profile),
-        ];
-        match flags.iter().find(|(flag, given)| *given && !obeyed.contains(flag)) {
-            Some((flag, _)) => Err(Failure(format!("`{technique}` knows no {flag}; leave it out"))),
-            None => Ok(()),
-        }
+    match &arguments.technique {
+        Technique::Gem(arguments) => gem::run(context, arguments),
+        Technique::Cdrf(arguments) => cdrf::run(context, arguments),
+        Technique::OpticalPath(arguments) => optical_path::run(context, arguments),
+        Technique::Effects(arguments) => effects::run(context, arguments),
+        Technique::Restraint(arguments) => restraint::run(context, arguments),
+        Technique::Sphere(arguments) => sphere::run(arguments),
     }
 }
 
@@ -140,7 +106,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 /// Where a report goes, found fit before anything is measured.
 struct Places<'a> {
     technique: &'static str,
-    arguments: &'a Arguments,
+    report: &'a Report,
     pages: Vec<(&'a PathBuf, String)>,
 }
 
@@ -154,24 +120,24 @@ struct Shown {
 }
 
 impl<'a> Places<'a> {
-    fn new(technique: &'static str, arguments: &'a Arguments) -> Result<Self, Failure> {
-        if let Some(out) = &arguments.out {
+    fn new(technique: &'static str, report: &'a Report) -> Result<Self, Failure> {
+        if let Some(out) = &report.out {
             let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
             std::fs::create_dir_all(out).map_err(failed)?;
             file::check_writable(&out.join(format!("{technique}.txt")))?;
         }
         let read = |path: &'a PathBuf| Ok((path, read_text(path)?));
-        let pages: Vec<(&PathBuf, String)> = arguments.fill.iter().map(read).collect::<Result<_, Failure>>()?;
+        let pages: Vec<(&PathBuf, String)> = report.fill.iter().map(read).collect::<Result<_, Failure>>()?;
         for (path, page) in &pages {
             page::check(page).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
             file::check_writable(path)?;
         }
-        Ok(Self { technique, arguments, pages })
+        Ok(Self { technique, report, pages })
     }
 
     /// The report of `--from`, or a new one.
     fn report<R: DeserializeOwned>(&self, measure: impl FnOnce() -> Result<R, Failure>) -> Result<R, Failure> {
-        let Some(path) = &self.arguments.from else { return measure() };
+        let Some(path) = &self.report.from else { return measure() };
         let technique = self.technique;
         serde_json::from_str(&read_text(path)?).map_err(|error| {
             let path = path.display();
@@ -186,7 +152,7 @@ impl<'a> Places<'a> {
             Err(error) => Err(Failure(format!("{}: {error}", path.display()))),
         };
         let filled: Vec<(&PathBuf, String)> = self.pages.iter().map(fill).collect::<Result<_, _>>()?;
-        if let Some(out) = &self.arguments.out {
+        if let Some(out) = &self.report.out {
             let write = |name: &str, contents: &str| file::replace(&out.join(name), contents.as_bytes());
             write(&format!("{}.txt", self.technique), &shown.text)?;
             write(&format!("{}.json", self.technique), &serde_json::to_string_pretty(report)?)?;
@@ -197,7 +163,7 @@ impl<'a> Places<'a> {
         for (path, page) in filled {
             file::replace(path, page.as_bytes())?;
         }
-        output::line(if self.arguments.json { &shown.rows } else { shown.text.trim_end() })?;
+        output::line(if self.report.json { &shown.rows } else { shown.text.trim_end() })?;
         Ok(Outcome::Passed)
     }
 }

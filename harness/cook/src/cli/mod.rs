@@ -7,6 +7,7 @@ mod builtins;
 mod check;
 mod copy;
 mod cost;
+mod frame;
 mod gallery;
 mod list;
 mod new;
@@ -64,6 +65,7 @@ enum Command {
     Copy(copy::Arguments),
     Cost(cost::Arguments),
     Plan(plan::Arguments),
+    Frame(frame::Arguments),
     Render(render::Arguments),
     Scene(scene::Arguments),
     Snapshots(snapshots::Arguments),
@@ -102,6 +104,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Copy(arguments) => copy::run(&arguments),
         Command::Cost(arguments) => cost::run(&context, &arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Frame(arguments) => frame::run(&context, &arguments),
         Command::Render(arguments) => render::run(&context, &arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),

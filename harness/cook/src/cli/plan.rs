@@ -2,10 +2,9 @@
 
 use super::asked::Asked;
 use super::{Failure, Outcome, output};
-use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
 use lapidary_plan::Decision;
 use lapidary_plan::quality::Chosen;
-use lapidary_render::plan::{Plan, PlannedObject};
+use lapidary_render::plan::{Kind, Pipeline, Plan, PlannedObject, Resource, Step};
 use lapidary_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -31,6 +30,8 @@ struct Document<'a> {
     passes: Vec<PassRow<'a>>,
     pipelines: Vec<PipelineRow<'a>>,
     resources: Vec<ResourceRow<'a>>,
+    /// What `cook frame` writes to `frame.json`.
+    frame: lapidary_render::frame::Document,
     notes: Vec<String>,
     lacking: &'a [String],
 }
@@ -141,9 +142,10 @@ impl<'a> Document<'a> {
             scene: &plan.scene,
             objects: plan.objects.iter().map(object).collect(),
             effects: effects.collect(),
-            passes: plan.capture.steps.iter().map(pass).collect(),
-            pipelines: plan.capture.pipelines.iter().map(pipeline).collect(),
-            resources: plan.capture.resources.iter().map(resource).collect(),
+            passes: plan.listing.steps.iter().map(pass).collect(),
+            pipelines: plan.listing.pipelines.iter().map(pipeline).collect(),
+            resources: plan.listing.resources.iter().map(resource).collect(),
+            frame: plan.frame.document(),
             notes: plan.notes.iter().map(ToString::to_string).collect(),
             lacking: &plan.lacking,
         }

@@ -8,7 +8,9 @@ use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_reference::spectral::Lost;
 use lapidary_render as render;
 use lapidary_render::file::{self, Format};
-use lapidary_render::{Curvature, Settings, WalkedPicture};
+use lapidary_render::{
+    Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, ReferenceOptions, Settings, WalkOptions, WalkedPicture,
+};
 use lapidary_scene::Scene;
 use lapidary_scene::nearest::suggest;
 use std::path::PathBuf;
@@ -27,20 +29,35 @@ pub(super) struct Arguments {
     /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
     #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
     from: Option<(f32, f32)>,
-    /// Which curvature spreads the light of what scatters it: from the pixel's derivatives mean, towards
-    /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
-    #[arg(long, value_name = "FORM", default_value = "mean", value_parser = parse_curvature)]
-    curvature: Curvature,
-    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.18 where left out.
-    #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
-    extinction_scale: Option<f32>,
-    /// Factor of the paper's dispersion, eq. (12), for rungs +paper.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_positive)]
-    strength: f32,
-    /// What a ray still carries at its last hit: taken from the environment along it, or dropped.
-    #[arg(long, value_name = "WAY", default_value = "environment", value_parser = ["environment", "dropped"])]
-    rest: String,
-    /// In units of length: a ray ends that has travelled farther inside.
+    /// Factor on radiance before the tone curve.
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    exposure: f32,
+    /// Samples along each side of a pixel.
+    #[arg(long, default_value_t = lapidary_scene::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
+    samples: u32,
+    #[command(flatten)]
+    gem: Option<Gem>,
+    #[command(flatten)]
+    diffuse: Option<Diffuse>,
+    #[command(flatten)]
+    optical_path: Option<OpticalPath>,
+    #[command(flatten)]
+    reference: Option<Reference>,
+    #[command(flatten)]
+    walks: Option<Walks>,
+}
+
+/// Options of the gem recipes.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Gem recipes")]
+struct Gem {
+    /// Factor of the paper's dispersion, eq. (12), for rungs +paper; 1 where left out.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_positive)]
+    strength: Option<f32>,
+    /// What a ray still carries at its last hit: taken from the environment along it, which is the default, or dropped.
+    #[arg(long, value_name = "WAY", value_parser = ["environment", "dropped"])]
+    rest: Option<String>,
+    /// The longest way of a ray inside, in units of length.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     distance_limit: Option<f32>,
     /// Whether a ray inside ends when what it carries can no longer be seen; where left out, from 16 hits
@@ -50,33 +67,112 @@ pub(super) struct Arguments {
     /// By a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
     deferred: bool,
-    /// The proxy's centre: stable, or the paper's eq. (4).
-    #[arg(long, value_name = "FORM", default_value = "stable", value_parser = ["stable", "paper"])]
-    centre: String,
-    /// Radiance is multiplied by this before the tone curve.
-    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
-    exposure: f32,
-    /// Samples along each side of a pixel.
-    #[arg(long, default_value_t = lapidary_scene::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
-    samples: u32,
-    /// Wavelengths of the reference; 31 where left out.
+    /// The proxy's centre: stable, which is the default, or the paper's eq. (4).
+    #[arg(long, value_name = "FORM", value_parser = ["stable", "paper"])]
+    centre: Option<String>,
+}
+
+/// Options of scattering bodies that are drawn by their curvature.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scattering bodies by their curvature")]
+struct Diffuse {
+    /// Which curvature spreads the light: from the pixel's derivatives mean, which is the default, towards
+    /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
+    #[arg(long, value_name = "FORM", value_parser = parse_curvature)]
+    curvature: Option<Curvature>,
+}
+
+/// Options of scattering bodies that light comes through.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scattering bodies by optical paths")]
+struct OpticalPath {
+    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.18 where left out.
+    #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
+    extinction_scale: Option<f32>,
+}
+
+/// Options of the reference of clear stones.
+#[derive(clap::Args)]
+#[command(next_help_heading = "The reference of clear stones")]
+struct Reference {
+    /// Wavelengths that it follows; 31 where left out.
     #[arg(long, value_parser = number::whole(0..=usize::MAX))]
     wavelengths: Option<usize>,
-    /// Walks for each pixel that the reference of what scatters light follows; 256 where left out.
+    /// The share of a camera ray's energy that it need not follow; 1e-4 where left out.
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    energy_bound: Option<f64>,
+}
+
+/// Options of the reference of scattering bodies.
+#[derive(clap::Args)]
+#[command(next_help_heading = "The reference of scattering bodies")]
+struct Walks {
+    /// Walks for each pixel; 256 where left out.
     #[arg(long, value_parser = number::whole(0..=u32::MAX))]
     walks: Option<u32>,
-    /// Where those walks set out: from the lights there is less noise, but no environment.
+    /// Where they set out: from the lights there is less noise, but no environment.
     #[arg(long, value_name = "END", value_parser = parse_origin)]
     walks_from: Option<Origin>,
     /// Another seed gives other walks; 1 where left out.
     #[arg(long, value_parser = number::whole(0..=u64::MAX))]
     seed: Option<u64>,
-    /// What surfaces do to those walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
+    /// What surfaces do to walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
     #[arg(long, value_parser = ["matched", "dielectric"])]
     boundary: Option<String>,
-    /// The share of a camera ray's energy that the reference need not follow; 1e-4 where left out.
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
-    energy_bound: Option<f64>,
+}
+
+impl Gem {
+    fn options(&self) -> GemOptions {
+        let usual = GemOptions::default();
+        GemOptions {
+            paper_centre: self.centre.as_deref() == Some("paper"),
+            dispersion_strength: self.strength.unwrap_or(usual.dispersion_strength),
+            rest_from_environment: self.rest.as_deref() != Some("dropped"),
+            distance_limit: self.distance_limit,
+            limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
+            deferred: self.deferred,
+        }
+    }
+}
+
+impl Walks {
+    fn options(&self) -> WalkOptions {
+        let usual = WalkOptions::default();
+        WalkOptions {
+            walks: self.walks.unwrap_or(usual.walks),
+            from: self.walks_from.unwrap_or(usual.from),
+            seed: self.seed.unwrap_or(usual.seed),
+            boundary: match self.boundary.as_deref() {
+                Some("dielectric") => Boundary::Dielectric,
+                _ => usual.boundary,
+            },
+        }
+    }
+}
+
+impl Arguments {
+    /// The settings of what is asked, with the options of each technique.
+    fn settings(&self, asked: Settings) -> Settings {
+        let (diffuse, reference) = (DiffuseOptions::default(), ReferenceOptions::default());
+        let curvature = self.diffuse.as_ref().and_then(|of| of.curvature).unwrap_or(diffuse.curvature);
+        let extinction_scale = self.optical_path.as_ref().and_then(|of| of.extinction_scale);
+        let wavelengths = self.reference.as_ref().and_then(|of| of.wavelengths);
+        let energy_bound = self.reference.as_ref().and_then(|of| of.energy_bound);
+        Settings {
+            exposure: self.exposure,
+            samples: self.samples,
+            gem: self.gem.as_ref().map_or(asked.gem, Gem::options),
+            diffuse: DiffuseOptions { curvature, ..diffuse },
+            optical_path: extinction_scale
+                .map_or(asked.optical_path, |extinction_scale| OpticalPathOptions { extinction_scale }),
+            reference: ReferenceOptions {
+                wavelengths: wavelengths.unwrap_or(reference.wavelengths),
+                energy_bound: energy_bound.unwrap_or(reference.energy_bound),
+            },
+            walks: self.walks.as_ref().map_or(asked.walks, Walks::options),
+            ..asked
+        }
+    }
 }
 
 fn parse_from(text: &str) -> Result<(f32, f32), String> {
@@ -104,48 +200,42 @@ fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A flag that no object's rung obeys would be believed to have been obeyed.
+/// Options of a technique that draws no object would be believed to have been obeyed.
 fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
-    // Of each flag: whether it is given, and whether a rung obeys it, in a scene that scatters light or not.
-    type Obeys = fn(Rung, bool) -> bool;
-    let follows: Obeys = |rung, scatters| rung == Rung::Reference && !scatters;
-    let walks: Obeys = |rung, scatters| rung == Rung::Reference && scatters;
-    let inside: Obeys = |rung, _| matches!(rung, Rung::Inside { .. });
-    let flags: [(&str, bool, Obeys); 14] = [
-        ("--wavelengths", arguments.wavelengths.is_some(), follows),
-        ("--energy-bound", arguments.energy_bound.is_some(), follows),
-        ("--walks", arguments.walks.is_some(), walks),
-        ("--walks-from", arguments.walks_from.is_some(), walks),
-        ("--seed", arguments.seed.is_some(), walks),
-        ("--boundary", arguments.boundary.is_some(), walks),
-        (
-            "--curvature",
-            arguments.curvature != Curvature::Mean,
-            |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
-        ),
-        ("--rest dropped", arguments.rest == "dropped", inside),
-        ("--distance-limit", arguments.distance_limit.is_some(), inside),
-        ("--throughput-limit", arguments.throughput_limit.is_some(), inside),
-        ("--deferred", arguments.deferred, |rung, _| matches!(rung, Rung::Inside { .. } | Rung::Surface)),
-        ("--centre paper", arguments.centre == "paper", |rung, _| {
+    let usual = Settings::of_size(1, 1);
+    let inside = GemOptions { deferred: false, ..settings.gem } != usual.gem;
+    type Draws = fn(Rung, bool) -> bool;
+    let asked: [(&str, bool, Draws); 8] = [
+        ("the gem recipes", arguments.gem.is_some(), |rung, _| matches!(rung, Rung::Inside { .. } | Rung::Surface)),
+        ("rays inside clear stones", inside, |rung, _| matches!(rung, Rung::Inside { .. })),
+        ("the proxy", settings.gem.paper_centre, |rung, _| {
             matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. })
         }),
-        ("--extinction-scale", arguments.extinction_scale.is_some(), |rung, _| matches!(rung, Rung::OpticalPath(_))),
-        ("--strength", arguments.strength != 1.0, |rung, _| rung.spectrum() == Spectrum::Paper),
+        ("the paper's dispersion", settings.gem.dispersion_strength != usual.gem.dispersion_strength, |rung, _| {
+            rung.spectrum() == Spectrum::Paper
+        }),
+        ("curvature", arguments.diffuse.is_some(), |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert())),
+        ("optical paths", arguments.optical_path.is_some(), |rung, _| matches!(rung, Rung::OpticalPath(_))),
+        ("the reference of clear stones", arguments.reference.is_some(), |rung, scatters| {
+            rung == Rung::Reference && !scatters
+        }),
+        ("the reference of scattering bodies", arguments.walks.is_some(), |rung, scatters| {
+            rung == Rung::Reference && scatters
+        }),
     ];
-    let given: Vec<_> = flags.into_iter().filter(|(_, given, _)| *given).collect();
+    let asked: Vec<_> = asked.into_iter().filter(|(_, is_asked, _)| *is_asked).collect();
     // Deciding measures bodies.
-    if given.is_empty() {
+    if asked.is_empty() {
         return Ok(());
     }
     let scatters = render::scatters(scene);
     let rungs: Vec<Rung> =
         scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
-    match given.iter().find(|(_, _, obeys)| !rungs.iter().any(|rung| obeys(*rung, scatters))) {
-        Some((flag, ..)) => {
-            let rung = settings.rung;
-            Err(Failure(format!("rung `{rung}` knows no {flag} here; leave it out or take another rung")))
-        }
+    match asked.iter().find(|(_, _, draws)| !rungs.iter().any(|rung| draws(*rung, scatters))) {
+        Some((what, ..)) => Err(Failure(format!(
+            "scene `{}` by rung `{}`: options of {what} have no meaning, since nothing is drawn so; leave them out or take another rung",
+            scene.name, settings.rung
+        ))),
         None => Ok(()),
     }
 }
@@ -163,7 +253,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         scene = scene.seen_from(polar, azimuth);
     }
     let (asked, mut notes) = arguments.asked.settings(&scene)?;
-    refuse_what_is_ignored(arguments, &scene, &asked)?;
+    let settings = arguments.settings(asked);
+    refuse_what_is_ignored(arguments, &scene, &settings)?;
     let out = arguments.out.clone().unwrap_or_else(|| {
         // Not the scene's name, which a file may give itself: it would choose where the picture goes.
         let mut name = Scene::stem(&arguments.asked.scene);
@@ -172,28 +263,6 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     });
     Format::of_path(&out)?;
     file::check_writable(&out)?;
-    let settings = Settings {
-        paper_centre: arguments.centre == "paper",
-        curvature: arguments.curvature,
-        extinction_scale: arguments.extinction_scale.unwrap_or(asked.extinction_scale),
-        dispersion_strength: arguments.strength,
-        rest_from_environment: arguments.rest == "environment",
-        distance_limit: arguments.distance_limit,
-        limit_throughput: arguments.throughput_limit.as_deref().map(|whether| whether == "on"),
-        deferred: arguments.deferred,
-        exposure: arguments.exposure,
-        samples: arguments.samples,
-        wavelengths: arguments.wavelengths.unwrap_or(asked.wavelengths),
-        energy_bound: arguments.energy_bound.unwrap_or(asked.energy_bound),
-        walks: arguments.walks.unwrap_or(asked.walks),
-        walks_from: arguments.walks_from.unwrap_or(asked.walks_from),
-        seed: arguments.seed.unwrap_or(asked.seed),
-        boundary: match arguments.boundary.as_deref() {
-            Some("dielectric") => Boundary::Dielectric,
-            _ => Boundary::Matched,
-        },
-        ..asked
-    };
     let bar = progress::bar(0, "rendering");
     let picture = render::render_reporting(context.gpu()?, &scene, &settings, &mut |done, total| {
         bar.set_length(total);

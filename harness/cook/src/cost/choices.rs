@@ -5,7 +5,7 @@ use super::{CostError, Errors};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render as render;
-use lapidary_render::Settings;
+use lapidary_render::{GemOptions, Settings};
 use serde::{Deserialize, Serialize};
 
 /// One way to end a ray, and its errors.
@@ -54,12 +54,18 @@ pub(super) fn measure(gpu: &Gpu, watched: &[Watched]) -> Result<Vec<Choice>, Cos
                 Settings { rung, samples: SAMPLES, ..Settings::of_size(super::views::SIDE, super::views::SIDE) };
             let mut ways = vec![
                 ("rest from the environment".to_owned(), settings.clone()),
-                ("rest dropped".to_owned(), Settings { rest_from_environment: false, ..settings.clone() }),
+                (
+                    "rest dropped".to_owned(),
+                    Settings { gem: GemOptions { rest_from_environment: false, ..settings.gem }, ..settings.clone() },
+                ),
             ];
             if rung.hits() > 1 {
                 let radius = scene.bounds().radius();
                 ways.extend(LIMITS.map(|limit| {
-                    let settings = Settings { distance_limit: Some(limit * radius), ..settings.clone() };
+                    let settings = Settings {
+                        gem: GemOptions { distance_limit: Some(limit * radius), ..settings.gem },
+                        ..settings.clone()
+                    };
                     (format!("ended after {limit} radii"), settings)
                 }));
             }

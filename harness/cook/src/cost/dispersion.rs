@@ -7,7 +7,7 @@ use lapidary_gpu::Gpu;
 use lapidary_plan::{Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +36,8 @@ pub struct Colours {
 }
 
 fn settings(rung: Rung, strength: f32) -> Settings {
-    Settings { rung, samples: 1, dispersion_strength: strength, ..Settings::of_size(SIDE, SIDE) }
+    let gem = GemOptions { dispersion_strength: strength, ..GemOptions::default() };
+    Settings { rung, samples: 1, gem, ..Settings::of_size(SIDE, SIDE) }
 }
 
 fn with_spectrum(rung: Rung, spectrum: Spectrum) -> Rung {

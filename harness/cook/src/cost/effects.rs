@@ -7,7 +7,7 @@ use super::{CostError, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
-use lapidary_render::{Curvature, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Light, Scene};
 use serde::{Deserialize, Serialize};
@@ -169,7 +169,10 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
         Case {
             name: "jade_ring",
             scene: one("jade_ring")?,
-            settings: Settings { curvature: Curvature::Vertex, ..settings("table-256-rgba8") },
+            settings: Settings {
+                diffuse: DiffuseOptions { curvature: Curvature::Vertex, ..DiffuseOptions::default() },
+                ..settings("table-256-rgba8")
+            },
             effects: &[Effect::Cdrf, Effect::Environment, Effect::Reflection, Effect::EnvironmentMap],
             stands_on: &[(Effect::EnvironmentMap, Effect::Reflection)],
         },
@@ -244,13 +247,13 @@ pub fn run(
     for case in &cases {
         let mut frames = Vec::new();
         for (effects, settings) in case.frames() {
-            let capture = Plan::of(&case.scene, &settings)?.capture;
+            let listing = Plan::of(&case.scene, &settings)?.listing;
             frames.push(Frame {
                 effects,
-                instructions: capture.pipelines.iter().map(|pipeline| pipeline.instructions).sum(),
-                pipelines: capture.pipelines.len(),
-                steps: capture.steps.iter().map(|step| step.times).sum(),
-                bytes: capture.bytes(),
+                instructions: listing.pipelines.iter().map(|pipeline| pipeline.instructions).sum(),
+                pipelines: listing.pipelines.len(),
+                steps: listing.steps.iter().map(|step| step.times).sum(),
+                bytes: listing.bytes(),
                 timing: None,
             });
             timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
@@ -350,9 +353,9 @@ mod tests {
     fn more_effects_take_more() {
         for case in cases([16, 16]).expect("built in") {
             let of = |settings: &Settings| {
-                let capture = Plan::of(&case.scene, settings).expect("a plan").capture;
-                let instructions: usize = capture.pipelines.iter().map(|pipeline| pipeline.instructions).sum();
-                (instructions, capture.bytes())
+                let listing = Plan::of(&case.scene, settings).expect("a plan").listing;
+                let instructions: usize = listing.pipelines.iter().map(|pipeline| pipeline.instructions).sum();
+                (instructions, listing.bytes())
             };
             let frames = case.frames();
             let counts: Vec<(usize, u64)> = frames.iter().map(|(_, settings)| of(settings)).collect();

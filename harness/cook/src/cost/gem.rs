@@ -7,8 +7,8 @@ use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_s
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_render as render;
-use lapidary_render::Settings;
 use lapidary_render::shader::Shader;
+use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::Scene;
 
 /// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
@@ -103,7 +103,7 @@ impl Entry {
     /// In the ladder's view of that number; none is another view.
     fn settings_in(&self, view: Option<usize>) -> Settings {
         let dispersion_strength = view.and_then(|view| self.strengths.get(view)).copied().unwrap_or(1.0);
-        Settings { dispersion_strength, ..self.settings.clone() }
+        Settings { gem: GemOptions { dispersion_strength, ..self.settings.gem }, ..self.settings.clone() }
     }
 
     /// Whether it draws bodies of any shape, in no more steps than lavapipe follows.

@@ -211,9 +211,6 @@ fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
 /// Why a ladder could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
-    /// No such ladder.
-    #[error("no ladder `{0}`; there are gem, cdrf, optical_path, effects, restraint and sphere")]
-    Technique(String),
     /// A record of spheres that nothing can be compared with.
     #[error(
         "{}: {what}; restore it from version control, or remake it: ./cook cost sphere --out docs/measurements/random_walk",

@@ -1,7 +1,7 @@
 //! Times of frames in one run: interleaved, several rounds, the least of each.
 
 use lapidary_gpu::Gpu;
-use lapidary_render::{Frame, RenderError, Settings};
+use lapidary_render::{FrameTimer, RenderError, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -41,16 +41,12 @@ pub struct Timed<'a> {
 }
 
 impl Timed<'_> {
-    fn frame<'gpu>(&self, gpu: &'gpu Gpu, settings: &Settings) -> Result<Frame<'gpu>, RenderError> {
-        let frame = match &self.source {
-            None => Frame::new(gpu, self.scene, settings)?,
-            Some(source) => Frame::of_source(gpu, self.scene, settings, source)?,
-        };
-        if self.displayed { frame.displayed(settings) } else { Ok(frame) }
+    fn frame<'gpu>(&self, gpu: &'gpu Gpu, settings: &Settings) -> Result<FrameTimer<'gpu>, RenderError> {
+        FrameTimer::new(gpu, self.scene, settings, self.source.as_deref(), self.displayed)
     }
 
     /// The frame that is drawn, once drawn, and its share of the pixels.
-    fn ready<'gpu>(&self, gpu: &'gpu Gpu) -> Result<(Frame<'gpu>, f64), RenderError> {
+    fn ready<'gpu>(&self, gpu: &'gpu Gpu) -> Result<(FrameTimer<'gpu>, f64), RenderError> {
         if self.scales {
             let Settings { width, height, .. } = self.settings;
             let reduced = Settings { width: width / REDUCTION, height: height / REDUCTION, ..self.settings.clone() };
@@ -90,7 +86,7 @@ pub fn time(
             progress(done, total);
         }
     }
-    let timing = |((frame, share), times): (&(Frame<'_>, f64), &Vec<lapidary_render::FrameTime>)| {
+    let timing = |((frame, share), times): (&(FrameTimer<'_>, f64), &Vec<lapidary_render::FrameTime>)| {
         let mut totals: Vec<f64> = times.iter().map(|time| time.total.as_secs_f64() * 1e3 / share).collect();
         totals.sort_by(f64::total_cmp);
         let encode = times.iter().map(|time| time.encode.as_secs_f64() * 1e6).fold(f64::INFINITY, f64::min);

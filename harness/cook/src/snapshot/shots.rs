@@ -2,7 +2,7 @@
 
 use super::folder;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
-use lapidary_render::{Curvature, MOST_SAMPLES, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, GemOptions, MOST_SAMPLES, Settings};
 use lapidary_scene::{SAMPLES, Scene, SceneError};
 use std::path::PathBuf;
 
@@ -203,10 +203,10 @@ impl Shot {
         let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
         Settings {
             rung,
-            paper_centre: self.paper_centre,
+            gem: GemOptions { paper_centre: self.paper_centre, ..GemOptions::default() },
             without: self.without(),
             exposure: self.exposure,
-            curvature: self.curvature,
+            diffuse: DiffuseOptions { curvature: self.curvature, ..DiffuseOptions::default() },
             samples: self.samples,
             ..Settings::of_size(side, side)
         }

@@ -1,7 +1,7 @@
 //! Edges of bright facets as they are seen: what lies between the two sides of one is between them in brightness too.
 
 use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{Picture, ReferenceOptions, Settings};
 use lapidary_scene::Scene;
 
 /// A strong edge: display light changes by so much of white within three pixels, in one direction.
@@ -81,7 +81,11 @@ fn so_it_is_with_more_samples_and_with_the_reference() {
     let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
     assert!(share("eight samples", &picture) <= MOST_STEPS);
     let rung = "reference".parse().expect("a rung");
-    let settings = Settings { rung, wavelengths: 3, energy_bound: 0.02, ..Settings::of_size(128, 128) };
+    let settings = Settings {
+        rung,
+        reference: ReferenceOptions { wavelengths: 3, energy_bound: 0.02 },
+        ..Settings::of_size(128, 128)
+    };
     let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
     assert!(share("reference", &picture) <= MOST_STEPS);
 }

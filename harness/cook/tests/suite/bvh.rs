@@ -131,18 +131,13 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
         bindings: &[&mesh, &rays],
         workgroups: [queries.len().div_ceil(64) as u32, 1, 1],
     };
-    let hits = compute::run_recipe(gpu, &run, |bytes| {
-        let words: &[[u32; 6]] = bytemuck::cast_slice(bytes);
-        words
-            .iter()
-            .map(|words| BvhTraceHit {
-                distance: f32::from_bits(words[0]),
-                barycentrics: Vec2::new(f32::from_bits(words[2]), f32::from_bits(words[3])),
-                triangle: words[4],
-            })
-            .collect()
-    });
-    hits.unwrap_or_else(|error| panic!("{error}"))
+    let words = compute::run_recipe(gpu, &run).unwrap_or_else(|error| panic!("{error}"));
+    let hit = |words: &[u32]| BvhTraceHit {
+        distance: f32::from_bits(words[0]),
+        barycentrics: Vec2::new(f32::from_bits(words[2]), f32::from_bits(words[3])),
+        triangle: words[4],
+    };
+    words.chunks_exact(6).map(hit).collect()
 }
 
 /// By how much a ray may pass a triangle and still meet it: the margin in the ray's own, slanted frame, √3 of it across and

@@ -8,7 +8,7 @@ use lapidary_cdrf::oracle;
 use lapidary_cook::exposure::exposed_distance;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_render::{Curvature, Picture, RenderError, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, Picture, RenderError, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::surfaces::sphere;
@@ -16,6 +16,10 @@ use lapidary_scene::{Environment, Light, Material, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 const SIDE: u32 = 160;
+
+fn by(curvature: Curvature) -> DiffuseOptions {
+    DiffuseOptions { curvature, ..DiffuseOptions::default() }
+}
 
 fn settings(rung: &str) -> Settings {
     let rung = rung.parse().expect(rung);
@@ -81,7 +85,7 @@ fn every_rung_shows_the_convolution_on_a_sphere() {
         for (rung, error) in rungs {
             for curvature in if rung == "accurate" { &curvatures[..] } else { &curvatures[..1] } {
                 let curvature = *curvature;
-                let picture = draw(&scene, &Settings { curvature, ..settings(rung) });
+                let picture = draw(&scene, &Settings { diffuse: by(curvature), ..settings(rung) });
                 let mut worst = 0.0f64;
                 for (position, found) in on_the_ball(&scene, &picture) {
                     let truth = expected(&scene, position, radius, |cosine, sigma| match rung {
@@ -166,7 +170,7 @@ fn the_environment_is_the_integral_of_the_spherical_form() {
     for at_vertices in super::sampled([false, true], 2) {
         let lit = |environment: &Environment| Settings {
             without: Effects::SHEEN,
-            environment_at_vertices: at_vertices,
+            diffuse: DiffuseOptions { environment_at_vertices: at_vertices, ..DiffuseOptions::default() },
             environment: environment.clone(),
             ..settings("spherical")
         };
@@ -226,7 +230,7 @@ fn the_blur_agrees_with_the_reflectance_on_a_slender_ring() {
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::ONE }];
     let scene = scene.seen_from(60.0, 0.0);
     let [lambert, blur, towards] = ["lambert", "blur", "accurate"]
-        .map(|rung| draw(&scene, &Settings { curvature: Curvature::Towards, ..settings(rung) }));
+        .map(|rung| draw(&scene, &Settings { diffuse: by(Curvature::Towards), ..settings(rung) }));
     let distance = |picture: &Picture| {
         let squares = picture.linear.iter().zip(&blur.linear).map(|(a, b)| f64::from(a[1] - b[1]).powi(2));
         (squares.sum::<f64>() / picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count() as f64).sqrt()
@@ -280,8 +284,10 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
                 object
             })
             .collect();
-        let picture =
-            draw(&scene.seen_from(90.0, 0.0), &Settings { without: Effects::SHEEN, curvature, ..settings(rung) });
+        let picture = draw(
+            &scene.seen_from(90.0, 0.0),
+            &Settings { without: Effects::SHEEN, diffuse: by(curvature), ..settings(rung) },
+        );
         let mut seen = 0;
         for pixel in picture.linear.iter().filter(|pixel| pixel[3] == 1.0) {
             let finite = pixel.iter().all(|value| value.is_finite() && *value >= 0.0);
@@ -383,7 +389,7 @@ fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
             let distance = |rung: &str| {
                 let usual = Settings { shadows, ..settings(rung) };
                 let settings =
-                    Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, curvature: Curvature::Vertex, ..usual };
+                    Settings { width: EXR_SIDE, height: EXR_SIDE, samples: 4, diffuse: by(Curvature::Vertex), ..usual };
                 exposed_distance(&draw(&scene, &settings).linear, &truth)
             };
             let [lambert, accurate] = ["lambert", "accurate"].map(distance);

@@ -10,7 +10,7 @@ use lapidary_cook::cost::sphere::Form;
 use lapidary_cook::cost::sphere::{ALBEDOS, Law, RADII, Row, SphereReport};
 use lapidary_cook::cost::{Errors, MEASURES, Report, views};
 use lapidary_reference::random_walk;
-use lapidary_render::{Frame, Settings};
+use lapidary_render::{FrameTimer, Settings};
 use lapidary_scene::Scene;
 use serde_json::Value;
 
@@ -120,7 +120,8 @@ fn every_view_has_its_committed_reference() {
 fn many_prisms_are_one_draw_call() {
     for name in ["prism_chain", "chandelier"] {
         let settings = Settings { rung: "proxy-2+tracker".parse().expect("a rung"), ..Settings::of_size(64, 64) };
-        let frame = Frame::new(super::gpu(), &Scene::named(name).expect("built in"), &settings).expect("a frame");
+        let scene = Scene::named(name).expect("built in");
+        let frame = FrameTimer::new(super::gpu(), &scene, &settings, None, false).expect("a frame");
         assert_eq!(frame.draw_calls(), 1, "{name}");
     }
 }

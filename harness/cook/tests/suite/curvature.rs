@@ -4,6 +4,7 @@ use glam::camera::rh;
 use glam::{DVec3, Vec3};
 use lapidary_cook::cookbook;
 use lapidary_gpu::Gpu;
+use wgpu::util::DeviceExt as _;
 
 /// Pixels along an edge of the picture.
 const SIZE: u32 = 256;
@@ -235,7 +236,7 @@ fn draw(gpu: &Gpu, mesh: &[[f32; 6]], axes: Vec3, eye: Vec3) -> Vec<Pixel> {
                     ..wgpu::RenderPassDescriptor::default()
                 });
                 pass.set_pipeline(&pipeline);
-                pass.set_bind_group(0, &group);
+                pass.set_bind_group(0, &group, &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 pass.draw(0..mesh.len() as u32, 0..1);
             }

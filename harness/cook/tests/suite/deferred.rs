@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use lapidary_assay::extremum::larger;
 use lapidary_cook::cost::Errors;
 use lapidary_render as render;
-use lapidary_render::Settings;
+use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
 
@@ -38,7 +38,7 @@ fn check(scene: &str, settings: Settings) {
     let scene = Scene::named(scene).expect("built in");
     let rung = settings.rung;
     let forward = render::render(super::gpu(), &scene, &settings).expect("rendered");
-    let deferred = Settings { deferred: true, ..settings };
+    let deferred = Settings { gem: GemOptions { deferred: true, ..settings.gem }, ..settings };
     let deferred = render::render(super::gpu(), &scene, &deferred).expect("rendered");
     let errors = Errors::between(&deferred, &forward);
     println!("{} {rung}: {errors:?}", scene.name);

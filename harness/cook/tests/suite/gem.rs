@@ -6,7 +6,7 @@ use lapidary_cook::cost::Errors;
 use lapidary_plan::Rung;
 use lapidary_render as render;
 use lapidary_render::pixel::Viewer;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::Scene;
 
 fn picture(scene: &Scene, rung: &str) -> Picture {
@@ -81,7 +81,11 @@ fn less_is_left_after_more_hits() {
     let dropped = |rung: &str| {
         let rung = rung.parse().expect(rung);
         let usual = Settings::of_size(128, 128);
-        let settings = Settings { rung, rest_from_environment: false, limit_throughput: Some(false), ..usual };
+        let settings = Settings {
+            rung,
+            gem: GemOptions { rest_from_environment: false, limit_throughput: Some(false), ..usual.gem },
+            ..usual
+        };
         let picture = render::render(super::gpu(), &scene, &settings).expect("rendered");
         picture.linear.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
     };

@@ -18,6 +18,7 @@ mod deferred;
 mod dispatch;
 mod effects_off;
 mod formulas;
+mod frame;
 mod furnace;
 mod gem;
 mod hard_cases;

@@ -8,7 +8,7 @@ mod properties;
 use bodies::Case;
 use lapidary_assay::extremum::larger;
 use lapidary_optical_path::oracle::{Number, dijkstra};
-use lapidary_render::solver::{Solver, Status};
+use lapidary_render::solver::{LoneSolver, Solve, Status};
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_scene::solver::{Method, Stencil};
 use std::collections::BTreeMap;
@@ -21,22 +21,21 @@ const ENOUGH: u32 = 256;
 
 /// The costs of a case, with a density by voxel where it has one, and how far the solve came.
 fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f32>, Status) {
-    /// One that was compiled once serves every body in its grid.
-    static SOLVERS: Mutex<BTreeMap<String, Solver<'static>>> = Mutex::new(BTreeMap::new());
-    let gpu = super::gpu();
+    /// One that was compiled once serves every body of one extinction in its grid.
+    static SOLVERS: Mutex<BTreeMap<String, LoneSolver<'static>>> = Mutex::new(BTreeMap::new());
     let heterogeneous = case.density.iter().any(|density| *density != 1.0);
     let mut solvers = SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
     let VoxelGrid { spacing, cells, .. } = case.grid;
+    let solve = Solve { method, heterogeneous, most_passes };
     let solver = solvers
-        .entry(format!("{method} {heterogeneous} {most_passes:?} {spacing} {cells}"))
-        .or_insert_with(|| Solver::new(gpu, case.grid, method, heterogeneous, most_passes).expect("it compiles"));
-    let uploaded = case.upload(gpu);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let density = heterogeneous.then_some(&uploaded.density);
-    solver.encode(&mut encoder, &uploaded.matter, density, &uploaded.cost, case.extinction).expect("recorded");
-    gpu.queue.submit([encoder.finish()]);
-    let costs = uploaded.costs(gpu);
-    (costs, solver.status().expect("a device"))
+        .entry(format!("{method} {heterogeneous} {most_passes:?} {spacing} {cells} {}", case.extinction))
+        .or_insert_with(|| {
+            LoneSolver::new(super::gpu(), case.grid, solve, case.extinction, None).expect("it compiles")
+        });
+    solver.set_body(&case.bits(), &case.density);
+    solver.set_seeds(&case.seeds);
+    solver.run().expect("run");
+    (solver.costs().expect("a device"), solver.status().expect("a device"))
 }
 
 /// The same at the fixpoint.

@@ -10,7 +10,7 @@ use glam::Vec3;
 use lapidary_assay::extremum::larger;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{OpticalPathOptions, Picture, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Material, Medium, Mesh, Object, Scene};
 
@@ -25,7 +25,7 @@ fn settings(rung: &str) -> Settings {
         rung: rung.parse().expect(rung),
         samples: 1,
         without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
-        extinction_scale: 1.0,
+        optical_path: OpticalPathOptions { extinction_scale: 1.0 },
         ..Settings::of_size(SIDE, SIDE)
     }
 }

@@ -6,8 +6,8 @@ use compare::Parity;
 use lapidary_assay::extremum::largest;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
-use lapidary_render::Settings;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
+use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
 
@@ -39,7 +39,15 @@ fn compare(scene: &str, settings: Settings) -> Parity {
 }
 
 fn of_rung(rung: &str) -> Settings {
-    Settings { rung: rung.parse().expect(rung), limit_throughput: Some(false), ..Settings::of_size(SIDE, SIDE) }
+    let gem = GemOptions { limit_throughput: Some(false), ..GemOptions::default() };
+    Settings { rung: rung.parse().expect(rung), gem, ..Settings::of_size(SIDE, SIDE) }
+}
+
+/// The same with other options.
+fn with(rung: &str, set: impl FnOnce(&mut GemOptions)) -> Settings {
+    let mut settings = of_rung(rung);
+    set(&mut settings.gem);
+    settings
 }
 
 fn check(scene: &str, what: &str, parity: &Parity) {
@@ -95,10 +103,10 @@ fn the_picture_is_the_mirrors() {
 
 #[test]
 fn so_it_is_with_every_choice() {
-    let limited = Settings { distance_limit: Some(2.5), ..of_rung("convex-8") };
+    let limited = with("convex-8", |gem| gem.distance_limit = Some(2.5));
     check("brilliant", "limited", &compare("brilliant", limited));
     for rung in ["proxy-8+paper", "convex-8+paper", "convex-8+tracker"] {
-        let limited = Settings { distance_limit: Some(1.2), dispersion_strength: 0.02, ..of_rung(rung) };
+        let limited = with(rung, |gem| (gem.distance_limit, gem.dispersion_strength) = (Some(1.2), 0.02));
         check("brilliant", "limited, colours", &compare("brilliant", limited));
     }
     for (scene, rung) in [
@@ -108,12 +116,12 @@ fn so_it_is_with_every_choice() {
         ("ruby", "bvh-16"),
         ("brilliant", "convex-8+paper"),
     ] {
-        let limited = Settings { limit_throughput: Some(true), ..of_rung(rung) };
+        let limited = with(rung, |gem| gem.limit_throughput = Some(true));
         check(scene, "limited by throughput", &compare(scene, limited));
     }
-    let dropped = Settings { rest_from_environment: false, ..of_rung("proxy-4+tracker") };
+    let dropped = with("proxy-4+tracker", |gem| gem.rest_from_environment = false);
     check("brilliant", "rest dropped", &compare("brilliant", dropped));
-    let paper = Settings { paper_centre: true, ..of_rung("proxy-1") };
+    let paper = with("proxy-1", |gem| gem.paper_centre = true);
     check("brilliant", "paper's centre", &compare("brilliant", paper));
     let clear = Settings { without: Effects::of(&[Effect::Absorption]), ..of_rung("convex-4") };
     check("sapphire", "no absorption", &compare("sapphire", clear));
@@ -209,7 +217,9 @@ fn a_wrong_picture_is_seen() {
         let scene = Scene::named(scene).expect("built in");
         let distance_limit = what.contains("has ended").then_some(1.2);
         let limit_throughput = Some(what.contains("rays end by"));
-        let settings = Settings { samples: 1, distance_limit, limit_throughput, ..of_rung(rung) };
+        let set =
+            |gem: &mut GemOptions| (gem.distance_limit, gem.limit_throughput) = (distance_limit, limit_throughput);
+        let settings = Settings { samples: 1, ..with(rung, set) };
         let source = lapidary_wgsl::recipe_source(settings.rung.recipe());
         assert!(source.contains(right), "{rung}: {what}");
         let planted = source.replace(right, wrong);

@@ -1,12 +1,12 @@
-//! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is captured.
+//! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is listed.
 
 use crate::gpu;
 use glam::Vec3;
-use lapidary_gpu::capture::{Capture, Resource, capture};
 use lapidary_plan::{Effect, Effects, Quality, Technique};
 use lapidary_render as render;
-use lapidary_render::plan::Plan;
-use lapidary_render::{Curvature, Settings};
+use lapidary_render::frame::Executor;
+use lapidary_render::plan::{Listing, Plan, Resource};
+use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
 use lapidary_scene::{Density, Environment, Material, Object, Scene};
@@ -20,15 +20,35 @@ fn of_rung(rung: &str) -> Settings {
     Settings { rung: rung.parse().expect(rung), ..settings() }
 }
 
-/// What `render` makes and runs on the real device.
-fn drawn(scene: &Scene, settings: &Settings) -> Capture {
-    let (picture, captured) = capture(|| render::render(gpu(), scene, settings));
-    picture.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    captured
+/// What is made and run on the real device.
+fn drawn(scene: &Scene, settings: &Settings) -> Listing {
+    let executor = render::frame(Some(gpu()), scene, settings).map(|frame| Executor::new(gpu(), frame).expect("made"));
+    let executor = executor.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    executor.run(|_, _| {}).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    Listing::of(executor.frame())
 }
 
-fn planned(scene: &Scene, settings: &Settings) -> Capture {
-    Plan::of(scene, settings).unwrap_or_else(|error| panic!("{}: {error}", scene.name)).capture
+/// So what is listed is all that there is.
+#[test]
+fn the_executor_alone_makes_things_of_a_device() {
+    let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/src");
+    let mut makers = Vec::new();
+    let mut folders = vec![std::path::PathBuf::from(sources)];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if std::fs::read_to_string(&path).expect("a source").contains("device.create_") {
+                makers.push(path.strip_prefix(sources).expect("within").to_owned());
+            }
+        }
+    }
+    assert_eq!(makers, [std::path::Path::new("frame/execute.rs")]);
+}
+
+fn planned(scene: &Scene, settings: &Settings) -> Listing {
+    Plan::of(scene, settings).unwrap_or_else(|error| panic!("{}: {error}", scene.name)).listing
 }
 
 fn named(name: &str) -> Scene {
@@ -44,7 +64,7 @@ fn sky() -> Environment {
 #[test]
 fn what_is_drawn_is_what_was_planned() {
     let mapped = Settings { environment: sky(), ..settings() };
-    let deferred = Settings { deferred: true, ..settings() };
+    let deferred = Settings { gem: GemOptions { deferred: true, ..GemOptions::default() }, ..settings() };
     let cases = [
         ("brilliant", settings()),
         ("ruby", mapped.clone()),
@@ -76,17 +96,17 @@ fn what_is_drawn_is_what_was_planned() {
     }
 }
 
-fn names(capture: &Capture) -> BTreeSet<&str> {
-    capture.resources.iter().map(|resource| resource.name.as_str()).collect()
+fn names(listing: &Listing) -> BTreeSet<&str> {
+    listing.resources.iter().map(|resource| resource.name.as_str()).collect()
 }
 
 /// Recipe and entry points of each pipeline.
-fn compiled(capture: &Capture) -> BTreeSet<(&str, &[String])> {
-    capture.pipelines.iter().map(|pipeline| (pipeline.recipe.as_str(), &pipeline.entries[..])).collect()
+fn compiled(listing: &Listing) -> BTreeSet<(&str, &[String])> {
+    listing.pipelines.iter().map(|pipeline| (pipeline.recipe.as_str(), &pipeline.entries[..])).collect()
 }
 
-fn passes(capture: &Capture) -> BTreeSet<&str> {
-    capture.steps.iter().map(|step| step.pass.as_str()).collect()
+fn passes(listing: &Listing) -> BTreeSet<&str> {
+    listing.steps.iter().map(|step| step.pass.as_str()).collect()
 }
 
 /// An effect where it is on, and what goes with it.
@@ -131,7 +151,6 @@ fn cases() -> Vec<Case> {
         "seeding of green",
         "seeding of blue",
         "solve",
-        "words to read",
     ];
     let spot = Light::Spot {
         position: Vec3::new(0.0, 200.0, 0.0),
@@ -155,19 +174,11 @@ fn cases() -> Vec<Case> {
         case(
             Effect::Cdrf,
             one("wax"),
-            Settings { curvature: Curvature::Vertex, ..of_rung("table-256-rgba8") },
-            [
-                vec![
-                    "table",
-                    "table sampler",
-                    "curvatures",
-                    "uniform of cdrf_table",
-                    "result of cdrf_table",
-                    "result to read of cdrf_table",
-                ],
-                vec!["cdrf_table"],
-                vec!["cdrf_table"],
-            ],
+            Settings {
+                diffuse: DiffuseOptions { curvature: Curvature::Vertex, ..DiffuseOptions::default() },
+                ..of_rung("table-256-rgba8")
+            },
+            [vec!["table", "table sampler", "curvatures"], vec![], vec![]],
         ),
         case(
             Effect::TextureDiffusion,
@@ -263,13 +274,13 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
         let gone: BTreeSet<&str> = passes(&on).difference(&passes(&off)).copied().collect();
         assert_eq!(gone, gone_passes.into_iter().collect(), "{effect}: passes");
         // What is left of every pipeline is compiled without it, and smaller where it was compiled with it.
-        let value = |capture: &Capture, value: f64| {
+        let value = |listing: &Listing, value: f64| {
             let name = effect.override_name();
-            let of = capture.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
+            let of = listing.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
             of.filter(|(known, set)| known == name && *set == value).count()
         };
         assert!(value(&on, 1.0) > 0 && value(&off, 1.0) == 0, "{effect}: compiled with {}", value(&off, 1.0));
-        let instructions = |capture: &Capture| -> usize { capture.pipelines.iter().map(|p| p.instructions).sum() };
+        let instructions = |listing: &Listing| -> usize { listing.pipelines.iter().map(|p| p.instructions).sum() };
         assert!(instructions(&off) < instructions(&on), "{effect}: {} of {}", instructions(&off), instructions(&on));
         assert!(off.bytes() <= on.bytes(), "{effect}");
     }
@@ -279,11 +290,11 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
 fn a_materials_variant_runs_on_its_own_draw_alone() {
     let [mut diamond, ruby] = ["brilliant", "ruby"].map(named);
     diamond.objects.extend(ruby.objects);
-    let capture = drawn(&diamond, &settings());
+    let listing = drawn(&diamond, &settings());
     let effects = |object: &str| {
-        let steps: Vec<_> = capture.steps.iter().filter(|step| step.object == object).collect();
+        let steps: Vec<_> = listing.steps.iter().filter(|step| step.object == object).collect();
         let [step] = steps[..] else { panic!("{object}: {steps:?}") };
-        let pipeline = capture.pipelines.iter().find(|pipeline| pipeline.name == step.pipeline).expect("compiled");
+        let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == step.pipeline).expect("compiled");
         let on = pipeline.overrides.iter().filter(|(name, value)| name.starts_with("EFFECT_") && *value == 1.0);
         on.map(|(name, _)| name.clone()).collect::<Vec<_>>()
     };
@@ -354,17 +365,17 @@ fn what_is_off_says_why() {
 type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
 
 fn parts(scene: &Scene) -> Parts {
-    let capture = planned(scene, &settings());
+    let listing = planned(scene, &settings());
     // Pipelines are numbered in the order in which they come, so by their contents.
     let key = |name: &str| {
-        let pipeline = capture.pipelines.iter().find(|pipeline| pipeline.name == name);
+        let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == name);
         pipeline.map(|p| format!("{} {:?} {:?} {}", p.recipe, p.entries, p.overrides, p.instructions))
     };
-    let steps = capture.steps.iter().map(|step| {
+    let steps = listing.steps.iter().map(|step| {
         format!("{} {} {:?} {:?} x {}", step.pass, step.object, key(&step.pipeline), step.resources, step.times)
     });
-    let pipelines = capture.pipelines.iter().filter_map(|pipeline| key(&pipeline.name));
-    (capture.resources.iter().cloned().collect(), pipelines.collect(), steps.collect())
+    let pipelines = listing.pipelines.iter().filter_map(|pipeline| key(&pipeline.name));
+    (listing.resources.iter().cloned().collect(), pipelines.collect(), steps.collect())
 }
 
 /// A set of objects takes what each of them takes alone, and nothing else: so that removing one removes exactly what none of the others needs.
@@ -427,7 +438,7 @@ fn thousands_of_objects_are_planned() {
 #[test]
 fn the_reference_takes_nothing_of_a_device() {
     let plan = Plan::of(&named("wax"), &of_rung("reference")).expect("a plan");
-    assert_eq!(plan.capture, Capture::default());
+    assert_eq!(plan.listing, Listing::default());
     assert!(plan.objects.iter().all(|planned| planned.decisions.on() == Effects::NONE));
     assert!(plan.to_string().contains("on the CPU"), "{plan}");
 }
@@ -441,10 +452,10 @@ fn ways_that_are_left_out_take_nothing_along() {
         assert_eq!(off(&bunny, &left_out, effect), "optical_path is left out", "{effect}");
     }
     let dark = Scene { lights: Vec::new(), ..bunny };
-    let capture = planned(&dark, &of_rung("godunov-64"));
-    let maps: Vec<&Resource> = capture.resources.iter().filter(|of| of.name.contains("maps")).collect();
+    let listing = planned(&dark, &of_rung("godunov-64"));
+    let maps: Vec<&Resource> = listing.resources.iter().filter(|of| of.name.contains("maps")).collect();
     assert!(!maps.is_empty() && maps.iter().all(|map| map.bytes <= 16), "{maps:?}");
-    assert!(passes(&capture).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
+    assert!(passes(&listing).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
 }
 
 /// The proxy is drawn where it is asked for and nowhere else; quality chooses within a technique, and a named rung stands above it.

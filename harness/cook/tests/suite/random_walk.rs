@@ -54,17 +54,14 @@ fn walked(slab: &Slab, pattern: VeinsPattern, walks: u32) -> Vec<SlabExit> {
         bindings: &[&[Binding::Uniform(bytemuck::cast_slice(&words)), Binding::Result(16 * u64::from(walks))]],
         workgroups: [walks.div_ceil(64), 1, 1],
     };
-    let read = |bytes: &[u8]| {
-        let exits: &[[u32; 4]] = bytemuck::cast_slice(bytes);
-        let exit = |&[outcome, scatterings, cosine, place]: &[u32; 4]| SlabExit {
-            outcome,
-            scatterings,
-            cosine: f32::from_bits(cosine),
-            place: f32::from_bits(place),
-        };
-        exits.iter().map(exit).collect()
+    let exit = |words: &[u32]| SlabExit {
+        outcome: words[0],
+        scatterings: words[1],
+        cosine: f32::from_bits(words[2]),
+        place: f32::from_bits(words[3]),
     };
-    run_recipe(super::gpu(), &run, read).unwrap_or_else(|error| panic!("{error}"))
+    let words = run_recipe(super::gpu(), &run).unwrap_or_else(|error| panic!("{error}"));
+    words.chunks_exact(4).map(exit).collect()
 }
 
 /// The share of walks with an outcome, and its standard error.

@@ -6,7 +6,7 @@ use lapidary_cook::cost::views::{CONCAVE, SHOWN, VIEWS};
 use lapidary_plan::Rung;
 use lapidary_reference::spectral;
 use lapidary_render as render;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Dispersion, Environment, Scene};
 
@@ -121,7 +121,12 @@ fn stones_transmit_alike() {
     for name in ["brilliant", "step_cut", "sapphire", "quartz", "octahedron"] {
         let scene = Scene::named(name).expect("built in");
         let rung = "convex-64+7".parse().expect("a rung");
-        let drawn = Settings { rung, samples: 1, limit_throughput: Some(false), ..Settings::of_size(48, 48) };
+        let drawn = Settings {
+            rung,
+            samples: 1,
+            gem: GemOptions { limit_throughput: Some(false), ..GemOptions::default() },
+            ..Settings::of_size(48, 48)
+        };
         let drawn = render::render(super::gpu(), &scene, &drawn).expect("rendered");
         let settings = spectral::Settings { samples: 1, wavelengths: 7, ..spectral::Settings::of_size(48, 48) };
         let followed = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");

@@ -9,7 +9,7 @@ use lapidary_plan::{Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::pixel::Shading;
 use lapidary_render::restraint::{LEAST_DIFFERENCE, STUDIO_LARGEST, largest_radiance, largest_weight};
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene, spectrum};
 
@@ -22,7 +22,8 @@ const NEVER: &str = ">= 0.0f * material.throughput_limit";
 fn settings(rung: &str, rest_from_environment: bool) -> Settings {
     let rung = rung.parse().expect(rung);
     let usual = Settings::of_size(SIDE, SIDE);
-    Settings { rung, rest_from_environment, samples: 1, exposure: 0.5, limit_throughput: Some(true), ..usual }
+    let gem = GemOptions { rest_from_environment, limit_throughput: Some(true), ..GemOptions::default() };
+    Settings { rung, samples: 1, exposure: 0.5, gem, ..usual }
 }
 
 fn rendered(scene: &Scene, settings: &Settings, comparison: &str) -> Picture {
@@ -95,12 +96,14 @@ fn the_picture_differs_by_less_than_can_be_seen() {
             }
             assert!(changed > 0.02, "{name} {rung}: {changed}");
             // Without the override there is no limit, and the same picture as with one that no ray falls below.
-            let without = Settings { limit_throughput: Some(false), ..settings.clone() };
+            let without =
+                Settings { gem: GemOptions { limit_throughput: Some(false), ..settings.gem }, ..settings.clone() };
             let without = render::render(super::gpu(), &scene, &without).expect("rendered");
             let (largest, least, _) = difference(&without, &limited, settings.exposure);
             assert!(largest <= bound && -least <= bound, "{name} {rung}: {least:e} to {largest:e}, {bound:e}");
         }
-        let unlimited = Settings { limit_throughput: Some(false), ..settings(rung, true) };
+        let unlimited = settings(rung, true);
+        let unlimited = Settings { gem: GemOptions { limit_throughput: Some(false), ..unlimited.gem }, ..unlimited };
         let [few, many] = [&settings(rung, true), &unlimited].map(|settings| facets(&scene, settings).expect("drawn"));
         println!("{name:12} {rung:18} {many:.2} facets, {few:.2} with the limit");
         assert!(few < 0.98 * many, "{name} {rung}: {few} {many}");

@@ -257,8 +257,8 @@ fn shadows_are_made_only_where_something_is_in_them() {
     use lapidary_render::plan::Plan;
     let light = lights()[0].1;
     let maps = |scene: &Scene, settings: &Settings| {
-        let capture = Plan::of(scene, settings).expect("a plan").capture;
-        capture.resources.iter().filter(|resource| resource.name.contains("for shadows")).count()
+        let listing = Plan::of(scene, settings).expect("a plan").listing;
+        listing.resources.iter().filter(|resource| resource.name.contains("for shadows")).count()
     };
     let asked = Settings { shadows: true, ..settings("accurate") };
     assert!(maps(&scene(light), &asked) > 0 && maps(&scene(light), &settings("accurate")) == 0);

@@ -5,6 +5,7 @@ use glam::Vec3;
 use lapidary_assay::extremum::larger;
 use lapidary_cdrf::oracle as exact;
 use lapidary_gpu::Gpu;
+use lapidary_render::frame::{Builder, Executor};
 use lapidary_render::texture_diffusion::{Chart, Taps, TextureDiffusion};
 use lapidary_texture_diffusion as mirror;
 use rayon::prelude::*;
@@ -41,48 +42,25 @@ fn diffuse(
     taps: &Taps,
     charts: &[Chart],
 ) -> Vec<[f32; 4]> {
-    let diffusion = TextureDiffusion::new(gpu, size, repeats).expect("the recipe");
-    let extent = diffusion.irradiance.size();
-    let upload = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * size[0]), rows_per_image: None };
-        gpu.queue.write_texture(texture.as_image_copy(), bytes, layout, extent);
-    };
+    let mut builder = Builder::new(Some(gpu));
+    let diffusion = TextureDiffusion::new(&mut builder, size, repeats).expect("the recipe");
+    diffusion.encode(&mut builder, taps, charts);
+    builder.read_whole("diffused", diffusion.diffused);
+    let executor = Executor::new(gpu, builder.finish()).expect("made");
     let halves: Vec<u8> =
         irradiance.iter().flatten().flat_map(|value| Half::from_f32(*value).to_bits().to_le_bytes()).collect();
-    upload(&diffusion.irradiance, &halves, 8);
-    upload(&diffusion.stretch, bytemuck::cast_slice(stretch), 8);
-    let row = (8 * size[0]).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let bytes = u64::from(row * size[1]);
-    let buffer = gpu
-        .guarded("a buffer to read back", |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: bytes,
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            })
-        })
-        .expect("a buffer");
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    diffusion.encode(&mut encoder, taps, charts).expect("the passes");
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-    encoder.copy_texture_to_buffer(
-        diffusion.diffused.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        extent,
-    );
-    gpu.queue.submit([encoder.finish()]);
-    gpu.read_back(&buffer, bytes, |bytes| {
-        let rows = bytes.chunks_exact(row as usize).map(|row| &row[..8 * size[0] as usize]);
-        rows.flat_map(|row| row.chunks_exact(8))
-            .map(|texel| {
+    executor.write_texture(diffusion.irradiance, size, &halves);
+    executor.write_texture(diffusion.stretch, size, bytemuck::cast_slice(stretch));
+    let mut found = Vec::new();
+    executor
+        .run(|_, texels| {
+            found.extend(texels.chunks_exact(8).map(|texel| {
                 let half = |at: usize| Half::from_bits(u16::from_le_bytes([texel[2 * at], texel[2 * at + 1]])).to_f32();
                 [half(0), half(1), half(2), half(3)]
-            })
-            .collect()
-    })
-    .expect("read back")
+            }));
+        })
+        .expect("run");
+    found
 }
 
 /// Light on a cylinder at a texel's middle.

@@ -1,6 +1,7 @@
 //! Voxels of meshes on the device, against volumes, winding numbers in f64, the mirror, and one another.
 
 use glam::{DQuat, DVec3, UVec3, Vec3};
+use lapidary_render::frame::{Builder, Executor};
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization::{Status, Voxelizer};
 use lapidary_scene::surfaces::{sphere, torus};
@@ -36,33 +37,30 @@ impl Voxels {
     }
 }
 
-/// Positions and indices on the device.
-fn buffers(mesh: &Mesh) -> [wgpu::Buffer; 2] {
-    let contents: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
-    let usage = wgpu::BufferUsages::STORAGE;
-    let buffer = |contents| wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-    contents.map(|contents| super::gpu().device.create_buffer_init(&buffer(contents)))
+/// A mesh made voxels so many times in a row.
+fn frame(mesh: &Mesh, grid: VoxelGrid, effects: &[(&str, f64)], times: u32) -> (Executor<'static>, Voxelizer) {
+    let mut builder = Builder::new(Some(super::gpu()));
+    let voxelizer = Voxelizer::new(&mut builder, grid, mesh, effects).expect("the recipe");
+    let positions = builder.storage("positions", bytemuck::cast_slice(&mesh.positions));
+    let indices = builder.storage("indices", bytemuck::cast_slice(&mesh.indices));
+    for _ in 0..times {
+        voxelizer.encode(&mut builder, positions, indices);
+    }
+    (Executor::new(super::gpu(), builder.finish()).expect("made"), voxelizer)
 }
 
 fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
-    let gpu = super::gpu();
-    let effects = [("EFFECT_SURFACE", f64::from(u8::from(surface)))];
-    let voxelizer = Voxelizer::new(gpu, grid, mesh, &effects).expect("the recipe");
-    let [positions, indices] = buffers(mesh);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     // Twice: a frame must not see the one before.
-    for _ in 0..2 {
-        voxelizer.encode(&mut encoder, &positions, &indices).expect("the passes");
-    }
-    gpu.queue.submit([encoder.finish()]);
+    let (executor, voxelizer) = frame(mesh, grid, &[("EFFECT_SURFACE", f64::from(u8::from(surface)))], 2);
+    executor.run(|_, _| {}).expect("run");
+    let words = |buffer| executor.words(buffer).expect("read back");
     Voxels {
         grid,
-        matter: super::gpu().words(&voxelizer.matter).expect("read back"),
-        surface: voxelizer.surface.as_ref().map_or_else(
-            || vec![0; (grid.words_per_row() * grid.cells * grid.cells) as usize],
-            |surface| super::gpu().words(surface).expect("read back"),
-        ),
-        status: voxelizer.status().expect("read back"),
+        matter: words(voxelizer.matter),
+        surface: voxelizer
+            .surface
+            .map_or_else(|| vec![0; (grid.words_per_row() * grid.cells * grid.cells) as usize], words),
+        status: voxelizer.status(&executor).expect("read back"),
     }
 }
 
@@ -466,16 +464,11 @@ fn bodies_that_meet() {
 
 /// The least and the median of 40 frames, in milliseconds.
 fn time(mesh: &Mesh, cells: u32, constants: &[(&str, f64)]) -> [f64; 2] {
-    let gpu = super::gpu();
-    let voxelizer = Voxelizer::new(gpu, about(mesh, cells), mesh, constants);
-    let voxelizer = voxelizer.expect("the recipe");
-    let [positions, indices] = buffers(mesh);
+    let (executor, _) = frame(mesh, about(mesh, cells), constants, 1);
     let frame = || {
         let start = std::time::Instant::now();
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        voxelizer.encode(&mut encoder, &positions, &indices).expect("the passes");
-        gpu.queue.submit([encoder.finish()]);
-        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
+        executor.run(|_, _| {}).expect("run");
+        super::gpu().device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
         start.elapsed().as_secs_f64() * 1e3
     };
     let mut times: Vec<f64> = (0..40).map(|_| frame()).collect();

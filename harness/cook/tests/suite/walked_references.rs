@@ -7,7 +7,7 @@ use lapidary_cook::snapshot::{EXR_SIDE, WALKED, WalkedReference, beside_walks};
 use lapidary_gpu::Gpu;
 use lapidary_reference::random_walk::mesh;
 use lapidary_render as render;
-use lapidary_render::Settings;
+use lapidary_render::{OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
 
 /// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
@@ -127,7 +127,10 @@ fn the_scale_of_extinction_is_where_the_fit_has_it() {
             ("godunov-64", 0.25),
         ];
         let found = rows.map(|(rung, scale)| {
-            let settings = Settings { extinction_scale: scale, ..beside_walks::settings(rung) };
+            let settings = Settings {
+                optical_path: OpticalPathOptions { extinction_scale: scale },
+                ..beside_walks::settings(rung)
+            };
             exposed_distance(&render::render(gpu, &scene, &settings).expect("rendered").linear, &truth)
         });
         println!("{name}: Lambert, with shadows, godunov-64 at a scale of .12, .18 and .25: {found:.3?}");

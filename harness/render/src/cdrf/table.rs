@@ -20,20 +20,25 @@ pub fn round(format: Format, value: f32) -> f32 {
     }
 }
 
-/// The texture's format, and the bytes of `texels` in it; alpha, where there is one, is 1.
-pub fn texture(format: Format, texels: &[Vec3]) -> (wgpu::TextureFormat, Vec<u8>) {
+/// The texture's format.
+pub fn format(format: Format) -> wgpu::TextureFormat {
+    match format {
+        Format::Rgba8 => wgpu::TextureFormat::Rgba8Unorm,
+        Format::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        Format::R32Float => wgpu::TextureFormat::R32Float,
+    }
+}
+
+/// The bytes of `texels` in the texture's format; alpha, where there is one, is 1.
+pub fn texels(format: Format, texels: &[Vec3]) -> Vec<u8> {
     let colors = || texels.iter().flat_map(|texel| texel.extend(1.0).to_array());
     match format {
-        Format::Rgba8 => {
-            (wgpu::TextureFormat::Rgba8Unorm, colors().map(|value| (value * 255.0).round() as u8).collect())
-        }
+        Format::Rgba8 => colors().map(|value| (value * 255.0).round() as u8).collect(),
         Format::Rgba16Float => {
             let half = |value| exr::prelude::f16::from_f32(value).to_le_bytes();
-            (wgpu::TextureFormat::Rgba16Float, colors().flat_map(half).collect())
+            colors().flat_map(half).collect()
         }
-        Format::R32Float => {
-            (wgpu::TextureFormat::R32Float, texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect())
-        }
+        Format::R32Float => texels.iter().flat_map(|texel| texel.x.to_le_bytes()).collect(),
     }
 }
 
@@ -51,10 +56,9 @@ pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError
         bindings: &[&[Binding::Uniform(&bake), Binding::Result(bytes)]],
         workgroups: [size.x.div_ceil(WORKGROUP), size.y.div_ceil(WORKGROUP), 1],
     };
-    compute::run_recipe(gpu, &run, |bytes| {
-        let texels: &[[f32; 4]] = bytemuck::cast_slice(bytes);
-        texels.iter().map(|[red, green, blue, _]| Vec3::new(*red, *green, *blue)).collect()
-    })
+    let words = compute::run_recipe(gpu, &run)?;
+    let texel = |words: &[u32]| Vec3::from_array([0, 1, 2].map(|channel| f32::from_bits(words[channel])));
+    Ok(words.chunks_exact(4).map(texel).collect())
 }
 
 /// A baked table in a texture's format.

@@ -1,10 +1,12 @@
 use super::super::lighting::Lighting;
 use super::super::pass::Before;
 use super::*;
-use crate::{Settings, scene_pass};
+use crate::Settings;
+use crate::drawing::scene_pass;
+use crate::frame::Executor;
 use glam::{Vec2, Vec3};
 use lapidary_assay::extremum::larger;
-use lapidary_gpu::AdapterChoice;
+use lapidary_gpu::{AdapterChoice, Gpu};
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::surfaces::sphere;
@@ -34,31 +36,16 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     scene.lights = vec![Light::Directional { toward, irradiance: Vec3::ONE }];
     let rung = Rung::Diffuse(Reflectance::Blur);
     let settings = Settings { rung, without: Effects::of(&[Effect::Environment]), ..Settings::of_size(8, 8) };
-    let pass = scene_pass(gpu, &Lighting::new(gpu, &scene, &settings), &scene, &settings, None).expect("the recipe");
-    let row = 8 * SIDE;
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(row * SIDE),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    pass.prepare(&mut encoder).expect("the passes");
+    let mut builder = Builder::new(Some(gpu));
+    let lighting = Lighting::new(&scene, &settings);
+    let pass = scene_pass(&mut builder, &lighting, &scene, &settings, None).expect("the recipe");
+    pass.prepare(&mut builder);
     let Before::Diffusion(diffusion) = &pass.before[0] else { panic!("a diffusion") };
-    let diffused = &diffusion.textures.diffused;
-    encoder.copy_texture_to_buffer(
-        diffused.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
-        },
-        diffused.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
+    builder.read_whole("diffused", diffusion.textures.diffused);
     let red = |texel: &[u8]| Half::from_bits(u16::from_le_bytes([texel[0], texel[1]])).to_f32();
-    let texels: Vec<f32> = gpu
-        .read_back(&buffer, u64::from(row * SIDE), |bytes| bytes.chunks_exact(8).map(red).collect())
-        .expect("read back");
+    let mut texels: Vec<f32> = Vec::new();
+    let executor = Executor::new(gpu, builder.finish()).expect("made");
+    executor.run(|_, bytes| texels.extend(bytes.chunks_exact(8).map(red))).expect("run");
     // Bilinear, repeating.
     let at = |place: Vec2| {
         let place = place.as_ivec2().rem_euclid(glam::IVec2::splat(SIDE as i32));

@@ -16,11 +16,8 @@ fn displayed(samples: &[[f32; 4]], settings: &Settings) -> Picture {
     let pixels = width as usize * height as usize;
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
-    let display = DisplayPass::new(gpu(), settings.samples, [width, height]).expect("a pass");
-    let tile = Tile { left: 0, top: 0, width, height };
-    display.write(tile, samples);
-    let encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    display.finish(encoder, tile, settings, &mut picture).expect("displayed");
+    let display = Display::new(gpu(), settings).expect("a pass");
+    display.show(&mut picture, |_, _| Ok(samples.to_vec())).expect("displayed");
     picture
 }
 
@@ -111,7 +108,11 @@ fn the_reference_is_shown_alike() {
     let surface = Settings { rung: Rung::Surface, ..Settings::of_size(64, 64) };
     let drawn = super::super::render(gpu(), &scene, &surface).expect("rendered");
     scene.objects[0].material.base_color = Vec3::ZERO;
-    let reference = Settings { rung: Rung::Reference, wavelengths: 5, ..surface.clone() };
+    let reference = Settings {
+        rung: Rung::Reference,
+        reference: crate::ReferenceOptions { wavelengths: 5, ..surface.reference },
+        ..surface.clone()
+    };
     let followed = super::super::render(gpu(), &scene, &reference).expect("rendered");
     let apart = |one: &Picture| {
         let pairs = one.encoded.iter().zip(&drawn.encoded);

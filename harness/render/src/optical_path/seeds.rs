@@ -1,36 +1,40 @@
 //! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
 
-use crate::compute::Kernel;
-use crate::device::uniform;
+use crate::frame::{Bound, Buffer, Builder, Dispatch, PipelineId, Workgroups};
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
-use lapidary_gpu::{Device, Encoder, Gpu};
 
 const RECIPE: &str = "optical_path_seed";
 /// Invocations of a workgroup along each side of a map.
 const GROUP: u32 = 8;
 
 /// Its two entry points.
+#[derive(Clone, Copy)]
 pub(super) struct Seeds {
-    clear: Kernel,
-    seed: Kernel,
+    clear: PipelineId,
+    seed: PipelineId,
 }
 
 /// What is looked up of the lights.
+#[derive(Clone, Copy)]
 pub(super) struct Lit {
-    pub(super) lights: wgpu::Buffer,
-    pub(super) views: wgpu::Buffer,
-    pub(super) maps: wgpu::TextureView,
+    pub(super) lights: Buffer,
+    pub(super) views: Buffer,
+    /// All layers.
+    pub(super) maps: Bound,
+    /// Width, height and number of layers.
+    pub(super) size: [u32; 3],
 }
 
 /// What is seeded.
-pub(super) struct Seeded<'a> {
+#[derive(Clone, Copy)]
+pub(super) struct Seeded {
     pub(super) grid: VoxelGrid,
-    pub(super) matter: &'a wgpu::Buffer,
+    pub(super) matter: Buffer,
     /// Where it differs from voxel to voxel.
-    pub(super) density: Option<&'a wgpu::Buffer>,
-    pub(super) costs: &'a wgpu::Buffer,
+    pub(super) density: Option<Buffer>,
+    pub(super) costs: Buffer,
     /// Per unit of length where the density is 1.
     pub(super) extinction: f32,
     /// The irradiance whose cost is 0.
@@ -39,61 +43,38 @@ pub(super) struct Seeded<'a> {
     pub(super) channel: u32,
 }
 
-/// Bind groups, each of clearing and of seeding.
-pub(super) type Groups = [[Option<wgpu::BindGroup>; 2]; 2];
-
 impl Seeds {
-    pub(super) fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
+    pub(super) fn new(builder: &mut Builder<'_>, constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
         let source = lapidary_wgsl::recipe_source(RECIPE);
-        let kernel = |entry: &str| Kernel::new(gpu, RECIPE, &source, entry, constants);
+        let mut kernel = |entry: &str| builder.compute_pipeline(RECIPE, &source, entry, constants);
         Ok(Self { clear: kernel("optical_path_clear")?, seed: kernel("optical_path_seed_texel")? })
     }
 
-    pub(super) fn bind(&self, device: &Device, lit: &Lit, seeded: &Seeded<'_>) -> Groups {
+    /// Clearing, then seeding.
+    pub(super) fn dispatches(&self, builder: &mut Builder<'_>, lit: &Lit, seeded: &Seeded) -> Vec<Dispatch> {
         let what = ["seeding of red", "seeding of green", "seeding of blue"][seeded.channel as usize];
-        let uniform = uniform(device, what, &seeded.bytes());
-        let resources = [
-            vec![
-                (0, uniform.as_entire_binding()),
-                (2, lit.lights.as_entire_binding()),
-                (4, lit.views.as_entire_binding()),
-                (5, wgpu::BindingResource::TextureView(&lit.maps)),
-            ],
-            [(0, Some(seeded.costs)), (1, Some(seeded.matter)), (2, seeded.density)]
-                .into_iter()
-                .filter_map(|(binding, buffer)| Some((binding, buffer?.as_entire_binding())))
-                .collect(),
-        ];
-        [&self.clear, &self.seed]
-            .map(|kernel| [0, 1].map(|group| kernel.bind(device, group, &resources[group as usize])))
-    }
-
-    /// For maps of this width, height and number of layers.
-    pub(super) fn encode(&self, encoder: &mut Encoder, groups: &Groups, cells: u32, maps: [u32; 3]) {
-        let [width, height, layers] = maps;
+        let uniform = builder.uniform(what, seeded.record());
+        let of_lights = [(0, uniform.into()), (2, lit.lights.into()), (4, lit.views.into()), (5, lit.maps)];
+        let mut of_body = vec![(0, seeded.costs.into()), (1, seeded.matter.into())];
+        of_body.extend(seeded.density.map(|density| (2, density.into())));
+        let ([width, height, layers], cells) = (lit.size, seeded.grid.cells);
         let sizes = [[1, cells, cells], [width.div_ceil(GROUP), height.div_ceil(GROUP), layers]];
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("seeds"),
-            ..wgpu::ComputePassDescriptor::default()
-        });
-        for ((kernel, groups), [x, y, z]) in [&self.clear, &self.seed].into_iter().zip(groups).zip(sizes) {
-            pass.set_pipeline(&kernel.pipeline);
-            for (index, group) in (0..).zip(groups) {
-                pass.set_bind_group(index, group.as_ref());
-            }
-            pass.dispatch_workgroups(x, y, z);
-        }
+        let dispatch = |(kernel, size)| {
+            let groups = vec![builder.bind(kernel, 0, &of_lights), builder.bind(kernel, 1, &of_body)];
+            builder.dispatch(kernel, groups, Workgroups::Count(size))
+        };
+        [self.clear, self.seed].into_iter().zip(sizes).map(dispatch).collect()
     }
 }
 
-impl Seeded<'_> {
+impl Seeded {
     /// `OpticalPathSeeding` of the recipe.
-    fn bytes(&self) -> Vec<u8> {
+    fn record(&self) -> Record {
         let Self { grid, extinction, largest, channel, .. } = *self;
         let record = Record::new("OpticalPathSeeding").within("grid", |record| grid.fill(record));
         // No light has a share of nothing.
         let largest = largest.max(f32::MIN_POSITIVE);
-        record.with("extinction", extinction).with("largest", largest).with("channel", channel).bytes()
+        record.with("extinction", extinction).with("largest", largest).with("channel", channel)
     }
 }
 

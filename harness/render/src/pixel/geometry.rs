@@ -92,7 +92,7 @@ impl<'a> Stone<'a> {
             Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
             Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
         };
-        Ok(Self { mesh, normals, paper_centre: settings.paper_centre, data })
+        Ok(Self { mesh, normals, paper_centre: settings.gem.paper_centre, data })
     }
 
     pub(super) fn entry(&self, point: SurfacePoint) -> Entry<'_> {

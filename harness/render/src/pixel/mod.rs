@@ -123,7 +123,7 @@ impl<'a> Shading<'a> {
     }
 
     fn ends(&self, travelled: f32) -> bool {
-        self.settings.distance_limit.is_some() && travelled > self.material.distance_limit
+        self.settings.gem.distance_limit.is_some() && travelled > self.material.distance_limit
     }
 
     /// Follows a ray to its next facet. Its callers stop where it ends; the recipe's loops go on, and change nothing more of such a ray.
@@ -165,7 +165,7 @@ impl<'a> Shading<'a> {
             }
             self.reflect(&mut ray, &hit);
         }
-        if self.settings.rest_from_environment {
+        if self.settings.gem.rest_from_environment {
             ray.end(self.environment(ray.direction));
         }
         ray
@@ -201,7 +201,7 @@ impl<'a> Shading<'a> {
             self.reflect(&mut ray, &hit);
             gradient = dispersion::reflect(gradient, hit.normal);
         }
-        if self.settings.rest_from_environment {
+        if self.settings.gem.rest_from_environment {
             ray.end(self.environment_channels(
                 dispersion::direction(ray.direction, gradient, offsets.x),
                 dispersion::direction(ray.direction, gradient, offsets.y),
@@ -243,7 +243,7 @@ impl<'a> Shading<'a> {
             spread = dispersion::paper_reflect(ray.direction, spread, hit.normal, epsilon);
             self.reflect(&mut ray, &hit);
         }
-        if self.settings.rest_from_environment {
+        if self.settings.gem.rest_from_environment {
             ray.end(self.environment_paper(ray.direction, spread, ray.travelled));
         }
         ray

@@ -1,7 +1,6 @@
 //! A plan to be read.
 
-use super::{Plan, PlannedObject};
-use lapidary_gpu::capture::{Kind, Pipeline, Resource, Step};
+use super::{Kind, Pipeline, Plan, PlannedObject, Resource, Step};
 use lapidary_plan::{Decision, Decisions, Rung};
 use std::collections::HashMap;
 use std::fmt;
@@ -102,7 +101,7 @@ impl Plan {
     }
 
     fn passes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let steps = &self.capture.steps;
+        let steps = &self.listing.steps;
         if steps.is_empty() {
             return writeln!(f, "\npasses\n  none: this rung is computed on the CPU");
         }
@@ -120,7 +119,7 @@ impl Plan {
     }
 
     fn pipelines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let pipelines = &self.capture.pipelines;
+        let pipelines = &self.listing.pipelines;
         if pipelines.is_empty() {
             return Ok(());
         }
@@ -140,14 +139,14 @@ impl Plan {
     }
 
     fn resources(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let resources = &self.capture.resources;
+        let resources = &self.listing.resources;
         if resources.is_empty() {
             return Ok(());
         }
-        writeln!(f, "\nresources: {}", bytes(self.capture.bytes()))?;
+        writeln!(f, "\nresources: {}", bytes(self.listing.bytes()))?;
         // What one object alone reads is its own, though it was made for all that might.
         let mut users: HashMap<&str, Option<&str>> = HashMap::new();
-        for step in &self.capture.steps {
+        for step in &self.listing.steps {
             for name in &step.resources {
                 let user = users.entry(name).or_insert(Some(&step.object));
                 *user = user.filter(|user| *user == step.object);

@@ -1,20 +1,29 @@
 //! The curvature-dependent reflectance's ladder.
 
-use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
+use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number, parse_rung};
 use lapidary_cook::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
 use lapidary_plan::Rung;
 use lapidary_scene::solver::Reflectance;
 
+/// The ladder of the curvature-dependent reflectance, timed beside Lambert's law and a blur in a texture.
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Rungs to measure, comma-separated; all where left out.
+    #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
+    rungs: Vec<Rung>,
+    /// Rounds of timing; 0 leaves times out.
+    #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
+    rounds: u32,
+    #[command(flatten)]
+    report: Report,
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    arguments.refuse_but(cdrf::TECHNIQUE, &["--rungs", "--rounds"])?;
-    let mut options = Options::default();
-    if let Some(rounds) = arguments.rounds {
-        options.rounds = rounds;
-    }
+    let mut options = Options { rounds: arguments.rounds, ..Options::default() };
     if !arguments.rungs.is_empty() {
         options.rungs = arguments.rungs.iter().map(|rung| reflectance(*rung)).collect::<Result<_, _>>()?;
     }
-    let places = Places::new(cdrf::TECHNIQUE, arguments)?;
+    let places = Places::new(cdrf::TECHNIQUE, &arguments.report)?;
     let mut report = places.report(|| {
         let gpu = context.gpu()?;
         behind_a_bar(|progress| cdrf::run(gpu, &options, progress))
@@ -24,7 +33,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         rung.distance.is_some() && CurvatureSource::ALL.iter().any(|source| rung.ms(Part::Lit, *source).is_some())
     };
     let mut plots = Vec::new();
-    if arguments.out.is_some() && report.rungs.iter().any(timed) {
+    if arguments.report.out.is_some() && report.rungs.iter().any(timed) {
         plots.push(("cdrf.svg".to_owned(), plot::svg(&report)?));
     }
     let shown = Shown { text: report.text(), rows: serde_json::to_string_pretty(&report.rows())?, plots };

@@ -1,13 +1,21 @@
 //! What each effect costs.
 
-use super::{Arguments, Context, Failure, Outcome, Places, Shown, behind_a_bar};
+use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number};
 use lapidary_cook::cost::effects::{self, Options};
 
+/// Each effect alone, none, and all: time, instructions and bytes.
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Rounds of timing; 0 leaves times out.
+    #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
+    rounds: u32,
+    #[command(flatten)]
+    report: Report,
+}
+
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    arguments.refuse_but(effects::TECHNIQUE, &["--rounds"])?;
-    let mut options = Options::default();
-    options.rounds = arguments.rounds.unwrap_or(options.rounds);
-    let places = Places::new(effects::TECHNIQUE, arguments)?;
+    let options = Options { rounds: arguments.rounds, ..Options::default() };
+    let places = Places::new(effects::TECHNIQUE, &arguments.report)?;
     let report = places.report(|| {
         let gpu = context.gpu()?;
         behind_a_bar(|progress| effects::run(gpu, &options, progress))

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
-use lapidary_render::{Curvature, Frame, RenderError, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, FrameTimer, RenderError, Settings};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Camera, Scene, SceneError};
 use serde::{Deserialize, Serialize};
@@ -151,7 +151,10 @@ fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflect
         samples: 1,
         rung: Rung::Diffuse(reflectance),
         without: if whole { Effects::NONE } else { Effects::of(&[Effect::Environment]).and(Effects::SHEEN) },
-        curvature: curvature.map_or(Curvature::Mean, CurvatureSource::curvature),
+        diffuse: DiffuseOptions {
+            curvature: curvature.map_or(Curvature::Mean, CurvatureSource::curvature),
+            ..DiffuseOptions::default()
+        },
         ..Settings::of_size(frame[0], frame[1])
     }
 }
@@ -215,9 +218,11 @@ pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
         u64::from(format.block_copy_size(None).unwrap_or_default()) * u64::from(side).pow(2)
     };
     match reflectance {
-        Reflectance::Table(side, format) => bytes(lapidary_render::cdrf::table::texture(format, &[]).0, side),
+        Reflectance::Table(side, format) => bytes(lapidary_render::cdrf::table::format(format), side),
         // Irradiance before and after each pass of the blur, and the stretch.
-        Reflectance::Blur => 2 * bytes(IRRADIANCE_FORMAT, Frame::BLUR_SIDE) + bytes(STRETCH_FORMAT, Frame::BLUR_SIDE),
+        Reflectance::Blur => {
+            2 * bytes(IRRADIANCE_FORMAT, FrameTimer::BLUR_SIDE) + bytes(STRETCH_FORMAT, FrameTimer::BLUR_SIDE)
+        }
         _ => 0,
     }
 }

@@ -8,7 +8,7 @@ use crate::snapshot::{EXR_SIDE, WalkedReference};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render as render;
-use lapidary_render::{Curvature, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, Settings};
 use lapidary_scene::Scene;
 use lapidary_scene::solver::Reflectance;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
         samples: 1,
         rung: Rung::Diffuse(reflectance),
         shadows,
-        curvature: Curvature::Vertex,
+        diffuse: DiffuseOptions { curvature: Curvature::Vertex, ..DiffuseOptions::default() },
         without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
         ..Settings::of_size(SIDE, SIDE)
     }

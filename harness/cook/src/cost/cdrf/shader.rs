@@ -25,7 +25,7 @@ mod tests {
     use crate::cost::cdrf::{Options, RUNGS};
     use lapidary_assay::dispatch;
     use lapidary_plan::{Effect, Effects, Rung};
-    use lapidary_render::Curvature;
+    use lapidary_render::{Curvature, DiffuseOptions};
 
     #[test]
     fn every_override_of_the_recipe_has_a_value() {
@@ -47,7 +47,12 @@ mod tests {
         let counted = |curvature, without| -> Vec<u32> {
             let of = |&reflectance: &Reflectance| {
                 let rung = Rung::Diffuse(reflectance);
-                let settings = Settings { rung, curvature, without, ..Settings::of_size(1, 1) };
+                let settings = Settings {
+                    rung,
+                    diffuse: DiffuseOptions { curvature, ..DiffuseOptions::default() },
+                    without,
+                    ..Settings::of_size(1, 1)
+                };
                 counts(&scene, &settings, reflectance).expect("counted").fragment_instructions
             };
             options.rungs.iter().map(of).collect()

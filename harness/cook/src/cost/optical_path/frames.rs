@@ -4,7 +4,7 @@ use super::views::{grey, scene, settings};
 use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
-use lapidary_render::{Frame, Stage};
+use lapidary_render::{FrameTimer, Stage};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -44,7 +44,7 @@ pub struct Solved {
 struct Timed<'gpu> {
     /// Its rung's number.
     rung: usize,
-    frame: Frame<'gpu>,
+    frame: FrameTimer<'gpu>,
     /// Stage by stage, too.
     staged: bool,
     totals: Vec<Duration>,
@@ -99,7 +99,7 @@ pub(super) fn measure(
         let staged = is_grey && view == STAGED;
         let mut timed = Vec::new();
         for &(rung, of) in &drawn {
-            let frame = Frame::new(gpu, &scene, &settings(view, of, options.frame))?;
+            let frame = FrameTimer::new(gpu, &scene, &settings(view, of, options.frame), None, false)?;
             // The first frame compiles.
             frame.run()?;
             if staged {
@@ -162,7 +162,7 @@ mod tests {
         let bunny = Scene::named(STAGED).expect("built in");
         let grey = grey(bunny.clone());
         let bytes = |scene: &Scene, rung: &str| {
-            Frame::new(gpu, scene, &settings(STAGED, of(rung), [64; 2])).expect(rung).path_bytes()
+            FrameTimer::new(gpu, scene, &settings(STAGED, of(rung), [64; 2]), None, false).expect(rung).path_bytes()
         };
         assert_eq!(bytes(&grey, "lambert"), 0);
         let one = bytes(&grey, "godunov-32");
@@ -178,7 +178,8 @@ mod tests {
     fn stages_are_the_frame() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let scene = Scene::named(STAGED).expect("built in");
-        let frame = |rung: &str| Frame::new(gpu, &scene, &settings(STAGED, of(rung), [64; 2])).expect(rung);
+        let frame =
+            |rung: &str| FrameTimer::new(gpu, &scene, &settings(STAGED, of(rung), [64; 2]), None, false).expect(rung);
         let paths = frame("tiled-26-16");
         paths.run().expect("drawn");
         let whole = paths.solved().expect("a device");

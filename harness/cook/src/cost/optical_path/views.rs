@@ -99,7 +99,9 @@ pub(super) fn settings(view: &str, Measured { rung, unscaled }: Measured, [width
     Settings {
         rung,
         samples: 1,
-        extinction_scale: if unscaled || view == BALL { 1.0 } else { render::EXTINCTION_SCALE },
+        optical_path: render::OpticalPathOptions {
+            extinction_scale: if unscaled || view == BALL { 1.0 } else { render::EXTINCTION_SCALE },
+        },
         without: Effects::of(&[Effect::Environment]).and(Effects::SHEEN),
         ..Settings::of_size(width, height)
     }

@@ -9,7 +9,7 @@ use lapidary_plan::Rung;
 use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::restraint::LEAST_DIFFERENCE;
-use lapidary_render::{RenderError, Settings};
+use lapidary_render::{GemOptions, RenderError, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -87,7 +87,8 @@ pub fn facets(scene: &Scene, settings: &Settings) -> Result<f64, RenderError> {
 }
 
 fn settings(rung: Rung, limited: bool, [width, height]: [u32; 2]) -> Settings {
-    Settings { rung, samples: 1, limit_throughput: Some(limited), ..Settings::of_size(width, height) }
+    let gem = GemOptions { limit_throughput: Some(limited), ..GemOptions::default() };
+    Settings { rung, samples: 1, gem, ..Settings::of_size(width, height) }
 }
 
 /// Largest difference in bounds, largest difference encoded, and share of covered pixels that differ encoded.

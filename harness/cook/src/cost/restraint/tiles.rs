@@ -1,10 +1,11 @@
 //! Ways through a body, sought only in tiles that hold matter and may change, beside solvers that take up more.
 
 use crate::cost::CostError;
-use lapidary_gpu::{Encoder, Gpu};
+use lapidary_gpu::Gpu;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_render::RenderError;
-use lapidary_render::solver::Solver;
+use lapidary_render::frame::{Builder, Executor};
+use lapidary_render::solver::{LoneSolver, Solve};
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization::Voxelizer;
 use lapidary_scene::solver::{Method, Stencil};
@@ -86,43 +87,16 @@ pub struct Tiles {
     pub ways: Vec<TileWay>,
 }
 
-/// The body's voxels and the seeds of light along x, on the device.
-struct Body {
-    matter: wgpu::Buffer,
-    seeds: wgpu::Buffer,
-    cost: wgpu::Buffer,
-    with_matter: f64,
-}
-
-impl Body {
-    fn new(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Self, RenderError> {
-        let voxelizer = Voxelizer::new(gpu, grid, mesh, &[])?;
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let storage = |contents: &[u8]| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("a body's mesh"),
-                contents,
-                usage: wgpu::BufferUsages::STORAGE,
-            })
-        };
-        let [positions, indices] =
-            [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)].map(storage);
-        voxelizer.encode(&mut encoder, &positions, &indices)?;
-        gpu.queue.submit([encoder.finish()]);
-        let words = gpu.words(&voxelizer.matter)?;
-        let (seeds, with_matter) = seeded(&words, grid);
-        let (seeds, cost) = gpu.guarded("allocating a body's costs", |device| {
-            use wgpu::BufferUsages as Usage;
-            let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-            let contents = bytemuck::cast_slice(&seeds);
-            let buffer = || {
-                let descriptor = wgpu::util::BufferInitDescriptor { label: Some("a body's costs"), contents, usage };
-                device.create_buffer_init(&descriptor)
-            };
-            (buffer(), buffer())
-        })?;
-        Ok(Self { matter: voxelizer.matter, seeds, cost, with_matter })
-    }
+/// The words of the body's voxels.
+fn voxels(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Vec<u32>, RenderError> {
+    let mut builder = Builder::new(Some(gpu));
+    let voxelizer = Voxelizer::new(&mut builder, grid, mesh, &[])?;
+    let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
+    let [positions, indices] = parts.map(|contents| builder.storage("a body's mesh", contents));
+    voxelizer.encode(&mut builder, positions, indices);
+    let executor = Executor::new(gpu, builder.finish())?;
+    executor.run(|_, _| {})?;
+    Ok(executor.words(voxelizer.matter)?)
 }
 
 /// Seeds of cost 0 at the first voxel of matter in each row along x, and the share of tiles that hold matter.
@@ -146,21 +120,15 @@ fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
 }
 
 /// One solve from the seeds, and its time in milliseconds.
-fn solve(gpu: &Gpu, solver: &Solver<'_>, body: &Body, extinction: f32) -> Result<f64, RenderError> {
-    let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let submit_and_wait = |encoder: Encoder| {
-        gpu.guarded("solving by tiles", |device| {
-            gpu.queue.submit([encoder.finish()]);
-            device.poll(wgpu::PollType::wait_indefinitely())
-        })
-    };
-    let mut before = encoder();
-    before.copy_buffer_to_buffer(&body.seeds, 0, &body.cost, 0, body.seeds.size());
-    submit_and_wait(before)?.ok();
+fn solve(gpu: &Gpu, solver: &LoneSolver<'_>, seeds: &[f32]) -> Result<f64, RenderError> {
+    let wait =
+        || gpu.guarded("solving by tiles", |device| device.poll(wgpu::PollType::wait_indefinitely())).map(Result::ok);
+    solver.set_seeds(seeds);
+    gpu.queue.submit([]);
+    wait()?;
     let start = Instant::now();
-    let mut solving = encoder();
-    solver.encode(&mut solving, &body.matter, None, &body.cost, extinction)?;
-    submit_and_wait(solving)?.ok();
+    solver.run()?;
+    wait()?;
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
@@ -172,23 +140,27 @@ pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)
     let mut found = Vec::new();
     for (done, cells) in (1..).zip(CELLS) {
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
-        let body = Body::new(gpu, mesh, grid)?;
+        let matter = voxels(gpu, mesh, grid)?;
+        let (seeds, with_matter) = seeded(&matter, grid);
         let extinction = DEPTH / (grid.spacing * cells as f32);
         let mut solvers = Vec::new();
         for (_, changes) in ways() {
             let source = changes.iter().fold(plain.clone(), |source, (right, cut)| source.replace(right, cut));
-            let solver = Solver::of_source(gpu, grid, METHOD, false, None, &source).map_err(RenderError::from)?;
+            let solve = Solve { method: METHOD, heterogeneous: false, most_passes: None };
+            let solver = LoneSolver::new(gpu, grid, solve, extinction, Some(&source)).map_err(RenderError::from)?;
+            solver.set_body(&matter, &[]);
             solvers.push(solver);
         }
         let tiles = u64::from(cells / TILE).pow(3);
         let mut ways: Vec<TileWay> = Vec::new();
-        let mut first: Option<Vec<u32>> = None;
+        let mut first: Option<Vec<f32>> = None;
         for ((way, changes), solver) in self::ways().iter().zip(&solvers) {
-            let ms = solve(gpu, solver, &body, extinction)?;
+            let ms = solve(gpu, solver, &seeds)?;
             let status = solver.status().map_err(RenderError::from)?;
-            let costs = gpu.words(&body.cost).map_err(RenderError::from)?;
+            let costs = solver.costs().map_err(RenderError::from)?;
             let first = first.get_or_insert_with(|| costs.clone());
-            let differing = first.iter().zip(&costs).filter(|(one, other)| one != other).count() as u32;
+            let differing =
+                first.iter().zip(&costs).filter(|(one, other)| one.to_bits() != other.to_bits()).count() as u32;
             // The solver counts what is listed, which these do not go by.
             let takes_all = changes.len() > 1;
             let updates = if takes_all { tiles * u64::from(status.passes) } else { u64::from(status.updates) };
@@ -196,10 +168,10 @@ pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)
         }
         for _ in 0..rounds {
             for (solver, way) in solvers.iter().zip(&mut ways) {
-                way.ms = way.ms.min(solve(gpu, solver, &body, extinction)?);
+                way.ms = way.ms.min(solve(gpu, solver, &seeds)?);
             }
         }
-        let (scene, method, with_matter) = (SCENE.to_owned(), METHOD.to_string(), body.with_matter);
+        let (scene, method, with_matter) = (SCENE.to_owned(), METHOD.to_string(), with_matter);
         found.push(Tiles { scene, method, cells, with_matter, ways });
         progress(done, CELLS.len() as u64);
     }

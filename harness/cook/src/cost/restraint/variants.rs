@@ -83,7 +83,7 @@ pub(super) fn measure(
     for ((way, scene), timing) in scenes.into_iter().zip(timings) {
         let picture = render::render(gpu, scene, &settings)?.linear;
         let differences = picture.iter().flatten().zip(first.iter().flatten()).map(|(a, b)| f64::from((a - b).abs()));
-        let pipelines = Plan::of(scene, &settings)?.capture.pipelines;
+        let pipelines = Plan::of(scene, &settings)?.listing.pipelines;
         let of_stones = pipelines.iter().filter(|pipeline| pipeline.recipe == "gem");
         ways.push(VariantWay {
             way: way.to_owned(),

@@ -5,7 +5,6 @@
 //! leaves no more than naga alone does of a text without any effect's lines is a test of its own.
 
 mod canonical;
-mod pictures;
 
 use canonical::{Canonical, canonical};
 use lapidary_assay::dispatch;

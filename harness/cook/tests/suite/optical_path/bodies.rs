@@ -2,7 +2,6 @@
 
 use glam::{UVec3, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_gpu::Gpu;
 use lapidary_optical_path::kernels::Body;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, seed};
 use lapidary_render::voxel_grid::VoxelGrid;
@@ -19,21 +18,6 @@ pub struct Case {
     /// By voxel.
     pub seeds: Vec<f32>,
     pub extinction: f32,
-}
-
-/// A case on the device.
-#[derive(Debug)]
-pub struct Uploaded {
-    pub matter: wgpu::Buffer,
-    pub density: wgpu::Buffer,
-    pub cost: wgpu::Buffer,
-}
-
-impl Uploaded {
-    /// The costs as they stand.
-    pub fn costs(&self, gpu: &Gpu) -> Vec<f32> {
-        gpu.words(&self.cost).expect("a device").into_iter().map(f32::from_bits).collect()
-    }
 }
 
 impl Case {
@@ -122,25 +106,14 @@ impl Case {
         self.density.iter().map(|density| self.extinction * density).collect()
     }
 
-    /// Buffers for a solver.
-    pub fn upload(&self, gpu: &Gpu) -> Uploaded {
+    /// A bit for each voxel, in rows of words.
+    pub fn bits(&self) -> Vec<u32> {
         let words = self.grid.words_per_row() as usize;
         let side = self.grid.cells as usize;
         let mut bits = vec![0u32; words * side * side];
         for (index, _) in self.matter.iter().enumerate().filter(|(_, matter)| **matter) {
             bits[words * (index / side) + index % side / 32] |= 1 << (index % side % 32);
         }
-        let buffer = |contents: &[u8]| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: None,
-                contents,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-            })
-        };
-        Uploaded {
-            matter: buffer(bytemuck::cast_slice(&bits)),
-            density: buffer(bytemuck::cast_slice(&self.density)),
-            cost: buffer(bytemuck::cast_slice(&self.seeds)),
-        }
+        bits
     }
 }

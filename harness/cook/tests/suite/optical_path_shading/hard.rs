@@ -5,9 +5,10 @@ use crate::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Note;
+use lapidary_render::frame::{Builder, Executor};
 use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization::Voxelizer;
-use lapidary_render::{Picture, Settings};
+use lapidary_render::{OpticalPathOptions, Picture, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Averaging, Bounds, Light, Mesh, Scene};
 use std::f64::consts::PI;
@@ -107,7 +108,8 @@ fn light_that_grazes_everywhere_lights_nothing() {
 fn extinctions_of_every_size_have_their_limit() {
     let of = |extinction_scale: f32| {
         let scene = ball(8.0, vec![sun()]);
-        let picture = draw(&scene, &Settings { extinction_scale, ..settings("godunov-32") });
+        let picture =
+            draw(&scene, &Settings { optical_path: OpticalPathOptions { extinction_scale }, ..settings("godunov-32") });
         assert!(covered(&format!("{extinction_scale}"), &picture) > 5000);
         on_the_ball(&scene, &picture)
     };
@@ -139,16 +141,14 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
             let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
             // What the surface alone touches may lie in the outermost voxels by rounding: a face lies on their border.
             let effects = [("EFFECT_SURFACE", 0.0)];
-            let voxelizer = Voxelizer::new(gpu, grid, &mesh, &effects).expect("compiled");
+            let mut builder = Builder::new(Some(gpu));
+            let voxelizer = Voxelizer::new(&mut builder, grid, &mesh, &effects).expect("compiled");
             let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
-            let usage = wgpu::BufferUsages::STORAGE;
-            let [positions, indices] = parts.map(|contents| {
-                gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-            });
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            voxelizer.encode(&mut encoder, &positions, &indices).expect("recorded");
-            gpu.queue.submit([encoder.finish()]);
-            let matter = gpu.words(&voxelizer.matter).expect("read back");
+            let [positions, indices] = parts.map(|contents| builder.storage("mesh", contents));
+            voxelizer.encode(&mut builder, positions, indices);
+            let executor = Executor::new(gpu, builder.finish()).expect("made");
+            executor.run(|_, _| {}).expect("run");
+            let matter = executor.words(voxelizer.matter).expect("read back");
             let mut filled = 0;
             for index in 0..grid.count() {
                 let UVec3 { x, y, z } = grid.voxel(index);
@@ -317,7 +317,8 @@ fn open_bunny(side: Vec3, radius: f32) -> (Scene, Scene, Vec3) {
 fn a_hole_in_the_bunny_leaves_no_streaks() {
     for side in [Vec3::X, Vec3::NEG_Z] {
         let (closed, open, middle) = open_bunny(side, 5.0);
-        let settings = Settings { extinction_scale: 0.05, ..settings("godunov-64") };
+        let settings =
+            Settings { optical_path: OpticalPathOptions { extinction_scale: 0.05 }, ..settings("godunov-64") };
         let (whole, holed) = (draw(&closed, &settings), draw(&open, &settings));
         covered("holed", &holed);
         assert!(whole.notes.is_empty(), "{:?}", whole.notes);

@@ -1,7 +1,8 @@
 use super::*;
+use crate::frame::Executor;
 use glam::{UVec3, Vec3};
 use lapidary_assay::extremum::larger;
-use lapidary_gpu::AdapterChoice;
+use lapidary_gpu::{AdapterChoice, Gpu};
 use lapidary_scene::Bounds;
 use std::sync::Arc;
 
@@ -20,12 +21,13 @@ fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) 
     for voxel in (0..grid.count()).map(|index| grid.voxel(index)).filter(|voxel| is_matter(*voxel)) {
         bits[(words * (voxel.y + grid.cells * voxel.z) + voxel.x / 32) as usize] |= 1 << (voxel.x % 32);
     }
-    let matter = device::buffer(&gpu.device, "matter", bytemuck::cast_slice(&bits), wgpu::BufferUsages::STORAGE);
-    let densities = Densities::new(gpu, grid, density, &matter).expect("compiled").expect("it differs");
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    densities.encode(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
-    gpu.words(&densities.buffer).expect("a device").into_iter().map(f32::from_bits).collect()
+    let mut builder = Builder::new(Some(gpu));
+    let matter = builder.storage("matter", bytemuck::cast_slice(&bits));
+    let densities = Densities::new(&mut builder, grid, density, matter).expect("compiled").expect("it differs");
+    densities.encode(&mut builder);
+    let executor = Executor::new(gpu, builder.finish()).expect("made");
+    executor.run(|_, _| {}).expect("run");
+    executor.words(densities.buffer).expect("a device").into_iter().map(f32::from_bits).collect()
 }
 
 /// A grid that reaches neither to the voxels' ends nor ends within them, and veins; each with what the device may be off by.
@@ -81,7 +83,7 @@ fn a_voxel_beside_matter_has_its_density_too() {
 
 #[test]
 fn a_body_of_one_density_needs_none() {
-    let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-    let matter = device::buffer(&gpu.device, "matter", &[0; 4], wgpu::BufferUsages::STORAGE);
-    assert!(Densities::new(gpu, grid(16), &Density::Uniform, &matter).expect("nothing to compile").is_none());
+    let mut builder = Builder::new(None);
+    let matter = builder.storage("matter", &[0; 4]);
+    assert!(Densities::new(&mut builder, grid(16), &Density::Uniform, matter).expect("nothing to compile").is_none());
 }

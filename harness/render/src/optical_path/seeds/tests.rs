@@ -1,12 +1,12 @@
 use super::*;
 use crate::Settings;
-use crate::device::{self, texture};
+use crate::frame::{Contents, Executor};
 use crate::light_views::{self, LightView};
 use crate::lighting::Lighting;
 use crate::reflective_shadow_map::view_buffer;
 use glam::{IVec3, UVec3, Vec3, Vec4};
 use lapidary_assay::extremum::larger;
-use lapidary_gpu::AdapterChoice;
+use lapidary_gpu::{AdapterChoice, Gpu};
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, decode, seed};
 use lapidary_scene::{Bounds, Light, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
@@ -88,21 +88,12 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
     let scene = Scene { lights: lights(), ..Scene::named("bunny").expect("built in") };
     let settings = Settings::of_size(8, 8);
-    let lighting = Lighting::new(gpu, &scene, &settings);
     let grid = VoxelGrid::about(bounds(), CELLS);
     let views = light_views::views(&lights(), bounds());
     assert_eq!(views.len(), 8);
     let texels = texels(views.len() * (SIDE * SIDE) as usize, grid);
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
-    let maps = texture(gpu, "maps", format, [SIDE, SIDE, views.len() as u32], bytemuck::cast_slice(&texels));
-    let dimension = Some(wgpu::TextureViewDimension::D2Array);
-    let maps = maps.create_view(&wgpu::TextureViewDescriptor { dimension, ..wgpu::TextureViewDescriptor::default() });
-    let storage = |contents: &[u8]| device::buffer(&gpu.device, "values", contents, wgpu::BufferUsages::STORAGE);
-    let lit = Lit {
-        lights: lighting.lights().expect("uploaded").clone(),
-        views: view_buffer(gpu, &views).expect("uploaded"),
-        maps,
-    };
+    let size = [SIDE, SIDE, views.len() as u32];
     // Every third voxel is air, and densities differ from one to the next.
     let matter: Vec<bool> = (0..grid.count()).map(|index| index * 7 % 3 != 0).collect();
     let words = grid.words_per_row();
@@ -111,26 +102,34 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
         bits[(words * (voxel.y + CELLS * voxel.z) + voxel.x / 32) as usize] |= 1 << (voxel.x % 32);
     }
     let density: Vec<f32> = (0..grid.count()).map(|index| 0.25 + (index * 13 % 17) as f32).collect();
-    let [matter_buffer, density_buffer] = [bytemuck::cast_slice(&bits), bytemuck::cast_slice(&density)].map(storage);
     for (dense, channel) in [(false, 0), (true, 1), (true, 2)] {
-        let seeds = Seeds::new(gpu, &[("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(dense)))]).expect("compiled");
+        let mut builder = Builder::new(Some(gpu));
+        let contents = Contents::Bytes(bytemuck::cast_slice(&texels).to_vec());
+        let maps = builder.texture("maps", format, size, contents);
+        let maps = Bound::Texture(maps, wgpu::TextureViewDimension::D2Array);
+        let lights = Lighting::new(&scene, &settings).lights(&mut builder);
+        let lit = Lit { lights, views: view_buffer(&mut builder, &views), maps, size };
+        let constants = [("EFFECT_EXTINCTION_PER_VOXEL", f64::from(u8::from(dense)))];
+        let seeds = Seeds::new(&mut builder, &constants).expect("compiled");
+        let matter_buffer = builder.storage("matter", bytemuck::cast_slice(&bits));
+        let density_buffer = builder.storage("densities", bytemuck::cast_slice(&density));
         // Left over from another frame.
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let costs = device::buffer(&gpu.device, "costs", bytemuck::cast_slice(&vec![0u32; grid.count()]), usage);
+        let costs = builder.buffer("costs", 4 * grid.count() as u64, usage);
         let seeded = Seeded {
             grid,
-            matter: &matter_buffer,
-            density: dense.then_some(&density_buffer),
-            costs: &costs,
+            matter: matter_buffer,
+            density: dense.then_some(density_buffer),
+            costs,
             extinction: EXTINCTION,
             largest: 5.0,
             channel,
         };
-        let groups = seeds.bind(&gpu.device, &lit, &seeded);
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        seeds.encode(&mut encoder, &groups, CELLS, [SIDE, SIDE, views.len() as u32]);
-        gpu.queue.submit([encoder.finish()]);
-        let found = gpu.words(&costs).expect("read back");
+        let dispatches = seeds.dispatches(&mut builder, &lit, &seeded);
+        builder.compute("seeds", dispatches, 1);
+        let executor = Executor::new(gpu, builder.finish()).expect("made");
+        executor.run(|_, _| {}).expect("run");
+        let found = executor.words(costs).expect("read back");
         let density = dense.then_some(&density[..]);
         let wanted = mirror(grid, (&matter, density), (&texels, &views), (5.0, channel as usize));
         let (mut reached, mut worst) = (0, 0.0f32);

@@ -1,0 +1,110 @@
+//! Frames as files, run by a host that knows nothing of the project.
+
+mod executor;
+
+use crate::gpu;
+use lapidary_assay::extremum::larger;
+use lapidary_plan::Rung;
+use lapidary_render::{GemOptions, Settings, frame, render};
+use lapidary_scene::Scene;
+use serde_json::Value;
+
+/// What another host draws and what the renderer does: linear radiance and coverage, and the encoded picture's bytes.
+fn both(name: &str, settings: &Settings) -> [(Vec<f32>, Vec<u8>); 2] {
+    let scene = Scene::named(name).expect("built in");
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path().join("frame");
+    frame(Some(gpu()), &scene, settings).expect("a frame").write(&folder).expect("written");
+    let pictures = executor::run(&gpu().device, &gpu().queue, &folder);
+    let picture = render(gpu(), &scene, settings).expect("rendered");
+    for (name, (width, height, _)) in &pictures {
+        assert_eq!((*width, *height), (settings.width, settings.height), "{name}");
+    }
+    let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
+    assert!(covered > picture.linear.len() / 20, "{name}: {covered} pixels");
+    let linear = bytemuck::pod_collect_to_vec(&pictures["linear picture"].2);
+    let own = (picture.linear.concat(), picture.encoded.concat());
+    [(linear, pictures["encoded picture"].2.clone()), own]
+}
+
+fn by_material() -> Settings {
+    Settings { rung: Rung::ByMaterial, ..Settings::of_size(96, 80) }
+}
+
+#[test]
+fn another_host_draws_the_same_pictures() {
+    let by_material = by_material();
+    let of_rung = |rung: &str| Settings { rung: rung.parse().expect(rung), ..by_material.clone() };
+    let cases = [
+        // Of eight samples, more than one tile.
+        ("brilliant", Settings { samples: 8, width: 300, height: 270, ..by_material.clone() }),
+        ("bunny", of_rung("tiled-26-64")),
+        ("dragon", of_rung("ping-pong-6-32")),
+        ("skin_bunny", Settings { shadows: true, ..of_rung("blur") }),
+        ("wax", of_rung("table-257-rgba16f")),
+        ("ruby", Settings { gem: GemOptions { deferred: true, ..GemOptions::default() }, ..of_rung("proxy-2") }),
+    ];
+    for (name, settings) in cases {
+        let [(host, host_encoded), (own, own_encoded)] = both(name, &settings);
+        let differing = host.iter().zip(&own).filter(|(host, own)| host.to_bits() != own.to_bits()).count();
+        assert_eq!((differing, host_encoded == own_encoded), (0, true), "{name}");
+    }
+}
+
+/// Godunov's scheme rounds by the order in which tiles are taken up, which no two runs share, the renderer's own neither.
+#[test]
+fn another_host_draws_the_bunny_as_near_as_a_second_run_does() {
+    let [(host, host_encoded), (own, own_encoded)] = both("bunny", &by_material());
+    let apart = |(host, own): (&f32, &f32)| (host - own).abs() / own.abs().max(1e-3);
+    let worst = host.iter().zip(&own).map(apart).fold(0.0, larger);
+    let steps = host_encoded.iter().zip(&own_encoded).map(|(host, own)| host.abs_diff(*own)).max();
+    println!("off by {worst:.1e}, {steps:?} steps");
+    assert!(worst < 1e-5 && steps <= Some(1), "{worst} {steps:?}");
+}
+
+#[test]
+fn another_host_is_small() {
+    let lines = include_str!("frame/executor.rs").lines().count();
+    assert!(lines < 300, "{lines} lines");
+}
+
+/// Everything that is referred to is there, contents have their resources' sizes, and fields lie within their structs.
+#[test]
+fn a_frame_is_whole() {
+    let settings = by_material();
+    let frame = frame(Some(gpu()), &Scene::named("vitrine").expect("built in"), &settings).expect("a frame");
+    let folder = tempfile::tempdir().expect("a folder");
+    frame.write(folder.path()).expect("an empty folder is as good as a new one");
+    let json = std::fs::read_to_string(folder.path().join("frame.json")).expect("written");
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let mut fields = 0;
+    for resource in json["resources"].as_array().expect("a list") {
+        let name = resource["name"].as_str().expect("a name");
+        if let Some(file) = resource["contents"].as_str() {
+            let bytes = std::fs::metadata(folder.path().join(file)).expect(file).len();
+            assert!(resource["kind"] != "buffer" || resource["bytes"] == bytes, "{name}");
+        }
+        let Some(layout) = resource["layout"].as_object() else { continue };
+        for field in layout["fields"].as_array().expect("a list") {
+            assert!(field["offset"].as_u64() < layout["bytes"].as_u64(), "{name}: {field}");
+            fields += 1;
+        }
+    }
+    assert!(fields > 50, "{fields}");
+    let view = json["resources"].as_array().expect("a list").iter().find(|row| row["name"] == "view").expect("a view");
+    let expected = serde_json::json!([
+        { "name": "clip_from_world", "type": "mat4x4<f32>", "offset": 0 },
+        { "name": "eye", "type": "vec3<f32>", "offset": 64 },
+    ]);
+    assert_eq!(view["layout"]["fields"], expected);
+    // A second time there is something in it.
+    let refused = frame.write(folder.path()).expect_err("taken").to_string();
+    assert!(refused.ends_with("is there and not empty; name a new folder"), "{refused}");
+    // And of what is looked at, nothing is written that cannot be run.
+    let table = Settings { rung: "table-256-rgba8".parse().expect("a rung"), ..settings };
+    let seen = lapidary_render::frame(None, &Scene::named("wax").expect("built in"), &table).expect("a frame");
+    let elsewhere = folder.path().join("elsewhere");
+    let refused = seen.write(&elsewhere).expect_err("left out").to_string();
+    assert!(refused.contains("was left out: the frame was made without a device"), "{refused}");
+    assert!(!elsewhere.exists());
+}

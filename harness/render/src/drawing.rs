@@ -1,0 +1,101 @@
+//! A scene as a frame: the rung's recipe over tiles, supersampled, then the display recipe.
+
+use super::deferred::{self, DeferredPass};
+use super::display::DisplayPass;
+use super::lighting::Lighting;
+use super::pass::{Before, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::shadows::Shadows;
+use super::variant::Part;
+use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
+use crate::frame::{Builder, Frame};
+use lapidary_gpu::Gpu;
+use lapidary_plan::Rung;
+use lapidary_scene::Scene;
+use std::borrow::Cow;
+
+/// Texts of recipes, where they are others than the cookbook's: of the rung's, and of the lighting pass.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Texts<'a> {
+    pub(super) rung: Option<&'a str>,
+    pub(super) composite: Option<&'a str>,
+}
+
+/// A picture's frame, and what of its passes is to be asked afterwards.
+pub(super) struct Drawing {
+    pub(super) frame: Frame,
+    pub(super) pass: ScenePass,
+}
+
+impl Drawing {
+    /// Of any rung but the reference, which is computed on the CPU.
+    pub(super) fn new(
+        gpu: Option<&Gpu>,
+        scene: &Scene,
+        settings: &Settings,
+        texts: Texts<'_>,
+    ) -> Result<Self, RenderError> {
+        let mut builder = Builder::new(gpu);
+        let builder = &mut builder;
+        let (width, height) = (settings.width, settings.height);
+        let display = DisplayPass::new(builder, settings)?;
+        let lighting = Lighting::new(scene, settings);
+        let deferred = if settings.gem.deferred {
+            let composed = || Cow::Owned(lapidary_wgsl::recipe_source(deferred::COMPOSITE));
+            let composite = texts.composite.map_or_else(composed, Cow::Borrowed);
+            Some(DeferredPass::new(builder, &lighting, settings, &composite)?)
+        } else {
+            None
+        };
+        let pass = scene_pass(builder, &lighting, scene, settings, texts.rung)?;
+        let [columns, rows] = [width, height].map(|side| settings.samples * side.min(Tile::side(settings.samples)));
+        let depth = builder.target("depth", [columns, rows, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
+        pass.prepare(builder);
+        for tile in Tile::all(width, height, settings.samples) {
+            let view = (camera::clip_from_world(scene, width, height, tile), scene.camera.eye);
+            let size = [tile.width * settings.samples, tile.height * settings.samples];
+            if let Some(deferred) = &deferred {
+                deferred.draw(builder, &pass, view, display.samples, size);
+            } else {
+                let target = SceneTarget { colors: vec![display.samples], depth, keep_depth: false, size };
+                pass.draw(builder, view.0, view.1, &target);
+            }
+            display.encode(builder, tile, settings);
+        }
+        Ok(Self { frame: std::mem::take(builder).finish(), pass })
+    }
+}
+
+/// Everything that draws the scene's objects, each by its rung; `source` is another text of the recipe where they all have one.
+pub(super) fn scene_pass(
+    builder: &mut Builder<'_>,
+    lighting: &Lighting<'_>,
+    scene: &Scene,
+    settings: &Settings,
+    source: Option<&str>,
+) -> Result<ScenePass, RenderError> {
+    let mut all = ScenePass::default();
+    let parts = Part::all(scene, settings);
+    let shadows = Shadows::of(builder, &scene.lights, &parts)?;
+    for part in &parts {
+        let composed = || Cow::Owned(lapidary_wgsl::recipe_source(part.rung.recipe()));
+        let source = &*source.map_or_else(composed, Cow::Borrowed);
+        let deferred = &[deferred::GEOMETRY_FORMAT; deferred::TARGETS][..];
+        let forward = &[SAMPLE_FORMAT][..];
+        all.append(match part.rung {
+            Rung::Diffuse(_) | Rung::OpticalPath(_) if settings.gem.deferred => {
+                return Err(RenderError::NotDeferred { object: part.objects[0].object.name.clone(), rung: part.rung });
+            }
+            Rung::Diffuse(reflectance) => {
+                translucent::pass(builder, (lighting, shadows.as_ref()), part, reflectance, source)?
+            }
+            Rung::OpticalPath(paths) => optical_path::pass(builder, lighting, part, paths, source)?,
+            _ if settings.gem.deferred => {
+                gem::pass(builder, lighting, part, source, ("gem_deferred_fragment", deferred))?
+            }
+            _ => gem::pass(builder, lighting, part, source, ("gem_fragment", forward))?,
+        });
+    }
+    // What is blurred in a texture is shadowed there: the maps come first.
+    all.before.splice(0..0, shadows.map(Before::Shadows));
+    Ok(all)
+}

@@ -1,0 +1,309 @@
+//! Making a frame: each resource, pipeline and pass is put into it as the techniques call for them.
+
+use super::*;
+use crate::RenderError;
+use crate::record::Record;
+use crate::shader::ShaderError;
+use lapidary_gpu::Gpu;
+
+/// What a graphics pipeline is compiled from.
+#[derive(Clone, Copy, Debug)]
+pub struct PipelineSource<'a> {
+    /// The recipe's name, for messages.
+    pub recipe: &'a str,
+    /// Its composed text.
+    pub source: &'a str,
+    /// Its vertex and fragment entry points.
+    pub entries: [&'a str; 2],
+    /// Values of its overrides, bools as 0 or 1; those that the text does not declare are left out.
+    pub constants: &'a [(&'a str, f64)],
+    /// Formats of its colour targets.
+    pub formats: &'a [wgpu::TextureFormat],
+    /// The depth buffer's format, for solids.
+    pub depth: Option<wgpu::TextureFormat>,
+}
+
+/// A frame that is being made.
+#[derive(Debug, Default)]
+pub struct Builder<'gpu> {
+    frame: Frame,
+    /// The text of each pipeline, composed.
+    sources: Vec<String>,
+    object: String,
+    gpu: Option<&'gpu Gpu>,
+}
+
+/// A texture whose parts are brought back to the host.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Readback {
+    picture: &'static str,
+    texture: Texture,
+    buffer: Buffer,
+}
+
+impl<'gpu> Builder<'gpu> {
+    /// An empty frame. Contents that a device computes, which are tables of the curvature-dependent reflectance, come
+    /// from `gpu`; without one they are left out, for frames that are looked at and not run.
+    #[must_use]
+    pub fn new(gpu: Option<&'gpu Gpu>) -> Self {
+        Self { gpu, ..Self::default() }
+    }
+
+    /// The device that it is made for.
+    pub(crate) fn gpu(&self) -> Option<&'gpu Gpu> {
+        self.gpu
+    }
+
+    /// What every device allows, and no more is asked of any.
+    #[must_use]
+    pub fn limits(&self) -> wgpu::Limits {
+        wgpu::Limits::default()
+    }
+
+    /// The frame so far.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The frame.
+    #[must_use]
+    pub fn finish(self) -> Frame {
+        self.frame
+    }
+
+    /// What is made and run by `make` is the named object's; that of all objects, where the name is empty.
+    pub fn of_object<T>(&mut self, name: &str, make: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = std::mem::replace(&mut self.object, name.to_owned());
+        let made = make(self);
+        self.object = outer;
+        made
+    }
+
+    fn resource(&mut self, what: &str, kind: ResourceKind) -> usize {
+        let object = self.object.clone();
+        let name = if object.is_empty() { what.to_owned() } else { format!("{object}/{what}") };
+        self.frame.resources.push(Resource { name, object, kind });
+        self.frame.resources.len() - 1
+    }
+
+    /// A buffer of `size` bytes, zeros.
+    pub fn buffer(&mut self, what: &str, size: u64, usage: wgpu::BufferUsages) -> Buffer {
+        Buffer(self.resource(what, ResourceKind::Buffer { size, usage, contents: Contents::Zeros, layout: None }))
+    }
+
+    /// A buffer with contents.
+    pub fn filled(&mut self, what: &str, contents: Vec<u8>, usage: wgpu::BufferUsages) -> Buffer {
+        let size = contents.len() as u64;
+        Buffer(
+            self.resource(
+                what,
+                ResourceKind::Buffer { size, usage, contents: Contents::Bytes(contents), layout: None },
+            ),
+        )
+    }
+
+    /// A storage buffer with contents.
+    pub fn storage(&mut self, what: &str, contents: &[u8]) -> Buffer {
+        self.filled(what, contents.to_vec(), wgpu::BufferUsages::STORAGE)
+    }
+
+    /// A uniform buffer of one struct.
+    pub(crate) fn uniform(&mut self, what: &str, record: Record) -> Buffer {
+        self.records(what, vec![record], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// A storage buffer of one struct.
+    pub(crate) fn record(&mut self, what: &str, record: Record) -> Buffer {
+        self.records(what, vec![record], wgpu::BufferUsages::STORAGE)
+    }
+
+    /// A buffer of structs of one kind, of which there is at least one.
+    pub(crate) fn records(&mut self, what: &str, records: Vec<Record>, usage: wgpu::BufferUsages) -> Buffer {
+        let layout = records.first().map(Record::layout);
+        let contents: Vec<u8> = records.into_iter().flat_map(Record::bytes).collect();
+        let kind =
+            ResourceKind::Buffer { size: contents.len() as u64, usage, contents: Contents::Bytes(contents), layout };
+        Buffer(self.resource(what, kind))
+    }
+
+    /// A texture to be sampled or loaded: width, height, and depth or number of layers.
+    pub fn texture(
+        &mut self,
+        what: &str,
+        (dimension, format): (wgpu::TextureDimension, wgpu::TextureFormat),
+        size: [u32; 3],
+        contents: Contents,
+    ) -> Texture {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        Texture(self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents }))
+    }
+
+    /// A texture that can be drawn to, and what else `usage` says: width, height, and number of layers.
+    pub fn target(
+        &mut self,
+        what: &str,
+        size: [u32; 3],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> Texture {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | usage;
+        let dimension = wgpu::TextureDimension::D2;
+        Texture(
+            self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents: Contents::Zeros }),
+        )
+    }
+
+    /// A linear sampler.
+    pub fn sampler(&mut self, what: &str, address: [wgpu::AddressMode; 2]) -> Sampler {
+        Sampler(self.resource(what, ResourceKind::Sampler { filter: wgpu::FilterMode::Linear, address }))
+    }
+
+    /// A graphics pipeline. A closed body shows its front; a full-screen triangle has no back to speak of.
+    ///
+    /// # Errors
+    /// Where the text is not valid.
+    pub fn render_pipeline(&mut self, from: &PipelineSource<'_>) -> Result<PipelineId, ShaderError> {
+        self.render_pipeline_culling(from, from.depth.map(|_| wgpu::Face::Back))
+    }
+
+    /// The same with the faces that are not drawn, if any.
+    ///
+    /// # Errors
+    /// Where the text is not valid.
+    pub fn render_pipeline_culling(
+        &mut self,
+        from: &PipelineSource<'_>,
+        cull: Option<wgpu::Face>,
+    ) -> Result<PipelineId, ShaderError> {
+        let shader = Shader::new(from.recipe, from.source, &from.entries, from.constants)?;
+        let kind = PipelineKind::Render { targets: from.formats.to_vec(), depth: from.depth, cull };
+        Ok(self.pipeline(from.recipe, from.source, shader, kind))
+    }
+
+    /// A compute pipeline: `entry` of `source`, the composed text of `recipe`, with these overrides: bools as 0 or 1;
+    /// those that the text does not declare are left out.
+    ///
+    /// # Errors
+    /// Where the text is not valid.
+    pub fn compute_pipeline(
+        &mut self,
+        recipe: &str,
+        source: &str,
+        entry: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<PipelineId, ShaderError> {
+        let shader = Shader::new(recipe, source, &[entry], constants)?;
+        Ok(self.pipeline(entry, source, shader, PipelineKind::Compute))
+    }
+
+    /// The one that there is already, where it is the same.
+    fn pipeline(&mut self, name: &str, source: &str, shader: Shader, kind: PipelineKind) -> PipelineId {
+        let pipelines = &mut self.frame.pipelines;
+        let is_same = |known: &Pipeline| known.kind == kind && known.shader.is_specialised_as(&shader);
+        let mut known = pipelines.iter().zip(&self.sources);
+        if let Some(place) = known.position(|(known, text)| text == source && is_same(known)) {
+            return PipelineId(place);
+        }
+        let is_taken = |name: &str| pipelines.iter().any(|known| known.name == name);
+        let numbered = (2..).map(|number| format!("{name}#{number}"));
+        let mut names = std::iter::once(name.to_owned()).chain(numbered);
+        let name = names.find(|name| !is_taken(name)).unwrap_or_default();
+        pipelines.push(Pipeline { name, shader, kind });
+        self.sources.push(source.to_owned());
+        PipelineId(pipelines.len() - 1)
+    }
+
+    /// Whether a pipeline reads or writes this binding.
+    #[must_use]
+    pub fn binds(&self, pipeline: PipelineId, group: u32, binding: u32) -> bool {
+        self.frame.pipeline(pipeline).shader.binds(group, binding)
+    }
+
+    /// The bind group of those of `resources`, by number, that the pipeline reads or writes. None where it has none in
+    /// this group.
+    pub fn bind(&mut self, pipeline: PipelineId, group: u32, resources: &[(u32, Bound)]) -> Option<BindGroupId> {
+        let used = resources.iter().filter(|(binding, _)| self.binds(pipeline, group, *binding));
+        let entries: Vec<(u32, Bound)> = used.copied().collect();
+        if entries.is_empty() {
+            return None;
+        }
+        let bind_groups = &mut self.frame.bind_groups;
+        bind_groups.push(BindGroup { pipeline, group, entries });
+        Some(BindGroupId(bind_groups.len() - 1))
+    }
+
+    /// A draw for the present object.
+    #[must_use]
+    pub fn draw(&self, pipeline: PipelineId, groups: Vec<Option<BindGroupId>>, vertices: u32) -> Draw {
+        Draw { object: self.object.clone(), pipeline, groups, vertices, scissor: None }
+    }
+
+    /// A dispatch for the present object.
+    #[must_use]
+    pub fn dispatch(&self, pipeline: PipelineId, groups: Vec<Option<BindGroupId>>, workgroups: Workgroups) -> Dispatch {
+        Dispatch { object: self.object.clone(), pipeline, groups, workgroups }
+    }
+
+    /// What is run next.
+    pub fn pass(&mut self, pass: Pass) {
+        self.frame.passes.push(pass);
+    }
+
+    /// Dispatches that are run next.
+    pub fn compute(&mut self, name: &str, dispatches: Vec<Dispatch>, repeat: u32) {
+        self.pass(Pass::Compute(ComputePass { name: name.to_owned(), dispatches, repeat }));
+    }
+
+    /// Sets a buffer to 0 next.
+    pub fn clear(&mut self, buffer: Buffer) {
+        let bytes = self.frame.buffer(buffer).bytes();
+        self.pass(Pass::Clear { buffer, bytes });
+    }
+
+    /// Brings `texture` back to the host as the named picture, in parts of this size at most.
+    pub(crate) fn readback(&mut self, picture: &'static str, texture: Texture, [width, height]: [u32; 2]) -> Readback {
+        let size = u64::from(self.bytes_per_row(texture, width)) * u64::from(height);
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        Readback { picture, texture, buffer: self.buffer(&format!("{picture} to read"), size, usage) }
+    }
+
+    /// Brings the upper left part of a texture back next, to this place of its picture.
+    pub(crate) fn read(&mut self, readback: Readback, size: [u32; 2], at: [u32; 2]) {
+        let Readback { picture, texture, buffer } = readback;
+        let bytes_per_row = self.bytes_per_row(texture, size[0]);
+        self.pass(Pass::Read(Read { picture, texture, size, at, buffer, bytes_per_row }));
+    }
+
+    /// Brings a whole texture back next, as the named picture.
+    pub fn read_whole(&mut self, picture: &'static str, texture: Texture) {
+        if let ResourceKind::Texture { size: [width, height, _], .. } = self.frame.texture(texture).kind {
+            let readback = self.readback(picture, texture, [width, height]);
+            self.read(readback, [width, height], [0, 0]);
+        }
+    }
+
+    fn bytes_per_row(&self, texture: Texture, width: u32) -> u32 {
+        let ResourceKind::Texture { format, .. } = self.frame.texture(texture).kind else { return 0 };
+        (width * texel_bytes(format)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+    }
+
+    /// How many vertices draw a mesh of these `indices`, whose parts are to be storage buffers.
+    ///
+    /// # Errors
+    /// Where a device may not hold one of the parts.
+    pub(crate) fn mesh_vertices<'a>(
+        &self,
+        object: &lapidary_scene::Object,
+        indices: &[u32],
+        parts: impl IntoIterator<Item = &'a [u8]>,
+    ) -> Result<u32, RenderError> {
+        let limits = self.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
+        if let Some(bytes) = parts.into_iter().map(|part| part.len() as u64).find(|bytes| *bytes > limit) {
+            return Err(too_large(bytes));
+        }
+        u32::try_from(indices.len()).map_err(|_| too_large(size_of_val(indices) as u64))
+    }
+}

@@ -1,0 +1,367 @@
+//! A frame on a device of wgpu's: everything made once, then run as often as one likes.
+
+use super::*;
+use lapidary_gpu::{Gpu, GpuError};
+use std::ops::Range;
+use wgpu::util::DeviceExt as _;
+
+/// A frame's resources and pipelines on a device.
+#[derive(Debug)]
+pub struct Executor<'gpu> {
+    gpu: &'gpu Gpu,
+    frame: Frame,
+    resources: Vec<Made>,
+    pipelines: Vec<Compiled>,
+    bind_groups: Vec<wgpu::BindGroup>,
+}
+
+#[derive(Debug)]
+enum Made {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::Texture),
+    Sampler(wgpu::Sampler),
+}
+
+#[derive(Debug)]
+enum Compiled {
+    Render(wgpu::RenderPipeline),
+    Compute(wgpu::ComputePipeline),
+}
+
+impl Compiled {
+    fn layout(&self, group: u32) -> wgpu::BindGroupLayout {
+        match self {
+            Self::Render(pipeline) => pipeline.get_bind_group_layout(group),
+            Self::Compute(pipeline) => pipeline.get_bind_group_layout(group),
+        }
+    }
+}
+
+impl<'gpu> Executor<'gpu> {
+    /// Makes all that the frame holds.
+    ///
+    /// # Errors
+    /// Where the device refuses a shader or the memory.
+    pub fn new(gpu: &'gpu Gpu, frame: Frame) -> Result<Self, GpuError> {
+        let resource = |of: &Resource| gpu.guarded(&format!("making `{}`", of.name), |_| made(gpu, of));
+        let resources = frame.resources.iter().map(resource).collect::<Result<_, _>>()?;
+        let pipeline = |of: &Pipeline| {
+            gpu.guarded(&format!("compiling `{}` of recipe `{}`", of.name, of.shader.recipe()), |device| {
+                compiled(device, of)
+            })
+        };
+        let pipelines = frame.pipelines.iter().map(pipeline).collect::<Result<_, _>>()?;
+        let mut executor = Self { gpu, frame, resources, pipelines, bind_groups: Vec::new() };
+        executor.bind_groups = gpu.guarded("binding resources", |device| {
+            executor.frame.bind_groups.iter().map(|group| executor.bind_group(device, group)).collect()
+        })?;
+        Ok(executor)
+    }
+
+    /// What it runs.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn bind_group(&self, device: &wgpu::Device, group: &BindGroup) -> wgpu::BindGroup {
+        let views: Vec<Option<wgpu::TextureView>> = group
+            .entries
+            .iter()
+            .map(|(_, bound)| match bound {
+                Bound::Texture(texture, dimension) => {
+                    let dimension = Some(*dimension);
+                    let descriptor = wgpu::TextureViewDescriptor { dimension, ..Default::default() };
+                    Some(self.texture(*texture).create_view(&descriptor))
+                }
+                Bound::Buffer(_) | Bound::Sampler(_) => None,
+            })
+            .collect();
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = group
+            .entries
+            .iter()
+            .zip(&views)
+            .map(|((binding, bound), view)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: match (bound, view) {
+                    (Bound::Buffer(buffer), _) => self.buffer(*buffer).as_entire_binding(),
+                    (Bound::Sampler(sampler), _) => wgpu::BindingResource::Sampler(self.sampler(*sampler)),
+                    (Bound::Texture(..), Some(view)) => wgpu::BindingResource::TextureView(view),
+                    (Bound::Texture(..), None) => unreachable!("each texture has a view"),
+                },
+            })
+            .collect();
+        let layout = &self.pipelines[group.pipeline.0].layout(group.group);
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    fn buffer(&self, Buffer(place): Buffer) -> &wgpu::Buffer {
+        let Made::Buffer(buffer) = &self.resources[place] else { unreachable!("resource {place} is a buffer") };
+        buffer
+    }
+
+    fn texture(&self, Texture(place): Texture) -> &wgpu::Texture {
+        let Made::Texture(texture) = &self.resources[place] else { unreachable!("resource {place} is a texture") };
+        texture
+    }
+
+    fn sampler(&self, Sampler(place): Sampler) -> &wgpu::Sampler {
+        let Made::Sampler(sampler) = &self.resources[place] else { unreachable!("resource {place} is a sampler") };
+        sampler
+    }
+
+    /// Fills the upper left part of a texture that may be copied to, row by row.
+    pub fn write_texture(&self, texture: Texture, [width, height]: [u32; 2], texels: &[u8]) {
+        let texture = self.texture(texture);
+        let bytes_per_row = Some(width * texel_bytes(texture.format()));
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: Some(height) };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        self.gpu.queue.write_texture(texture.as_image_copy(), texels, layout, size);
+    }
+
+    /// Fills a buffer that may be copied to, from its start.
+    pub fn write_buffer(&self, buffer: Buffer, contents: &[u8]) {
+        self.gpu.queue.write_buffer(self.buffer(buffer), 0, contents);
+    }
+
+    /// The words of a whole buffer that may be copied from. Waits for everything submitted.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub fn words(&self, buffer: Buffer) -> Result<Vec<u32>, GpuError> {
+        self.gpu.words(self.buffer(buffer))
+    }
+
+    /// Runs all passes. `read` is handed each [`Read`] with its rows, one after the other without gaps.
+    ///
+    /// # Errors
+    /// Where the device refuses a pass or is lost.
+    pub fn run(&self, read: impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
+        self.run_passes(0..self.frame.passes.len(), read)
+    }
+
+    /// The same of some passes, by their places.
+    ///
+    /// # Errors
+    /// Where the device refuses a pass or is lost.
+    pub fn run_passes(&self, passes: Range<usize>, mut read: impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
+        let mut rest = &self.frame.passes[passes];
+        while !rest.is_empty() {
+            // Up to and with what is read next.
+            let is_read = |pass: &Pass| matches!(pass, Pass::Read(_));
+            let start = rest.iter().position(is_read).unwrap_or(rest.len());
+            let count = rest[start..].iter().take_while(|pass| is_read(pass)).count();
+            let (now, later) = rest.split_at(start + count);
+            self.submit(now)?;
+            for pass in &now[start..] {
+                if let Pass::Read(of) = pass {
+                    self.bring_back(of, &mut read)?;
+                }
+            }
+            rest = later;
+        }
+        Ok(())
+    }
+
+    /// Encodes and submits passes, and waits for nothing.
+    pub(crate) fn submit(&self, passes: &[Pass]) -> Result<(), GpuError> {
+        self.gpu.guarded("drawing a frame", |device| {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            for pass in passes {
+                self.encode(&mut encoder, pass);
+            }
+            self.gpu.queue.submit([encoder.finish()]);
+        })
+    }
+
+    /// The same of all passes at some places.
+    pub(crate) fn submit_passes(&self, passes: Range<usize>) -> Result<(), GpuError> {
+        self.submit(&self.frame.passes[passes])
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, pass: &Pass) {
+        match pass {
+            Pass::Render(pass) => self.encode_render(encoder, pass),
+            Pass::Compute(pass) => self.encode_compute(encoder, pass),
+            Pass::Clear { buffer, bytes } => encoder.clear_buffer(self.buffer(*buffer), 0, Some(*bytes)),
+            Pass::Copy { from, to, bytes } => {
+                encoder.copy_buffer_to_buffer(self.buffer(*from), 0, self.buffer(*to), 0, *bytes);
+            }
+            Pass::Read(Read { texture, size: [width, height], buffer, bytes_per_row, .. }) => {
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(*bytes_per_row),
+                    rows_per_image: Some(*height),
+                };
+                let to = wgpu::TexelCopyBufferInfo { buffer: self.buffer(*buffer), layout };
+                let size = wgpu::Extent3d { width: *width, height: *height, depth_or_array_layers: 1 };
+                encoder.copy_texture_to_buffer(self.texture(*texture).as_image_copy(), to, size);
+            }
+        }
+    }
+
+    fn encode_render(&self, encoder: &mut wgpu::CommandEncoder, pass: &RenderPass) {
+        let layer = |texture: Texture, layer: u32| {
+            self.texture(texture).create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            })
+        };
+        let views: Vec<_> = pass.targets.iter().map(|target| layer(target.texture, target.layer)).collect();
+        let attachment = |(target, view): (&Target, _)| {
+            let [r, g, b, a] = target.clear;
+            let load = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a });
+            let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        };
+        let depth = pass.depth.map(|(texture, keep)| (layer(texture, 0), keep));
+        let depth_attachment = depth.as_ref().map(|(view, keep)| {
+            let store = if *keep { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
+            let depth_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store });
+            wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+        });
+        let mut encoded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(&pass.name),
+            color_attachments: &pass.targets.iter().zip(&views).map(attachment).collect::<Vec<_>>(),
+            depth_stencil_attachment: depth_attachment,
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        if let Some(viewport) = pass.viewport {
+            let [left, top, width, height] = viewport.map(|side| side as f32);
+            encoded.set_viewport(left, top, width, height, 0.0, 1.0);
+        }
+        for draw in &pass.draws {
+            if let Compiled::Render(pipeline) = &self.pipelines[draw.pipeline.0] {
+                encoded.set_pipeline(pipeline);
+            }
+            for (index, group) in (0..).zip(&draw.groups) {
+                encoded.set_bind_group(index, group.map(|group| &self.bind_groups[group.0]), &[]);
+            }
+            if let Some([left, top, width, height]) = draw.scissor {
+                encoded.set_scissor_rect(left, top, width, height);
+            }
+            encoded.draw(0..draw.vertices, 0..1);
+        }
+    }
+
+    fn encode_compute(&self, encoder: &mut wgpu::CommandEncoder, pass: &ComputePass) {
+        let label = Some(&*pass.name);
+        let mut encoded = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label, ..wgpu::ComputePassDescriptor::default() });
+        for dispatch in (0..pass.repeat).flat_map(|_| &pass.dispatches) {
+            if let Compiled::Compute(pipeline) = &self.pipelines[dispatch.pipeline.0] {
+                encoded.set_pipeline(pipeline);
+            }
+            for (index, group) in (0..).zip(&dispatch.groups) {
+                encoded.set_bind_group(index, group.map(|group| &self.bind_groups[group.0]), &[]);
+            }
+            match dispatch.workgroups {
+                Workgroups::Count([x, y, z]) => encoded.dispatch_workgroups(x, y, z),
+                Workgroups::Indirect(buffer) => encoded.dispatch_workgroups_indirect(self.buffer(buffer), 0),
+            }
+        }
+    }
+
+    /// Waits for what was copied to a buffer, and hands its rows on.
+    fn bring_back(&self, of: &Read, read: &mut impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
+        let Read { texture, size: [width, height], buffer, bytes_per_row, .. } = of;
+        let used = (width * texel_bytes(self.texture(*texture).format())) as usize;
+        self.gpu.read_back(self.buffer(*buffer), u64::from(*bytes_per_row) * u64::from(*height), |bytes| {
+            let rows: Vec<u8> =
+                bytes.chunks_exact(*bytes_per_row as usize).flat_map(|row| &row[..used]).copied().collect();
+            read(of, &rows);
+        })
+    }
+}
+
+fn made(gpu: &Gpu, resource: &Resource) -> Made {
+    let (device, label) = (&gpu.device, Some(&*resource.name));
+    match &resource.kind {
+        ResourceKind::Buffer { size, usage, contents, .. } => Made::Buffer(match contents {
+            Contents::Bytes(contents) => {
+                device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage: *usage })
+            }
+            Contents::Zeros | Contents::LeftOut => device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size: *size,
+                usage: *usage,
+                mapped_at_creation: false,
+            }),
+        }),
+        ResourceKind::Texture { size: [width, height, depth_or_array_layers], dimension, format, usage, contents } => {
+            let descriptor = wgpu::TextureDescriptor {
+                label,
+                size: wgpu::Extent3d { width: *width, height: *height, depth_or_array_layers: *depth_or_array_layers },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: *dimension,
+                format: *format,
+                usage: *usage,
+                view_formats: &[],
+            };
+            Made::Texture(match contents {
+                Contents::Bytes(contents) => {
+                    let order = wgpu::util::TextureDataOrder::LayerMajor;
+                    device.create_texture_with_data(&gpu.queue, &descriptor, order, contents)
+                }
+                Contents::Zeros | Contents::LeftOut => device.create_texture(&descriptor),
+            })
+        }
+        ResourceKind::Sampler { filter, address: [u, v] } => {
+            Made::Sampler(device.create_sampler(&wgpu::SamplerDescriptor {
+                label,
+                mag_filter: *filter,
+                min_filter: *filter,
+                address_mode_u: *u,
+                address_mode_v: *v,
+                ..wgpu::SamplerDescriptor::default()
+            }))
+        }
+    }
+}
+
+fn compiled(device: &wgpu::Device, pipeline: &Pipeline) -> Compiled {
+    let label = Some(&*pipeline.name);
+    let module = device.create_shader_module(pipeline.shader.module_descriptor());
+    let entry = |place: usize| pipeline.shader.entries().get(place).map(String::as_str);
+    let PipelineKind::Render { targets, depth, cull } = &pipeline.kind else {
+        return Compiled::Compute(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label,
+            layout: None,
+            module: &module,
+            entry_point: entry(0),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        }));
+    };
+    let targets: Vec<Option<wgpu::ColorTargetState>> = targets.iter().map(|format| Some((*format).into())).collect();
+    Compiled::Render(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: entry(0),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState { cull_mode: *cull, ..wgpu::PrimitiveState::default() },
+        depth_stencil: depth.map(|format| wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: entry(1),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}

@@ -1,0 +1,124 @@
+//! A frame of a rung's recipe, alone or with the display recipe, to be timed: run again and again, nothing brought back.
+
+use super::drawing::scene_pass;
+use super::lighting::Lighting;
+use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
+use super::{RenderError, Settings, Stage, display};
+use crate::frame::{Builder, Executor, Pass, RenderPass, Target};
+use crate::solver::Status;
+use glam::Vec2;
+use lapidary_gpu::{Gpu, GpuError};
+use lapidary_scene::Scene;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+/// A scene on the device and what it is drawn to, one sample a pixel.
+pub struct FrameTimer<'gpu> {
+    gpu: &'gpu Gpu,
+    executor: Executor<'gpu>,
+    pass: ScenePass,
+    /// The places of each stage's passes, where the rung follows light through bodies.
+    stages: Option<[Range<usize>; Stage::ALL.len()]>,
+    draw_calls: usize,
+}
+
+/// Of the display's targets. The linear picture is of no use here and takes the least memory that there is; the other is a screen's.
+const DISPLAY_FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::Rgba8Unorm];
+
+/// How long a frame took.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameTime {
+    /// From the first command to the device's last word.
+    pub total: Duration,
+    /// The host's part: recording and submitting.
+    pub encode: Duration,
+}
+
+impl<'gpu> FrameTimer<'gpu> {
+    /// Texels along each side of the textures of rung `blur`.
+    pub const BLUR_SIDE: u32 = super::diffusion::SIDE;
+
+    /// Compiles the rung, or another text of its recipe, and uploads the scene. Where it is displayed, the tone curve and
+    /// the encoding for a screen come on top.
+    pub fn new(
+        gpu: &'gpu Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        source: Option<&str>,
+        displayed: bool,
+    ) -> Result<Self, RenderError> {
+        let mut builder = Builder::new(Some(gpu));
+        let pass = scene_pass(&mut builder, &Lighting::new(scene, settings), scene, settings, source)?;
+        let size = [settings.width, settings.height];
+        let [width, height] = size;
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        let color = builder.target("samples", [width, height, 1], SAMPLE_FORMAT, usage);
+        let depth = builder.target("depth", [width, height, 1], DEPTH_FORMAT, wgpu::TextureUsages::empty());
+        let stages = pass.prepare(&mut builder);
+        let matrix = lapidary_scene::clip_from_world(scene, width, height);
+        let target = SceneTarget { colors: vec![color], depth, keep_depth: false, size };
+        let start = builder.frame().passes.len();
+        pass.draw(&mut builder, matrix, scene.camera.eye, &target);
+        let draw_calls = builder.frame().draw_calls();
+        if displayed {
+            let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;
+            let groups = display::group(&mut builder, pipeline, color, Vec2::ZERO, settings);
+            let usage = wgpu::TextureUsages::empty();
+            let targets =
+                DISPLAY_FORMATS.map(|format| Target::from(builder.target("screen", [width, height, 1], format, usage)));
+            let draw = builder.draw(pipeline, groups, 3);
+            builder.pass(Pass::Render(RenderPass {
+                name: "display".to_owned(),
+                targets: targets.to_vec(),
+                depth: None,
+                viewport: None,
+                draws: vec![draw],
+            }));
+        }
+        let shade = start..builder.frame().passes.len();
+        let stages = stages.map(|[voxels, maps, seeds, solve]| [voxels, maps, seeds, solve, shade]);
+        Ok(Self { gpu, executor: Executor::new(gpu, builder.finish())?, pass, stages, draw_calls })
+    }
+
+    /// Draws it once and waits.
+    pub fn run(&self) -> Result<FrameTime, RenderError> {
+        self.timed(0..self.executor.frame().passes.len())
+    }
+
+    /// Draws it once, each stage submitted and waited for by itself, so that together they take longer than a frame. None where the rung
+    /// follows no light through bodies.
+    pub fn run_stages(&self) -> Result<Option<[Duration; Stage::ALL.len()]>, RenderError> {
+        let Some(stages) = &self.stages else { return Ok(None) };
+        let mut times = [Duration::ZERO; Stage::ALL.len()];
+        for (passes, time) in stages.iter().zip(&mut times) {
+            *time = self.timed(passes.clone())?.total;
+        }
+        Ok(Some(times))
+    }
+
+    /// Submits some passes and waits.
+    fn timed(&self, passes: Range<usize>) -> Result<FrameTime, RenderError> {
+        let start = Instant::now();
+        self.executor.submit_passes(passes)?;
+        let encode = start.elapsed();
+        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.map_err(|error| GpuError::Device { what: "drawing a frame".to_owned(), reason: error.to_string() })?;
+        Ok(FrameTime { total: start.elapsed(), encode })
+    }
+
+    /// How far the solvers of light's ways came in the last frame that was drawn, body by body; of several channels, in the last. Waits for
+    /// the device.
+    pub fn solved(&self) -> Result<Vec<Status>, RenderError> {
+        Ok(self.pass.paths().map_or(Ok(Vec::new()), |paths| paths.statuses(&self.executor))?)
+    }
+
+    /// Bytes of what is allocated to find light's ways, but for uniforms.
+    pub fn path_bytes(&self) -> u64 {
+        self.pass.paths().map_or(0, |paths| paths.bytes(self.executor.frame()))
+    }
+
+    /// How many draw calls the scene takes.
+    pub fn draw_calls(&self) -> usize {
+        self.draw_calls
+    }
+}
