@@ -2,11 +2,9 @@
 
 use lapidary_absorption::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/absorption.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/absorption.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/absorption.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/absorption.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,8 +2,9 @@
 
 use lapidary_bvh_trace::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/bvh_trace.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/bvh_trace.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module =
-        concat!(include_str!("../../../wgsl/bvh_trace.wgsl"), "\n", include_str!("../../../wgsl/naive/bvh_trace.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

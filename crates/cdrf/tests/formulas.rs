@@ -2,7 +2,9 @@
 
 use lapidary_cdrf::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/cdrf.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/cdrf.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(include_str!("../../../wgsl/cdrf.wgsl"), "\n", include_str!("../../../wgsl/naive/cdrf.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

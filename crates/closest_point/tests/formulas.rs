@@ -2,11 +2,9 @@
 
 use lapidary_closest_point::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/closest_point.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/closest_point.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/closest_point.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/closest_point.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

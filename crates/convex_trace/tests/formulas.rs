@@ -2,11 +2,9 @@
 
 use lapidary_convex_trace::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/convex_trace.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/convex_trace.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/convex_trace.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/convex_trace.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,8 +2,9 @@
 
 use lapidary_curvature::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/curvature.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/curvature.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module =
-        concat!(include_str!("../../../wgsl/curvature.wgsl"), "\n", include_str!("../../../wgsl/naive/curvature.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_dispersion::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/dispersion.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/dispersion.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/dispersion.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/dispersion.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_environment::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/environment.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/environment.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/environment.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/environment.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,8 +2,9 @@
 
 use lapidary_fresnel::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/fresnel.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/fresnel.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module =
-        concat!(include_str!("../../../wgsl/fresnel.wgsl"), "\n", include_str!("../../../wgsl/naive/fresnel.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_microfacet::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/microfacet.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/microfacet.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/microfacet.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/microfacet.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

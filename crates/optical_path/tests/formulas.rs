@@ -2,11 +2,9 @@
 
 use lapidary_optical_path::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/optical_path.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/optical_path.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/optical_path.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/optical_path.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_proxy_geometry::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/proxy_geometry.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/proxy_geometry.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/proxy_geometry.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/proxy_geometry.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

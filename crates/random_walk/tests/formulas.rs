@@ -2,11 +2,9 @@
 
 use lapidary_random_walk::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/random_walk.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/random_walk.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/random_walk.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/random_walk.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

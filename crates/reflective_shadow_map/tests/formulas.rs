@@ -2,11 +2,9 @@
 
 use lapidary_reflective_shadow_map::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/reflective_shadow_map.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/reflective_shadow_map.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/reflective_shadow_map.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/reflective_shadow_map.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_refraction::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/refraction.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/refraction.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/refraction.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/refraction.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,7 +2,9 @@
 
 use lapidary_srgb::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/srgb.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/srgb.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(include_str!("../../../wgsl/srgb.wgsl"), "\n", include_str!("../../../wgsl/naive/srgb.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

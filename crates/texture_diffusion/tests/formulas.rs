@@ -2,11 +2,9 @@
 
 use lapidary_texture_diffusion::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/texture_diffusion.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/texture_diffusion.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/texture_diffusion.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/texture_diffusion.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,8 +2,9 @@
 
 use lapidary_veins::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/veins.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/veins.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module =
-        concat!(include_str!("../../../wgsl/veins.wgsl"), "\n", include_str!("../../../wgsl/naive/veins.wgsl"));
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

@@ -2,11 +2,9 @@
 
 use lapidary_voxelization::formulas::formulas;
 
+const MODULE: &str = include_str!("../../../wgsl/voxelization.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/voxelization.wgsl");
+
 fn main() -> std::process::ExitCode {
-    let module = concat!(
-        include_str!("../../../wgsl/voxelization.wgsl"),
-        "\n",
-        include_str!("../../../wgsl/naive/voxelization.wgsl")
-    );
-    lapidary_assay::module::test(module, formulas())
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
 }

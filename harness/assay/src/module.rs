@@ -4,7 +4,7 @@
 //!
 //! ```ignore
 //! fn main() -> std::process::ExitCode {
-//!     lapidary_assay::module::test(include_str!("../refraction.wgsl"), formulas())
+//!     lapidary_assay::module::test(&[include_str!("../refraction.wgsl")], formulas())
 //! }
 //! ```
 
@@ -17,16 +17,20 @@ use crate::property::{DEFAULT_CASES, Settings};
 use lapidary_gpu::Gpu;
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// How many times as many inputs a run has that has missed a rare edge.
 const MORE: u64 = 16;
 
-/// Tests each formula's function in `source`, whose comment states its bounds in an `Accuracy:` line: random inputs, hard cases, promises outside
-/// of the domain and the inputs beside branches. Takes libtest's arguments.
-pub fn test(source: &'static str, formulas: Vec<Formula>) -> ExitCode {
+/// Tests each formula's function in `sources`, which are joined to one text: a module and its naive forms. The function's comment states its
+/// bounds in an `Accuracy:` line. Tested are random inputs, hard cases, promises outside of the domain and the inputs beside branches. Takes
+/// libtest's arguments.
+pub fn test(sources: &[&str], formulas: Vec<Formula>) -> ExitCode {
+    let source: Arc<str> = sources.join("\n").into();
     let trial = |formula: Formula| {
         let kind = if formula.benign.is_some() { "naive" } else { "" };
-        Trial::ignorable_test(formula.function, move || completion(source, &formula)).with_kind(kind)
+        let source = Arc::clone(&source);
+        Trial::ignorable_test(formula.function, move || completion(&source, &formula)).with_kind(kind)
     };
     libtest_mimic::run(&Arguments::from_args(), formulas.into_iter().map(trial).collect()).exit_code()
 }

@@ -1,6 +1,8 @@
 //! The socket, the page's turns, and the process.
 //!
-//! Not a file and the DOM that `--dump-dom` prints: Chromium's virtual time runs on while its GPU process compiles, so that the DOM may be printed before it holds anything.
+//! A file, or the DOM that `--dump-dom` prints, would not do instead of the socket: Chromium's
+//! virtual time continues while its GPU process compiles, so the DOM may be printed before it
+//! contains anything.
 
 use crate::{Adapter, BrowserError};
 use serde::{Deserialize, Serialize};
@@ -13,13 +15,14 @@ use tiny_http::{Header, Request, Response, Server};
 
 const PAGE: &str = include_str!("page.html");
 
-/// For one answer. The longest job is the compilation of all of a program's texts, which takes seconds.
+/// Maximum time to wait for one answer. The longest job compiles all texts of a program, which
+/// takes seconds.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// For Chromium to end by itself, so that it leaves its folder to be removed.
+/// Maximum time for Chromium to exit by itself, so that its folder can be removed.
 const FAREWELL: Duration = Duration::from_secs(5);
 
-/// A message's head, as JSON, and its bytes.
+/// A message: its head as JSON, and its bytes.
 type Answer = (Vec<u8>, Vec<u8>);
 
 /// A browser with the page open.
@@ -27,9 +30,9 @@ pub(crate) struct Connection {
     server: Server,
     child: Child,
     log: PathBuf,
-    /// The page's question for its next job.
+    /// The page's pending request for its next job; `None` while it has none.
     turn: Option<Request>,
-    /// What keeps the page loading, and so Chromium from ending.
+    /// Open requests that keep the page loading, and thereby keep Chromium running.
     ends: Vec<Request>,
     _folder: tempfile::TempDir,
 }
@@ -55,7 +58,7 @@ impl Connection {
         Ok(Connection { server, child, log, turn: None, ends: Vec::new(), _folder: folder })
     }
 
-    /// What the page says first.
+    /// Waits for the page's first message.
     pub(crate) fn greeting(&mut self) -> Result<Answer, BrowserError> {
         self.answer()
     }
@@ -68,7 +71,7 @@ impl Connection {
         self.answer()
     }
 
-    /// Answers what the page asks, until it hands in an answer of its own.
+    /// Serves the page's requests until it hands in an answer.
     fn answer(&mut self) -> Result<Answer, BrowserError> {
         #[derive(Deserialize)]
         struct Refusal {
@@ -81,7 +84,7 @@ impl Connection {
                 Some(request) if request.url() == "/" => {
                     let kind = Header::from_bytes("Content-Type", "text/html; charset=utf-8");
                     let kind = kind.unwrap_or_else(|()| unreachable!("a header's name and value"));
-                    // Where Chromium has gone, the wait below notices.
+                    // If Chromium has exited, the check below notices.
                     let _ = request.respond(Response::from_string(PAGE).with_header(kind));
                 }
                 Some(request) if request.url() == "/end" => self.ends.push(request),
@@ -108,7 +111,8 @@ impl Connection {
         }
     }
 
-    /// Lets the page, and Chromium with it, come to its end; or ends it.
+    /// Lets the page finish, and Chromium with it. If it does not, dropping the connection kills
+    /// it.
     pub(crate) fn end(&mut self, job: &impl Serialize) {
         if let (Some(turn), Ok(message)) = (self.turn.take(), packed(job, &[])) {
             let _ = turn.respond(Response::from_data(message));
@@ -121,7 +125,7 @@ impl Connection {
             if let Ok(Some(_)) = self.child.try_wait() {
                 return;
             }
-            // The page's picture may be asked for only now.
+            // The page may request its image only now.
             if let Ok(Some(request)) = self.server.recv_timeout(Duration::from_millis(5)) {
                 let _ = request.respond(Response::empty(204));
             }
@@ -131,7 +135,7 @@ impl Connection {
 
 impl Drop for Connection {
     fn drop(&mut self) {
-        // Nothing is left to kill where it has ended by itself.
+        // If the process has exited, there is nothing left to kill.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -139,7 +143,8 @@ impl Drop for Connection {
 
 fn start(program: &Path, adapter: Adapter, address: &str, profile: &Path, log: &Path) -> io::Result<Child> {
     let mut command = Command::new(program);
-    // It shows this process's page alone; and root, which runs most containers, has no sandbox.
+    // Chromium shows only this process's page; and as root, which most containers run as, it has no
+    // sandbox.
     command.args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"]);
     command.arg("--enable-unsafe-webgpu");
     if adapter == Adapter::SwiftShader {
@@ -147,7 +152,7 @@ fn start(program: &Path, adapter: Adapter, address: &str, profile: &Path, log: &
     }
     command
         .arg(format!("--user-data-dir={}", profile.display()))
-        // Ends it once the page is loaded.
+        // Makes Chromium exit once the page is loaded.
         .args(["--dump-dom", address])
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -155,7 +160,7 @@ fn start(program: &Path, adapter: Adapter, address: &str, profile: &Path, log: &
         .spawn()
 }
 
-/// The head's length, the head, the bytes.
+/// Packs a message: the length of the head, the head, and the bytes.
 fn packed(head: &impl Serialize, parts: &[&[u8]]) -> Result<Vec<u8>, BrowserError> {
     let head = serde_json::to_vec(head).map_err(fault)?;
     let length = u32::try_from(head.len()).map_err(fault)?;
@@ -172,7 +177,7 @@ fn unpacked(mut message: Vec<u8>) -> Result<Answer, BrowserError> {
     Ok((message.split_off(4), bytes))
 }
 
-/// The end of what it wrote on stderr.
+/// Returns the last lines that Chromium wrote to stderr.
 fn last_lines(log: &Path) -> String {
     let text = std::fs::read(log).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);

@@ -1,7 +1,7 @@
-//! A browser's WebGPU from Rust: a second compiler of WGSL (Tint) and other drivers than one's own.
+//! A browser's WebGPU from Rust: a second WGSL compiler (Tint), and drivers other than one's own.
 //!
-//! Chromium runs without a window on a page of this process. The page asks for jobs over a socket of this machine, does them and hands in the answers: it knows no
-//! shader, and this crate no technique.
+//! Chromium runs headless on a page served by this process. The page asks for jobs over a local
+//! socket, does them and returns the answers: it contains no shader, and this crate no technique.
 //!
 //! ```no_run
 //! use lapidary_browser::{Adapter, Browser, Buffer, Compute};
@@ -23,27 +23,27 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The programs that are looked for on the PATH.
+/// Names of the programs searched for on the PATH.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Why a browser gave no answer.
+/// The reasons why a browser gave no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum BrowserError {
-    /// It cannot be started or spoken to.
+    /// The browser cannot be started, or the connection fails.
     #[error("{0}")]
     Connection(String),
-    /// Its WebGPU refused the job.
+    /// The browser's WebGPU refused the job.
     #[error("{0}")]
     Refused(String),
 }
 
-/// Which adapter the browser takes.
+/// The adapter that the browser uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Adapter {
-    /// SwiftShader, which Chromium brings along: the same on every machine.
+    /// SwiftShader, which is part of Chromium: the same on every machine.
     #[default]
     SwiftShader,
-    /// The one that the browser takes by itself: the machine's GPU, where it has one.
+    /// The browser's own choice: the machine's GPU if it has one.
     Own,
 }
 
@@ -59,42 +59,42 @@ impl std::str::FromStr for Adapter {
     }
 }
 
-/// What the compiler says of a text.
+/// A compiler message about a text.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Message {
-    /// `error`, `warning` or `info`.
+    /// Severity: `error`, `warning` or `info`.
     pub kind: String,
-    /// What it says.
+    /// Text of the message.
     pub text: String,
-    /// From 1; 0 where the message is of no line.
+    /// Line number from 1; 0 if the message belongs to no line.
     pub line: usize,
 }
 
-/// A storage buffer of group 0; its binding is its place in the list.
+/// A storage buffer of group 0; its position in the list is its binding.
 #[derive(Clone, Copy, Debug)]
 pub struct Buffer<'a> {
-    /// Bytes.
+    /// Size in bytes.
     pub size: usize,
-    /// What it holds before; zeros where left out.
+    /// Initial contents; `None` means zeros.
     pub filled: Option<&'a [u8]>,
-    /// Whether what it holds after the dispatch comes back.
+    /// Whether the contents are returned after the dispatch.
     pub read: bool,
 }
 
 /// One dispatch of a compute shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Compute<'a> {
-    /// WGSL; compiled once for all dispatches of the same text and entry point.
+    /// WGSL source; compiled once for all dispatches with the same text and entry point.
     pub code: &'a str,
-    /// The entry point.
+    /// Name of the entry point.
     pub entry: &'a str,
-    /// The buffers of group 0.
+    /// The buffers of group 0, in the order of their bindings.
     pub buffers: &'a [Buffer<'a>],
-    /// Workgroups along each axis.
+    /// Number of workgroups along each axis.
     pub workgroups: [u32; 3],
 }
 
-/// What the page is asked to do.
+/// A job for the page.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Job<'a> {
@@ -110,24 +110,24 @@ struct Size {
     read: bool,
 }
 
-/// A browser at work; it ends with its last owner, at [`Browser::close`], or with this process.
+/// A running browser; it ends with its last owner, at [`Browser::close`], or with this process.
 #[derive(Debug)]
 pub struct Browser {
     adapter: String,
     choice: Adapter,
-    /// None once it is closed.
+    /// `None` once the browser is closed.
     state: Mutex<Option<State>>,
 }
 
 #[derive(Debug)]
 struct State {
     connection: Connection,
-    /// Numbers of texts with an entry point.
+    /// Job key of each pair of text and entry point.
     keys: BTreeMap<(String, String), usize>,
 }
 
 impl Browser {
-    /// The first Chromium or Chrome on the PATH.
+    /// Returns the path of the first Chromium or Chrome on the PATH; `None` if there is none.
     pub fn find() -> Option<PathBuf> {
         let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
         NAMES.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name))).find(|path| path.is_file())
@@ -136,7 +136,7 @@ impl Browser {
     /// Starts `program`.
     ///
     /// # Errors
-    /// Where it cannot be started, or has no WebGPU.
+    /// Returns an error if the browser cannot be started, or has no WebGPU.
     pub fn start(program: &Path, adapter: Adapter) -> Result<Browser, BrowserError> {
         #[derive(Deserialize)]
         struct Greeting {
@@ -159,20 +159,20 @@ impl Browser {
         })
     }
 
-    /// The adapter's name, as the browser tells it.
+    /// Returns the adapter's name, as reported by the browser.
     pub fn adapter(&self) -> &str {
         &self.adapter
     }
 
-    /// Which one it was asked to take.
+    /// Returns the adapter that the browser was asked to use.
     pub fn choice(&self) -> Adapter {
         self.choice
     }
 
-    /// What the compiler says of each text.
+    /// Returns the compiler's messages on each text.
     ///
     /// # Errors
-    /// Where the browser is gone.
+    /// Returns an error if the browser is gone.
     pub fn messages(&self, texts: &[&str]) -> Result<Vec<Vec<Message>>, BrowserError> {
         #[derive(Deserialize)]
         struct Answer {
@@ -185,10 +185,10 @@ impl Browser {
         Ok(messages)
     }
 
-    /// Runs a compute shader; returns the buffers that are read, in order.
+    /// Runs a compute shader; returns the contents of the buffers with `read` set, in order.
     ///
     /// # Errors
-    /// Where the browser is gone, or its WebGPU refuses the shader or the buffers.
+    /// Returns an error if the browser is gone, or if its WebGPU refuses the shader or the buffers.
     pub fn compute(&self, compute: &Compute<'_>) -> Result<Vec<Vec<u8>>, BrowserError> {
         let Compute { code, entry, buffers, workgroups } = *compute;
         let mut guard = self.state();
@@ -214,7 +214,7 @@ impl Browser {
         .collect()
     }
 
-    /// Ends it. Whatever is asked afterwards fails.
+    /// Closes the browser. All later calls fail.
     pub fn close(&self) {
         if let Some(mut state) = self.state().take() {
             state.connection.end(&Job::End);

@@ -1,4 +1,5 @@
-//! `cook check`: the property tests of a formula, on the cookbook's WGSL or on the user's own copy of it.
+//! `cook check`: the property tests of a formula, run on the cookbook's WGSL or on the user's own
+//! copy.
 
 pub mod bounds;
 pub mod difference;
@@ -29,36 +30,37 @@ use lapidary_gpu::Gpu;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Why a check could not run; a check that ran and failed is a report.
+/// Why a check could not run; a check that ran and failed is a report instead.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
-    /// No such module or function.
+    /// There is no such module or function.
     #[error("{0}")]
     Unknown(String),
-    /// A user's file is not to be read, or nothing of it can be checked.
+    /// A user's file cannot be read, or nothing in it can be checked.
     #[error("{0}")]
     File(String),
-    /// The source or the device refused.
+    /// The source was rejected or the device failed.
     #[error("{}", at_line(path, error))]
     Dispatch {
-        /// Whose source.
+        /// Path of the source.
         path: String,
-        /// What is the matter.
+        /// The underlying error.
         error: DispatchError,
     },
-    /// The kept inputs could not be read or written.
+    /// The stored failing inputs could not be read or written.
     #[error(transparent)]
     Persistence(#[from] PersistenceError),
 }
 
-/// Where the cookbook's own failing inputs are kept and replayed from: in the folder of what is built, `CARGO_TARGET_DIR`, else the cookbook's `target`.
+/// Returns the folder in which the cookbook's own failing inputs are stored and from which they are
+/// replayed: inside the build folder, which is `CARGO_TARGET_DIR` or else the cookbook's `target`.
 pub fn failures() -> Regressions {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let target = target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"));
     Regressions::in_folder(target.join("lapidary/failures"))
 }
 
-/// File and line, as compilers write them, where there is a line.
+/// Formats file and line (if known) the way compilers do.
 fn at_line(path: &str, error: &DispatchError) -> String {
     match error {
         DispatchError::Fault { line: Some(line), message } => format!("{path}:{line}: {message}"),
@@ -69,88 +71,95 @@ fn at_line(path: &str, error: &DispatchError) -> String {
 /// A row of `cook check`'s table.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Row {
-    /// Whether the formula holds.
+    /// Whether the formula passed.
     pub passed: bool,
-    /// The module.
+    /// Name of the module.
     pub module: String,
-    /// The WGSL function.
+    /// Name of the WGSL function.
     pub function: String,
-    /// Inputs tested.
+    /// Number of inputs tested.
     pub cases: u64,
-    /// Inputs that failed.
+    /// Number of inputs that failed.
     pub failed: u64,
-    /// Results with a NaN or an infinity.
+    /// Number of results with a NaN or an infinity.
     pub nonfinite: u64,
-    /// Inputs at which a loop took more turns than the kernel follows, so that the result says nothing; they count as failed.
+    /// Number of inputs for which a loop exceeded the kernel's iteration limit, so that the result
+    /// is meaningless; they count as failed.
     pub stopped: u64,
-    /// Forward error against the oracle in ulp of the exact value's largest component.
+    /// Largest forward error against the oracle, in ulp of the exact value's largest component.
     pub max_ulp: f64,
-    /// The same, at the 99th percentile.
+    /// 99th percentile of the forward error, in the same unit.
     pub p99_ulp: f64,
-    /// The same, the median.
+    /// Median of the forward error, in the same unit.
     pub median_ulp: f64,
-    /// Largest error over allowed error.
+    /// Largest ratio of the error to the allowed error.
     pub worst_ratio: f64,
-    /// The input of that error.
+    /// The input with that ratio.
     pub worst_input: String,
-    /// The simplest input found that fails as well; null where nothing failed.
+    /// The simplest failing input that was found; `None` (null in JSON) if nothing failed.
     pub shrunk_input: Option<String>,
-    /// What the worst input broke; null where nothing failed.
+    /// The condition that the worst input violated; `None` (null) if nothing failed.
     pub reason: Option<String>,
-    /// What the simplest failing input gives; null where nothing failed.
+    /// Result for the simplest failing input; `None` (null) if nothing failed.
     pub failure: Option<Failure>,
-    /// Hard cases tested.
+    /// Number of hard cases tested.
     pub hard_cases: usize,
-    /// Those that hold.
+    /// Number of hard cases that hold.
     pub held_hard_cases: usize,
-    /// Hard cases that do not hold, by name, with the distance from the limit.
+    /// Names of the hard cases that do not hold, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
-    /// Promises of the `Outside:` line that do not hold, with the input at which they do not.
+    /// Promises of the `Outside:` line that do not hold, each with an input that breaks it.
     pub broken_promises: Vec<String>,
-    /// Branches beside which a result is wrong, one float to either side, with the input at which it is.
+    /// Branches next to which a result is wrong, one float to either side, each with the input.
     pub broken_branches: Vec<String>,
-    /// An input that holds by chance, and not on the worst device that WGSL allows; null where there is none, or no such device was asked for.
+    /// An input that passes by chance, but not on the worst device that WGSL allows; `None` (null)
+    /// if there is none or if no such device was requested.
     pub worst_choices: Option<String>,
-    /// What was taken to hold where WGSL states no accuracy; empty on an adapter.
+    /// Assumptions made where WGSL states no accuracy; empty on an adapter.
     pub assumptions: Vec<String>,
-    /// Why inputs beside branches were not tested: what the interpreter cannot run; null where they were.
+    /// Why inputs next to branches were not tested, namely what the interpreter cannot run; `None`
+    /// (null) if they were tested.
     pub branches_untested: Option<String>,
-    /// The largest first-order allowance of an input over the bound stated: above 1 the bound is too low, far below 1 it is too high. Null where none was asked for.
+    /// Largest ratio of an input's first-order allowance to the stated bound: above 1 the bound is
+    /// too low, far below 1 it is too high. `None` (null) if no allowance was requested.
     pub allowance: Option<f64>,
-    /// That input.
+    /// The input with that ratio; `None` (null) if no allowance was requested.
     pub allowance_input: Option<String>,
-    /// The same of each field of the result that is a float.
+    /// The same ratio for each floating-point field of the result.
     pub allowances: Vec<Field>,
-    /// Where the browser's results have other bits than the adapter's; null where no browser was asked.
+    /// Differences in bits between the browser's results and the adapter's; `None` (null) without a
+    /// browser.
     pub difference: Option<Difference>,
-    /// The input of the largest distance between the two; null where there is none.
+    /// The input with the largest distance between the two; `None` (null) if there is none.
     pub difference_input: Option<String>,
-    /// Edges of the domain that the run did not reach.
+    /// Edges of the domain that no input reached.
     pub missed_edges: Vec<String>,
-    /// The newest release whose function the user's is; null where it is none's, or the cookbook's own was checked.
+    /// The newest release that contains the user's function; `None` (null) if no release does, or
+    /// if the cookbook's own function was checked.
     pub release: Option<String>,
-    /// What was changed in the function since that release.
+    /// Changes to the function since that release.
     pub changed_since: Vec<String>,
-    /// The file that the simplest failing input was written to; null where none was.
+    /// The file in which the simplest failing input was stored; `None` (null) if there is none.
     pub kept_in: Option<String>,
-    /// Wall-clock time.
+    /// Wall-clock time in seconds.
     pub seconds: f64,
-    /// The command that runs this again.
+    /// The command that repeats this check.
     pub reproduce: String,
-    /// The seeds from which inputs were drawn, so many from each.
+    /// The seeds of the inputs; each seed gives the same number of inputs.
     pub seeds: Vec<u64>,
-    /// The distribution behind the quantiles; a [`record::Record`] keeps it.
+    /// The distribution from which the quantiles are computed; a [`record::Record`] stores it.
     #[serde(skip)]
     pub ulps: Histogram,
 }
 
 impl Row {
-    /// Whether the formula holds. Edges count from the default number of cases on: a shorter run may well miss some.
+    /// Whether the formula passed. Missed edges count only from the default number of cases on,
+    /// because a shorter run may well miss some.
     pub fn passed(&self) -> bool {
         self.passed
     }
 
-    /// Whether nothing wrong was found, whatever edges the inputs reached.
+    /// Whether no error was found, regardless of which edges the inputs reached.
     pub fn is_right(&self) -> bool {
         let broken = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
         self.failed == 0 && self.worst_choices.is_none() && broken.into_iter().all(Vec::is_empty)
@@ -162,9 +171,9 @@ impl Row {
 pub enum On<'gpu> {
     /// An adapter.
     Adapter(&'gpu Gpu),
-    /// Devices that err as far as WGSL lets them: the interpreter, without an adapter.
+    /// Devices that err as far as WGSL allows: the interpreter, without an adapter.
     Slack(Reassociation),
-    /// A browser's WebGPU, and the adapter that its results are laid beside.
+    /// A browser's WebGPU, and the adapter that its results are compared with.
     Browser(&'gpu Browser, &'gpu Gpu),
 }
 
@@ -174,27 +183,28 @@ impl<'gpu> From<&'gpu Gpu> for On<'gpu> {
     }
 }
 
-/// The source that a check runs on.
+/// The source that is checked.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<'a> {
-    /// The cookbook's own.
+    /// The cookbook's own source.
     Cookbook,
-    /// The user's copy: path for messages, and text. The tolerance stays the cookbook's.
+    /// The user's copy: path for messages, and text. The tolerance is still the cookbook's.
     Copy(&'a str, &'a str),
 }
 
-/// The function's comment in the cookbook.
+/// Returns the function's documentation in the cookbook.
 ///
 /// # Panics
-/// Where a formula is declared for a function that the cookbook does not have, which a test forbids.
+/// If a formula is declared for a function that the cookbook does not have, which a test rules out.
 pub fn documentation(formula: &Formula) -> &'static FunctionDoc {
     cookbook::module(formula.module)
         .and_then(|module| module.function(formula.function))
         .unwrap_or_else(|| panic!("wgsl/{}.wgsl has no function `{}`", formula.module, formula.function))
 }
 
-/// The formulas that `filter` names: all, a module's, or one function's (`refraction::refract` or
-/// `refraction::refraction_refract`). Naive forms are left out unless named.
+/// Returns the formulas that `filter` selects: all (`None`), those of a module, or one function's
+/// (`refraction::refract` or `refraction::refraction_refract`). Naive forms are only included by
+/// name.
 pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError> {
     let promised = |formula: &&Formula| formula.benign.is_none();
     let Some(filter) = filter else { return Ok(formulas::all().iter().filter(promised).collect()) };
@@ -218,20 +228,22 @@ pub fn select(filter: Option<&str>) -> Result<Vec<&'static Formula>, CheckError>
     })
 }
 
-/// The tolerance of a formula there: that of its `Accuracy:` line, or of its benign domain for a naive form.
+/// Returns the tolerance of a formula on a device: from its `Accuracy:` line, or from its benign
+/// domain for a naive form.
 ///
 /// # Panics
-/// Where a naive form has no benign domain, which a test forbids.
+/// If a naive form has no benign domain, which a test rules out.
 pub fn tolerance<'gpu>(on: impl Into<On<'gpu>>, formula: &Formula) -> Tolerance {
     let lavapipe = matches!(on.into(), On::Adapter(gpu) if gpu.is_lavapipe());
     let promised = examination::tolerance(formula, &documentation(formula).accuracy, lavapipe);
     promised.unwrap_or_else(|fault| panic!("{fault}"))
 }
 
-/// Whether a check can begin: the source is valid, and the signature the mirror's. On an adapter the function is compiled, beside a browser too.
+/// Checks that the source is valid and that the signature matches the mirror's. On an adapter,
+/// including one that is compared with a browser, the function is also compiled.
 ///
 /// # Errors
-/// Where it cannot.
+/// Returns an error if one of these fails.
 pub fn prepare(on: On<'_>, formula: &Formula, source: Source<'_>) -> Result<(), CheckError> {
     match on {
         On::Adapter(gpu) | On::Browser(_, gpu) => kernel(gpu, formula, source).map(|_| ()),
@@ -247,7 +259,7 @@ pub fn prepare(on: On<'_>, formula: &Formula, source: Source<'_>) -> Result<(), 
     }
 }
 
-/// Reflects, checks the signature against the mirror's, and compiles.
+/// Parses the source, compares the signature with the mirror's, and compiles the kernel.
 pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Result<Kernel<'gpu>, CheckError> {
     let (path, text) = located(formula, source);
     let in_path = |error| CheckError::Dispatch { path: path.clone(), error };
@@ -259,11 +271,11 @@ pub fn kernel<'gpu>(gpu: &'gpu Gpu, formula: &Formula, source: Source<'_>) -> Re
     Ok(kernel.portable(!gpu.is_lavapipe()))
 }
 
-/// Runs the property tests of one formula. Failing inputs of the cookbook's own are kept in the target folder, and go first
-/// in later runs; those of a user's copy are not kept.
+/// Runs the property tests of one formula. Failing inputs of the cookbook's own source are stored
+/// in the target folder and tested first in later runs; those of a user's copy are not stored.
 ///
 /// # Errors
-/// Where the check cannot run.
+/// Returns an error if the check cannot run.
 pub fn run<'gpu>(
     on: impl Into<On<'gpu>>,
     formula: &Formula,
@@ -276,12 +288,14 @@ pub fn run<'gpu>(
     }
 }
 
-/// The same with another place for failing inputs, or none. What is kept there goes first where the cookbook's own is
-/// tested, never into the test of a user's copy. The inputs of the hard cases go first always. Of devices that err as far as they may nothing is kept:
-/// a failing input fails again.
+/// Runs the same tests as [`run`] with a different store for failing inputs, or none.
+///
+/// Stored inputs are tested first for the cookbook's own source, and never for a user's copy. The
+/// inputs of the hard cases always come first. For devices that err as far as WGSL allows nothing
+/// is stored: a failing input fails again.
 ///
 /// # Errors
-/// Where the check cannot run.
+/// Returns an error if the check cannot run.
 pub fn run_keeping<'gpu>(
     on: impl Into<On<'gpu>>,
     formula: &Formula,
@@ -334,7 +348,7 @@ pub fn run_keeping<'gpu>(
     Ok(filled(row, formula, found, (settings.seed, reproduce(on, formula, source, settings))))
 }
 
-/// A source's path, for messages, and its text.
+/// Returns a source's path, for messages, and its text.
 fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
     match source {
         Source::Cookbook => {
@@ -345,7 +359,7 @@ fn located<'a>(formula: &Formula, source: Source<'a>) -> (String, &'a str) {
     }
 }
 
-/// The command that runs the same inputs again.
+/// Returns the command that runs the same inputs again.
 fn reproduce(on: On<'_>, formula: &Formula, source: Source<'_>, settings: Settings) -> String {
     let portable = match on {
         On::Adapter(_) => "",
@@ -399,7 +413,8 @@ fn filled(row: Row, formula: &Formula, found: Examination, (seed, reproduce): (u
     }
 }
 
-/// The input as a person reads it: shortest decimals that name the f32 exactly, vectors in parentheses.
+/// Formats the input for people: the shortest decimals that identify each f32 exactly, with vectors
+/// in parentheses.
 pub fn spell(formula: &Formula, words: &Words) -> String {
     let mut at = 0;
     let mut arguments = Vec::new();

@@ -1,26 +1,28 @@
-//! Pictures that are compared after the one exposure that brings them nearest.
+//! Compares pictures after applying the exposure that brings them closest.
 
-/// What `found` is to be multiplied by to come as near as it can to `truth`, in linear radiance by root mean square. Both are pixels of one size with
-/// coverage, which does not count. Of a picture without light no exposure is nearer than another: 1.
+/// Returns the factor that brings `found` closest to `truth`, by root mean square of linear
+/// radiance. Both are pixels of the same size; coverage is ignored. For a picture without light
+/// every exposure is equally good: 1.
 #[must_use]
 pub fn best_exposure(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
     let [both, own, _] = products(found, truth);
     if own > 0.0 { both / own } else { 1.0 }
 }
 
-/// Root mean square distance of linear radiance from `truth`, over the root mean square of that, after the [`best_exposure`].
+/// Returns the root mean square distance of linear radiance from `truth`, divided by the root mean
+/// square of `truth`, after applying [`best_exposure`].
 #[must_use]
 pub fn exposed_distance(found: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
     let [both, own, other] = products(found, truth);
     if ![both, own, other].into_iter().all(f64::is_finite) {
         return f64::INFINITY;
     }
-    // The least of |k a - b|^2 over k.
+    // The minimum of |k a - b|^2 over k.
     let nearer = if own > 0.0 { both * both / own } else { 0.0 };
     ((other - nearer).max(0.0) / other).sqrt()
 }
 
-/// The sums of a b, a a and b b over all pixels' channels.
+/// Returns the sums of a b, a a and b b over the colour channels of all pixels.
 fn products(found: &[[f32; 4]], truth: &[[f32; 4]]) -> [f64; 3] {
     let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
     for (found, truth) in found.iter().zip(truth) {
@@ -43,7 +45,7 @@ mod tests {
         let truth = [[1.0, 2.0, 0.0, 1.0], [0.0, 0.0, 2.0, 1.0]];
         let brighter = truth.map(|[r, g, b, _]| [3.0 * r, 3.0 * g, 3.0 * b, 0.0]);
         assert!(exposed_distance(&brighter, &truth) < 1e-7);
-        // Two of nine parts of the square can be met.
+        // Two ninths of the square can be matched.
         assert!(
             (exposed_distance(&[[0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 1.0, 1.0]], &truth).powi(2) - 7.0 / 9.0).abs() < 1e-12
         );

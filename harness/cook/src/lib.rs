@@ -1,5 +1,5 @@
-//! The command line of the Lapidary cookbook, `cook`: it checks every WGSL function against its mirror and its f64 oracle, measures the ladders, compares
-//! the pictures and builds the gallery.
+//! The Lapidary cookbook's command line, `cook`: it checks every WGSL function against its mirror
+//! and its f64 oracle, measures the ladders, compares the pictures and builds the gallery.
 
 pub mod builtins;
 pub mod check;

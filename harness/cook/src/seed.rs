@@ -1,30 +1,32 @@
-//! The suite's seed: derived from the commit, so that each change meets other inputs, and a run on the same commit the same ones.
+//! The suite's seed, derived from the commit: each change is tested with different inputs, and
+//! repeated runs on one commit with the same ones.
 
 use lapidary_assay::draws::mix;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-/// Overrides the suite's seed: a whole number, as a failing run prints it.
+/// Environment variable that overrides the suite's seed: a whole number, as printed by a failing
+/// run.
 pub const SEED_VARIABLE: &str = "LAPIDARY_SEED";
 
-/// Where there is no commit to derive it from, as in an unpacked archive.
+/// The seed if there is no commit to derive it from, as in an unpacked archive.
 const WITHOUT_COMMIT: u32 = 0x1a91_da21;
 
-/// A seed and what it was derived from.
+/// A seed and its origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SuiteSeed {
-    /// The seed. It fits 32 bits, to be typed again.
+    /// The seed; it fits 32 bits, so that it is easy to retype.
     pub value: u64,
-    /// Where it comes from, for the first line of a run.
+    /// Description of the origin, for the first line of a run.
     pub origin: String,
 }
 
 impl SuiteSeed {
-    /// The suite's seed: that of the environment, else that of the commit, else a fixed one.
+    /// Returns the suite's seed: from the environment, else from the commit, else a fixed one.
     ///
     /// # Errors
-    /// Where the environment's is no whole number.
+    /// Returns an error if the environment's value is not a whole number.
     pub fn of_environment() -> Result<&'static SuiteSeed, String> {
         static SEED: OnceLock<Result<SuiteSeed, String>> = OnceLock::new();
         SEED.get_or_init(|| {
@@ -35,13 +37,13 @@ impl SuiteSeed {
         .map_err(Clone::clone)
     }
 
-    /// Another seed of the same commit, for a second run over other inputs.
+    /// Returns another seed of the same commit, for a second run with different inputs.
     pub fn second(&self) -> u64 {
         mix(self.value) >> 32
     }
 }
 
-/// The tree of the commit that is checked out, and whether files differ from it.
+/// The tree of the checked-out commit, and whether files differ from it.
 struct Tree {
     id: String,
     changed: bool,
@@ -62,7 +64,7 @@ fn derive(variable: Option<&str>, tree: impl FnOnce() -> Option<Tree>) -> Result
     Ok(SuiteSeed { value, origin: format!("from the commit's tree {}{note}", id.get(..12).unwrap_or(&id)) })
 }
 
-/// Of the folder itself: an archive unpacked inside of another repository has none.
+/// Returns the tree of the folder itself; `None` for an archive unpacked inside another repository.
 fn tree_of(folder: &Path) -> Option<Tree> {
     let git = |arguments: &[&str]| -> Option<String> {
         let output = Command::new("git").arg("-C").arg(folder).args(arguments).stderr(Stdio::null()).output().ok()?;

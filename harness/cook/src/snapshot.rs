@@ -1,4 +1,5 @@
-//! The pictures that are committed, and how a new one is compared with them: FLIP on what is seen, RMSE on linear radiance.
+//! The committed pictures, and how a new one is compared with them: FLIP on the encoded picture,
+//! RMSE on linear radiance.
 
 pub mod beside_walks;
 mod comparison;
@@ -17,33 +18,33 @@ pub use shots::{SHOTS, Shot};
 use std::path::{Path, PathBuf};
 pub use walked::{WALKED, WalkedReference};
 
-/// Side of the PNG that is looked at.
+/// Width and height in pixels of the PNG for viewing.
 pub const PNG_SIDE: u32 = 512;
-/// Side of the EXR that holds linear radiance.
+/// Width and height in pixels of the EXR with linear radiance.
 pub const EXR_SIDE: u32 = 256;
-/// Largest committed file in bytes.
+/// Size limit of a committed file in bytes.
 pub const LARGEST_FILE: u64 = 512 * 1024;
-/// A committed picture: a file to look at and one of linear radiance.
+/// A committed picture: a PNG for viewing and an EXR with linear radiance.
 #[derive(Clone, Copy, Debug)]
 pub enum Committed {
-    /// Of one scene.
+    /// A picture of one scene.
     Shot(&'static Shot),
-    /// Of translucent stone in motion.
+    /// Translucent stone in motion.
     Strip,
-    /// Of translucent stone beside random walks.
+    /// Translucent stone compared with random walks.
     BesideWalks,
 }
 
 impl Committed {
-    /// Every one.
+    /// Number of committed pictures.
     pub const COUNT: usize = SHOTS.len() + 2;
 
-    /// Each once.
+    /// Returns each picture once.
     pub fn all() -> impl Iterator<Item = Self> {
         SHOTS.iter().map(Self::Shot).chain([Self::Strip, Self::BesideWalks])
     }
 
-    /// Its files' name.
+    /// Returns the common name of its files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -53,7 +54,7 @@ impl Committed {
         }
     }
 
-    /// Where they are.
+    /// Returns the folder of its files.
     #[must_use]
     pub fn folder(self) -> PathBuf {
         match self {
@@ -62,10 +63,10 @@ impl Committed {
         }
     }
 
-    /// Renders it anew, as its PNG and as its EXR would hold it.
+    /// Renders the picture anew, at the sizes of its PNG and its EXR.
     ///
     /// # Errors
-    /// Where its scene does not load, or the device refuses.
+    /// Returns an error if its scene does not load or if the device fails.
     pub fn render(self, gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
         match self {
             Self::Shot(shot) => render_shot(gpu, shot),
@@ -74,10 +75,10 @@ impl Committed {
         }
     }
 
-    /// The second of them alone: a quarter of the work.
+    /// Renders only the second of them, which is a quarter of the work.
     ///
     /// # Errors
-    /// As [`Committed::render`].
+    /// Returns an error as in [`Committed::render`].
     pub fn render_linear(self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
         match self {
             Self::Shot(shot) => Ok(render::render(gpu, &shot.open()?, &shot.settings(EXR_SIDE))?),
@@ -86,12 +87,13 @@ impl Committed {
     }
 }
 
-/// Where the pictures of a technique's recipes are.
+/// Returns the folder of the pictures of a technique's recipes.
 pub fn folder(technique: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../snapshots").join(technique)
 }
 
-/// A committed reference's linear radiance, and as it is seen with the settings' size and exposure.
+/// Reads a committed reference's linear radiance, and encodes it with the settings' size and
+/// exposure.
 pub(crate) fn reference_picture(gpu: &Gpu, path: &Path, settings: &Settings) -> Result<Picture, SnapshotError> {
     let (width, height) = (settings.width, settings.height);
     let linear: Vec<[f32; 4]> = read(path, (width, height))?.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
@@ -101,56 +103,56 @@ pub(crate) fn reference_picture(gpu: &Gpu, path: &Path, settings: &Settings) -> 
     Ok(picture)
 }
 
-/// Why a snapshot does not hold.
+/// Why a snapshot test failed.
 #[derive(Debug, thiserror::Error)]
 pub enum SnapshotError {
-    /// No reference: it is never made by itself.
+    /// The reference is missing; references are never generated automatically.
     #[error("{}: missing; look at the new picture, then accept it with `./cook snapshots --accept`", .0.display())]
     Missing(PathBuf),
-    /// A reference that cannot be decoded.
+    /// A reference cannot be decoded.
     #[error("{path}: unreadable: {reason}; restore it from version control")]
     Unreadable {
-        /// Which file.
+        /// Path of the reference.
         path: PathBuf,
-        /// The decoder's word.
+        /// The decoder's message.
         reason: String,
     },
-    /// A reference of another size.
+    /// A reference has the wrong size.
     #[error("{path}: is {found:?} pixels, expected {expected:?}; accept a new one with `./cook snapshots --accept`")]
     Size {
-        /// Which file.
+        /// Path of the reference.
         path: PathBuf,
-        /// Its size.
+        /// Width and height of the reference in pixels.
         found: (u32, u32),
-        /// The size rendered.
+        /// Width and height of the rendered picture in pixels.
         expected: (u32, u32),
     },
-    /// A pixel that is no number, or infinite.
+    /// A pixel is NaN or infinite.
     #[error(
         "{what}: pixel ({column}, {row}) is {value:?}; find out why, such a picture is never a reference nor like one"
     )]
     NotFinite {
-        /// Which picture.
+        /// Name of the picture.
         what: String,
-        /// Of the pixel, from the left.
+        /// Column of the pixel, from the left.
         column: u32,
-        /// Of the pixel, from the top.
+        /// Row of the pixel, from the top.
         row: u32,
-        /// What it holds.
+        /// Value of the pixel.
         value: [f32; 4],
     },
-    /// A file too large to commit.
+    /// A file is too large to commit.
     #[error("{path}: {bytes} bytes, at most {LARGEST_FILE} are committed")]
     TooLarge {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its size.
+        /// Size of the file in bytes.
         bytes: u64,
     },
-    /// No picture to compare.
+    /// The picture to compare could not be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// No scene to render.
+    /// The scene to render could not be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// A picture could not be written.
@@ -158,14 +160,14 @@ pub enum SnapshotError {
     File(#[from] file::FileError),
 }
 
-/// Renders `shot` as PNG and as EXR would hold it.
+/// Renders `shot` at the sizes of its PNG and its EXR.
 pub fn render_shot(gpu: &Gpu, shot: &Shot) -> Result<[Picture; 2], SnapshotError> {
     let scene = shot.open()?;
     let render = |side| render::render(gpu, &scene, &shot.settings(side));
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])
 }
 
-/// The same for another scene in the shot's place, with `source`, another text of its recipe.
+/// Renders another scene in place of the shot's; `source` replaces the text of the recipe.
 pub fn render_scene(gpu: &Gpu, shot: &Shot, scene: &Scene, source: &str) -> Result<[Picture; 2], SnapshotError> {
     let render = |side| render::render_with(gpu, scene, &shot.settings(side), source);
     Ok([render(PNG_SIDE)?, render(EXR_SIDE)?])

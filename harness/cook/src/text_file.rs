@@ -1,18 +1,21 @@
-//! Text files that a user names.
+//! Reading of text files named by the user.
 
 use std::io::Read as _;
 use std::path::Path;
 
-/// The text of a regular file of at most `most_bytes`, without a byte order mark. An error is one line with the file's name.
+/// Returns the text of a regular file of at most `most_bytes`, without a byte order mark. An error
+/// is a single line with the file's name.
 pub fn read(path: &Path, most_bytes: u64) -> Result<String, String> {
     let unreadable = |reason: &str| format!("{}: cannot be read: {reason}", path.display());
-    // Devices and pipes may never end. Asked before the file is opened, because opening a pipe waits for its other end.
+    // Devices and pipes may never end. Checked before the file is opened, because opening a pipe
+    // waits for its other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(&error.to_string()))?;
     if !metadata.is_file() {
         return Err(unreadable("it is not a regular file"));
     }
     let mut bytes = Vec::new();
-    // What its size says may not be so: it may grow, or be made up as it is read, as below /proc.
+    // The reported size may be wrong: the file may grow, or be generated while it is read, as below
+    // /proc.
     std::fs::File::open(path)
         .and_then(|file| file.take(most_bytes + 1).read_to_end(&mut bytes))
         .map_err(|error| unreadable(&error.to_string()))?;

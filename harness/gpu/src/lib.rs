@@ -1,4 +1,5 @@
-//! The device that everything runs on: which adapter, why that one, and how bytes come back from it.
+//! The device that everything runs on: which adapter, why that one, and how bytes are read back
+//! from it.
 //!
 //! ```no_run
 //! use lapidary_gpu::{AdapterChoice, Gpu};
@@ -11,22 +12,22 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Which adapter to run on (`--adapter`).
+/// The adapter to run on (`--adapter`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// Mesa's software Vulkan device, the reference that the accuracy bounds are stated for.
+    /// Mesa's software Vulkan device, the reference for which the accuracy bounds are stated.
     Lavapipe,
     /// The first adapter that the system offers.
     Any,
-    /// The first adapter whose name holds this text, in any case.
+    /// The first adapter whose name contains this text, ignoring case.
     Named(String),
 }
 
-/// The environment variable that stands for `--adapter`, for the tests too.
+/// Environment variable that replaces `--adapter`, also for the tests.
 pub const ADAPTER_VARIABLE: &str = "LAPIDARY_ADAPTER";
 
 impl AdapterChoice {
-    /// What the environment asks for, else the platform's default.
+    /// Returns the choice from the environment, or the platform's default.
     pub fn from_environment() -> Self {
         let asked = std::env::var(ADAPTER_VARIABLE).ok().and_then(|text| text.parse().ok());
         asked.unwrap_or_else(Self::platform_default)
@@ -51,7 +52,7 @@ impl std::str::FromStr for AdapterChoice {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Ok(match text {
-            // Every name holds the empty one, so it would choose at random.
+            // Every name contains the empty string, so it would choose at random.
             "" => return Err("expected lavapipe, any, or part of an adapter's name"),
             "lavapipe" => Self::Lavapipe,
             "any" => Self::Any,
@@ -74,10 +75,10 @@ fn is_lavapipe(info: &wgpu::AdapterInfo) -> bool {
     info.driver.contains("llvmpipe") || info.name.contains("llvmpipe")
 }
 
-/// Why there is no device, or why it refused.
+/// Why there is no device, or why it refused a request.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// The system has adapters, but not the one that was asked for, or has none.
+    /// The system has no adapters, or none that matches the choice.
     #[error(
         "no adapter matches `{choice}`; this system offers {offered}. {}",
         if *choice == AdapterChoice::Lavapipe {
@@ -87,33 +88,33 @@ pub enum GpuError {
         }
     )]
     NoAdapter {
-        /// What was asked for.
+        /// The choice that was requested.
         choice: AdapterChoice,
-        /// The names of what is there.
+        /// Names of the adapters that the system offers.
         offered: String,
     },
     /// The driver would not open a device.
     #[error("adapter `{adapter}` gives no device: {reason}")]
     NoDevice {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// The driver's word.
+        /// The driver's message.
         reason: String,
     },
-    /// The process holds a device already, and holds one only.
+    /// The process already holds a device, and can hold only one.
     #[error("this process already runs on adapter `{opened}`; `{choice}` would be a second device; choose one for all")]
     AlreadyOpen {
-        /// The name of the open adapter.
+        /// Name of the open adapter.
         opened: String,
-        /// What was asked for.
+        /// The choice that was requested.
         choice: AdapterChoice,
     },
     /// A shader, pipeline or command was refused.
     #[error("{what} failed on the device: {reason}")]
     Device {
-        /// What was being made or run.
+        /// The object or command that was being made or run.
         what: String,
-        /// The device's word.
+        /// The device's message.
         reason: String,
     },
 }
@@ -123,9 +124,9 @@ pub enum GpuError {
 pub struct Gpu {
     /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Queue of the device.
     pub queue: wgpu::Queue,
-    /// What the device is, for reports.
+    /// Description of the device, for reports.
     pub info: wgpu::AdapterInfo,
     chosen: AdapterChoice,
     id: u64,
@@ -139,10 +140,12 @@ fn next_id() -> u64 {
 static SHARED: OnceLock<Gpu> = OnceLock::new();
 
 impl Gpu {
-    /// The process's one device, opened at the first call. A later call must choose the same adapter.
+    /// Returns the process's one device, opened at the first call. A later call must choose the
+    /// same adapter.
     pub fn shared(choice: &AdapterChoice) -> Result<&'static Gpu, GpuError> {
         static OPENING: std::sync::Mutex<()> = std::sync::Mutex::new(());
-        // Opening can fail, which OnceLock::get_or_init cannot express; the lock keeps it to one device.
+        // Opening can fail, which OnceLock::get_or_init cannot express; the lock keeps it to one
+        // device.
         let _guard = OPENING.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(gpu) = SHARED.get() {
             if gpu.chosen == *choice || choice.accepts(&gpu.info) {
@@ -176,22 +179,23 @@ impl Gpu {
         Ok(Gpu { device, queue, info, chosen: choice.clone(), id: next_id() })
     }
 
-    /// A number that no other device of this process has: what is made on one device must not be used on another.
+    /// Number that no other device of this process has. Objects made on one device must not be used
+    /// on another.
     pub fn id(&self) -> u64 {
         self.id
     }
 
-    /// Whether this is lavapipe, whose accuracy bounds are tighter than the portable ones.
+    /// Returns whether this is lavapipe, whose accuracy bounds are tighter than the portable ones.
     pub fn is_lavapipe(&self) -> bool {
         is_lavapipe(&self.info)
     }
 
-    /// Adapter, driver and backend in one line, for reports.
+    /// Returns adapter, driver and backend in one line, for reports.
     pub fn describe(&self) -> String {
         format!("{} ({} {}, {:?})", self.info.name, self.info.driver, self.info.driver_info, self.info.backend)
     }
 
-    /// Runs `make`, and turns what the device says against it into an error instead of a panic.
+    /// Runs `make` and turns an error raised by the device into an `Err` instead of a panic.
     pub fn guarded<T>(&self, what: &str, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -208,7 +212,7 @@ impl Gpu {
         }
     }
 
-    /// The words of a whole buffer that may be copied from. Waits for everything submitted.
+    /// Returns the words of a whole buffer that may be copied from. Waits for everything submitted.
     pub fn words(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
         let size = buffer.size();
         let readback = self.guarded("reading a buffer back", |device| {
@@ -226,7 +230,7 @@ impl Gpu {
         self.read_back(&readback, size, bytemuck::pod_collect_to_vec)
     }
 
-    /// Waits for everything submitted and hands the bytes of a `MAP_READ` buffer to `read`.
+    /// Waits for everything submitted and passes the bytes of a `MAP_READ` buffer to `read`.
     pub fn read_back<T>(&self, buffer: &wgpu::Buffer, size: u64, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         let failed = |reason: String| GpuError::Device { what: "reading results back".to_owned(), reason };
         let (sender, receiver) = std::sync::mpsc::channel();

@@ -1,4 +1,4 @@
-//! What a body is drawn by: the rung or technique that its material and shape call for, and why.
+//! How a body is drawn: the rung or technique that its material and shape require, and why.
 
 use super::numbers::short;
 use super::quality::Technique;
@@ -6,24 +6,24 @@ use super::thickness::Thickness;
 use crate::{Request, Rung};
 use lapidary_scene::{Object, Scene, Shape};
 
-/// The technique for scattering bodies that a user wants whatever their thickness.
+/// A technique that the user forces for all scattering bodies, whatever their thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scattering {
-    /// By curvature.
+    /// Scattering near the surface, by its curvature.
     Cdrf,
-    /// By ways through the body.
+    /// Light paths through the body.
     OpticalPath,
 }
 
-/// What an object is drawn by: a rung that a user or the material names, or a technique's.
+/// How an object is drawn: by a rung that the user or the material names, or by a technique.
 pub(super) enum Choice {
-    /// A rung.
+    /// A named rung.
     Named(Rung),
-    /// A technique, whose rung is that of the quality asked for.
+    /// A technique; the requested quality decides its rung.
     By(Technique),
 }
 
-/// The rung or technique for an object, and why.
+/// Returns the rung or technique for an object, and the reason.
 pub(super) fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
     let material = &object.material;
     if request.rung.is_for_clear_stones() && !material.is_clear() {
@@ -36,7 +36,7 @@ pub(super) fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choi
     by_material(object, scene, request)
 }
 
-/// The rung or technique that an object's material calls for, and why.
+/// Returns the rung or technique that an object's material requires, and the reason.
 fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
     let material = &object.material;
     if material.scatters() {
@@ -54,7 +54,8 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
     (Choice::By(technique), reason)
 }
 
-/// The technique for a clear body with an inside, and why. The proxy is none of them: no ladder has it near the stone that is there.
+/// Returns the technique for a clear body with an inside, and the reason. The proxy is never
+/// chosen: in no ladder does it come close to the actual stone.
 fn clear(shape: Shape) -> (Technique, &'static str) {
     match shape {
         Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets' planes"),
@@ -66,7 +67,7 @@ fn clear(shape: Shape) -> (Technique, &'static str) {
     }
 }
 
-/// The rung or technique for a body that scatters light, and why.
+/// Returns the rung or technique for a scattering body, and the reason.
 fn scattering(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice, String) {
     if let (Some(solver), None) = (object.material.solver, request.scattering) {
         return (Choice::Named(solver.into()), "extras.lapidary.solver names it".to_owned());
@@ -75,7 +76,7 @@ fn scattering(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice,
     (Choice::By(technique), reason)
 }
 
-/// Whether light comes through a body that scatters it, and why.
+/// Decides whether light comes through a scattering body; returns the technique and the reason.
 fn by_thickness(object: &Object, scene: &Scene, request: &Request<'_>) -> (Technique, String) {
     let Some(medium) = &object.material.medium else {
         let reason = "sigma0 alone: no scattering and absorption to follow light through it by";

@@ -1,4 +1,5 @@
-//! What a material calls for: for each effect whether it is on under the rung that draws it, with the property that decides.
+//! What a material requires: for each effect, whether it is on under the rung that draws the
+//! object, and the property that decides.
 
 use super::choice::{self, Choice};
 use super::effect::{Effect, Effects};
@@ -12,35 +13,35 @@ use lapidary_scene::{Density, Dispersion, Environment, Light, Material, Medium, 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
-    /// Which.
+    /// The effect decided on.
     pub effect: Effect,
-    /// Whether it is compiled, bound and run.
+    /// Whether the effect is compiled, bound and run.
     pub on: bool,
     /// The property of the material, scene or request that decides.
     pub reason: String,
 }
 
-/// What one object calls for.
+/// The rung and effects of one object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decisions {
-    /// The technique and its rung.
+    /// The rung, which also names the technique.
     pub rung: Rung,
-    /// Why this technique.
+    /// Why this technique was chosen.
     pub reason: String,
-    /// What the rung follows from, where none is named.
+    /// Technique and quality that determine the rung; `None` if the rung was named.
     pub chosen: Option<Chosen>,
-    /// Of every effect, in the order of [`Effect::ALL`].
+    /// One decision per effect, in the order of [`Effect::ALL`].
     pub effects: Vec<Decision>,
 }
 
 impl Decisions {
-    /// For every object of `scene`, in its order.
+    /// Returns the decisions for all objects of `scene`, in order.
     #[must_use]
     pub fn all(scene: &Scene, request: &Request<'_>) -> Vec<Self> {
         scene.objects.iter().map(|object| Self::of(object, scene, request)).collect()
     }
 
-    /// For an object of `scene`.
+    /// Returns the decisions for one object of `scene`.
     #[must_use]
     pub fn of(object: &Object, scene: &Scene, request: &Request<'_>) -> Self {
         let (choice, reason) = choice::of(object, scene, request);
@@ -68,21 +69,21 @@ impl Decisions {
         self.effects.iter().any(|decision| decision.effect == effect && decision.on)
     }
 
-    /// The effects that are on.
+    /// Returns the set of effects that are on.
     #[must_use]
     pub fn on(&self) -> Effects {
         let on = self.effects.iter().filter(|decision| decision.on);
         on.fold(Effects::NONE, |set, decision| set.and(Effects::of(&[decision.effect])))
     }
 
-    /// The recipes' overrides.
+    /// Returns the values of the recipes' overrides: name, and 1 if the effect is on, else 0.
     pub fn constants(&self) -> Vec<(&'static str, f64)> {
         let of = |decision: &Decision| (decision.effect.override_name(), f64::from(u8::from(decision.on)));
         self.effects.iter().map(of).collect()
     }
 }
 
-/// How a rung finds the facets that rays inside meet.
+/// Describes how a rung finds the facets that rays meet inside a stone.
 fn way_of(geometry: Geometry) -> &'static str {
     match geometry {
         Geometry::Proxy => "the proxy",
@@ -144,7 +145,7 @@ impl Case<'_> {
         }
     }
 
-    /// Why nothing of what is for clear bodies is on.
+    /// Returns why all effects of clear bodies are off.
     fn not_clear(&self) -> String {
         if self.material.scatters() {
             "light scatters inside".to_owned()
@@ -166,7 +167,7 @@ impl Case<'_> {
         on(format!("transmission {}, thickness {}", self.material.transmission, self.material.thickness))
     }
 
-    /// Why a clear body's inside is not looked into.
+    /// Returns why no light is followed inside a clear body.
     fn no_inside(&self) -> String {
         if self.request.rung == Rung::Surface { "the rung is the surface alone" } else { "thickness 0" }.to_owned()
     }
@@ -243,7 +244,8 @@ impl Case<'_> {
         on(format!("sigma0 {}{from}", triple(sigma0)))
     }
 
-    /// Whether no normal differs from its triangle's others: no curvature spreads anything then.
+    /// Whether every triangle has the same normal at all corners, so that curvature spreads no
+    /// light.
     fn is_flat(&self) -> bool {
         let normals = &self.object.mesh.normals;
         let normal = |index: &u32| normals.get(*index as usize);
@@ -284,7 +286,7 @@ impl Case<'_> {
         (through, reason)
     }
 
-    /// Whether ways through the body are sought; else why not.
+    /// Returns `Ok` if light paths through the body are followed, else the reason why not.
     fn along_a_way(&self) -> Result<(), String> {
         match self.optical_path() {
             (true, _) if self.request.without.has(Effect::OpticalPath) => Err("optical_path is left out".to_owned()),

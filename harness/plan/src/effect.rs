@@ -1,4 +1,4 @@
-//! The effects, each by its one name.
+//! The effects, each with its one name.
 
 use lapidary_scene::nearest::suggest;
 use std::fmt;
@@ -7,17 +7,19 @@ use std::str::FromStr;
 /// Declares the effects: variant, name, and the recipes' override, which is the name in capitals.
 macro_rules! effects {
     ($($(#[$doc:meta])* $effect:ident = $name:literal, $override:literal;)*) => {
-        /// What a material or a scene may call for, and what else is neither compiled, nor bound, nor dispatched.
+        /// Something that a material or a scene may require. If neither does, it is neither
+        /// compiled, bound nor dispatched.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             $($(#[$doc])* $effect,)*
         }
 
         impl Effect {
-            /// Every effect, each once.
+            /// Every effect, once.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$effect),*];
 
-            /// Its name in plans and on the command line: a module's, where it is one module.
+            /// Returns the name used in plans and on the command line; if the effect is a single
+            /// module, the module's name.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -25,7 +27,7 @@ macro_rules! effects {
                 }
             }
 
-            /// The recipes' override that compiles it.
+            /// Returns the name of the recipes' override that compiles the effect.
             #[must_use]
             pub const fn override_name(self) -> &'static str {
                 match self {
@@ -37,39 +39,39 @@ macro_rules! effects {
 }
 
 effects! {
-    /// Light through a clear stone, by a proxy of its inside.
+    /// Light through a clear stone, using a proxy of its inside.
     ProxyGeometry = "proxy_geometry", "EFFECT_PROXY_GEOMETRY";
-    /// Light through a convex clear stone, by its facets' planes.
+    /// Light through a convex clear stone, using the planes of its facets.
     ConvexTrace = "convex_trace", "EFFECT_CONVEX_TRACE";
-    /// Light through any clear stone, by its triangles.
+    /// Light through any clear stone, using its triangles.
     BvhTrace = "bvh_trace", "EFFECT_BVH_TRACE";
-    /// The environment behind a clear wall without an inside.
+    /// The environment seen through a clear wall without an inside.
     ThinWall = "thin_wall", "EFFECT_THIN_WALL";
-    /// Light is absorbed inside a clear stone.
+    /// Absorption of light inside a clear stone.
     Absorption = "absorption", "EFFECT_ABSORPTION";
-    /// The refractive index differs from colour to colour.
+    /// Refractive index that differs between colours.
     Dispersion = "dispersion", "EFFECT_DISPERSION";
-    /// Light that crosses below the surface from the lit side to the dark one, by curvature.
+    /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
-    /// The same by a blur of the light that arrives.
+    /// Subsurface light as in `cdrf`, by a blur of the incident light.
     TextureDiffusion = "texture_diffusion", "EFFECT_TEXTURE_DIFFUSION";
-    /// Light that comes through a body, along the way that costs it least.
+    /// Light through a body, along the path of least cost.
     OpticalPath = "optical_path", "EFFECT_OPTICAL_PATH";
-    /// Voxels that the surface touches, beside those whose centre is inside.
+    /// Voxels touched by the surface, in addition to those whose centre is inside.
     Surface = "surface", "EFFECT_SURFACE";
-    /// A way's cost differs from colour to colour.
+    /// Path cost that differs between colours.
     Color = "color", "EFFECT_COLOR";
-    /// Matter is denser here than there.
+    /// Density that varies within the body.
     ExtinctionPerVoxel = "extinction_per_voxel", "EFFECT_EXTINCTION_PER_VOXEL";
-    /// Bodies keep a light from one another and from themselves.
+    /// Shadows that bodies cast on one another and on themselves.
     Shadow = "shadow", "EFFECT_SHADOW";
-    /// Diffuse light from all around.
+    /// Diffuse light from all directions.
     Environment = "environment", "EFFECT_ENVIRONMENT";
-    /// The environment is an image.
+    /// Environment given as an image.
     EnvironmentMap = "environment_map", "EFFECT_ENVIRONMENT_MAP";
-    /// The lights' highlights on a rough surface.
+    /// Highlights of the lights on a rough surface.
     Microfacet = "microfacet", "EFFECT_MICROFACET";
-    /// The environment in a polished surface.
+    /// Reflection of the environment in a polished surface.
     Reflection = "reflection", "EFFECT_REFLECTION";
     /// Lights that shine into a cone.
     Spot = "spot", "EFFECT_SPOT";
@@ -81,13 +83,13 @@ impl fmt::Display for Effect {
     }
 }
 
-/// A name that no effect has.
+/// A name that belongs to no effect.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no effect `{name}`{suggestion}")]
 pub struct UnknownEffect {
-    /// The name.
+    /// The unknown name.
     pub name: String,
-    /// `; did you mean ...?` or nothing.
+    /// `; did you mean ...?`, or empty.
     pub suggestion: String,
 }
 
@@ -105,12 +107,12 @@ impl FromStr for Effect {
 pub struct Effects(u32);
 
 impl Effects {
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// What light does at the surface of what scatters it, beside being scattered.
+    /// The effects of light reflected at the surface of a scattering body.
     pub const SHEEN: Self = Self::of(&[Effect::Microfacet, Effect::Reflection]);
 
-    /// These.
+    /// Returns the set of the given effects.
     #[must_use]
     pub const fn of(effects: &[Effect]) -> Self {
         let (mut set, mut index) = (0, 0);
@@ -121,13 +123,13 @@ impl Effects {
         Self(set)
     }
 
-    /// These and those.
+    /// Returns the union of two sets.
     #[must_use]
     pub const fn and(self, others: Self) -> Self {
         Self(self.0 | others.0)
     }
 
-    /// Whether it is one of them.
+    /// Whether the set contains an effect.
     #[must_use]
     pub const fn has(self, effect: Effect) -> bool {
         self.0 & (1 << effect as u32) != 0

@@ -1,4 +1,5 @@
-//! The committed ladders, as far as choosing a rung goes: each rung's error and time, and the rule that defaults keep.
+//! The committed ladders, as far as they matter for choosing a rung: each rung's error and time,
+//! and the rule that the defaults obey.
 
 use super::quality::{Quality, Technique, figure};
 use serde::Deserialize;
@@ -7,37 +8,39 @@ use std::sync::LazyLock;
 /// A rung of a ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The rung's name.
+    /// Name of the rung.
     pub rung: String,
-    /// The mean over the views.
+    /// Mean error over the views.
     pub error: f64,
-    /// The largest of the views.
+    /// Largest error of any view.
     pub worst: f64,
-    /// Milliseconds.
+    /// Time in milliseconds.
     pub ms: f64,
 }
 
 impl Step {
-    /// By more than what times differ by from run to run.
+    /// Whether the step takes longer than `other` by more than times vary between runs.
     fn is_dearer_than(&self, other: &Self) -> bool {
         self.ms > (1.0 + SAME_TIME) * other.ms
     }
 }
 
-/// A ladder by the one measure that rules its defaults.
+/// A ladder under the single measure that decides its defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ladder {
-    /// What is measured, as a sentence begins with it.
+    /// Name of the error measure, written before its value.
     pub measure: &'static str,
     /// All rungs with an error and a time, in the ladder's order.
     pub steps: Vec<Step>,
 }
 
-/// A dearer rung is a default only where it cuts the error by this share of the next cheaper's, ...
+/// A more expensive rung becomes a default only if it cuts the error of the next cheaper rung by
+/// this share.
 pub const CUT: f64 = 0.1;
-/// ... and times within this share of one another count as one: a busy machine's least times differ by as much.
+/// Times within this share of each other count as equal: the shortest times on a busy machine vary
+/// by as much.
 pub const SAME_TIME: f64 = 0.1;
-/// Equal geometry gives equal pictures but for rounding.
+/// Ratio of errors that count as equal: the same geometry gives the same picture up to rounding.
 const ALIKE: f64 = 1.001;
 
 const GEM: &str = include_str!("../../../docs/measurements/lavapipe/gem.json");
@@ -55,16 +58,16 @@ static COMMITTED: LazyLock<[Option<Ladder>; 4]> = LazyLock::new(|| {
 });
 
 impl Ladder {
-    /// The committed ladder of a technique; none of one that has a single rung.
+    /// Returns the committed ladder of a technique; `None` for a technique with a single rung.
     #[must_use]
     pub fn committed(technique: Technique) -> Option<&'static Self> {
         COMMITTED.get(technique as usize)?.as_ref()
     }
 
-    /// The ladder of a technique in a record of `cook cost`.
+    /// Reads the ladder of a technique from a record of `cook cost`.
     ///
     /// # Errors
-    /// Where the record is none of this technique's.
+    /// Returns an error if the record is not one of this technique.
     pub fn of_record(technique: Technique, record: &str) -> Result<Self, serde_json::Error> {
         let (measure, steps) = match technique {
             Technique::Convex | Technique::Concave => {
@@ -86,13 +89,14 @@ impl Ladder {
         Ok(Self { measure, steps })
     }
 
-    /// The rung of that name.
+    /// Returns the rung with the given name; `None` if the ladder lacks it.
     #[must_use]
     pub fn step(&self, rung: &str) -> Option<&Step> {
         self.steps.iter().find(|step| step.rung == rung)
     }
 
-    /// The rungs to choose from, by rising time: none faster errs less, and none about as fast errs less by [`CUT`].
+    /// Returns the rungs to choose from, by increasing time: no faster rung has a smaller error,
+    /// and no rung of about the same time has an error smaller by [`CUT`].
     #[must_use]
     pub fn hull(&self) -> Vec<&Step> {
         let beaten = |step: &Step| {
@@ -103,22 +107,22 @@ impl Ladder {
         };
         let mut hull: Vec<&Step> = self.steps.iter().filter(|step| !beaten(step)).collect();
         hull.sort_by(|a, b| a.ms.total_cmp(&b.ms));
-        // Of pictures that are the same but for rounding, the cheapest.
+        // If pictures are the same up to rounding, keep the cheapest.
         hull.dedup_by(|dear, cheap| ALIKE * dear.error >= cheap.error);
         hull
     }
 
-    /// The rung on the hull that a default has to be better than; none below the cheapest.
+    /// Returns the rung on the hull that a default has to beat; `None` for the cheapest.
     #[must_use]
     pub fn next_cheaper(&self, step: &Step) -> Option<&Step> {
         self.hull().into_iter().rev().find(|other| step.is_dearer_than(other))
     }
 
-    /// Whether `rung` may be a default: it is on the hull, cuts the error by [`CUT`] over the next cheaper there, and in its worst view is no
-    /// farther off than that.
+    /// Checks that `rung` may be a default: it is on the hull, cuts the error by [`CUT`] compared
+    /// with the next cheaper rung there, and its worst view is no worse than that rung's.
     ///
     /// # Errors
-    /// Why not, with the rung to take instead.
+    /// The reason why not, with the rung to use instead.
     pub fn judge(&self, rung: &str) -> Result<(), String> {
         let step = self.step(rung).ok_or_else(|| format!("`{rung}` is not in the ladder, or was not timed"))?;
         let hull = self.hull();
@@ -143,10 +147,10 @@ impl Ladder {
         Ok(())
     }
 
-    /// Whether the rungs of a technique's qualities are what this ladder allows.
+    /// Checks that this ladder allows the rungs of all the technique's qualities.
     ///
     /// # Errors
-    /// Which is not, and what to take instead.
+    /// The first rung that is not allowed, and what to use instead.
     pub fn judge_qualities(&self, technique: Technique) -> Result<(), String> {
         for quality in Quality::ALL {
             let rung = technique.rung(quality).to_string();
@@ -160,7 +164,7 @@ impl Ladder {
     }
 }
 
-/// A rung's errors by view as a step.
+/// Returns a step from a rung's errors, one per view; `None` without errors or a time.
 fn step(rung: &str, errors: impl Iterator<Item = f64> + Clone, ms: Option<f64>) -> Option<Step> {
     let count = errors.clone().count();
     let worst = errors.clone().reduce(f64::max)?;
@@ -191,7 +195,7 @@ struct GemErrors {
 }
 
 impl GemRung {
-    /// The mean of the views' errors, and of their times: those of the same pictures.
+    /// Returns the mean error and the mean time over the same views.
     fn step(&self, concave: bool) -> Option<Step> {
         let views: Vec<&GemView> = if concave { &self.concave } else { &self.views }.iter().flatten().collect();
         let times = views.iter().map(|view| view.ms).sum::<Option<f64>>();
@@ -224,7 +228,9 @@ struct CdrfTiming {
 }
 
 impl CdrfRung {
-    /// The lit part by curvature from the screen. The spherical form is another function, whose error from its own definition compares with nothing.
+    /// Returns the step of the lit part, with curvature from the screen. `None` for the spherical
+    /// form: it is a different function, and its error relative to its own definition is not
+    /// comparable.
     fn step(&self) -> Option<Step> {
         if self.rung == "spherical" {
             return None;
@@ -258,8 +264,8 @@ impl PathRung {
         self.distances.iter().filter_map(|distance| distance.nats)
     }
 
-    /// The mean time of the views that have an error. None where one has none: the finest grid, which is what others are compared with, and
-    /// the walks.
+    /// Returns the mean error and mean time of the views that have an error. `None` if a view lacks
+    /// one: this excludes the finest grid, which is the others' reference, and the walks.
     fn step(&self, views: usize) -> Option<Step> {
         let compared = self.distances.iter().zip(&self.times).filter(|(distance, _)| distance.nats.is_some());
         let times: Option<Vec<f64>> = compared.map(|(_, times)| times.grey.as_ref().map(|timing| timing.ms)).collect();
@@ -292,7 +298,7 @@ mod tests {
         let hull: Vec<&str> = ladder.hull().iter().map(|step| step.rung.as_str()).collect();
         assert_eq!(hull, ["a", "b", "hardly dearer", "c", "d"]);
         let refused = |rung: &str| ladder.judge(rung).expect_err(rung);
-        // What costs as much but for noise is not what a default has to be better than.
+        // A rung of the same cost up to noise is not one that a default has to beat.
         assert_eq!(["a", "b", "hardly dearer"].map(|rung| ladder.judge(rung)), [Ok(()), Ok(()), Ok(())]);
         assert!(refused("beaten").contains("dominated; take `hardly dearer`"), "{}", refused("beaten"));
         assert!(refused("twin").contains("dominated; take `hardly dearer`"), "{}", refused("twin"));
@@ -301,7 +307,8 @@ mod tests {
         assert!(refused("e").contains("not in the ladder"));
     }
 
-    /// Every default against the committed ladders. A failure says which default to change in `plan/quality.rs`.
+    /// Checks every default against the committed ladders. A failure says which default to change
+    /// in `plan/quality.rs`.
     #[test]
     fn every_default_is_what_its_ladder_allows() {
         let mut judged = 0;
@@ -316,7 +323,7 @@ mod tests {
         assert_eq!(judged, 4);
     }
 
-    /// The defaults that were: the rule refuses them.
+    /// The rule refuses the former defaults.
     #[test]
     fn the_rule_refuses_a_dominated_default() {
         let gem = Ladder::committed(Technique::Convex).expect("committed");

@@ -1,6 +1,8 @@
-//! What a scene calls for: each material's technique and rung, and its effects, each with the property that calls for it or rules it out.
+//! What a scene requires: each material's technique and rung, and its effects, each with the
+//! property that requires it or rules it out.
 //!
-//! The words of rendering are here ([`Rung`], [`Effect`], [`Quality`], [`Note`]), and the decisions ([`Decisions`]) that the renderer compiles by.
+//! This crate holds the vocabulary of rendering ([`Rung`], [`Effect`], [`Quality`], [`Note`]) and
+//! the decisions ([`Decisions`]) by which the renderer compiles.
 //!
 //! ```
 //! use lapidary_plan::{Decisions, Request};
@@ -35,29 +37,30 @@ pub use rung::{GRAMMAR, Geometry, MOST_HITS, MOST_WAVELENGTHS, NAMES, Rung, Spec
 
 use lapidary_scene::Environment;
 
-/// What a picture is asked to be, as far as decisions go by it.
+/// The settings of a picture that decisions depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// How much of the light's way is followed.
+    /// The rung that draws the objects; `ByMaterial` chooses one for each.
     pub rung: Rung,
-    /// Where that is each material's own: how much time it may take.
+    /// Time that a technique may take; used only if `rung` is `ByMaterial`.
     pub quality: Quality,
-    /// What is left out though a material calls for it.
+    /// Effects that are left out even if a material requires them.
     pub without: Effects,
-    /// How bodies that scatter light are drawn whatever their thickness, where the rung is each material's own.
+    /// Technique for all scattering bodies, whatever their thickness; used only if `rung` is
+    /// `ByMaterial`. `None` lets the material decide.
     pub scattering: Option<Scattering>,
-    /// Whether lights cast shadows on what is drawn by its surface alone.
+    /// Whether lights cast shadows on bodies that are drawn by their surface alone.
     pub shadows: bool,
     /// The light around the scene.
     pub environment: &'a Environment,
-    /// Radiance is multiplied by this before the tone curve.
+    /// Factor applied to radiance before the tone curve.
     pub exposure: f32,
 }
 
 impl Request<'_> {
-    /// Each material by its own rung in the studio.
+    /// Returns a request for `size` in pixels that chooses a rung for each material, in the studio.
     #[must_use]
     pub fn of_size(size: [u32; 2]) -> Self {
         Self {

@@ -1,104 +1,105 @@
-//! What a user should know about a picture, beside what it shows.
+//! Warnings about a picture that the picture itself does not show.
 
 use super::Rung;
 use std::fmt;
 
-/// Something about a picture that is not as it should be, or may not be.
+/// A warning: something about a picture is wrong, or may be.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
-    /// A mesh with a hole: where its inside is not known, it is taken to be empty.
+    /// A mesh with a hole: wherever its inside is unknown, it is assumed to be empty.
     Open {
-        /// The object's name.
+        /// Name of the object.
         object: String,
-        /// Columns of voxels that cross the surface an odd number of times.
+        /// Number of voxel columns that cross the surface an odd number of times.
         odd_columns: u32,
-        /// How many columns its grid has.
+        /// Number of voxel columns in the object's grid.
         columns: u32,
     },
     /// The paths through a body were not followed to their ends.
     StoppedEarly {
-        /// The object's name.
+        /// Name of the object.
         object: String,
-        /// No pixel's linear radiance is too low by more than this.
+        /// Upper bound on the linear radiance that any pixel lacks.
         bound: f32,
     },
-    /// Meshes that a rung takes for the surface of a solid, and that are none.
+    /// Meshes that a rung treats as the surface of a solid although they are not.
     NotSolid {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// The rung.
+        /// The rung that needs a solid.
         rung: Rung,
-        /// What is wrong with the first one's mesh.
+        /// Faults of the first object's mesh.
         faults: Vec<String>,
     },
     /// Opaque bodies whose triangles face inwards, so that their far side is drawn.
     InsideOut {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
     },
-    /// Surfaces with a hole, of materials that ask for both sides to be drawn.
+    /// Surfaces with a hole whose material asks for both sides to be drawn.
     BackNotDrawn {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
     },
     /// Clear bodies without a thickness.
     ThinWall {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// What is asked for and needs an inside.
+        /// Properties that the material asks for but that need an inside.
         unused: Vec<&'static str>,
     },
-    /// Clear bodies through which no light comes that could be seen.
+    /// Clear bodies that let no visible light through.
     Black {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// The share of light that is left behind the first one's thin parts, of the colour that is left most of.
+        /// Share of light left after the first object's thin parts, in the channel with the most
+        /// light left.
         share: f32,
-        /// How thick those are, in units of length.
+        /// Thickness of those parts in units of length.
         thickness: f32,
     },
-    /// Bodies so bright that every channel is shown at its largest.
+    /// Bodies so bright that every channel is shown at its maximum.
     ClipsToWhite {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// Linear radiance of the first one, times the exposure, of the darkest channel.
+        /// Linear radiance of the first object times the exposure, in the darkest channel.
         radiance: f32,
     },
-    /// Meshes with a normal for each face, where a technique needs one for each position.
+    /// Meshes with one normal per face, although the technique needs one per position.
     HardEdges {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// The rung.
+        /// The rung that needs a normal per position.
         rung: Rung,
     },
     /// Bodies that are not clear, under a rung for clear stones.
     NotClear {
-        /// Which.
+        /// The objects concerned.
         objects: Objects,
-        /// The rung that was asked for.
+        /// The rung that was requested.
         asked: Rung,
-        /// The rung that the first one is drawn by.
+        /// The rung that draws the first object instead.
         instead: Rung,
     },
     /// A camera that sees no body.
     NothingInView,
     /// An environment with negative radiance.
     NegativeRadiance {
-        /// Its file.
+        /// File of the environment.
         file: String,
-        /// How many pixels have a negative part.
+        /// Number of pixels with a negative channel.
         pixels: usize,
-        /// The least part.
+        /// Smallest channel value.
         least: f32,
     },
 }
 
-/// Objects that one thing is said of.
+/// The objects that share a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Objects {
-    /// The first one's name.
+    /// Name of the first object.
     pub first: String,
-    /// How many there are.
+    /// Number of objects.
     pub count: usize,
 }
 

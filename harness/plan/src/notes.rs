@@ -1,4 +1,4 @@
-//! What a user should know before a scene is drawn: bodies and lights that a technique cannot do justice to.
+//! Warnings before a scene is drawn: bodies and lights that no technique can render faithfully.
 
 use super::{Decisions, thickness};
 use crate::{Geometry, Note, Objects, Request, Rung};
@@ -8,17 +8,22 @@ use lapidary_scene::normals::has_hard_edges;
 use lapidary_scene::{Dispersion, Environment, MeshDiagnosis, Object, Scene, clip_from_world};
 use std::f64::consts::PI;
 
-/// Meshes of more triangles are not looked through: it takes seconds, and as much memory again as the mesh.
+/// Maximum triangle count of a mesh that is diagnosed. Larger ones would take seconds, and as much
+/// additional memory as the mesh itself.
 const MOST_DIAGNOSED: usize = 1 << 20;
 
-/// Of light that is less than this nothing is seen: an eighth of the least step of 8 bits at the exposure 1.
+/// Share of light below which nothing is visible: an eighth of the smallest 8-bit step at exposure
+/// 1.
 const INVISIBLE: f32 = 1.0 / 2048.0;
 
-/// The darkest channel of a pixel that is written as 255.
+/// Darkest channel of a pixel whose channels are all written as 255.
 const WHITE: f32 = 254.5 / 255.0;
 
-/// What should be known of a scene before it is drawn: meshes, materials, lights and a camera that no technique can do justice to, each thing once,
-/// with the first object that it is said of. `decisions` are those of the scene's objects.
+/// Returns the warnings about a scene before it is drawn: meshes, materials, lights and a camera
+/// that no technique can render faithfully. Each warning appears once, with the first object it
+/// applies to.
+///
+/// `decisions` are those of the scene's objects, in the same order.
 #[must_use]
 pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec<Note> {
     let around = mean_radiance(request.environment);
@@ -35,7 +40,7 @@ pub fn of(scene: &Scene, request: &Request<'_>, decisions: &[&Decisions]) -> Vec
     notes
 }
 
-/// Adds a note on one object, to the one on others before it where that says the same.
+/// Adds a note on one object; merges it with an earlier note on other objects if both say the same.
 fn add(notes: &mut Vec<Note>, note: Note) {
     let known = notes.iter_mut().find_map(|known| match (known, &note) {
         (Note::NotSolid { objects, rung, .. }, Note::NotSolid { rung: other, .. }) if rung == other => Some(objects),
@@ -56,7 +61,7 @@ fn add(notes: &mut Vec<Note>, note: Note) {
     }
 }
 
-/// One object under its rung.
+/// One object with its rung.
 struct Case<'a> {
     object: &'a Object,
     rung: Rung,
@@ -82,7 +87,7 @@ impl Case<'_> {
         notes
     }
 
-    /// What is wrong with its mesh for its rung.
+    /// Returns what is wrong with the object's mesh for its rung; `None` if nothing is.
     fn of_mesh(&self, objects: &Objects) -> Option<Note> {
         let Object { mesh, material, .. } = self.object;
         if mesh.triangle_count() > MOST_DIAGNOSED {
@@ -115,14 +120,14 @@ impl Case<'_> {
         Some(Note::ThinWall { objects: objects.clone(), unused: absorbs.into_iter().chain(disperses).collect() })
     }
 
-    /// Where not even the thin parts of a clear body let light through that could be seen.
+    /// Returns a note if not even the thin parts of a clear body let visible light through.
     fn black(&self, objects: &Objects) -> Option<Note> {
         let Object { material, mesh, .. } = self.object;
         let is_inside = matches!(self.rung, Rung::Inside { .. } | Rung::Reference) && material.is_clear();
         if !is_inside || mesh.triangle_count() > MOST_DIAGNOSED {
             return None;
         }
-        // Measured only where something is absorbed.
+        // Only an absorbing body has to be measured.
         let thickness = if material.absorbs() { thickness::measured(mesh) } else { 0.0 };
         let coefficient = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
         let left = material.base_color * lapidary_absorption::transmittance(coefficient, thickness);
@@ -130,7 +135,7 @@ impl Case<'_> {
         (share * self.request.exposure < INVISIBLE).then(|| Note::Black { objects: objects.clone(), share, thickness })
     }
 
-    /// Where a body that the lights meet squarely is shown as plain white.
+    /// Returns a note if a body at normal incidence to the lights is shown as plain white.
     fn white(&self, objects: &Objects, around: DVec3) -> Option<Note> {
         let Object { material, mesh, .. } = self.object;
         let mut radiance = around;
@@ -139,7 +144,7 @@ impl Case<'_> {
             let (middle, radius) = (bounds.centre().as_dvec3(), f64::from(bounds.radius()));
             let arriving = self.scene.lights.iter().map(|light| {
                 let arrival = light.arrival(middle);
-                // A lamp inside of a body lights its rim.
+                // A lamp inside a body lights the body's rim.
                 let is_inside = arrival.distance < radius;
                 if is_inside { light.arrival(middle + radius * DVec3::X).irradiance } else { arrival.irradiance }
             });
@@ -152,15 +157,15 @@ impl Case<'_> {
     }
 }
 
-/// Rows of directions from pole to pole, twice as many columns.
+/// Number of rows of directions from pole to pole; there are twice as many columns.
 const ROWS: u32 = 64;
 
-/// The mean over all directions.
+/// Returns the mean radiance of the environment over all directions, per channel.
 fn mean_radiance(environment: &Environment) -> DVec3 {
     let row = |row: u32| {
         let v = (f64::from(row) + 0.5) / f64::from(ROWS);
         let edges = [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(ROWS)).cos());
-        // Of a whole row, as a share of the sphere.
+        // Solid angle of one direction in this row, as a share of the sphere.
         let share = 0.5 * (edges[0] - edges[1]) / f64::from(2 * ROWS);
         let columns = (0..2 * ROWS).map(|column| {
             let uv = DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v);

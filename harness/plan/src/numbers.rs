@@ -1,8 +1,8 @@
-//! Numbers in reasons.
+//! Formats numbers for the reasons of decisions.
 
 use glam::Vec3;
 
-/// Three digits.
+/// Formats a number to three significant digits.
 pub(super) fn short(value: f32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -12,7 +12,7 @@ pub(super) fn short(value: f32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A colour's three, or one where they are the same.
+/// Formats a colour as three numbers, or as one if its channels are the same.
 pub(super) fn triple(value: Vec3) -> String {
     let [red, green, blue] = value.to_array().map(short);
     if red == green && green == blue { red } else { format!("({red}, {green}, {blue})") }

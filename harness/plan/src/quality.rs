@@ -1,4 +1,4 @@
-//! `--quality`: a rung for each technique, from its ladder.
+//! `--quality`: a rung for each technique, chosen from its ladder.
 
 use super::ladder::Ladder;
 use crate::{Geometry, Rung, Spectrum};
@@ -10,18 +10,18 @@ use std::fmt;
 pub enum Quality {
     /// The cheapest rung that shows the body itself.
     Fast,
-    /// Dearer, where that shows.
+    /// More expensive, if the difference is visible.
     #[default]
     Good,
-    /// For a still picture.
+    /// For still pictures.
     Best,
 }
 
 impl Quality {
-    /// From cheap to dear.
+    /// All qualities, from cheap to expensive.
     pub const ALL: [Self; 3] = [Self::Fast, Self::Good, Self::Best];
 
-    /// As `--quality` has it.
+    /// Returns the name used by `--quality`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -41,22 +41,22 @@ impl fmt::Display for Quality {
 /// A way to draw a body, chosen by its material and shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Technique {
-    /// A clear body, closed and convex, by its facets' planes.
+    /// Closed, convex, clear body: rays meet the planes of its facets.
     Convex,
-    /// Any other clear body, by a hierarchy of its triangles.
+    /// Any other clear body: rays meet its triangles through a hierarchy.
     Concave,
-    /// Scattering near the surface, by curvature.
+    /// Scattering near the surface, by its curvature.
     Cdrf,
     /// Light through a scattering body.
     OpticalPath,
-    /// No light inside.
+    /// No light inside the body.
     Opaque,
-    /// Clear, and without an inside.
+    /// Clear body without an inside.
     ThinWall,
 }
 
-/// The rungs of a technique by quality, in the order of [`Quality::ALL`]. A better quality may have the same rung as the one before, where
-/// nothing dearer cuts its error by a tenth.
+/// The rungs of each technique by quality, in the order of [`Quality::ALL`]. A better quality has
+/// the same rung as the one before it if nothing more expensive cuts the error by a tenth.
 const RUNGS: [(Technique, [Rung; 3]); 6] = [
     (
         Technique::Convex,
@@ -95,40 +95,41 @@ const fn paths(cells: u32, method: Method) -> Rung {
 }
 
 impl Technique {
-    /// Those with a ladder first.
+    /// All techniques, those with a ladder first.
     pub const ALL: [Self; 6] =
         [Self::Convex, Self::Concave, Self::Cdrf, Self::OpticalPath, Self::Opaque, Self::ThinWall];
 
-    /// The rung of that quality.
+    /// Returns the technique's rung for a quality.
     #[must_use]
     pub fn rung(self, quality: Quality) -> Rung {
         RUNGS[self as usize].1[quality as usize]
     }
 
-    /// Its committed ladder; none of a technique with one rung.
+    /// Returns the committed ladder; `None` for a technique with a single rung.
     #[must_use]
     pub fn ladder(self) -> Option<&'static Ladder> {
         Ladder::committed(self)
     }
 }
 
-/// A rung that a quality stands for.
+/// A rung chosen by technique and quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chosen {
-    /// Of the body.
+    /// Technique of the body.
     pub technique: Technique,
-    /// Asked for.
+    /// Requested quality.
     pub quality: Quality,
 }
 
 impl Chosen {
-    /// The rung.
+    /// Returns the rung that the quality selects.
     #[must_use]
     pub fn rung(self) -> Rung {
         self.technique.rung(self.quality)
     }
 
-    /// The rung's error in its committed ladder, and its time as a multiple of [`Quality::Fast`]'s.
+    /// Returns the rung's error in its committed ladder, and its time as a multiple of the time of
+    /// [`Quality::Fast`]. `None` if the ladder lacks either rung, or there is no ladder.
     #[must_use]
     pub fn measured(self) -> Option<Measured> {
         let ladder = self.technique.ladder()?;
@@ -138,16 +139,16 @@ impl Chosen {
     }
 }
 
-/// What a chosen rung costs, and how far off it is.
+/// Error and relative cost of a chosen rung.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The mean over the ladder's views.
+    /// Mean error over the ladder's views.
     pub error: f64,
-    /// The largest of the views.
+    /// Largest error of any view.
     pub worst: f64,
-    /// The error's.
+    /// Name of the error measure.
     pub measure: &'static str,
-    /// Its time over that of [`Quality::Fast`].
+    /// Time as a multiple of the time of [`Quality::Fast`].
     pub times_fast: f64,
 }
 
@@ -165,7 +166,7 @@ impl fmt::Display for Chosen {
     }
 }
 
-/// Two digits.
+/// Formats an error with two decimals; small errors in scientific notation with one digit.
 pub fn figure(error: f64) -> String {
     if error == 0.0 || error >= 0.0095 { format!("{error:.2}") } else { format!("{error:.0e}") }
 }

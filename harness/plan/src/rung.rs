@@ -1,38 +1,39 @@
-//! The ladder's rungs: how much of the light's way is followed.
+//! The rungs of the ladder: how exactly light is followed.
 
 use lapidary_scene::nearest;
 use lapidary_scene::solver::{NoSolver, Paths, Reflectance, Solver};
 use std::fmt;
 use std::str::FromStr;
 
-/// A step of the ladder from cheap to exact: geometry, hits that are followed, and how colours are followed.
+/// A step of the ladder from cheap to exact: geometry, number of hits, and treatment of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rung {
-    /// Each object by what its material calls for: [`crate`].
+    /// A rung for each object, chosen by its material: [`crate`].
     ByMaterial,
     /// Reflection at the surface alone (the paper's Fig. 2).
     Surface,
     /// Light through the stone, by one of the gem recipes.
     Inside {
-        /// Where a ray inside meets the stone's surface.
+        /// How a ray inside finds the stone's surface.
         geometry: Geometry,
-        /// Internal hits that are followed; 0 takes the environment along the refracted ray.
+        /// Number of internal hits; 0 looks up the environment along the refracted ray.
         hits: u32,
-        /// How dispersion is followed.
+        /// How dispersion is computed.
         spectrum: Spectrum,
     },
-    /// Light scattered below the surface, by what the surface sends back.
+    /// Subsurface scattering, by a model of the surface's reflectance.
     Diffuse(Reflectance),
-    /// Light along the cheapest ways through a body, by voxels.
+    /// Light along the cheapest paths through a body, on voxels.
     OpticalPath(Paths),
-    /// The reference, on the CPU in f64: spectral for clear stones, random walks for what scatters.
+    /// The reference, on the CPU in f64: spectral for clear stones, random walks for scattering
+    /// bodies.
     Reference,
 }
 
 /// How a ray finds the next facet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Geometry {
-    /// A guess from the triangle that the ray entered by (the paper).
+    /// An estimate from the triangle through which the ray entered (the paper).
     Proxy,
     /// All facet planes of a convex stone, one after another (the paper's Fig. 7).
     Convex,
@@ -42,24 +43,25 @@ pub enum Geometry {
     Bvh,
 }
 
-/// How the refractive index's dependence on the wavelength is followed.
+/// How the wavelength dependence of the refractive index is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spectrum {
-    /// Not at all: one index.
+    /// No dispersion: a single index.
     One,
     /// The paper's tracker, eq. (10) to (12).
     Paper,
     /// The exact first-order tracker.
     Tracker,
-    /// As many wavelengths, each by a ray of its own; 3 are the channels' own.
+    /// The given number of wavelengths, each with a ray of its own; 3 stands for the colour
+    /// channels.
     Separate(u32),
 }
 
-/// Most internal hits.
+/// Maximum number of internal hits.
 pub const MOST_HITS: u32 = 64;
-/// Most wavelengths.
+/// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
-/// The rungs that are offered when a name is not understood, from cheap to exact.
+/// The rungs suggested when a name is not understood, from cheap to exact.
 pub const NAMES: [&str; 32] = [
     "by-material",
     "surface",
@@ -94,7 +96,7 @@ pub const NAMES: [&str; 32] = [
     "godunov-64",
     "reference",
 ];
-/// How a rung is written, for messages and help.
+/// The grammar of rung names, for messages and help.
 pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
      quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
@@ -111,7 +113,8 @@ impl Rung {
     /// The paper's rung: the proxy, one internal hit, no dispersion.
     pub const PAPER: Self = Self::Inside { geometry: Geometry::Proxy, hits: 1, spectrum: Spectrum::One };
 
-    /// The recipe that draws it; by each material's call, the clear ones'.
+    /// Returns the name of the recipe that draws the rung; for `ByMaterial`, the one for clear
+    /// stones.
     pub fn recipe(self) -> &'static str {
         match self {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
@@ -124,27 +127,27 @@ impl Rung {
         }
     }
 
-    /// Whether it draws clear stones alone, and whatever else it is given as if it were one.
+    /// Whether the rung is for clear stones only; it would draw any other body as if it were one.
     pub fn is_for_clear_stones(self) -> bool {
         matches!(self, Self::Inside { .. } | Self::Surface)
     }
 
-    /// How rays inside find facets; none where no light is followed inside.
+    /// Returns how rays inside find facets; `None` if no light is followed inside.
     pub fn geometry_of_inside(self) -> Option<Geometry> {
         if let Self::Inside { geometry, .. } = self { Some(geometry) } else { None }
     }
 
-    /// How rays find facets; the proxy where none is looked for.
+    /// Returns how rays find facets; the proxy if no light is followed inside.
     pub fn geometry(self) -> Geometry {
         if let Self::Inside { geometry, .. } = self { geometry } else { Geometry::Proxy }
     }
 
-    /// Internal hits that are followed.
+    /// Returns the number of internal hits; 0 if no light is followed inside.
     pub fn hits(self) -> u32 {
         if let Self::Inside { hits, .. } = self { hits } else { 0 }
     }
 
-    /// How dispersion is followed.
+    /// Returns how dispersion is computed; one index if no light is followed inside.
     pub fn spectrum(self) -> Spectrum {
         if let Self::Inside { spectrum, .. } = self { spectrum } else { Spectrum::One }
     }
@@ -216,7 +219,7 @@ impl FromStr for Rung {
     }
 }
 
-/// A number written in digits alone.
+/// Parses a number that consists of digits only.
 fn whole(text: &str) -> Option<u32> {
     text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }

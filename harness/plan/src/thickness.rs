@@ -1,30 +1,33 @@
-//! How thick a body is, and which technique follows from it for a body that scatters light.
+//! The thickness of a body, and the technique that follows from it for a scattering body.
 
 use glam::Vec3;
 use lapidary_bvh_trace::traversal;
 use lapidary_scene::{Bvh, Material, Medium, Mesh, Object};
 
-/// Bodies of up to this many mean free paths are seen through; see [`Thickness::shows_through`].
+/// Maximum thickness, in mean free paths, of a body through which light shows; see
+/// [`Thickness::shows_through`].
 pub const MOST_MEAN_FREE_PATHS: f32 = 16.0;
 
-/// Rays that measure a body.
+/// Number of rays that measure a body.
 const RAYS: usize = 1024;
-/// The share of a body's surface that may be thinner than its thickness.
+/// Share of a body's surface that may be thinner than its thickness.
 const THIN_SHARE: f64 = 0.1;
 
-/// A scattering body's thickness and what it is to be compared with.
+/// Thickness of a scattering body, and the length to compare it with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thickness {
-    /// In units of length.
+    /// Thickness in units of length.
     pub thickness: f32,
-    /// Whether the file gives it; else it was measured.
+    /// Whether the file gives the thickness; otherwise it was measured.
     pub is_given: bool,
-    /// The transport mean free path of the colour that goes farthest, where matter is least dense; infinite without scattering and absorption.
+    /// Transport mean free path in units of length, for the colour that travels farthest, at the
+    /// lowest density; infinite without scattering and absorption.
     pub mean_free_path: f32,
 }
 
 impl Thickness {
-    /// Of a body whose material has a medium: what the material says, else what is measured.
+    /// Returns the thickness of a body with a medium: the material's if it gives one, else the
+    /// measured one.
     #[must_use]
     pub fn of(object: &Object, medium: &Medium) -> Self {
         let given = object.material.thickness;
@@ -32,15 +35,18 @@ impl Thickness {
         Self { thickness, is_given: given > 0.0, mean_free_path: mean_free_path(medium) }
     }
 
-    /// How many mean free paths light takes straight through.
+    /// Returns the thickness in mean free paths.
     #[must_use]
     pub fn mean_free_paths(self) -> f32 {
         self.thickness / self.mean_free_path
     }
 
-    /// Whether light that falls on one side is seen on the other. Diffusion theory lets (5/3)/(N + 4/3) of diffuse light through a slab of N mean
-    /// free paths that absorbs nothing, so of 16 a tenth, and less where it absorbs. Below, ways through the body have to be followed; above, what
-    /// light does near the surface is all there is to see, and its curvature tells enough.
+    /// Whether light that falls on one side is seen on the other.
+    ///
+    /// In diffusion theory a slab of N mean free paths without absorption transmits (5/3)/(N + 4/3)
+    /// of diffuse light: a tenth for 16, and less with absorption. Thinner bodies need light paths
+    /// through the body. In thicker ones only the light near the surface is visible, and the
+    /// curvature of the surface is enough.
     #[must_use]
     pub fn shows_through(self) -> bool {
         self.mean_free_paths() <= MOST_MEAN_FREE_PATHS
@@ -51,8 +57,9 @@ fn mean_free_path(medium: &Medium) -> f32 {
     1.0 / (medium.transport_extinction().min_element() * medium.density.least())
 }
 
-/// The thickness that all but a tenth of the surface has at least: the way straight inwards from it to the next surface. A body's thin parts are
-/// what light shows through. 0 for a mesh that has no inside.
+/// Returns the thickness that all but a tenth of the surface reaches, measured straight inwards to
+/// the next surface; 0 for a mesh without an inside. The thin parts of a body decide, since light
+/// shows through them.
 #[must_use]
 pub fn measured(mesh: &Mesh) -> f32 {
     let bvh = Bvh::build(mesh);
@@ -63,7 +70,8 @@ pub fn measured(mesh: &Mesh) -> f32 {
     if !(total > 0.0 && total.is_finite()) {
         return 0.0;
     }
-    // Every so much of the area a ray, so that each part of the surface counts by its size and the same mesh always gives the same.
+    // One ray per fixed amount of area, so that each part of the surface counts by its size and the
+    // same mesh always gives the same result.
     let step = total / RAYS as f64;
     let mut lengths = Vec::new();
     let (mut behind, mut next) = (0.0, 0.5 * step);
@@ -82,7 +90,7 @@ fn corner_positions(mesh: &Mesh, corners: &[u32]) -> [Vec3; 3] {
     [0, 1, 2].map(|k| mesh.positions[corners[k] as usize])
 }
 
-/// The way inwards from a triangle's middle, square to it.
+/// Returns the distance inwards from a triangle's centre, along its normal; `None` without a hit.
 fn inwards(mesh: &Mesh, bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option<f32> {
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let middle = (a + b + c) / 3.0;
@@ -90,9 +98,11 @@ fn inwards(mesh: &Mesh, bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option
     (normal != Vec3::ZERO && traversal::met(&hit)).then_some(hit.distance)
 }
 
-/// The width that spreads light over a curved body of this medium, for red, green and blue in units of length: what a material has for `sigma0` that
-/// does not say. Random walks through spheres of ten mean free paths give (0.5 + 4.3 albedo) mean free paths within 4 % for the albedos of skin, wax
-/// and jade.
+/// Returns the width that spreads light over a curved body of this medium, for red, green and blue
+/// in units of length. It replaces `sigma0` if a material has none.
+///
+/// Random walks through spheres of ten mean free paths give (0.5 + 4.3 albedo) mean free paths,
+/// within 4 % for the albedos of skin, wax and jade.
 #[must_use]
 pub fn sigma0_of(medium: &Medium) -> Vec3 {
     let (scattering, extinction) = (medium.reduced_scattering(), medium.transport_extinction());
@@ -103,7 +113,7 @@ pub fn sigma0_of(medium: &Medium) -> Vec3 {
     Vec3::new(of(0), of(1), of(2))
 }
 
-/// [`sigma0_of`] where the material does not say.
+/// Returns the material's own `sigma0`, or [`sigma0_of`] its medium; `None` if it has neither.
 #[must_use]
 pub fn sigma0(material: &Material) -> Option<Vec3> {
     material.sigma0.or_else(|| material.medium.as_ref().map(sigma0_of))
@@ -120,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_sphere_is_as_thick_as_its_diameter_and_a_slab_as_its_edge() {
-        // Triangles lie inside the sphere, and their middles deeper still.
+        // The triangles lie inside the sphere, and their centres deeper still.
         let sphere = object("wax", 0);
         assert!((measured(&sphere.mesh) / 80.0 - 1.0).abs() < 0.01, "{}", measured(&sphere.mesh));
         let [low, high] = [Vec3::ZERO, Vec3::new(10.0, 1.0, 10.0)];
@@ -136,7 +146,7 @@ mod tests {
     fn thin_parts_decide() {
         let bunny = object("bunny", 0);
         let thickness = Thickness::of(&bunny, bunny.material.medium.as_ref().expect("marble"));
-        // Its ears and the tail's edge: a few of its 60 mm.
+        // The ears and the edge of the tail: a few of the bunny's 60 mm.
         assert!((2.0..12.0).contains(&thickness.thickness), "{thickness:?}");
         let given = Object { material: Material { thickness: 30.0, ..bunny.material.clone() }, ..bunny };
         let medium = given.material.medium.clone().expect("marble");

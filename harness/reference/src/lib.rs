@@ -1,4 +1,5 @@
-//! Reference pictures, computed on the CPU in f64: [`spectral`] for clear stones, [`random_walk`] for what scatters light.
+//! Reference images computed on the CPU in f64: [`spectral`] for clear stones and [`random_walk`]
+//! for scattering media.
 //!
 //! ```
 //! use lapidary_reference::spectral::{Settings, render};

@@ -1,19 +1,20 @@
-//! The camera's matrix, for the whole picture or for one tile of it.
+//! The camera's matrix, for the whole picture or for one of its tiles.
 
 use super::Tile;
 use glam::Mat4;
 use lapidary_scene::Scene;
 
-/// Clip space of `tile` within a picture of `width` × `height` pixels. Depth runs from 0 near to 1 far.
+/// Returns the matrix from world space to the clip space of `tile` in a picture of `width` ×
+/// `height` pixels. Depth runs from 0 (near) to 1 (far).
 pub(super) fn clip_from_world(scene: &Scene, width: u32, height: u32, tile: Tile) -> Mat4 {
     tile_from_picture(width, height, tile) * lapidary_scene::clip_from_world(scene, width, height)
 }
 
-/// Scales the tile's part of clip space up to the whole of it.
+/// Returns the matrix that scales the tile's part of clip space up to all of clip space.
 fn tile_from_picture(width: u32, height: u32, tile: Tile) -> Mat4 {
     let scale_x = width as f32 / tile.width as f32;
     let scale_y = height as f32 / tile.height as f32;
-    // The tile's middle in the picture's clip space, y up.
+    // Centre of the tile in the picture's clip space, y up.
     let middle_x = (2.0 * tile.left as f32 + tile.width as f32) / width as f32 - 1.0;
     let middle_y = 1.0 - (2.0 * tile.top as f32 + tile.height as f32) / height as f32;
     Mat4::from_cols_array(&[

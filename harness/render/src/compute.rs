@@ -1,43 +1,43 @@
-//! A recipe's compute entry point, run once over buffers of its own.
+//! Runs a recipe's compute entry point once, with its own buffers.
 
 use crate::frame::{Builder, Executor, Workgroups};
 use crate::shader::ShaderError;
 use lapidary_gpu::Gpu;
 use wgpu::BufferUsages as Usage;
 
-/// What stands at a binding; numbered from 0 in its group.
+/// Resource at a binding; bindings are numbered from 0 in each group.
 #[derive(Clone, Copy, Debug)]
 pub enum Binding<'a> {
-    /// A uniform buffer with contents.
+    /// A uniform buffer with these contents.
     Uniform(&'a [u8]),
-    /// A storage buffer that is read.
+    /// A read-only storage buffer with these contents.
     Storage(&'a [u8]),
     /// The storage buffer that is written and read back, with its size in bytes.
     Result(u64),
 }
 
-/// What to run, and on what.
+/// A recipe to run, and its inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct RecipeRun<'a> {
-    /// The recipe's name.
+    /// Name of the recipe.
     pub recipe: &'a str,
-    /// Its compute entry point.
+    /// Compute entry point of the recipe.
     pub entry: &'a str,
-    /// Values of overrides; those that it does not declare are left out.
+    /// Values of overrides; names that the recipe does not declare are ignored.
     pub constants: &'a [(&'a str, f64)],
-    /// By group.
+    /// Bindings of each group.
     pub bindings: &'a [&'a [Binding<'a>]],
-    /// Along each axis.
+    /// Number of workgroups along each axis.
     pub workgroups: [u32; 3],
 }
 
-/// Runs a recipe and gives the words of its [`Binding::Result`].
+/// Runs a recipe and returns the words of its [`Binding::Result`].
 ///
 /// # Errors
-/// A recipe that is not valid, or that the device refuses.
+/// If the recipe is not valid, or the device rejects it.
 ///
 /// # Panics
-/// Where no binding is a result.
+/// If no binding is a result.
 pub fn run_recipe(gpu: &Gpu, run: &RecipeRun<'_>) -> Result<Vec<u32>, ShaderError> {
     let mut builder = Builder::new(Some(gpu));
     let source = lapidary_wgsl::recipe_source(run.recipe);

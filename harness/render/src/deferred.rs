@@ -1,4 +1,5 @@
-//! The deferred way (the paper's section 4.3.4): the gem recipe fills a geometry buffer, and a lighting pass makes the picture.
+//! Deferred drawing (the paper's section 4.3.4): the gem recipe fills a geometry buffer, and a
+//! lighting pass produces the picture.
 
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
@@ -7,13 +8,14 @@ use crate::frame::{Bound, Builder, Pass, PipelineId, PipelineSource, RenderPass,
 use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
 
-/// Of the colour targets: what engines use for emission, and enough for a normal (2^-11 a component).
+/// Format of the colour targets: the one that engines use for emission, and precise enough for a
+/// normal (2^-11 per component).
 pub(super) const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// The lighting pass's recipe.
+/// Recipe of the lighting pass.
 pub(super) const COMPOSITE: &str = "gem_composite";
 
-/// How many colour targets there are: emission, normal, reflectance.
+/// Number of colour targets: emission, normal, reflectance.
 pub(super) const TARGETS: usize = 3;
 
 /// The geometry buffer of one tile and the lighting pass.
@@ -27,7 +29,8 @@ pub(super) struct DeferredPass {
 }
 
 impl DeferredPass {
-    /// For the settings' environment and samples; `source` is the composed recipe of the lighting pass.
+    /// Creates the passes for the settings' environment and samples; `source` is the composed
+    /// recipe of the lighting pass.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         lighting: &Lighting<'_>,
@@ -104,15 +107,16 @@ mod tests {
     use lapidary_gpu::{AdapterChoice, Gpu};
     use lapidary_scene::Scene;
 
-    /// The paper's section 4.3.1 through a real depth buffer: its 32-bit values end 2^-24 of the range from near to far away from the
-    /// truth, the interpolation of clip coordinates and the product with the inverse matrix add a few units in the last place of the distance.
+    /// The paper's section 4.3.1 with a real depth buffer: its 32-bit values are off by 2^-24 of
+    /// the range from near to far; the interpolation of clip coordinates and the product with the
+    /// inverse matrix add a few units in the last place of the distance.
     #[test]
     fn positions_come_back_from_the_depth_buffer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let shown = "return vec4f(textureLoad(reflectance, texel, 0).rgb * surroundings_radiance(reflected) + inside.rgb, 1.0f);";
         let source = lapidary_wgsl::recipe_source(COMPOSITE);
         assert!(source.contains(shown));
-        // Every binding stays in use, and the position is what is seen.
+        // Every binding stays in use, and the output is the position.
         let planted =
             source.replace(shown, &format!("if (inside.r < 0.0f) {{ {shown} }}\n    return vec4f(world, 1.0f);"));
         for name in ["brilliant", "prism", "bunny_stone"] {
@@ -134,8 +138,9 @@ mod tests {
                 let point = viewer.see(&scene.objects[0].mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);
                 let (Some(point), true) = (point, alpha > 0.0) else { continue };
                 let eye = scene.camera.eye;
-                // Across the ray nothing is lost; along it the depth decides, the more the more the facet slants: where it is seen edge-on the
-                // two differ by which point of the pixel is meant.
+                // Perpendicular to the ray, no accuracy is lost. Along the ray, the error depends
+                // on the depth and grows with the slant of the facet: if it is seen edge-on, the
+                // two points differ by which point of the pixel is meant.
                 let (direction, from_eye) = ((point.position - eye).normalize(), Vec3::new(x, y, z) - eye);
                 worst = larger(worst, from_eye.cross(direction).length() / point.position.distance(eye));
                 let along = (from_eye.dot(direction) - point.position.distance(eye)).abs();

@@ -1,4 +1,5 @@
-//! Texture diffusion of one object: the recipe `texture_irradiance` draws what arrives, the recipe `texture_diffusion` blurs it.
+//! Texture diffusion of one object: the recipe `texture_irradiance` draws the irradiance, and the
+//! recipe `texture_diffusion` blurs it.
 
 use super::RenderError;
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
@@ -7,18 +8,18 @@ use crate::frame::{BindGroupId, Buffer, Builder, Pass, PipelineId, PipelineSourc
 use lapidary_scene::Object;
 use lapidary_scene::layout::Layout;
 
-/// The recipe's name.
+/// Name of the recipe.
 const RECIPE: &str = "texture_irradiance";
-/// Texels along each side: the paper's.
+/// Texels along each side, as in the paper.
 pub(super) const SIDE: u32 = 1024;
 
-/// An object's textures, and how they are filled.
+/// Textures of an object, and the passes that fill them.
 pub(super) struct Diffusion {
     textures: TextureDiffusion,
-    /// Of its object.
+    /// Name of the object.
     name: String,
     pipeline: PipelineId,
-    /// Lights and harmonics, then the mesh.
+    /// Groups for the lights and harmonics, then for the mesh.
     groups: Vec<Option<BindGroupId>>,
     vertices: u32,
     taps: Taps,
@@ -26,8 +27,10 @@ pub(super) struct Diffusion {
 }
 
 impl Diffusion {
-    /// For `object`, which has texture coordinates, under these lights and harmonics, with the overrides that go with them, and with the mesh's positions,
-    /// normals and texture coordinates as it is shown.
+    /// Creates the passes for `object`, which must have texture coordinates.
+    ///
+    /// `light` and `constants` are the lights and harmonics with their overrides; the last
+    /// parameter holds the mesh's positions, normals and texture coordinates as drawn.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         (object, name): (&Object, &str),
@@ -44,7 +47,8 @@ impl Diffusion {
         })?;
         let Layout { repeats, charts } = Layout::of(&object.mesh);
         let textures = TextureDiffusion::new(builder, [SIDE; 2], [repeats.x, repeats.y])?;
-        // Halos first, so that of two that touch a texel the chart's own triangle stays.
+        // Halos first: if a halo and a chart's own triangle touch the same texel, the triangle
+        // stays.
         let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
         let vertices = builder.mesh_vertices(object, &drawn, [bytemuck::cast_slice(&drawn)])?;
         let shared = translucent::shared(builder, light, pipeline)?;
@@ -62,12 +66,12 @@ impl Diffusion {
         })
     }
 
-    /// What shading looks up.
+    /// Returns the texture that shading looks up.
     pub(super) fn diffused(&self) -> Texture {
         self.textures.diffused
     }
 
-    /// Draws what arrives and blurs it.
+    /// Draws the irradiance and blurs it.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) {
         builder.of_object(&self.name, |builder| {
             let draw = builder.draw(self.pipeline, self.groups.clone(), self.vertices);
@@ -83,14 +87,14 @@ impl Diffusion {
     }
 }
 
-/// The texels that a box of texture coordinates touches.
+/// Returns the texels that a box of texture coordinates touches.
 fn texels([low, high]: [glam::Vec2; 2]) -> Chart {
     let place = |value: f32| value.clamp(0.0, SIDE as f32) as u32;
     let (low, high) = ((low * SIDE as f32).floor(), (high * SIDE as f32).ceil());
     Chart { low: [place(low.x), place(low.y)], high: [place(high.x), place(high.y)] }
 }
 
-/// Boxes that touch one another made one: between two that are blurred apart there is a texel.
+/// Merges boxes that touch, so that boxes blurred separately have a texel between them.
 fn apart(mut charts: Vec<Chart>) -> Vec<Chart> {
     let touch = |a: &Chart, b: &Chart| (0..2).all(|k| a.low[k] <= b.high[k] && b.low[k] <= a.high[k]);
     let mut merged: Vec<Chart> = Vec::new();

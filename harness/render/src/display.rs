@@ -13,24 +13,24 @@ use std::ops::Range;
 
 const RECIPE: &str = "display";
 const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Linear radiance and coverage, in f32.
+/// Linear radiance and coverage, f32.
 const LINEAR: &str = "linear picture";
 /// sRGB, opaque.
 pub(super) const ENCODED: &str = "encoded picture";
 
-/// Averages samples, and what the tone curve makes of them, and brings both pictures back.
+/// Averages the samples, linear and tone-mapped, and reads both pictures back.
 pub(super) struct DisplayPass {
     pipeline: PipelineId,
-    /// Along each side of a pixel.
+    /// Samples along each side of a pixel.
     count: u32,
-    /// Samples of one tile: what the scene's pass draws to.
+    /// Samples of one tile: the target of the scene's pass.
     pub(super) samples: Texture,
     pictures: [Texture; 2],
     read: [Readback; 2],
 }
 
 impl DisplayPass {
-    /// For tiles of a picture of the settings' size and samples.
+    /// Creates the pass for tiles of a picture with the settings' size and samples.
     pub(super) fn new(builder: &mut Builder<'_>, settings: &Settings) -> Result<Self, RenderError> {
         let count = settings.samples;
         let pipeline = pipeline(builder, count, &[SAMPLE_FORMAT, ENCODED_FORMAT])?;
@@ -46,7 +46,7 @@ impl DisplayPass {
         Ok(Self { pipeline, count, samples, pictures, read })
     }
 
-    /// Ends a tile: from the samples to the pictures.
+    /// Finishes a tile: displays its samples and reads both pictures back.
     pub(super) fn encode(&self, builder: &mut Builder<'_>, tile: Tile, settings: &Settings) {
         let corner = UVec2::new(tile.left, tile.top).as_vec2();
         let group = group(builder, self.pipeline, self.samples, corner, settings);
@@ -64,7 +64,7 @@ impl DisplayPass {
     }
 }
 
-/// The display recipe for so many samples along each side of a pixel.
+/// Returns the display recipe for `count` samples along each side of a pixel.
 pub(super) fn pipeline(
     builder: &mut Builder<'_>,
     count: u32,
@@ -80,7 +80,7 @@ pub(super) fn pipeline(
     })?)
 }
 
-/// What it reads, for a tile with this upper left corner in pixels.
+/// Returns the resources of the pass for a tile; `corner` is its upper left corner in pixels.
 pub(super) fn group(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
@@ -96,7 +96,7 @@ pub(super) fn group(
 }
 
 impl Picture {
-    /// Takes a part that was read back, without gaps between rows.
+    /// Copies in a part that was read back, without gaps between rows.
     pub(super) fn take(&mut self, read: &Read, texels: &[u8]) {
         let ([width, _], [left, top]) = (read.size.map(|side| side as usize), read.at.map(|at| at as usize));
         let start = |row: usize| (top + row) * self.width as usize + left;
@@ -116,7 +116,7 @@ impl Picture {
     }
 }
 
-/// Shows samples that were made elsewhere.
+/// Displays samples that were computed elsewhere.
 pub(super) struct Display<'gpu> {
     executor: Executor<'gpu>,
     count: u32,
@@ -125,7 +125,7 @@ pub(super) struct Display<'gpu> {
 }
 
 impl<'gpu> Display<'gpu> {
-    /// For a picture of the settings' size and samples.
+    /// Creates the pass for a picture with the settings' size and samples.
     pub(super) fn new(gpu: &'gpu Gpu, settings: &Settings) -> Result<Self, RenderError> {
         let mut builder = Builder::new(Some(gpu));
         let pass = DisplayPass::new(&mut builder, settings)?;

@@ -13,21 +13,22 @@ use lapidary_plan::Rung;
 use lapidary_scene::Scene;
 use std::borrow::Cow;
 
-/// Texts of recipes, where they are others than the cookbook's: of the rung's, and of the lighting pass.
+/// Source texts that replace the cookbook's recipes, for the rung and for the lighting pass; `None`
+/// keeps the cookbook's.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Texts<'a> {
     pub(super) rung: Option<&'a str>,
     pub(super) composite: Option<&'a str>,
 }
 
-/// A picture's frame, and what of its passes is to be asked afterwards.
+/// A picture's frame, and the passes that are queried after it has run.
 pub(super) struct Drawing {
     pub(super) frame: Frame,
     pub(super) pass: ScenePass,
 }
 
 impl Drawing {
-    /// Of any rung but the reference, which is computed on the CPU.
+    /// Creates the frame of any rung except the reference, which is computed on the CPU.
     pub(super) fn new(
         gpu: Option<&Gpu>,
         scene: &Scene,
@@ -35,7 +36,17 @@ impl Drawing {
         texts: Texts<'_>,
     ) -> Result<Self, RenderError> {
         let mut builder = Builder::new(gpu);
-        let builder = &mut builder;
+        let pass = Self::build(&mut builder, scene, settings, texts)?;
+        Ok(Self { frame: builder.finish(), pass })
+    }
+
+    /// Adds all resources and passes.
+    fn build(
+        builder: &mut Builder<'_>,
+        scene: &Scene,
+        settings: &Settings,
+        texts: Texts<'_>,
+    ) -> Result<ScenePass, RenderError> {
         let (width, height) = (settings.width, settings.height);
         let display = DisplayPass::new(builder, settings)?;
         let lighting = Lighting::new(scene, settings);
@@ -61,11 +72,12 @@ impl Drawing {
             }
             display.encode(builder, tile, settings);
         }
-        Ok(Self { frame: std::mem::take(builder).finish(), pass })
+        Ok(pass)
     }
 }
 
-/// Everything that draws the scene's objects, each by its rung; `source` is another text of the recipe where they all have one.
+/// Creates the passes that draw the scene's objects, each by its rung; `source` replaces the text
+/// of the recipe if all objects share one.
 pub(super) fn scene_pass(
     builder: &mut Builder<'_>,
     lighting: &Lighting<'_>,
@@ -95,7 +107,7 @@ pub(super) fn scene_pass(
             _ => gem::pass(builder, lighting, part, source, ("gem_fragment", forward))?,
         });
     }
-    // What is blurred in a texture is shadowed there: the maps come first.
+    // Irradiance that is blurred in a texture is shadowed there, so the shadow maps come first.
     all.before.splice(0..0, shadows.map(Before::Shadows));
     Ok(all)
 }

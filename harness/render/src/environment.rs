@@ -3,7 +3,8 @@
 use super::{Environment, RenderError};
 use crate::frame::{Builder, Contents, Texture};
 
-/// The environment map as a texture; one black texel where the studio stands in, for a recipe's text that reads it all the same.
+/// Returns the environment map as a texture. For the studio, which has no map, it is one black
+/// texel, so that recipes that read a map still have one to bind.
 pub(super) fn texture(builder: &mut Builder<'_>, environment: &Environment) -> Result<Texture, RenderError> {
     let black = [[0f32; 4]];
     let (width, height, pixels): (u32, u32, &[[f32; 4]]) = match environment {

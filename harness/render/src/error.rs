@@ -1,4 +1,4 @@
-//! Why there is no picture.
+//! Errors of rendering.
 
 use super::MOST_SAMPLES;
 use lapidary_gpu::GpuError;
@@ -6,133 +6,133 @@ use lapidary_plan::Rung;
 use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
 
-/// Why there is no picture.
+/// Reason why a picture could not be rendered.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// Width or height out of range.
     #[error("size {width}x{height} is out of range; each side must be 1 to {largest} pixels on this device")]
     Size {
-        /// What was asked for.
+        /// Requested width in pixels.
         width: u32,
-        /// What was asked for.
+        /// Requested height in pixels.
         height: u32,
-        /// What is possible.
+        /// Largest possible side in pixels.
         largest: u32,
     },
-    /// Too few or too many samples.
+    /// Number of samples out of range.
     #[error("{0} samples a side are out of range; take 1 to {MOST_SAMPLES}")]
     Samples(u32),
     /// A mesh or an environment map that this device cannot hold.
     #[error("{what} needs {bytes} bytes in one buffer, and this device offers {limit}; use a smaller one")]
     TooLarge {
-        /// Which.
+        /// The mesh or the map.
         what: String,
-        /// How large it is.
+        /// Its size in bytes.
         bytes: u64,
-        /// What is possible.
+        /// Largest possible size in bytes.
         limit: u64,
     },
-    /// An exact rung for convex stones, and a stone that is not.
+    /// A stone that is not convex, drawn by an exact rung for convex stones.
     #[error("object `{object}` {reason}, and the convex rungs need a closed convex stone; use a bvh rung")]
     NotConvex {
-        /// Its name.
+        /// Name of the object.
         object: String,
-        /// What is wrong with it, as `is not convex`.
+        /// Its defect, such as `is not convex`.
         reason: String,
     },
-    /// A body that the reference of clear stones would turn to glass.
+    /// An opaque body, which the reference of clear stones would draw as glass.
     #[error(
         "object `{object}` is opaque, and the reference draws clear stones, or scattering bodies, alone; take another rung, or leave the object out"
     )]
     OpaqueReference {
-        /// Its name.
+        /// Name of the object.
         object: String,
     },
-    /// A rung whose loops a driver would end before they are done.
+    /// A rung whose loops a driver would end early.
     #[error(
         "rung `{rung}` may take {steps} turns of its loops for one pixel, and lavapipe ends them silently after {limit}; \
          take fewer hits or wavelengths, or another adapter"
     )]
     TooManySteps {
-        /// Which.
+        /// The rung.
         rung: Rung,
-        /// How many.
+        /// Number of loop iterations per pixel.
         steps: u64,
-        /// What the driver allows.
+        /// Largest number of iterations that the driver allows.
         limit: u64,
     },
-    /// More lights than maps.
+    /// More views of lights than shadow maps.
     #[error(
         "the lights need {views} shadow maps, and this device offers {limit}; take fewer lights, or move lamps out of the scene"
     )]
     TooManyViews {
-        /// How many.
+        /// Number of views that the lights need.
         views: usize,
-        /// What is possible.
+        /// Largest possible number of views.
         limit: u32,
     },
     /// A recipe is not valid.
     #[error(transparent)]
     Kernel(#[from] crate::shader::ShaderError),
-    /// A geometry buffer holds clear stones alone.
+    /// An object other than a clear stone; only clear stones can be drawn with a geometry buffer.
     #[error(
         "object `{object}` is drawn by rung `{rung}`, and only clear stones are drawn by way of a geometry buffer; leave --deferred out"
     )]
     NotDeferred {
-        /// Its name.
+        /// Name of the object.
         object: String,
         /// Its rung.
         rung: Rung,
     },
-    /// A material that a rung for scattering cannot draw.
+    /// A material that a rung for scattering bodies cannot draw.
     #[error(
         "object `{object}`: its material `{material}` has no sigma0, which rung `{rung}` needs; add extras.lapidary.sigma0, or take a \
          rung for clear stones"
     )]
     NoSigma0 {
-        /// The object's name.
+        /// Name of the object.
         object: String,
-        /// The material's.
+        /// Name of its material.
         material: String,
         /// The rung.
         rung: Rung,
     },
-    /// A material through which no light can be followed.
+    /// A material without the medium that a rung for light paths needs.
     #[error(
         "object `{object}`: its material `{material}` has no scattering and absorption, which rung `{rung}` needs; add \
          extras.lapidary.scattering and .absorption, or take another rung"
     )]
     NoMedium {
-        /// The object's name.
+        /// Name of the object.
         object: String,
-        /// The material's.
+        /// Name of its material.
         material: String,
-        /// Which rung.
+        /// The rung.
         rung: Rung,
     },
-    /// Texture coordinates that a blur cannot use.
+    /// Texture coordinates that rung `blur` cannot use.
     #[error(
         "object `{object}` has texture coordinates outside 0 to 1, where rung `blur` draws nothing; unwrap it anew, or take another rung"
     )]
     TextureCoordinatesOutside {
-        /// The object's name.
+        /// Name of the object.
         object: String,
     },
-    /// A mesh that a blur in its texture cannot draw.
+    /// A mesh without texture coordinates, which rung `blur` cannot draw.
     #[error(
         "object `{object}` has no texture coordinates, which rung `blur` needs; add TEXCOORD_0, or take another rung"
     )]
     NoTextureCoordinates {
-        /// The object's name.
+        /// Name of the object.
         object: String,
     },
-    /// The reference refuses.
+    /// An error of the reference of clear stones.
     #[error(transparent)]
     Reference(#[from] spectral::ReferenceError),
-    /// The reference of what scatters light refuses.
+    /// An error of the reference of scattering bodies.
     #[error(transparent)]
     Walk(#[from] mesh::WalkError),
-    /// The device refused.
+    /// An error of the device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }

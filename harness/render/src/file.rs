@@ -1,38 +1,38 @@
-//! Pictures as files: PNG to look at, EXR where the range matters. A file is complete or absent.
+//! Picture files: PNG for viewing, EXR if the range matters. A file is either complete or absent.
 
 use super::Picture;
 use exr::prelude::{Image, WritableImage as _, f16};
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Why a picture could not be written or read.
+/// Reason why a picture could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// A name that says no format.
+    /// A file name whose extension names no format.
     #[error("{path}: the name must end in .png or .exr")]
     Extension {
         /// The file.
         path: PathBuf,
     },
-    /// The system's word.
+    /// An error of the file system.
     #[error("{path}: cannot be written: {error}")]
     Write {
         /// The file.
         path: PathBuf,
-        /// What went wrong.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// The encoder's word.
+    /// An error of the encoder.
     #[error("{path}: cannot be encoded: {reason}")]
     Encode {
         /// The file.
         path: PathBuf,
-        /// What went wrong.
+        /// The encoder's message.
         reason: String,
     },
 }
 
-/// What a file name asks for.
+/// File format, chosen by the extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// 8-bit sRGB.
@@ -42,7 +42,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that `path` ends in.
+    /// Returns the format that the extension of `path` names.
     pub fn of_path(path: &Path) -> Result<Format, FileError> {
         match path.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase).as_deref() {
             Some("png") => Ok(Format::Png),
@@ -52,7 +52,7 @@ impl Format {
     }
 }
 
-/// Writes `picture` in the format that `path` ends in.
+/// Writes `picture` in the format that the extension of `path` names.
 pub fn write(picture: &Picture, path: &Path) -> Result<(), FileError> {
     let encode = |reason: String| FileError::Encode { path: path.to_owned(), reason };
     let bytes = match Format::of_path(path)? {
@@ -62,7 +62,8 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), FileError> {
     replace(path, &bytes)
 }
 
-/// Whether a file can be written at `path`: asked before hours of rendering, not after.
+/// Checks that a file can be written at `path`, so that an error shows before hours of rendering
+/// instead of after.
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
     let writable = || {
         let target = followed(path)?;
@@ -78,8 +79,11 @@ pub fn check_writable(path: &Path) -> Result<(), FileError> {
     writable().map_err(|error| FileError::Write { path: path.to_owned(), error: plain(&error) })
 }
 
-/// Writes bytes to a file beside `path`, then renames it, so that no reader ever meets half of them. A link is followed; an older file's permissions
-/// are kept; a device or pipe is written to as it is.
+/// Writes bytes to a temporary file next to `path`, then renames it, so that no reader sees a
+/// partial file.
+///
+/// Links are followed, an existing file keeps its permissions, and devices and pipes are written to
+/// directly.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let write = || {
         let target = followed(path)?;
@@ -97,7 +101,8 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write().map_err(|error| FileError::Write { path: path.to_owned(), error: plain(&error) })
 }
 
-/// A new file beside `path`, which goes when it is dropped. Others may read it as far as the process's umask lets them.
+/// Creates a temporary file next to `path`, which is deleted when dropped. Other users may read it
+/// as far as the process's umask allows.
 fn aside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -108,10 +113,10 @@ fn aside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     builder.tempfile_in(folder_of(path))
 }
 
-/// As many links as Linux follows.
+/// Largest number of links followed, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// Where `path` leads when links are followed; the last one may lead to what is not there yet.
+/// Follows the links at `path` and returns their target; the last target need not exist.
 fn followed(path: &Path) -> std::io::Result<PathBuf> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -123,12 +128,12 @@ fn followed(path: &Path) -> std::io::Result<PathBuf> {
     Err(std::io::Error::other("it is a link that leads back to itself"))
 }
 
-/// Whether there is something that holds no contents: a device, a pipe, a socket.
+/// Returns whether `path` exists but is not a regular file or folder: a device, a pipe, a socket.
 fn is_stream(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// The system's own word, without the name of a temporary file.
+/// Returns the system's own error, without the name of a temporary file.
 fn plain(error: &std::io::Error) -> std::io::Error {
     let inner = error.get_ref().and_then(std::error::Error::source);
     let code = inner.and_then(|inner| inner.downcast_ref::<std::io::Error>()).and_then(std::io::Error::raw_os_error);
@@ -183,7 +188,7 @@ mod tests {
         std::fs::create_dir(at("far")).expect("a folder");
         std::fs::write(at("far/old.txt"), "old").expect("a file");
         std::fs::set_permissions(at("far/old.txt"), std::fs::Permissions::from_mode(0o640)).expect("set");
-        // One after another, relative and absolute, and one to what is not there yet.
+        // A chain of links, relative and absolute, and one link to a missing file.
         symlink("far/old.txt", at("near")).expect("a link");
         symlink(at("near"), at("nearer")).expect("a link");
         symlink("far/new.txt", at("dangling")).expect("a link");

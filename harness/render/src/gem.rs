@@ -1,4 +1,4 @@
-//! The gem recipes' pass.
+//! The pass of the gem recipes.
 
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, ScenePass, Variant};
@@ -7,7 +7,7 @@ use super::{RenderError, Settings, restraint, stone};
 use crate::frame::{Builder, PipelineSource};
 use lapidary_plan::{Decisions, Geometry, Rung, Spectrum};
 
-/// The overrides of the gem recipes for an object.
+/// Returns the overrides of the gem recipes for an object.
 pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) -> Vec<(&'static str, f64)> {
     let flag = |on: bool| f64::from(u8::from(on));
     let (form, wavelengths) = match rung.spectrum() {
@@ -29,7 +29,8 @@ pub(crate) fn constants(decisions: &Decisions, rung: Rung, settings: &Settings) 
     constants
 }
 
-/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment`, for the effects of each stone, and adds the stones.
+/// Compiles `source`, the rung's composed recipe, with the fragment entry point `fragment` for the
+/// effects of each stone, and adds the stones.
 pub(super) fn pass(
     builder: &mut Builder<'_>,
     lighting: &Lighting<'_>,

@@ -1,4 +1,5 @@
-//! A scene to a picture: the rung's recipe over tiles, supersampled, then the display recipe; or the reference.
+//! Renders a scene to a picture: the rung's recipe over tiles, supersampled, then the display
+//! recipe; or the reference.
 //!
 //! ```no_run
 //! use lapidary_gpu::{AdapterChoice, Gpu};
@@ -72,38 +73,41 @@ pub(crate) use variant::names as object_names;
 
 /// Largest side of a tile in pixels.
 const TILE: u32 = 512;
-/// Largest side of a tile in samples: far within every device's texture limit, and 80 MiB of colour and depth.
+/// Largest side of a tile in samples: well within every device's texture limit, and 80 MiB of
+/// colour and depth.
 const TILE_SAMPLES: u32 = 2048;
-/// The most samples along each side of a pixel.
+/// Largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
 /// A rendered picture, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// In pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// In pixels.
+    /// Height in pixels.
     pub height: u32,
     /// Linear radiance and coverage.
     pub linear: Vec<[f32; 4]>,
-    /// sRGB, opaque: the mean of the tone-mapped samples, where there are samples.
+    /// sRGB, opaque: the mean of the tone-mapped samples, if there are samples.
     pub encoded: Vec<[u8; 4]>,
-    /// What the reference of clear stones did not follow; none of another rung.
+    /// Energy that the reference of clear stones did not follow; `None` if it did not render the
+    /// picture.
     pub lost: Option<Lost>,
-    /// How good the reference of what scatters light is; none of another rung.
+    /// Quality of the reference of scattering bodies; `None` if it did not render the picture.
     pub walked: Option<WalkedPicture>,
-    /// What is not as it should be.
+    /// Warnings.
     pub notes: Vec<Note>,
 }
 
-/// How good a picture by random walks is.
+/// Quality of a picture rendered by random walks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkedPicture {
-    /// The root mean square of the pixels' standard errors over the mean brightness, where there is a body.
+    /// Root mean square of the pixels' standard errors, relative to the mean brightness, both over
+    /// pixels that show a body.
     pub error: f64,
-    /// Samples that met a body.
+    /// Number of samples that met a body.
     pub walks: u64,
-    /// Walks that slipped through a surface by rounding, and were followed no further.
+    /// Number of walks that slipped through a surface by rounding and were dropped.
     pub lost: u64,
 }
 
@@ -112,7 +116,8 @@ pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, 
     render_reporting(gpu, scene, settings, &mut |_, _| {})
 }
 
-/// The same, saying how many of how many steps are done.
+/// Renders `scene` like [`render`], and calls `progress` with the number of steps done and in
+/// total.
 pub fn render_reporting(
     gpu: &Gpu,
     scene: &Scene,
@@ -122,23 +127,27 @@ pub fn render_reporting(
     render_from(gpu, scene, settings, Texts::default(), progress)
 }
 
-/// Renders `scene`, and shows its mean radiance in place of its samples': as a committed reference is shown, of which only means are kept. Pictures that
-/// are compared as they are seen are both shown alike.
+/// Renders `scene` and displays its mean radiance instead of its samples.
+///
+/// Committed references are displayed this way, because only their means are stored. If two
+/// pictures are compared as displayed, both must be displayed alike.
 pub fn render_means(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Picture, RenderError> {
     let mut picture = render(gpu, scene, settings)?;
     encode(gpu, settings, &mut picture)?;
     Ok(picture)
 }
 
-/// Renders `scene` with another text of the rung's recipe.
+/// Renders `scene` with another source text for the rung's recipe.
 pub fn render_with(gpu: &Gpu, scene: &Scene, settings: &Settings, source: &str) -> Result<Picture, RenderError> {
     render_from(gpu, scene, settings, Texts { rung: Some(source), composite: None }, &mut |_, _| {})
 }
 
-/// All that drawing `scene` makes and runs on a device, with tables that `gpu` computes, or none: nothing at all for the reference.
+/// Returns everything that is created and run on a device to draw `scene`; empty for the reference.
+///
+/// `gpu` computes the tables; if it is `None`, they are left out.
 ///
 /// # Errors
-/// Where the scene cannot be drawn so.
+/// If the scene cannot be drawn with these settings.
 pub fn frame(gpu: Option<&Gpu>, scene: &Scene, settings: &Settings) -> Result<Frame, RenderError> {
     check_size(settings)?;
     if settings.rung == Rung::Reference {
@@ -147,7 +156,7 @@ pub fn frame(gpu: Option<&Gpu>, scene: &Scene, settings: &Settings) -> Result<Fr
     Ok(Drawing::new(gpu, scene, settings, Texts::default())?.frame)
 }
 
-/// Refuses sizes that no device has, and numbers of samples that are not meant.
+/// Rejects sizes that no device supports, and numbers of samples out of range.
 fn check_size(settings: &Settings) -> Result<(), RenderError> {
     let (width, height) = (settings.width, settings.height);
     let largest = LARGEST_SIDE.min(wgpu::Limits::default().max_texture_dimension_2d);
@@ -160,7 +169,7 @@ fn check_size(settings: &Settings) -> Result<(), RenderError> {
     Ok(())
 }
 
-/// The same with other texts.
+/// Renders `scene` with other source texts.
 fn render_from(
     gpu: &Gpu,
     scene: &Scene,
@@ -178,7 +187,8 @@ fn render_from(
             let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
             picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });
             picture.linear = linear;
-            // A walk's radiance is a guess that is right in the mean alone; a tone curve of guesses would be too dark.
+            // A walk's radiance is an estimate that is right only in the mean; the tone curve
+            // applied to single estimates would be too dark.
             encode(gpu, settings, &mut picture)?;
         } else {
             follow(gpu, scene, settings, &mut picture, progress)?;
@@ -191,7 +201,7 @@ fn render_from(
     let mut done = 0;
     executor.run(|read, texels| {
         picture.take(read, texels);
-        // The last of a tile's.
+        // The last read of a tile.
         if read.picture == ENCODED {
             done += 1;
             progress(done, tiles);
@@ -201,24 +211,24 @@ fn render_from(
     Ok(picture)
 }
 
-/// The overrides of the gem recipes for a scene's first object.
+/// Returns the overrides of the gem recipes for a scene's first object.
 pub fn gem_constants(scene: &Scene, settings: &Settings) -> Vec<(&'static str, f64)> {
     let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| gem::constants(&decisions, decisions.rung, settings))
 }
 
-/// The same of the recipe `cdrf_shading`.
+/// Returns the overrides of the recipe `cdrf_shading` for a scene's first object.
 pub fn translucent_constants(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Vec<(&'static str, f64)> {
     let decisions = scene.objects.first().map(|object| Decisions::of(object, scene, &settings.request()));
     decisions.map_or_else(Vec::new, |decisions| translucent::constants(&decisions, settings, reflectance))
 }
 
-/// Whether a body of `scene` scatters light.
+/// Returns whether any body of `scene` scatters light.
 pub fn scatters(scene: &Scene) -> bool {
     scene.objects.iter().any(|object| object.material.scatters())
 }
 
-/// What random walks see of `scene`.
+/// Renders `scene` by random walks.
 fn walk(
     scene: &Scene,
     settings: &Settings,
@@ -236,7 +246,7 @@ fn walk(
     Ok(mesh::render(scene, &of_walks, &from_any_thread(progress))?)
 }
 
-/// A progress that several threads may tell.
+/// Wraps a progress callback so that several threads may call it.
 fn from_any_thread(progress: &mut (dyn FnMut(u64, u64) + Send)) -> impl Fn(u64, u64) + Sync {
     let progress = Mutex::new(progress);
     move |done, total| {
@@ -246,7 +256,8 @@ fn from_any_thread(progress: &mut (dyn FnMut(u64, u64) + Send)) -> impl Fn(u64, 
     }
 }
 
-/// The root mean square of the standard errors of what is covered, over its mean brightness.
+/// Returns the root mean square of the standard errors of covered pixels, relative to their mean
+/// brightness.
 fn mean_error(linear: &[[f32; 4]], standard_error: &[[f32; 3]]) -> f64 {
     let covered = || linear.iter().zip(standard_error).filter(|(pixel, _)| pixel[3] > 0.0);
     let squares: f64 = covered().flat_map(|(_, error)| error).map(|error| f64::from(*error).powi(2)).sum();
@@ -255,7 +266,8 @@ fn mean_error(linear: &[[f32; 4]], standard_error: &[[f32; 3]]) -> f64 {
     if sum > 0.0 { (squares / count).sqrt() / (sum / count) } else { 0.0 }
 }
 
-/// Fills `picture` with what the reference sees of `scene`, by the settings' size, samples and environment. Its samples are shown as a rung's are.
+/// Fills `picture` with the reference of `scene`, with the settings' size, samples and environment.
+/// Its samples are displayed like those of any rung.
 fn follow(
     gpu: &Gpu,
     scene: &Scene,
@@ -290,7 +302,7 @@ fn follow(
         means.push((tile, linear));
         Ok(samples)
     })?;
-    // In place of the device's means, which are of f32.
+    // Replaces the device's means, which are f32.
     for (Tile { left, top, width, .. }, linear) in means {
         for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
             let start = (row * picture.width + left) as usize;
@@ -301,7 +313,7 @@ fn follow(
     Ok(())
 }
 
-/// Fills in `encoded` from `linear`, as the display recipe shows means: of one sample a pixel.
+/// Fills `encoded` from `linear`: the display recipe applied to means, with one sample per pixel.
 pub fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
     let settings = Settings { width: picture.width, height: picture.height, samples: 1, ..settings.clone() };
     Display::new(gpu, &settings)?.show(picture, |picture, tile| {
@@ -320,12 +332,12 @@ struct Tile {
 }
 
 impl Tile {
-    /// The largest side in pixels of a tile with so many samples along each side of a pixel.
+    /// Returns the largest side of a tile in pixels for `samples` along each side of a pixel.
     fn side(samples: u32) -> u32 {
         TILE.min(TILE_SAMPLES / samples)
     }
 
-    /// The tiles of a picture, row by row.
+    /// Returns the tiles of a picture, row by row.
     fn all(width: u32, height: u32, samples: u32) -> impl Iterator<Item = Self> {
         let side = Self::side(samples);
         let lefts = move || (0..width).step_by(side as usize);

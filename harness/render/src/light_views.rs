@@ -1,4 +1,5 @@
-//! From where reflective shadow maps look: one view for a sun, a spot or a lamp that stands off, six for a lamp amid what it shines at.
+//! Views of reflective shadow maps: one for a sun, for a spot and for a lamp at a distance, six for
+//! a lamp among the objects that it lights.
 
 use glam::Vec3;
 use lapidary_reflective_shadow_map::ReflectiveShadowMapView;
@@ -8,18 +9,19 @@ use lapidary_scene::{Bounds, Light};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LightView {
     pub(super) view: ReflectiveShadowMapView,
-    /// The light's number.
+    /// Index of the light.
     pub(super) light: u32,
 }
 
-/// A lamp that sees the scene's sphere under a greater angle than this has six views: the tangent of half the angle.
+/// Tangent of half the widest angle that one view of a lamp covers; a lamp that sees the scene's
+/// sphere under a wider angle has six views.
 const WIDEST: f32 = 1.5;
-/// The nearest that a lamp sees of the scene, over the farthest.
+/// Smallest ratio of a lamp's near distance to its far distance.
 const NEAREST: f32 = 1e-3;
-/// Room about what a view must hold, so that rounding puts nothing beyond its edge.
+/// Margin around the contents of a view, so that rounding puts nothing beyond its edge.
 const MARGIN: f32 = 1.0 + 1e-4;
 
-/// The views of all lights, light after light, on what stands in `bounds`.
+/// Returns the views of all lights, light by light, for a scene within `bounds`.
 pub(super) fn views(lights: &[Light], bounds: Bounds) -> Vec<LightView> {
     (0..)
         .zip(lights)
@@ -47,19 +49,19 @@ fn views_of(light: &Light, bounds: Bounds) -> Vec<ReflectiveShadowMapView> {
     }
 }
 
-/// The views of a lamp, whose light is bounded by a cone or not.
+/// Returns the views of a lamp; `cone` is `None` if its light is not bounded by a cone.
 fn lamp(position: Vec3, centre: Vec3, radius: f32, cone: Option<(Vec3, f32)>) -> Vec<ReflectiveShadowMapView> {
     let way = centre - position;
     let distance = way.length();
     let far = (distance + radius) * MARGIN;
     let near = (distance - radius).max(NEAREST * far);
     let view = |axis, extent, near| ReflectiveShadowMapView { origin: position, lamp: 1, axis, extent, near, far };
-    // The cone that touches the sphere about the scene.
+    // The cone that touches the scene's sphere.
     let about =
         (distance > radius).then(|| (way / distance, radius / ((distance - radius) * (distance + radius)).sqrt()));
     let narrowest = [about, cone].into_iter().flatten().filter(|(_, tangent)| (0.0..=WIDEST).contains(tangent));
     match narrowest.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        // Along the axis of a spot the scene may come nearer than its sphere.
+        // Depth along a spot's axis may be less than the distance to the scene's sphere.
         Some((axis, tangent)) => {
             let near = if about.is_some_and(|about| about.0 == axis) { near } else { NEAREST * far };
             vec![view(axis, (tangent * MARGIN).max(NEAREST), near)]
@@ -71,8 +73,8 @@ fn lamp(position: Vec3, centre: Vec3, radius: f32, cone: Option<(Vec3, f32)>) ->
     }
 }
 
-/// The most that arrives at what stands in `bounds` from any one of the lights, on a surface square to it, linear RGB. Nearer to a lamp
-/// than a hundredth of the bounds' radius counts as that far.
+/// Returns the largest irradiance from any single light on a surface within `bounds` that faces it,
+/// linear RGB. Distances to a lamp below a hundredth of the bounds' radius count as that far.
 pub(super) fn largest_irradiance(lights: &[Light], bounds: Bounds) -> Vec3 {
     let least = 0.01 * bounds.radius();
     let of = |light: &Light| match *light {
@@ -99,7 +101,7 @@ mod tests {
         })
     }
 
-    /// How many of a light's views hold a point.
+    /// Returns how many of a light's views contain a point.
     fn holding(light: Light, point: Vec3) -> usize {
         let seen = |from: &LightView| {
             let clip = clip(from.view, point);
@@ -123,7 +125,7 @@ mod tests {
         }
     }
 
-    /// A triangle that runs counter-clockwise as its light sees it does so in clip space too.
+    /// A triangle that is counter-clockwise as seen by its light is so in clip space too.
     #[test]
     fn what_faces_the_light_is_a_front() {
         let toward = Vec3::new(0.48, 0.6, 0.64);
@@ -160,7 +162,7 @@ mod tests {
         let extent = |light| views(&[light], BOUNDS)[0].view.extent;
         assert!((extent(spot(0.05)) / 0.05f32.tan() - 1.0).abs() < 1e-3);
         assert!(extent(spot(1.5)) < 0.13);
-        // Within its cone.
+        // Points within its cone.
         assert_eq!(holding(spot(0.05), Vec3::new(100.0, 0.9, 0.0)), 1);
         assert_eq!(holding(spot(0.05), Vec3::new(100.0, 0.0, 1.5)), 0);
     }

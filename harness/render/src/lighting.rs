@@ -1,5 +1,5 @@
-//! What shines on a scene: its lights and the environment, as the recipes bind them. Each is put into the frame when
-//! the first pipeline reads it, and once for all.
+//! Light on a scene: its lights and the environment, as the recipes bind them. Each is added to the
+//! frame when the first pipeline reads it, and only once.
 
 use super::{RenderError, Settings, environment, harmonics};
 use crate::frame::{Bound, Buffer, Builder, PipelineId, Texture};
@@ -9,7 +9,7 @@ use lapidary_scene::light::Falloff;
 use lapidary_scene::{Light, Scene};
 use std::cell::OnceCell;
 
-/// The parts `surroundings`, `lights` and `harmonics`.
+/// Resources of the parts `surroundings`, `lights` and `harmonics`.
 pub(super) struct Lighting<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
@@ -19,23 +19,23 @@ pub(super) struct Lighting<'a> {
 }
 
 impl<'a> Lighting<'a> {
-    /// The scene's lights and the settings' environment.
+    /// Takes the scene's lights and the settings' environment.
     pub(super) fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
         let (environment, lights, harmonics) = Default::default();
         Self { scene, settings, environment, lights, harmonics }
     }
 
-    /// The environment's image.
+    /// Returns the environment's texture.
     pub(super) fn environment(&self, builder: &mut Builder<'_>) -> Result<Texture, RenderError> {
         if let Some(known) = self.environment.get() {
             return Ok(*known);
         }
-        // Whoever asks first, it is all objects'.
+        // Whichever object asks first, the texture belongs to all objects.
         let made = builder.of_object("", |builder| environment::texture(builder, &self.settings.environment))?;
         Ok(*self.environment.get_or_init(|| made))
     }
 
-    /// The list of lights.
+    /// Returns the list of lights.
     pub(super) fn lights(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.lights.get_or_init(|| {
             let lights = lights(self.scene);
@@ -43,7 +43,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// The environment's diffuse light.
+    /// Returns the environment's diffuse light.
     fn harmonics(&self, builder: &mut Builder<'_>) -> Buffer {
         *self.harmonics.get_or_init(|| {
             let coefficients = harmonics::project(&self.settings.environment);
@@ -54,7 +54,7 @@ impl<'a> Lighting<'a> {
         })
     }
 
-    /// What `pipeline` reads of bindings 1 to 3 of group 0.
+    /// Returns the resources that `pipeline` reads from bindings 1 to 3 of group 0.
     pub(super) fn shared(
         &self,
         builder: &mut Builder<'_>,
@@ -74,12 +74,12 @@ impl<'a> Lighting<'a> {
     }
 }
 
-/// `Light` of the recipe, one after the other; one black light where there is none.
+/// Returns the recipe's `Light` structs in order; one black light if the scene has none.
 fn lights(scene: &Scene) -> Vec<Record> {
     // No axis, and all directions within the edge.
     let everywhere = (Vec3::ZERO, Falloff { edge: -1.0, slope: 1.0 });
     let entry = |place: Vec3, point: f32, power: Vec3, (axis, falloff): (Vec3, Falloff)| {
-        // Of the narrowest cones the slope is beyond f32.
+        // The slope of the narrowest cones exceeds the range of f32.
         let [edge, slope] = [falloff.edge as f32, falloff.slope.min(f32::MAX.into()) as f32];
         let record = Record::new("Light").with("place", place).with("point", point).with("power", power);
         record.with("edge", edge).with("axis", axis).with("slope", slope)

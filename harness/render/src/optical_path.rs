@@ -1,5 +1,5 @@
-//! Translucent stone: the recipe `optical_path_shading`'s pass, and what fills its costs each frame: voxels, reflective shadow maps,
-//! seeds and a solver, all of them on the device.
+//! Translucent stone: the pass of the recipe `optical_path_shading`, and the stages that compute
+//! its costs each frame on the device: voxels, reflective shadow maps, seeds and a solver.
 
 mod density;
 mod seeds;
@@ -28,9 +28,11 @@ pub use stage::Stage;
 use std::f32::consts::FRAC_1_PI;
 use std::ops::Range;
 
-/// Texels of a map along a side for each voxel of a grid that all bodies fill: the sphere about a body is up to 1.7 grids wide.
+/// Texels along a side of a map for each voxel along an edge of a grid that encloses all bodies:
+/// the sphere around a body is up to 1.7 grids wide.
 const TEXELS_PER_VOXEL: u32 = 4;
-/// For smaller bodies there are more, so that none of their voxels is left out, but no more than this along a side.
+/// Upper limit on a map's side in texels: smaller bodies get larger maps, so that none of their
+/// voxels is missed, up to this side.
 const MOST_TEXELS: u32 = 2048;
 
 /// The passes of a frame before the bodies are drawn.
@@ -39,9 +41,9 @@ pub(super) struct OpticalPaths {
     bodies: Vec<BodyPaths>,
 }
 
-/// Of one body.
+/// Buffers and passes of one body.
 struct BodyPaths {
-    /// Of its object.
+    /// Name of its object.
     name: String,
     grid: VoxelGrid,
     voxelizer: Voxelizer,
@@ -50,11 +52,11 @@ struct BodyPaths {
     positions: Buffer,
     indices: Buffer,
     channels: Vec<Channel>,
-    /// What the surface sends back where the cost is 0, for each channel: linear radiance.
+    /// Linear radiance that the surface sends back where the cost is 0, for each channel.
     brightest: Vec3,
 }
 
-/// Of one of a body's channels.
+/// Passes of one of a body's channels.
 struct Channel {
     seeds: Vec<Dispatch>,
     solved: Solved,
@@ -72,12 +74,12 @@ pub(super) fn pass(
         check(drawn.object, part.rung)?;
     }
     let bounds = part.bounds();
-    // A sun without light stands in where there is no light.
+    // A scene without lights gets a sun of zero irradiance.
     let dark = [Light::Directional { toward: Vec3::Y, irradiance: Vec3::ZERO }];
     let lights = if part.lights.is_empty() { &dark[..] } else { part.lights };
     let views = light_views::views(lights, bounds);
     let largest = light_views::largest_irradiance(lights, bounds);
-    // Where there is no light, a texel is enough to say so.
+    // Without lights, one texel is enough to say so.
     let side = if part.lights.is_empty() { 1 } else { map_side(part, paths.cells) };
     let side = side.min(builder.limits().max_texture_dimension_2d);
     let mut maps = ReflectiveShadowMaps::new(builder, &views, side, &format!("of {}", part.rung))?;
@@ -111,7 +113,7 @@ pub(super) fn pass(
     Ok(pass)
 }
 
-/// Refuses a body through which no light can be followed.
+/// Rejects a body through which no light can be followed.
 fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
     let Object { name, material, mesh } = object;
     if material.medium.is_none() {
@@ -124,7 +126,8 @@ fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
     Ok(())
 }
 
-/// Texels along the sides of the lights' maps, which show all bodies: so many that the smallest one's voxels are seen.
+/// Returns the side in texels of the lights' maps, which show all bodies: large enough that the
+/// smallest body's voxels are seen.
 fn map_side(part: &Part<'_>, cells: u32) -> u32 {
     let widest = 2.0 / 3f32.sqrt() * part.bounds().radius();
     let extent = |drawn: &Drawn<'_>| {
@@ -137,20 +140,21 @@ fn map_side(part: &Part<'_>, cells: u32) -> u32 {
     if least < widest { (side as f32 * (widest / least)).min(MOST_TEXELS.max(side) as f32) as u32 } else { side }
 }
 
-/// What adding a body takes beside the body.
+/// Inputs for adding a body, besides the body itself.
 struct Add<'a> {
     pipeline: PipelineId,
-    /// Of this variant, where it follows light through bodies.
+    /// Seeding pipelines of this variant; `None` if it does not follow light through bodies.
     seeds: Option<Seeds>,
     paths: Paths,
     lit: &'a Lit,
-    /// The irradiance whose cost is 0, for each channel.
+    /// Irradiance whose cost is 0, for each channel.
     largest: Vec3,
     settings: &'a Settings,
 }
 
 impl Add<'_> {
-    /// A body to be drawn, and what finds the light's ways through it, where any are followed. The maps are to show it too.
+    /// Returns a body to draw and, if light is followed through it, the passes that find the paths.
+    /// Also adds the body to the maps.
     fn body(
         &self,
         builder: &mut Builder<'_>,
@@ -180,7 +184,7 @@ impl Add<'_> {
         Ok((Body { name: name.clone(), groups: vec![group], vertices }, of_body))
     }
 
-    /// What finds the light's ways through a body.
+    /// Returns the buffers and passes that find the light's paths through a body.
     fn paths(
         &self,
         builder: &mut Builder<'_>,
@@ -222,11 +226,13 @@ impl Add<'_> {
     }
 }
 
-/// Beside the extinction itself, how often that of diffused light, √(3 absorption × extinction), counts: docs/optical_path_shading.md has the fit.
+/// Weight of the extinction of diffused light, √(3 absorption × extinction), relative to the
+/// extinction itself; docs/optical_path_shading.md has the fit.
 const EFFECTIVE_WEIGHT: f32 = 2.0;
 
-/// What a body takes from light on its way, per unit of length: the settings' scale times what scattering and absorption take, and absorption
-/// once more as it acts on light that is scattered all along.
+/// Returns the extinction along a path, per unit of length: the settings' scale times the sum of
+/// the extinction by scattering and absorption, and a second absorption term for light that is
+/// scattered all along its path.
 fn extinction(material: &Material, settings: &Settings) -> Vec3 {
     let Some(medium) = &material.medium else {
         return Vec3::ZERO;
@@ -236,7 +242,7 @@ fn extinction(material: &Material, settings: &Settings) -> Vec3 {
     settings.optical_path.extinction_scale * (extinction + EFFECTIVE_WEIGHT * effective)
 }
 
-/// `OpticalPathBody` of the recipe.
+/// Fills `OpticalPathBody` of the recipe.
 fn record_of(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Vec3) -> Record {
     let record = Record::new("OpticalPathBody").within("grid", |record| grid.fill(record));
     let record = record.with("base_color", material.base_color).with("index", material.ior);
@@ -245,8 +251,9 @@ fn record_of(grid: VoxelGrid, material: &Material, extinction: Vec3, largest: Ve
 }
 
 impl OpticalPaths {
-    /// Everything that the frame's picture looks up, from the meshes and lights alone. Gives the places of the passes of
-    /// each stage but [`Stage::Shade`], which is no part of it.
+    /// Encodes the passes that compute all the data that the frame's picture looks up, from the
+    /// meshes and lights alone. Returns the range of passes of each stage except [`Stage::Shade`],
+    /// which is not part of it.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) -> [Range<usize>; Stage::ALL.len() - 1] {
         [Stage::Voxels, Stage::Maps, Stage::Seeds, Stage::Solve].map(|stage| {
             let start = builder.frame().passes.len();
@@ -261,7 +268,7 @@ impl OpticalPaths {
         })
     }
 
-    /// What is to be said about the last frame that was run. Waits for it.
+    /// Returns the notes on the last frame that was run. Waits for it.
     pub(super) fn notes(&self, executor: &Executor<'_>) -> Result<Vec<Note>, GpuError> {
         let mut notes = Vec::new();
         for body in &self.bodies {
@@ -272,7 +279,7 @@ impl OpticalPaths {
             }
             let mut bound = 0f32;
             for (number, channel) in body.channels.iter().enumerate() {
-                // The first serves all three where there is no other.
+                // The first brightness covers all three channels if there is only one.
                 let brightest = if body.channels.len() == 1 {
                     body.brightest.max_element()
                 } else {
@@ -287,13 +294,13 @@ impl OpticalPaths {
         Ok(notes)
     }
 
-    /// How far each body's solver came in its last channel. Waits for the device.
+    /// Returns how far each body's solver got in its last channel. Waits for the device.
     pub(super) fn statuses(&self, executor: &Executor<'_>) -> Result<Vec<Status>, GpuError> {
         let last = |body: &BodyPaths| Some(Status::read(executor, body.channels.last()?.solved.kept));
         self.bodies.iter().filter_map(last).collect()
     }
 
-    /// Bytes of the maps, and of each body's voxels, densities, costs and solver.
+    /// Size in bytes of the maps and of each body's voxels, densities, costs and solver.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let of = |body: &BodyPaths| {
             let costs: u64 = body.channels.iter().map(|channel| frame.buffer(channel.solved.cost).bytes()).sum();
@@ -305,7 +312,7 @@ impl OpticalPaths {
 }
 
 impl BodyPaths {
-    /// Its own part of a stage.
+    /// Encodes this body's part of a stage.
     fn encode(&self, builder: &mut Builder<'_>, stage: Stage) {
         match stage {
             Stage::Voxels => {

@@ -1,4 +1,4 @@
-//! A scene in a frame: its objects under compiled recipes, and what draws them.
+//! A scene in a frame: its objects under compiled recipes, and the passes that draw them.
 
 use super::diffusion::Diffusion;
 use super::optical_path::{OpticalPaths, Stage};
@@ -8,24 +8,25 @@ use crate::record::Record;
 use glam::{Mat4, Vec3};
 use std::ops::Range;
 
-/// Samples are kept in f32: radiance spans more than f16 holds exactly, and references are compared in linear light.
+/// Format of the samples. f32, because radiance spans more than f16 holds exactly, and references
+/// are compared in linear light.
 pub(super) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// Of the depth buffer.
+/// Format of the depth buffer.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// One object.
+/// One object to draw.
 pub(super) struct Body {
-    /// The object's.
+    /// Name of the object.
     pub(super) name: String,
-    /// From group 1 on; nothing where the pipeline reads nothing of a group.
+    /// Bind groups from group 1 on; `None` for a group that the pipeline does not read.
     pub(super) groups: Vec<Option<BindGroupId>>,
     pub(super) vertices: u32,
 }
 
-/// A recipe compiled for the effects that some objects call for, and these.
+/// A recipe compiled for the effects of some objects, and those objects.
 pub(super) struct Variant {
     pub(super) pipeline: PipelineId,
-    /// Of group 0, by binding, from 1 on: what the pipeline reads.
+    /// Resources of group 0 that the pipeline reads, by binding, from 1 on.
     pub(super) shared: Vec<(u32, Bound)>,
     pub(super) bodies: Vec<Body>,
 }
@@ -37,9 +38,9 @@ pub(super) struct ScenePass {
     pub(super) before: Vec<Before>,
 }
 
-/// What is done before, once a frame, for the objects to look up.
+/// Work done once per frame before the objects are drawn, whose results they look up.
 pub(super) enum Before {
-    /// What each light sees of the scene.
+    /// The lights' views of the scene, for shadows.
     Shadows(Shadows),
     /// Irradiance, drawn into an object's texture and blurred.
     Diffusion(Diffusion),
@@ -47,25 +48,25 @@ pub(super) enum Before {
     Paths(OpticalPaths),
 }
 
-/// What a pass draws to.
+/// Attachments that a pass draws to.
 pub(super) struct SceneTarget {
     pub(super) colors: Vec<Texture>,
     pub(super) depth: Texture,
-    /// Whether the depth is wanted afterwards.
+    /// Whether the depth is kept after the pass.
     pub(super) keep_depth: bool,
-    /// In texels, from the upper left corner.
+    /// Size in texels; the area starts at the upper left corner.
     pub(super) size: [u32; 2],
 }
 
 impl ScenePass {
-    /// Takes another's objects too.
+    /// Appends the objects and the preparing passes of `other`.
     pub(super) fn append(&mut self, other: Self) {
         self.variants.extend(other.variants);
         self.before.extend(other.before);
     }
 
-    /// Does what comes before, in passes of its own. Gives the places of the passes of each stage of the paths of light,
-    /// where the rung follows any.
+    /// Encodes the preparing passes. Returns the range of passes of each stage of the paths of
+    /// light, or `None` if the rung follows none.
     pub(super) fn prepare(&self, builder: &mut Builder<'_>) -> Option<[Range<usize>; Stage::ALL.len() - 1]> {
         let mut stages = None;
         for before in &self.before {
@@ -78,7 +79,7 @@ impl ScenePass {
         stages
     }
 
-    /// The paths of light, where the rung follows any.
+    /// Returns the paths of light, or `None` if the rung follows none.
     pub(super) fn paths(&self) -> Option<&OpticalPaths> {
         self.before.iter().find_map(|before| match before {
             Before::Paths(paths) => Some(paths),
@@ -86,9 +87,10 @@ impl ScenePass {
         })
     }
 
-    /// Draws the objects as `eye` sees them in one pass: one draw call for each, under its own variant.
+    /// Draws the objects as seen from `eye` in one pass: one draw call for each object, with the
+    /// pipeline of its variant.
     pub(super) fn draw(&self, builder: &mut Builder<'_>, clip_from_world: Mat4, eye: Vec3, target: &SceneTarget) {
-        // All recipes' views are alike.
+        // All recipes declare the same view struct.
         let view = Record::new("GemView").with("clip_from_world", clip_from_world).with("eye", eye);
         let uniform = builder.uniform("view", view);
         let mut draws = Vec::new();

@@ -1,7 +1,8 @@
-//! From a scene to what is compiled, bound and run for it: each material's technique, its effects with the property that calls for each or
-//! rules it out, and the passes, pipelines and resources that follow.
+//! Lists what is compiled, bound and run for a scene: each material's technique, its effects with
+//! the property that requires or rules out each, and the resulting passes, pipelines and resources.
 //!
-//! The decisions ([`Decisions`]) are what the renderer compiles by. What follows from them is the frame that it runs, listed.
+//! The renderer compiles by the decisions ([`Decisions`]). The rest is a listing of the frame that
+//! it runs.
 
 mod listing;
 mod text;
@@ -13,41 +14,41 @@ use lapidary_plan::{Decisions, Note};
 use lapidary_scene::Scene;
 pub use listing::{Kind, Listing, Pipeline, Resource, Step};
 
-/// What one object is drawn with.
+/// One object of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedObject {
-    /// Its name; with `#2` and so on where others before it have the same.
+    /// Name of the object, with `#2` and so on if earlier objects have the same name.
     pub object: String,
-    /// Its material's name.
+    /// Name of its material.
     pub material: String,
-    /// What it calls for.
+    /// Its rung and effects, with reasons.
     pub decisions: Decisions,
 }
 
-/// What drawing a scene takes, and why.
+/// Everything that drawing a scene takes, and why.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The scene's name.
+    /// Name of the scene.
     pub scene: String,
-    /// Of the picture, in pixels.
+    /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     /// The objects, in the scene's order.
     pub objects: Vec<PlannedObject>,
-    /// What is made and run: nothing for the reference, which is computed on the CPU.
+    /// Everything created and run; empty for the reference, which is computed on the CPU.
     pub frame: Frame,
-    /// The same, summed up by name.
+    /// The frame, summarised by name.
     pub listing: Listing,
-    /// What should be known before the scene is drawn.
+    /// Notes to read before the scene is drawn.
     pub notes: Vec<Note>,
-    /// What the scene's file asks for and nothing here draws.
+    /// Features that the scene's file asks for and this renderer does not draw.
     pub lacking: Vec<String>,
 }
 
 impl Plan {
-    /// What drawing `scene` with these settings takes. Needs no device.
+    /// Plans the drawing of `scene` with these settings. Needs no device.
     ///
     /// # Errors
-    /// Where the scene cannot be drawn so.
+    /// If the scene cannot be drawn with these settings.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
         let planned = |(object, name): (&lapidary_scene::Object, String)| PlannedObject {
             object: name,
@@ -68,7 +69,7 @@ impl Plan {
         })
     }
 
-    /// The material of an object; nothing for what all objects share.
+    /// Returns the material of an object; `None` for the name of resources that all objects share.
     #[must_use]
     pub fn material_of(&self, object: &str) -> Option<&str> {
         self.objects.iter().find(|planned| planned.object == object).map(|planned| planned.material.as_str())

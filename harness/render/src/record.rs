@@ -1,4 +1,4 @@
-//! Structs of the recipes as bytes, filled by the names of their fields.
+//! Structs of the recipes as bytes, filled by field name.
 
 use glam::{Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
 use lapidary_specialise::layout::StructLayout;
@@ -6,18 +6,20 @@ use naga::ScalarKind;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// A struct that is being filled. Wrong names and kinds are the renderer's own faults, which its first picture shows: they panic.
+/// A struct being filled. Wrong names and kinds are faults of the renderer itself, which its first
+/// picture reveals: they panic.
 pub(crate) struct Record {
     name: &'static str,
     layout: &'static StructLayout,
-    /// What stands before the names of the fields that are being filled: those of an inner struct are named `outer.inner`.
+    /// Prefix of the names of the fields being filled: fields of an inner struct are named
+    /// `outer.inner`.
     outer: String,
     bytes: Vec<u8>,
     filled: Vec<bool>,
 }
 
 impl Record {
-    /// The struct of this name, which one recipe at least holds.
+    /// Starts a struct of this name, which at least one recipe must declare.
     pub(crate) fn new(name: &'static str) -> Self {
         let layout = layout(name);
         let (bytes, filled) = (vec![0; layout.size], vec![false; layout.fields.len()]);
@@ -39,7 +41,7 @@ impl Record {
         self
     }
 
-    /// Fills a field that is a struct itself.
+    /// Fills a field that is itself a struct.
     #[must_use]
     pub(crate) fn within(mut self, field: &str, fill: impl FnOnce(Self) -> Self) -> Self {
         let inner = format!("{}{field}.", self.outer);
@@ -47,12 +49,12 @@ impl Record {
         Self { outer, ..fill(self) }
     }
 
-    /// The struct's name and layout.
+    /// Returns the struct's name and layout.
     pub(crate) fn layout(&self) -> (&'static str, &'static StructLayout) {
         (self.name, self.layout)
     }
 
-    /// Its bytes, up to a multiple of 16, as uniforms have them.
+    /// Returns the bytes, padded to a multiple of 16 as in uniforms.
     pub(crate) fn bytes(mut self) -> Vec<u8> {
         let empty = self.filled.iter().position(|filled| !filled);
         assert_eq!(empty.map(|place| &self.layout.fields[place].name), None, "`{}` is not filled", self.name);
@@ -61,7 +63,8 @@ impl Record {
     }
 }
 
-/// The layout of a struct, from the first recipe that holds it. Each recipe is read once at most.
+/// Returns the layout of a struct, from the first recipe that declares it. Each recipe is parsed at
+/// most once.
 fn layout(name: &str) -> &'static StructLayout {
     static LAYOUTS: Mutex<BTreeMap<String, &'static StructLayout>> = Mutex::new(BTreeMap::new());
     let mut layouts = LAYOUTS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -72,15 +75,15 @@ fn layout(name: &str) -> &'static StructLayout {
     let text = lapidary_wgsl::RECIPES.iter().map(lapidary_wgsl::Recipe::compose).find(declares);
     let module = text.map(|text| naga::front::wgsl::parse_str(&text).expect("the cookbook's WGSL"));
     for (name, layout) in module.iter().flat_map(StructLayout::all) {
-        // Once for each struct that there is.
+        // Leaks once for each struct that exists.
         layouts.entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(layout)));
     }
     layouts.get(name).unwrap_or_else(|| panic!("no recipe holds a struct `{name}`"))
 }
 
-/// What a field may hold.
+/// A value that a field can hold.
 pub(crate) trait Words {
-    /// Its scalars, of one kind.
+    /// Returns the value's scalars, all of one kind.
     fn words(self) -> (ScalarKind, Vec<u32>);
 }
 
@@ -165,7 +168,7 @@ mod tests {
         let _ = Record::new("OpticalPathGrid").with("cells", 1u32).bytes();
     }
 
-    /// One buffer serves all recipes that draw bodies.
+    /// All recipes that draw bodies share one view buffer.
     #[test]
     fn all_views_are_alike() {
         let gem = layout("GemView");

@@ -1,8 +1,9 @@
-//! The forms of the curvature-dependent reflectance function and of curvature, as the recipe `cdrf_shading` numbers them.
+//! The forms of the curvature-dependent reflectance function and of curvature, as the recipe
+//! `cdrf_shading` numbers them.
 
 use lapidary_scene::solver::{Format, Reflectance};
 
-/// `CDRF_FORM` of the recipe; none where it is not used.
+/// Returns `CDRF_FORM` of the recipe, or `None` if the recipe does not use it for this reflectance.
 pub(super) fn form(reflectance: Reflectance) -> Option<u32> {
     match reflectance {
         Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur => None,
@@ -16,7 +17,7 @@ pub(super) fn form(reflectance: Reflectance) -> Option<u32> {
     }
 }
 
-/// Which curvature spreads the light.
+/// The curvature that determines how far light spreads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curvature {
     /// The mean curvature.
@@ -30,10 +31,10 @@ pub enum Curvature {
 }
 
 impl Curvature {
-    /// Every one.
+    /// All curvatures.
     pub const ALL: [Self; 4] = [Self::Mean, Self::Towards, Self::Naive, Self::Vertex];
 
-    /// Its name on the command line.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mean => "mean",
@@ -43,7 +44,7 @@ impl Curvature {
         }
     }
 
-    /// `CURVATURE_FORM` of the recipe.
+    /// Returns `CURVATURE_FORM` of the recipe.
     pub(super) fn form(self) -> u32 {
         match self {
             Self::Mean => 0,

@@ -1,4 +1,5 @@
-//! Reflective shadow maps of all lights: the recipe of that name, a layer of one texture for each view.
+//! Reflective shadow maps of all lights, drawn by the recipe of that name: one layer of a texture
+//! for each view.
 
 use super::RenderError;
 use super::light_views::LightView;
@@ -11,23 +12,24 @@ use crate::record::Record;
 use lapidary_reflective_shadow_map::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 
 const RECIPE: &str = "reflective_shadow_map";
-/// World position and N·L: neither can do with f16.
+/// Format of a texel: world position and N·L, for neither of which f16 is enough.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The maps and how they are drawn.
+/// The maps and the resources that draw them.
 pub(super) struct ReflectiveShadowMaps {
     pipeline: PipelineId,
     texture: Texture,
     depth: Texture,
     side: u32,
-    /// One for each view, in order.
+    /// One bind group for each view, in order.
     views: Vec<Option<BindGroupId>>,
-    /// Each object's name and mesh, and how many vertices draw it.
+    /// Each object's name, its mesh's bind group, and the number of vertices to draw.
     meshes: Vec<(String, Option<BindGroupId>, u32)>,
 }
 
 impl ReflectiveShadowMaps {
-    /// Maps of `side` texels a side for `views`, of which there is at least one; `whose` tells them from others.
+    /// Creates maps of `side` × `side` texels for `views`, of which there must be at least one;
+    /// `whose` tells them from other maps.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         views: &[LightView],
@@ -61,7 +63,7 @@ impl ReflectiveShadowMaps {
         Ok(Self { pipeline, texture, depth, side, views, meshes: Vec::new() })
     }
 
-    /// Adds an object: its name, its mesh, and how many vertices draw it.
+    /// Adds an object: its name, its mesh, and the number of vertices to draw.
     pub(super) fn add(&mut self, builder: &mut Builder<'_>, name: &str, mesh: &MeshBuffers, vertices: u32) {
         let MeshBuffers { positions, indices, normals } = *mesh;
         let resources = [(0, positions.into()), (1, indices.into()), (2, normals.into())];
@@ -69,12 +71,12 @@ impl ReflectiveShadowMaps {
         self.meshes.push((name.to_owned(), group, vertices));
     }
 
-    /// All layers, to be bound.
+    /// Returns the texture with all layers, for binding.
     pub(super) fn layers(&self) -> Bound {
         Bound::Texture(self.texture, wgpu::TextureViewDimension::D2Array)
     }
 
-    /// Width, height and layers.
+    /// Width, height and number of layers.
     pub(super) fn size(&self) -> [u32; 3] {
         [self.side, self.side, self.views.len() as u32]
     }
@@ -98,13 +100,13 @@ impl ReflectiveShadowMaps {
         }
     }
 
-    /// Bytes of the maps and their depth.
+    /// Size in bytes of the maps and their depth.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         [self.texture, self.depth].map(|texture| frame.texture(texture).bytes()).iter().sum()
     }
 }
 
-/// The part `light_views`: `array<LightView>`.
+/// Creates the buffer of the part `light_views`: `array<LightView>`.
 pub(super) fn view_buffer(builder: &mut Builder<'_>, views: &[LightView]) -> Buffer {
     let entry = |from: &LightView| {
         let record = Record::new("LightView").within("view", |record| fill(from.view, record));

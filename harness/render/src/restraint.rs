@@ -1,33 +1,40 @@
-//! Where a ray inside a stone ends because what it carries can no longer be seen.
+//! When to end a ray inside a stone because the light it carries can no longer be seen.
 //!
-//! Whatever a ray finds from some place on lies, in each channel, between 0 and its throughput there times the largest radiance of the
-//! environment: shares and what is left after them add up to 1 at most, and so it is with the rest taken from the environment, or dropped.
-//! The same holds for what replaces it where the ray ends. So the two differ by no more than throughput × largest radiance. A pixel
-//! weighs a ray by the share that its surface lets through, at most 1, by the base colour, and by the exposure; of separate wavelengths also by their
-//! matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit` divides by all of these.
+//! Beyond any point, the radiance that a ray still gathers lies, in each channel, between 0 and its
+//! throughput there times the largest radiance of the environment: the shares and the remainder
+//! after them add up to at most 1, whether the rest is taken from the environment or dropped. The
+//! same holds for the radiance that replaces it where the ray ends. So the two differ by no more
+//! than throughput × largest radiance. A pixel weights a ray by the share that its surface
+//! transmits, at most 1, by the base colour, and by the exposure; with separate wavelengths also by
+//! their matrices, whose entries may be negative, so that magnitudes add up. `throughput_limit`
+//! divides by all of these.
 
 use super::{Settings, stone};
 use lapidary_plan::{Rung, Spectrum};
 use lapidary_scene::{Environment, Material};
 
-/// The least difference in radiance times exposure that counts: half a step of a display of 8 bits, taken linearly.
+/// The smallest difference in radiance times exposure that counts: half a step of an 8-bit display,
+/// taken as linear.
 pub const LEAST_DIFFERENCE: f64 = 1.0 / 510.0;
 
-/// No radiance of the procedural studio is larger, in any channel: no two of its lights overlap, the brightest has 20 in red, and the tent at most
-/// 0.26 there.
+/// An upper bound on the procedural studio's radiance, in any channel: no two of its lights
+/// overlap, the brightest has 20 in red, and the tent at most 0.26 there.
 pub const STUDIO_LARGEST: f32 = 20.4;
 
-/// From so many hits on rays end by their throughput, where nothing else is said: the fewest at which that cost no scene and
-/// no geometry time beyond the noise of the measurement (docs/gem.md). With fewer, a diamond's rays keep what they carry, and nothing is gained.
+/// The number of hits from which rays end by their throughput, unless the settings say otherwise:
+/// the smallest number at which this slowed down no scene and no geometry by more than the
+/// measurement noise (docs/gem.md). With fewer hits, a diamond's rays keep their throughput, and
+/// nothing is gained.
 pub const LEAST_HITS: u32 = 16;
 
-/// Whether rays end by their throughput.
+/// Returns whether rays end by their throughput.
 pub fn limits_throughput(rung: Rung, settings: &Settings) -> bool {
     let Rung::Inside { hits, .. } = rung else { return false };
     settings.gem.limit_throughput.unwrap_or(hits >= LEAST_HITS)
 }
 
-/// A radiance that no channel of the environment exceeds from any direction. A map's is that of a texel, since what is mixed of texels lies between them.
+/// Returns a radiance that no channel of the environment exceeds from any direction. For a map it
+/// is the largest texel's, since a mix of texels lies between them.
 pub fn largest_radiance(environment: &Environment) -> f32 {
     match environment {
         Environment::Studio => STUDIO_LARGEST,
@@ -35,7 +42,8 @@ pub fn largest_radiance(environment: &Environment) -> f32 {
     }
 }
 
-/// By how much the pixel's sum weighs the rays of all wavelengths: the largest sum of absolute values in a row of their matrices.
+/// Returns the weight of the rays of all wavelengths in the pixel's sum: the largest sum of
+/// absolute values in a row of their matrices.
 pub fn largest_weight(material: &Material, spectrum: Spectrum) -> f64 {
     let Spectrum::Separate(_) = spectrum else { return 1.0 };
     let table = stone::wavelengths(material, spectrum);
@@ -43,14 +51,15 @@ pub fn largest_weight(material: &Material, spectrum: Spectrum) -> f64 {
     (0..3).map(row).fold(0.0, f64::max)
 }
 
-/// `throughput_limit` of the recipe's `GemMaterial`; 0, which ends no ray, where the settings know no such limit.
+/// Returns `throughput_limit` of the recipe's `GemMaterial`; 0, which ends no ray, if the settings
+/// have no such limit.
 pub(crate) fn throughput_limit(material: &Material, rung: Rung, settings: &Settings) -> f32 {
     if !limits_throughput(rung, settings) {
         return 0.0;
     }
     let radiance = largest_radiance(&settings.environment) * material.base_color.max_element();
     let shown = f64::from(settings.exposure) * f64::from(radiance) * largest_weight(material, rung.spectrum());
-    // Of darkness nothing can be seen.
+    // In darkness nothing can be seen.
     (LEAST_DIFFERENCE / shown).min(f64::from(f32::MAX)) as f32
 }
 

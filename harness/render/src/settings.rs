@@ -1,4 +1,4 @@
-//! What is asked of a picture, and the options of each technique that draws it.
+//! Settings of a picture, and the options of each technique that draws it.
 
 use crate::Curvature;
 use lapidary_plan::{Effects, Quality, Request, Rung, Scattering};
@@ -6,63 +6,67 @@ use lapidary_reference::random_walk::mesh;
 use lapidary_reference::spectral;
 use lapidary_scene::{Environment, SAMPLES};
 
-/// Walks from each pixel, where nothing else is asked for.
+/// Default number of walks from each pixel.
 pub const WALKS: u32 = 256;
 
-/// The share of a body's extinction that light loses along its way, where nothing else is asked for: scattering takes light from the way, but
-/// much of it goes on beside it. Fitted to random walks: docs/optical_path_shading.md.
+/// Default share of a body's extinction that applies along a light path. Scattering removes light
+/// from the path, but much of it continues close to the path. Fitted to random walks:
+/// docs/optical_path_shading.md.
 pub const EXTINCTION_SCALE: f32 = 0.18;
 
-/// What to render. Bodies of several techniques may stand in one picture, so it carries the options of each.
+/// Settings of a picture. Bodies of several techniques may appear in one picture, so the options of
+/// each technique are included.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// In pixels, 1 to [`LARGEST_SIDE`](lapidary_scene::LARGEST_SIDE).
+    /// Width in pixels, 1 to [`LARGEST_SIDE`](lapidary_scene::LARGEST_SIDE).
     pub width: u32,
-    /// In pixels, 1 to [`LARGEST_SIDE`](lapidary_scene::LARGEST_SIDE).
+    /// Height in pixels, 1 to [`LARGEST_SIDE`](lapidary_scene::LARGEST_SIDE).
     pub height: u32,
     /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`](crate::MOST_SAMPLES).
     pub samples: u32,
     /// The light around the scene.
     pub environment: Environment,
-    /// Factor on radiance before the tone curve.
+    /// Factor applied to radiance before the tone curve.
     pub exposure: f32,
-    /// How bodies are drawn.
+    /// Rung that draws the bodies; `ByMaterial` chooses one for each.
     pub rung: Rung,
-    /// Where that is each material's own: how much time it may take.
+    /// Time that a technique may take; used only if `rung` is `ByMaterial`.
     pub quality: Quality,
-    /// What is left out though a material calls for it.
+    /// Effects that are left out even if a material requires them.
     pub without: Effects,
-    /// How scattering bodies are drawn whatever their thickness, where the rung is each material's own.
+    /// Technique for all scattering bodies, whatever their thickness; used only if `rung` is
+    /// `ByMaterial`. `None` lets the material decide.
     pub scattering: Option<Scattering>,
-    /// Whether lights cast shadows on what is drawn by its surface alone.
+    /// Whether lights cast shadows on bodies that are drawn by their surface alone.
     pub shadows: bool,
-    /// Of clear stones.
+    /// Options for clear stones.
     pub gem: GemOptions,
-    /// Of scattering bodies that are drawn by their curvature.
+    /// Options for scattering bodies drawn by their curvature.
     pub diffuse: DiffuseOptions,
-    /// Of scattering bodies that light comes through.
+    /// Options for scattering bodies that transmit light.
     pub optical_path: OpticalPathOptions,
-    /// Of the reference of clear stones.
+    /// Options for the reference of clear stones.
     pub reference: ReferenceOptions,
-    /// Of the reference of scattering bodies.
+    /// Options for the reference of scattering bodies.
     pub walks: WalkOptions,
 }
 
 /// Options of the gem recipes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GemOptions {
-    /// The proxy's centre by the paper's eq. (4) instead of the stable form.
+    /// Whether the proxy's centre follows the paper's eq. (4) instead of the stable form.
     pub paper_centre: bool,
     /// Factor of the paper's eq. (12), above 0; 1 as printed.
     pub dispersion_strength: f32,
-    /// Whether what a ray still carries at its last hit comes from the environment along it; dropped otherwise.
+    /// Whether the energy that a ray still carries at its last hit is taken from the environment
+    /// along the ray; dropped otherwise.
     pub rest_from_environment: bool,
-    /// The longest way of a ray inside, in units of length.
+    /// Longest path of a ray inside a stone, in units of length; `None` for no limit.
     pub distance_limit: Option<f32>,
-    /// Whether a ray inside ends when what it carries can no longer be seen; by
-    /// [`limits_throughput`](crate::restraint::limits_throughput) where there is none.
+    /// Whether a ray inside a stone ends when its contribution can no longer be seen; `None` lets
+    /// [`limits_throughput`](crate::restraint::limits_throughput) decide.
     pub limit_throughput: Option<bool>,
-    /// By a geometry buffer and a lighting pass instead of in one.
+    /// Whether to draw with a geometry buffer and a lighting pass instead of in a single pass.
     pub deferred: bool,
 }
 
@@ -82,9 +86,9 @@ impl Default for GemOptions {
 /// Options of the recipe `cdrf_shading`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiffuseOptions {
-    /// Which curvature spreads the light.
+    /// Curvature that spreads the light.
     pub curvature: Curvature,
-    /// Whether the environment's light is summed for each vertex; for each pixel otherwise.
+    /// Whether the environment's light is summed per vertex; per pixel otherwise.
     pub environment_at_vertices: bool,
 }
 
@@ -97,7 +101,8 @@ impl Default for DiffuseOptions {
 /// Options of the recipe `optical_path_shading`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpticalPathOptions {
-    /// What light loses along its way through a body is this times its extinction and twice that of diffused light; above 0.
+    /// Scale of the extinction along a path, above 0. The extinction is this scale times the sum of
+    /// the body's extinction and twice the extinction of diffused light.
     pub extinction_scale: f32,
 }
 
@@ -110,9 +115,9 @@ impl Default for OpticalPathOptions {
 /// Options of the reference of clear stones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceOptions {
-    /// Wavelengths that it follows, from 400 to 700 nm.
+    /// Number of wavelengths followed, from 400 to 700 nm.
     pub wavelengths: usize,
-    /// The share of a camera ray's energy that it need not follow.
+    /// Share of a camera ray's energy that may be left unfollowed.
     pub energy_bound: f64,
 }
 
@@ -122,16 +127,16 @@ impl Default for ReferenceOptions {
     }
 }
 
-/// Options of the reference of scattering bodies: random walks.
+/// Options of the reference of scattering bodies, which uses random walks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkOptions {
-    /// Walks for each pixel.
+    /// Number of walks for each pixel.
     pub walks: u32,
-    /// Where they set out.
+    /// Starting point of the walks.
     pub from: mesh::Origin,
-    /// What surfaces do to them.
+    /// Effect of surfaces on the walks.
     pub boundary: mesh::Boundary,
-    /// Another seed gives other walks.
+    /// Random seed; another seed gives other walks.
     pub seed: u64,
 }
 
@@ -142,7 +147,7 @@ impl Default for WalkOptions {
 }
 
 impl Settings {
-    /// The paper's rung in the studio.
+    /// Returns settings for the paper's rung in the studio, at this size in pixels.
     pub fn of_size(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -163,7 +168,7 @@ impl Settings {
         }
     }
 
-    /// The part of this that a plan is made by.
+    /// Returns the part of the settings that a plan depends on.
     #[must_use]
     pub fn request(&self) -> Request<'_> {
         Request {

@@ -1,4 +1,5 @@
-//! A recipe specialised: some of its entry points with override values, and the bindings that are left of it.
+//! A specialised recipe: some of its entry points with override values, and the bindings that
+//! remain.
 
 use lapidary_gpu::GpuError;
 use lapidary_specialise::spirv_counts::{self, SpirvCounts, SpirvCountsError, spirv_counts};
@@ -12,15 +13,15 @@ pub enum ShaderError {
     /// The text is not valid.
     #[error(transparent)]
     Source(#[from] SourceError),
-    /// It does not specialise.
+    /// The recipe cannot be specialised.
     #[error(transparent)]
     Specialise(#[from] SpecialiseError),
-    /// The device refused.
+    /// The device refused it.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
-/// A recipe's specialised part.
+/// A recipe specialised to some entry points and override values.
 #[derive(Clone, Debug)]
 pub struct Shader {
     recipe: String,
@@ -31,8 +32,8 @@ pub struct Shader {
 }
 
 impl Shader {
-    /// Specialises the `entries` of `source`, the composed text of `recipe`, to override values: bools as 0 or 1; those that the text does not declare are
-    /// left out.
+    /// Specialises the `entries` of `source`, the composed text of `recipe`, to override values:
+    /// bools are 0 or 1, and values that the text does not declare are left out.
     pub fn new(recipe: &str, source: &str, entries: &[&str], constants: &[(&str, f64)]) -> Result<Self, ShaderError> {
         let (module, _) = parse(source, &format!("recipe {recipe}"))?;
         let declared = declared(&module, constants);
@@ -51,61 +52,62 @@ impl Shader {
         })
     }
 
-    /// The recipe's name.
+    /// Name of the recipe.
     #[must_use]
     pub fn recipe(&self) -> &str {
         &self.recipe
     }
 
-    /// Its entry points, in the order in which they were asked for.
+    /// The entry points, in the order in which they were requested.
     #[must_use]
     pub fn entries(&self) -> &[String] {
         &self.entries
     }
 
-    /// The override values that it is specialised to.
+    /// The override values that the recipe is specialised to.
     #[must_use]
     pub fn overrides(&self) -> &[(String, f64)] {
         &self.overrides
     }
 
-    /// Whether another, of the same text, is the same.
+    /// Returns whether `other`, specialised from the same text, is identical.
     pub(crate) fn is_specialised_as(&self, other: &Self) -> bool {
         self.recipe == other.recipe && self.entries == other.entries && self.overrides == other.overrides
     }
 
-    /// Group and number of each binding that is left.
+    /// Group and number of each binding that remains.
     pub fn bindings(&self) -> impl Iterator<Item = (u32, u32)> {
         let bindings = self.module.global_variables.iter().filter_map(|(_, global)| global.binding);
         bindings.map(|at| (at.group, at.binding))
     }
 
-    /// Whether this binding is left.
+    /// Returns whether this binding remains.
     #[must_use]
     pub fn binds(&self, group: u32, binding: u32) -> bool {
         self.bindings().any(|at| at == (group, binding))
     }
 
-    /// To be sent to a device.
+    /// Returns the descriptor that creates the module on a device.
     pub(crate) fn module_descriptor(&self) -> wgpu::ShaderModuleDescriptor<'static> {
         wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Naga(Cow::Owned(self.module.clone())) }
     }
 
-    /// As WGSL, without overrides.
+    /// Returns the module as WGSL, without overrides.
     ///
     /// # Errors
-    /// Where naga cannot write it.
+    /// If naga cannot write it.
     pub fn wgsl(&self) -> Result<String, naga::back::wgsl::Error> {
         naga::back::wgsl::write_string(&self.module, &self.info, naga::back::wgsl::WriterFlags::empty())
     }
 
-    /// What a vertex and a fragment entry point, in this order, are made of.
+    /// Returns the SPIR-V counts of a vertex and a fragment entry point, which must be in this
+    /// order.
     pub fn counts(&self) -> Result<SpirvCounts, SpirvCountsError> {
         let [vertex, fragment] = [0, 1].map(|place| self.entries.get(place).map_or("", String::as_str));
         spirv_counts(&self.module, &self.info, vertex, fragment)
     }
 
-    /// Instructions of its SPIR-V.
+    /// Number of instructions of its SPIR-V.
     #[must_use]
     pub fn instructions(&self) -> usize {
         spirv_counts::instructions(&self.module, &self.info)

@@ -1,4 +1,5 @@
-//! Shadows on what is drawn by its surface alone: what each light sees of all bodies but the clear ones, once for all of a scene.
+//! Shadows on objects that are shaded at their surface alone: the lights' views of all bodies
+//! except the clear ones, drawn once for the whole scene.
 
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::Part;
@@ -8,7 +9,8 @@ use lapidary_plan::Effect;
 use lapidary_scene::{Bounds, Light, Mesh};
 use std::collections::HashMap;
 
-/// Texels of a map along a side. A shadow's edge is that soft, and what stands out less than a texel casts none.
+/// Texels along a side of a map. A shadow's edge is one texel soft, and detail that stands out by
+/// less than a texel casts no shadow.
 const SIDE: u32 = 1024;
 
 /// A mesh's positions, indices and normals, as recipes for bodies bind them.
@@ -19,13 +21,13 @@ pub(super) struct MeshBuffers {
 }
 
 impl MeshBuffers {
-    /// The present object's.
+    /// Creates the buffers of the current object's mesh.
     pub(super) fn of(builder: &mut Builder<'_>, mesh: &Mesh) -> Self {
         let [positions, indices, normals] = Self::parts(mesh).map(|(what, part)| builder.storage(what, part));
         Self { positions, indices, normals }
     }
 
-    /// Their names and contents.
+    /// Names and contents of the buffers.
     pub(super) fn parts(mesh: &Mesh) -> [(&'static str, &[u8]); 3] {
         [
             ("positions", bytemuck::cast_slice(&mesh.positions)),
@@ -39,12 +41,12 @@ impl MeshBuffers {
 pub(super) struct Shadows {
     maps: ReflectiveShadowMaps,
     views: Buffer,
-    /// Of each body that casts shadows, by its name.
+    /// Buffers of each body that casts shadows, by its name.
     meshes: HashMap<String, MeshBuffers>,
 }
 
 impl Shadows {
-    /// For the objects of all parts; nothing where none is to be in shadow.
+    /// Creates the maps for the objects of all parts; returns `None` if no object receives shadows.
     pub(super) fn of(
         builder: &mut Builder<'_>,
         lights: &[Light],
@@ -76,12 +78,13 @@ impl Shadows {
         Ok(Some(Self { maps, views, meshes }))
     }
 
-    /// A body's positions, indices and normals, which need not be there twice.
+    /// Returns a body's positions, indices and normals, so that they need not be stored twice;
+    /// `None` if it casts no shadow.
     pub(super) fn mesh(&self, name: &str) -> Option<&MeshBuffers> {
         self.meshes.get(name)
     }
 
-    /// What `pipeline` reads of bindings 4 and 5 of group 0.
+    /// Returns the resources of bindings 4 and 5 of group 0 that `pipeline` reads.
     pub(super) fn shared(&self, builder: &Builder<'_>, pipeline: PipelineId) -> Vec<(u32, Bound)> {
         let all = [(4, self.views.into()), (5, self.maps.layers())];
         all.into_iter().filter(|(binding, _)| builder.binds(pipeline, 0, *binding)).collect()

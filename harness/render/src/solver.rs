@@ -10,33 +10,35 @@ use lapidary_scene::solver::Method;
 
 /// Voxels along an edge of a solver's tile.
 const TILE: u32 = 4;
-/// Invocations of a workgroup over tiles.
+/// Invocations of a workgroup that runs over tiles.
 const GROUP: u32 = 32;
-/// Voxels along two edges of a workgroup over voxels.
+/// Voxels along two edges of a workgroup that runs over voxels.
 const SWEEP_GROUP: u32 = 8;
-/// The struct `OpticalPathProgress`, in words.
+/// Size of the struct `OpticalPathProgress` in words.
 const PROGRESS_WORDS: u64 = 7;
 
-/// What the method's passes are written in.
+/// Returns the recipe that contains the method's passes.
 fn recipe(method: Method) -> &'static str {
     if method.is_tiled() { "optical_path_tiles" } else { "optical_path_sweep" }
 }
 
-/// How far a solve came.
+/// How far a solve got.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
-    /// Passes in which anything was left to do.
+    /// Number of passes in which anything was left to do.
     pub passes: u32,
-    /// Tiles, or for untiled solvers voxels, that these took up; a tile as often as it was taken up.
+    /// Number of tiles, or for untiled solvers voxels, that these passes processed; a tile counts
+    /// each time.
     pub updates: u32,
-    /// Tiles or voxels that another pass would take up: 0 where the costs are final.
+    /// Number of tiles or voxels that another pass would process: 0 if the costs are final.
     pub active: u32,
-    /// Every cost up to this one is final. Where the solve ended early, the luminance of the others may be off by at most e to the minus this.
+    /// Every cost up to this one is final. If the solve ended early, the luminance of the others
+    /// may be off by at most e to the power of minus this cost.
     pub least: f32,
 }
 
 impl Status {
-    /// The most that any luminance may be off by for the passes that were not granted.
+    /// Upper bound on the error of any luminance that is due to passes that were not granted.
     #[must_use]
     pub fn luminance_bound(&self) -> f32 {
         if self.active == 0 { 0.0 } else { mirror::luminance(self.least) }
@@ -44,10 +46,11 @@ impl Status {
 }
 
 impl Status {
-    /// What was kept of a solve by the last run. Waits for it: not for every frame.
+    /// Reads the progress that the last run kept of a solve. Waits for it, so do not call it every
+    /// frame.
     ///
     /// # Errors
-    /// Where the device is lost.
+    /// If the device is lost.
     pub fn read(executor: &Executor<'_>, kept: Buffer) -> Result<Self, GpuError> {
         let words = executor.words(kept)?;
         let parity = (words[0] & 1) as usize;
@@ -59,11 +62,12 @@ impl Status {
 /// How a body is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Solve {
-    /// By which method.
+    /// The method.
     pub method: Method,
-    /// Whether bodies have a density by voxel.
+    /// Whether bodies have a density per voxel.
     pub heterogeneous: bool,
-    /// No more passes than this; by default as many as any body needs whose paths of least cost do not wind.
+    /// Maximum number of passes. `None` allows as many as any body needs whose paths of least cost
+    /// do not wind.
     pub most_passes: Option<u32>,
 }
 
@@ -78,38 +82,38 @@ pub struct Solver {
     fresh: Buffer,
     progress: Buffer,
     workgroups: Buffer,
-    /// From binding 6 on.
+    /// Buffers from binding 6 on.
     own: Vec<Buffer>,
 }
 
-/// What a solve reads and writes.
+/// Buffers and values that a solve reads and writes.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved {
-    /// A bit for each voxel, in rows as [`VoxelGrid::words_per_row`] says.
+    /// One bit per voxel, in rows as described at [`VoxelGrid::words_per_row`].
     pub matter: Buffer,
-    /// Where the solver is heterogeneous, an f32 for each voxel, at least 0.
+    /// One f32 per voxel, at least 0; `None` unless the solver is heterogeneous.
     pub density: Option<Buffer>,
-    /// The seeds as f32, unreached elsewhere; after the passes the costs.
+    /// The seeds as f32, unreached elsewhere; after the passes, the costs.
     pub cost: Buffer,
-    /// In the inverse of the unit of the grid's spacing, at least 0.
+    /// Extinction in the inverse of the unit of the grid's spacing, at least 0.
     pub extinction: f32,
-    /// How far it came, for [`Status::read`]: of [`Solver::kept`].
+    /// How far the solve got, for [`Status::read`]: a buffer from [`Solver::kept`].
     pub kept: Buffer,
 }
 
 impl Solver {
-    /// Compiles what the method needs for a grid.
+    /// Compiles the pipelines that the method needs for a grid.
     ///
     /// # Errors
-    /// Where the recipe is not valid.
+    /// If the recipe is not valid.
     pub fn new(builder: &mut Builder<'_>, grid: VoxelGrid, solve: Solve) -> Result<Self, ShaderError> {
         Self::of_source(builder, grid, solve, &lapidary_wgsl::recipe_source(recipe(solve.method)))
     }
 
-    /// The same of another text of the method's recipe.
+    /// Like [`Solver::new`], from another text of the method's recipe.
     ///
     /// # Errors
-    /// Where the text is not valid.
+    /// If the text is not valid.
     pub fn of_source(
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
@@ -151,21 +155,22 @@ impl Solver {
         Ok(Self { grid, solve, begin, next, pass, fresh, progress, workgroups, own })
     }
 
-    /// As many passes as a path takes through the cube from corner to corner by faces, tiles or voxels, and back and forth once or twice more.
+    /// Returns as many passes as a path takes through the cube from corner to corner across faces,
+    /// by tiles or voxels, and back and forth once or twice more.
     fn default_passes(method: Method, cells: u32) -> u32 {
         if method.is_tiled() { 2 * cells } else { 8 * cells }
     }
 
-    /// A buffer for how far a solve came.
+    /// Creates a buffer for how far a solve got.
     pub fn kept(builder: &mut Builder<'_>) -> Buffer {
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         builder.buffer("kept progress", 4 * PROGRESS_WORDS, usage)
     }
 
-    /// Solves next.
+    /// Encodes a solve as the next passes.
     ///
     /// # Panics
-    /// Where the solver is heterogeneous and there is no density.
+    /// If the solver is heterogeneous and there is no density.
     pub fn encode(&self, builder: &mut Builder<'_>, solved: &Solved) {
         let Solve { method, heterogeneous, most_passes } = self.solve;
         assert!(solved.density.is_some() || !heterogeneous, "a heterogeneous body has a density");
@@ -185,7 +190,7 @@ impl Solver {
         let mut turns = vec![next.clone(), builder.dispatch(self.pass, pass_group, indirect)];
         let mut passes = most_passes.unwrap_or_else(|| Self::default_passes(method, cells));
         if matches!(method, Method::PingPong(_)) {
-            // The pass back. Whichever way they end, the costs are where they belong.
+            // The pass back. Whichever of the two comes last, the costs are in their buffer.
             let exchanged: Vec<(u32, Bound)> = resources
                 .iter()
                 .map(|(binding, of)| (if [2, 6].contains(binding) { 8 - binding } else { *binding }, *of))
@@ -201,7 +206,7 @@ impl Solver {
         builder.pass(Pass::Copy { from: self.progress, to: solved.kept, bytes: 4 * PROGRESS_WORDS });
     }
 
-    /// Bytes of its own buffers, which the costs are none of.
+    /// Size of the scratch buffers in bytes, cost buffers excluded.
     #[must_use]
     pub fn bytes(&self, frame: &Frame) -> u64 {
         let shared = [self.fresh, self.progress, self.workgroups];
@@ -209,7 +214,7 @@ impl Solver {
     }
 }
 
-/// A solver in a frame of its own, for bodies that are uploaded one after the other.
+/// A solver in a frame of its own, for bodies that are uploaded one after another.
 #[derive(Debug)]
 pub struct LoneSolver<'gpu> {
     executor: Executor<'gpu>,
@@ -217,10 +222,11 @@ pub struct LoneSolver<'gpu> {
 }
 
 impl<'gpu> LoneSolver<'gpu> {
-    /// For bodies of this extinction; `source` is another text of the method's recipe, if any.
+    /// Creates a solver for bodies of this extinction; `source` is another text of the method's
+    /// recipe, if any.
     ///
     /// # Errors
-    /// Where the device refuses the text or the memory.
+    /// If the device refuses the text or the memory.
     pub fn new(
         gpu: &'gpu Gpu,
         grid: VoxelGrid,
@@ -246,7 +252,7 @@ impl<'gpu> LoneSolver<'gpu> {
         Ok(Self { executor: Executor::new(gpu, builder.finish())?, solved })
     }
 
-    /// Sets the body: a bit for each voxel, and where the solver is heterogeneous a density for each.
+    /// Sets the body: one bit per voxel and, if the solver is heterogeneous, one density per voxel.
     pub fn set_body(&self, matter: &[u32], density: &[f32]) {
         self.executor.write_buffer(self.solved.matter, bytemuck::cast_slice(matter));
         if let Some(buffer) = self.solved.density {
@@ -254,31 +260,31 @@ impl<'gpu> LoneSolver<'gpu> {
         }
     }
 
-    /// Sets the seeds: a cost for each voxel, unreached but where there is one.
+    /// Sets the seeds: one cost per voxel, unreached where there is no seed.
     pub fn set_seeds(&self, seeds: &[f32]) {
         self.executor.write_buffer(self.solved.cost, bytemuck::cast_slice(seeds));
     }
 
-    /// Solves from the seeds, and does not wait.
+    /// Solves from the seeds, without waiting.
     ///
     /// # Errors
-    /// Where the device is lost.
+    /// If the device is lost.
     pub fn run(&self) -> Result<(), GpuError> {
         self.executor.run(|_, _| {})
     }
 
-    /// The costs as they stand. Waits for them.
+    /// Returns the current costs. Waits for them.
     ///
     /// # Errors
-    /// Where the device is lost.
+    /// If the device is lost.
     pub fn costs(&self) -> Result<Vec<f32>, GpuError> {
         Ok(self.executor.words(self.solved.cost)?.into_iter().map(f32::from_bits).collect())
     }
 
-    /// How far the last solve came. Waits for it.
+    /// Returns how far the last solve got. Waits for it.
     ///
     /// # Errors
-    /// Where the device is lost.
+    /// If the device is lost.
     pub fn status(&self) -> Result<Status, GpuError> {
         Status::read(&self.executor, self.solved.kept)
     }

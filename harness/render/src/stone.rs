@@ -1,4 +1,4 @@
-//! A stone in a frame: its material, its mesh, and what its rung's geometry needs besides.
+//! A stone in a frame: its material, its mesh, and the data that its rung's geometry also needs.
 
 use super::pass::Body;
 use super::variant::Drawn;
@@ -13,7 +13,7 @@ use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Material, Object, convex, spectrum};
 use std::borrow::Cow;
 
-/// Puts an object into the frame: what `pipeline` reads of it.
+/// Adds an object to the frame, with the resources that `pipeline` reads.
 pub(super) fn add(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
@@ -53,20 +53,20 @@ pub(super) fn add(
     }))
 }
 
-/// What a rung's geometry needs of a mesh, beside its positions.
+/// Data of a mesh that a rung's geometry needs, besides its positions.
 struct Geometries<'a> {
     indices: Cow<'a, [u32]>,
     /// The buffers of group 2.
     own: Vec<(&'static str, Cow<'a, [u8]>)>,
-    /// Turns of loops that finding one hit takes.
+    /// Loop iterations to find one hit.
     steps: u64,
 }
 
-/// lavapipe ends loops when those of one invocation have made this many turns together, and says nothing (Mesa's
-/// `LP_MAX_TGSI_LOOP_ITERATIONS`).
+/// Number of loop iterations, summed over all loops of one invocation, after which lavapipe
+/// silently ends loops (Mesa's `LP_MAX_TGSI_LOOP_ITERATIONS`).
 const LAVAPIPE_STEPS: u64 = 65_535;
 
-/// Refuses a rung that lavapipe would show wrongly.
+/// Rejects a rung that lavapipe would render incorrectly.
 fn check_steps(builder: &Builder<'_>, rung: Rung, steps: u64) -> Result<(), RenderError> {
     let rays = if let Spectrum::Separate(count) = rung.spectrum() { u64::from(count) } else { 1 };
     let steps = rays * (1 + u64::from(rung.hits()) * (1 + steps));
@@ -102,9 +102,10 @@ impl<'a> Geometries<'a> {
                 let bvh = Bvh::build(mesh);
                 let nodes: &[u8] = bytemuck::cast_slice(&bvh.nodes);
                 let own = vec![("nodes", nodes.to_vec().into())];
-                // Triangles are numbered as the leaves hold them, by the recipe too.
+                // The recipe, too, numbers triangles in the order of the leaves.
                 let triangles = mesh.triangle_count() as u64;
-                // A ray's way through a hierarchy has no useful bound; few take as many as 16 turns for each of its levels.
+                // A ray's path through a hierarchy has no useful bound; few take as many as 16
+                // iterations for each of its levels.
                 let levels = u64::from(triangles.ilog2()) + 1;
                 let steps = if rung.geometry() == Geometry::Bvh { 16 * levels } else { triangles };
                 Self { indices: Cow::Owned(bvh.indices), own, steps }
@@ -113,7 +114,8 @@ impl<'a> Geometries<'a> {
     }
 }
 
-/// The bytes that a rung's geometry needs on the device for `object`, beside positions and indices.
+/// Size in bytes of the device buffers that a rung's geometry needs for `object`, besides positions
+/// and indices.
 pub fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
     Ok(Geometries::of(object, rung)?.own.iter().map(|(_, part)| part.len() as u64).sum())
 }
@@ -135,7 +137,7 @@ impl GemMaterial {
             base_color: material.base_color,
             index: material.ior,
             absorption: lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance),
-            // Nothing travels as far as this.
+            // No ray travels as far as this.
             distance_limit: settings.gem.distance_limit.unwrap_or(f32::MAX),
             channel_indices: channel_indices(material),
             dispersion_strength: settings.gem.dispersion_strength,
@@ -152,7 +154,7 @@ impl GemMaterial {
     }
 }
 
-/// The indices at the wavelengths that stand for the three channels.
+/// Returns the refractive indices at the wavelengths that represent the three channels.
 pub(crate) fn channel_indices(material: &Material) -> Vec3 {
     Vec3::from(
         [DISPERSION_RED, DISPERSION_GREEN, DISPERSION_BLUE]
@@ -172,11 +174,11 @@ impl GemWavelength {
     }
 }
 
-/// The wavelengths that rays of their own are followed at.
+/// Returns the wavelengths for which separate rays are followed.
 pub(crate) fn wavelengths(material: &Material, spectrum: Spectrum) -> Vec<GemWavelength> {
     let entry = |weights: DMat3, index: f32| GemWavelength { weights: weights.as_mat3(), index };
     match spectrum {
-        // Without separate wavelengths one entry fills the binding.
+        // Without separate wavelengths, one entry fills the binding.
         Spectrum::One | Spectrum::Paper | Spectrum::Tracker => vec![entry(DMat3::IDENTITY, material.ior)],
         Spectrum::Separate(3) => {
             let channels = [glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z].map(DMat3::from_diagonal);

@@ -1,4 +1,5 @@
-//! The recipe `texture_diffusion`: its textures, and its passes from drawn irradiance to what shading looks up.
+//! The recipe `texture_diffusion`: its textures, and its passes from the drawn irradiance to the
+//! texture that shading looks up.
 
 use super::RenderError;
 use crate::frame::{
@@ -8,13 +9,13 @@ use crate::record::Record;
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion as mirror;
 
-/// The recipe's name.
+/// Name of the recipe.
 const RECIPE: &str = "texture_diffusion";
-/// Of the irradiance: times coverage, which is in alpha.
+/// Format of the irradiance: irradiance times coverage, with the coverage in alpha.
 pub const IRRADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Of the world lengths of a texel along u and along v.
+/// Format of the world lengths of a texel along u and along v.
 pub const STRETCH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
-/// The most pairs of taps that the recipe's uniform holds.
+/// Maximum number of pairs of taps that the recipe's uniform holds.
 pub const MOST_PAIRS: u32 = 23;
 /// A chart's bound along a direction that repeats.
 const UNBOUNDED: f32 = 1e9;
@@ -22,28 +23,29 @@ const UNBOUNDED: f32 = 1e9;
 /// A chart's rectangle, in texels from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chart {
-    /// Its upper left corner.
+    /// Upper left corner.
     pub low: [u32; 2],
-    /// Its lower right corner.
+    /// Lower right corner.
     pub high: [u32; 2],
 }
 
 /// Taps for a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taps {
-    /// Of the widest channel, in units of length.
+    /// Standard deviation of the widest channel, in units of length.
     sigma0: f32,
     /// Offset and weights of each pair.
     pairs: Vec<Vec4>,
 }
 
 impl Taps {
-    /// As many as the material needs. `sigma0` is each channel's standard deviation on the surface, in units of length.
+    /// Creates as many taps as the material needs. `sigma0` is each channel's standard deviation on
+    /// the surface, in units of length.
     pub fn new(sigma0: Vec3) -> Taps {
         Taps::with_pairs(sigma0, mirror::pairs(sigma0))
     }
 
-    /// As many pairs as asked for, up to [`MOST_PAIRS`].
+    /// Creates as many pairs as requested, up to [`MOST_PAIRS`].
     pub fn with_pairs(sigma0: Vec3, pairs: u32) -> Taps {
         let pairs = pairs.clamp(1, MOST_PAIRS);
         let tap = |index| {
@@ -53,7 +55,7 @@ impl Taps {
         Taps { sigma0: mirror::sigma(sigma0).max_element(), pairs: (1..=pairs).map(tap).collect() }
     }
 
-    /// The uniform of a pass.
+    /// Fills the uniform of a pass.
     fn record(&self, direction: Vec2, low: Vec2, high: Vec2) -> Record {
         let mut taps = [Vec4::ZERO; MOST_PAIRS as usize];
         taps[..self.pairs.len()].copy_from_slice(&self.pairs);
@@ -72,19 +74,20 @@ pub struct TextureDiffusion {
     blur: PipelineId,
     dilate: PipelineId,
     sampler: Sampler,
-    /// The pass that lights the surface draws the irradiance here. The blur overwrites it.
+    /// Target of the irradiance for the pass that lights the surface. The blur overwrites it.
     pub irradiance: Texture,
-    /// And here how much surface lies under a texel.
+    /// Target of the same pass for the extent of the surface under a texel.
     pub stretch: Texture,
-    /// What shading looks up: irradiance, and 1 where there is any.
+    /// Texture that shading looks up: irradiance, and 1 in alpha where there is any.
     pub diffused: Texture,
 }
 
 impl TextureDiffusion {
-    /// For a texture of `size` texels that repeats along the directions given, u and v.
+    /// Creates the textures and pipelines for a texture of `size` texels; `repeats` says whether it
+    /// repeats along u and along v.
     ///
     /// # Errors
-    /// Where the recipe is not valid.
+    /// If the recipe is not valid.
     pub fn new(builder: &mut Builder<'_>, size: [u32; 2], repeats: [bool; 2]) -> Result<Self, RenderError> {
         let source = lapidary_wgsl::recipe_source(RECIPE);
         let mut pipeline = |entry| {
@@ -132,7 +135,7 @@ impl TextureDiffusion {
     }
 }
 
-/// A pass over the charts' rectangles.
+/// Encodes a pass over the charts' rectangles.
 fn draw(builder: &mut Builder<'_>, target: Texture, pipeline: PipelineId, charts: &[(Option<BindGroupId>, Chart)]) {
     let of_chart = |(group, Chart { low, high }): &(Option<BindGroupId>, Chart)| {
         let scissor = [low[0], low[1], high[0].saturating_sub(low[0]), high[1].saturating_sub(low[1])];

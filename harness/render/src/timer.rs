@@ -1,4 +1,5 @@
-//! A frame of a rung's recipe, alone or with the display recipe, to be timed: run again and again, nothing brought back.
+//! A frame to be timed: a rung's recipe, alone or with the display recipe. It can be run repeatedly
+//! and reads nothing back.
 
 use super::drawing::scene_pass;
 use super::lighting::Lighting;
@@ -12,25 +13,26 @@ use lapidary_scene::Scene;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// A scene on the device and what it is drawn to, one sample a pixel.
+/// A scene on the device and its targets, one sample per pixel.
 pub struct FrameTimer<'gpu> {
     gpu: &'gpu Gpu,
     executor: Executor<'gpu>,
     pass: ScenePass,
-    /// The places of each stage's passes, where the rung follows light through bodies.
+    /// Ranges of each stage's passes; `None` if the rung follows no light through bodies.
     stages: Option<[Range<usize>; Stage::ALL.len()]>,
     draw_calls: usize,
 }
 
-/// Of the display's targets. The linear picture is of no use here and takes the least memory that there is; the other is a screen's.
+/// Formats of the display's targets. The linear picture is not needed, so its format takes the
+/// least memory possible; the other format is a screen's.
 const DISPLAY_FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::Rgba8Unorm];
 
-/// How long a frame took.
+/// Duration of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameTime {
-    /// From the first command to the device's last word.
+    /// Time from the first command until the device has finished.
     pub total: Duration,
-    /// The host's part: recording and submitting.
+    /// Time on the host: recording and submitting.
     pub encode: Duration,
 }
 
@@ -38,8 +40,8 @@ impl<'gpu> FrameTimer<'gpu> {
     /// Texels along each side of the textures of rung `blur`.
     pub const BLUR_SIDE: u32 = super::diffusion::SIDE;
 
-    /// Compiles the rung, or another text of its recipe, and uploads the scene. Where it is displayed, the tone curve and
-    /// the encoding for a screen come on top.
+    /// Compiles the rung, or another text of its recipe, and uploads the scene. If `displayed`, the
+    /// tone curve and the encoding for a screen are included.
     pub fn new(
         gpu: &'gpu Gpu,
         scene: &Scene,
@@ -80,13 +82,13 @@ impl<'gpu> FrameTimer<'gpu> {
         Ok(Self { gpu, executor: Executor::new(gpu, builder.finish())?, pass, stages, draw_calls })
     }
 
-    /// Draws it once and waits.
+    /// Draws the frame once and waits.
     pub fn run(&self) -> Result<FrameTime, RenderError> {
         self.timed(0..self.executor.frame().passes.len())
     }
 
-    /// Draws it once, each stage submitted and waited for by itself, so that together they take longer than a frame. None where the rung
-    /// follows no light through bodies.
+    /// Draws the frame once, with each stage submitted and waited for separately, so the sum
+    /// exceeds the time of a frame. Returns `None` if the rung follows no light through bodies.
     pub fn run_stages(&self) -> Result<Option<[Duration; Stage::ALL.len()]>, RenderError> {
         let Some(stages) = &self.stages else { return Ok(None) };
         let mut times = [Duration::ZERO; Stage::ALL.len()];
@@ -106,18 +108,18 @@ impl<'gpu> FrameTimer<'gpu> {
         Ok(FrameTime { total: start.elapsed(), encode })
     }
 
-    /// How far the solvers of light's ways came in the last frame that was drawn, body by body; of several channels, in the last. Waits for
-    /// the device.
+    /// Returns the progress of each body's path solver in the last frame drawn; for several
+    /// channels, that of the last channel. Waits for the device.
     pub fn solved(&self) -> Result<Vec<Status>, RenderError> {
         Ok(self.pass.paths().map_or(Ok(Vec::new()), |paths| paths.statuses(&self.executor))?)
     }
 
-    /// Bytes of what is allocated to find light's ways, but for uniforms.
+    /// Returns the bytes allocated for following light paths, uniforms excluded.
     pub fn path_bytes(&self) -> u64 {
         self.pass.paths().map_or(0, |paths| paths.bytes(self.executor.frame()))
     }
 
-    /// How many draw calls the scene takes.
+    /// Returns the number of draw calls that the scene takes.
     pub fn draw_calls(&self) -> usize {
         self.draw_calls
     }

@@ -1,4 +1,5 @@
-//! The recipe `cdrf_shading`'s pass: what scatters light, and what is opaque, under the scene's lights and the environment.
+//! The pass of the recipe `cdrf_shading`: scattering and opaque materials under the scene's lights
+//! and the environment.
 
 use super::diffusion::Diffusion;
 use super::lighting::Lighting;
@@ -16,7 +17,7 @@ use lapidary_scene::curvatures::vertex_curvatures;
 use lapidary_scene::solver::{Format, Reflectance};
 use lapidary_scene::{Material, Object};
 
-/// What shines on the objects, and what keeps it from them, where anything does.
+/// The lighting of the objects, and the shadows; `None` if there are none.
 pub(super) type Light<'a> = (&'a Lighting<'a>, Option<&'a Shadows>);
 
 /// Compiles `source`, the composed recipe, for the effects of each object, and adds the objects.
@@ -53,7 +54,7 @@ pub(super) fn pass(
     Ok(pass)
 }
 
-/// What the pipeline reads of group 0, beside the view.
+/// Returns the resources of group 0 that the pipeline reads, besides the view.
 pub(super) fn shared(
     builder: &mut Builder<'_>,
     (lighting, shadows): Light<'_>,
@@ -64,7 +65,7 @@ pub(super) fn shared(
     Ok(shared)
 }
 
-/// Refuses what the rung cannot draw.
+/// Rejects objects that the rung cannot draw.
 fn check(object: &Object, rung: Rung, reflectance: Reflectance) -> Result<(), RenderError> {
     let Object { name, material, mesh } = object;
     if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
@@ -80,7 +81,7 @@ fn check(object: &Object, rung: Rung, reflectance: Reflectance) -> Result<(), Re
     Ok(())
 }
 
-/// The overrides of the recipe for an object.
+/// Returns the overrides of the recipe for an object.
 pub(crate) fn constants(
     decisions: &Decisions,
     settings: &Settings,
@@ -95,7 +96,7 @@ pub(crate) fn constants(
     constants
 }
 
-/// Puts an object into the frame: what `pipeline` reads of it.
+/// Adds an object to the frame, with the resources that `pipeline` reads.
 fn add(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
@@ -112,13 +113,13 @@ fn add(
         (7, "curvatures", bytemuck::cast_slice(&curvatures)),
         (8, "uvs", bytemuck::cast_slice(&mesh.uvs)),
     ];
-    // What arrives is drawn with these, whatever shading still reads of them.
+    // The irradiance is drawn with these, whether or not shading still reads them.
     let blurs = builder.binds(pipeline, 1, 9);
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
     let vertices = builder.mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
     let record = builder.record("material", record_of(material));
-    // What casts shadows is there already.
+    // Bodies that cast shadows already have buffers.
     let cast = light.1.and_then(|shadows| shadows.mesh(name));
     let buffers: Vec<(u32, Buffer)> = read
         .into_iter()
@@ -148,7 +149,8 @@ fn add(
         resources.push((9, made.diffused().into()));
         diffusion = Some(made);
     }
-    // Charts keep off the texture's edges but where it repeats, and at a sphere's poles, where either is as good.
+    // Charts stay clear of the texture's edges, except where it repeats and at a sphere's poles,
+    // where either address mode will do.
     let samplers =
         [(5, "table sampler", wgpu::AddressMode::ClampToEdge), (10, "diffused sampler", wgpu::AddressMode::Repeat)];
     for (binding, what, address) in samplers {
@@ -160,7 +162,7 @@ fn add(
     Ok((Body { name: name.clone(), groups: vec![group], vertices }, diffusion))
 }
 
-/// `CdrfMaterial` of the recipe.
+/// Fills `CdrfMaterial` of the recipe.
 fn record_of(material: &Material) -> Record {
     let sigma0 = safe_sigma0(material);
     let record = Record::new("CdrfMaterial").with("base_color", material.base_color).with("index", material.ior);
@@ -168,17 +170,17 @@ fn record_of(material: &Material) -> Record {
     record.with("alpha", material.roughness * material.roughness)
 }
 
-/// The material's widths, made safe.
+/// Returns the material's widths, made safe.
 fn safe_sigma0(material: &Material) -> Vec3 {
     let sigma0 = thickness::sigma0(material).unwrap_or_default();
     Vec3::from_array(sigma0.to_array().map(|sigma0| lapidary_cdrf::sigma(sigma0, 1.0)))
 }
 
-/// The table of a material's channels.
+/// Bakes the table of a material's channels.
 fn baked(builder: &mut Builder<'_>, material: &Material, side: u32, format: Format) -> Result<Texture, RenderError> {
     let sigma0 = safe_sigma0(material);
     let tint = match format {
-        // Its one channel serves every material.
+        // The one channel serves every material.
         Format::R32Float => Vec3::ONE,
         Format::Rgba8 | Format::Rgba16Float => sigma0 / sigma0.max_element().max(f32::MIN_POSITIVE),
     };

@@ -1,14 +1,15 @@
-//! The objects of a scene, by the technique and by the variant of its recipe that their materials call for.
+//! The objects of a scene, grouped by technique and by the variant of its recipe that their
+//! materials call for.
 
 use super::{Rung, Settings};
 use lapidary_plan::Decisions;
 use lapidary_scene::{Bounds, Light, Object, Scene};
 use std::collections::{HashMap, HashSet};
 
-/// An object and what it calls for.
+/// An object and the decisions on how to draw it.
 pub(super) struct Drawn<'a> {
     pub(super) object: &'a Object,
-    /// Its name; with `#2` and so on where others before it have the same.
+    /// The object's name, with `#2` and so on if objects before it have the same name.
     pub(super) name: String,
     pub(super) decisions: Decisions,
 }
@@ -22,9 +23,9 @@ pub(super) struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// The parts of a scene, in the order of their first objects.
+    /// Returns the parts of a scene, in the order of their first objects.
     pub(super) fn all(scene: &'a Scene, settings: &'a Settings) -> Vec<Self> {
-        // An object without triangles has nothing to draw, and no buffer is empty.
+        // An object without triangles has nothing to draw, and buffers must not be empty.
         let shown = scene.objects.iter().zip(names(scene)).filter(|(object, _)| !object.mesh.indices.is_empty());
         let drawn = shown.map(|(object, name)| Drawn {
             object,
@@ -35,21 +36,22 @@ impl<'a> Part<'a> {
         grouped(drawn.collect(), |drawn| drawn.decisions.rung).into_iter().map(part).collect()
     }
 
-    /// The smallest box about its objects.
+    /// Returns the smallest box around the objects.
     pub(super) fn bounds(&self) -> Bounds {
         Bounds::of(self.objects.iter().flat_map(|drawn| drawn.object.mesh.positions.iter().copied()))
     }
 
-    /// Its objects, by what their variant of the recipe is compiled with.
+    /// Returns the objects, grouped by the values that their variant of the recipe is compiled
+    /// with.
     pub(super) fn variants<K: PartialEq>(&self, key: impl Fn(&Drawn<'a>) -> K) -> Vec<(K, Vec<&Drawn<'a>>)> {
         grouped(self.objects.iter().collect(), |drawn| key(drawn))
     }
 }
 
-/// A name for each object that no other has.
+/// Returns a unique name for each object.
 pub(crate) fn names(scene: &Scene) -> Vec<String> {
     let mut taken: HashSet<String> = scene.objects.iter().map(|object| object.name.clone()).collect();
-    // Of each name that was met, the last number that was given.
+    // The last number given to each name so far.
     let mut given: HashMap<&str, u32> = HashMap::new();
     let mut names = Vec::with_capacity(scene.objects.len());
     for object in &scene.objects {
@@ -68,7 +70,7 @@ pub(crate) fn names(scene: &Scene) -> Vec<String> {
     names
 }
 
-/// Those of one key together, in the order of the first of each.
+/// Groups items by key, in the order of the first item of each key.
 fn grouped<T, K: PartialEq>(all: Vec<T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
     let mut groups: Vec<(K, Vec<T>)> = Vec::new();
     for one in all {

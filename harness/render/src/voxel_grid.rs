@@ -1,4 +1,4 @@
-//! A cube of cubic voxels about a body: what the passes over voxels agree on.
+//! A cube of cubic voxels around a body, shared by the passes over voxels.
 
 use crate::record::Record;
 use glam::{UVec3, Vec3};
@@ -8,27 +8,29 @@ use lapidary_scene::solver::{LEAST_CELLS, MOST_CELLS, MULTIPLE};
 /// A cube of `cells`³ voxels. Voxel (x, y, z) has the number x + `cells` (y + `cells` z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelGrid {
-    /// The corner with the least coordinates, in world units.
+    /// The corner with the smallest coordinates, in world units.
     pub origin: Vec3,
-    /// A voxel's edge in world units, above 0.
+    /// Edge of a voxel in world units, above 0.
     pub spacing: f32,
     /// Voxels along each edge: a multiple of [`MULTIPLE`] from [`LEAST_CELLS`] to [`MOST_CELLS`].
     pub cells: u32,
 }
 
 impl VoxelGrid {
-    /// The grid in whose middle a body in `bounds` stands, with one voxel free on each side of its longest extent.
+    /// Returns a grid centred on a body in `bounds`, with one voxel free on each side of its
+    /// longest extent.
     ///
     /// # Panics
-    /// Where `cells` is none that [`VoxelGrid::cells`] allows.
+    /// If `cells` is not a value that [`VoxelGrid::cells`] allows.
     #[must_use]
     pub fn about(bounds: Bounds, cells: u32) -> Self {
         assert!((LEAST_CELLS..=MOST_CELLS).contains(&cells) && cells.is_multiple_of(MULTIPLE), "{cells} voxels");
         let extent = (bounds.max - bounds.min).max_element();
-        // A point, or nothing at all, still has voxels of some size.
+        // A point, or an empty body, still gets voxels of some size.
         let extent = if extent > 0.0 { extent } else { 1.0 };
         let spacing = extent / (cells - 2) as f32;
-        // Far from the origin corners are rounded. Where that is a good part of the voxel that is to be free, there is so much more.
+        // Far from the origin, corners are rounded. If the rounding is a large part of the voxel
+        // that must stay free, the grid is enlarged by that much.
         let rounded = 4.0 * f32::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element();
         let spacing = if rounded > 0.25 * spacing { (extent + rounded) / (cells - 2) as f32 } else { spacing };
         Self { origin: bounds.centre() - 0.5 * cells as f32 * spacing, spacing, cells }
@@ -40,33 +42,34 @@ impl VoxelGrid {
         record.with("origin", origin).with("spacing", spacing).with("cells", cells)
     }
 
-    /// How many voxels there are.
+    /// Number of voxels.
     #[must_use]
     pub fn count(&self) -> usize {
         (self.cells as usize).pow(3)
     }
 
-    /// A voxel's number.
+    /// Returns a voxel's number.
     #[must_use]
     pub fn index(&self, voxel: UVec3) -> usize {
         let [x, y, z] = voxel.to_array().map(|part| part as usize);
         x + self.cells as usize * (y + self.cells as usize * z)
     }
 
-    /// The voxel with this number.
+    /// Returns the voxel with this number.
     #[must_use]
     pub fn voxel(&self, index: usize) -> UVec3 {
         let index = index as u32;
         UVec3::new(index % self.cells, index / self.cells % self.cells, index / self.cells / self.cells)
     }
 
-    /// A voxel's centre, in world units.
+    /// Returns a voxel's centre, in world units.
     #[must_use]
     pub fn centre(&self, voxel: UVec3) -> Vec3 {
         self.origin + (voxel.as_vec3() + 0.5) * self.spacing
     }
 
-    /// The words of a row along x, a bit for each voxel, the least first: row (y, z) begins at this times (y + `cells` z).
+    /// Number of words in a row along x, one bit per voxel, the lowest bit first: row (y, z) begins
+    /// at this times (y + `cells` z).
     #[must_use]
     pub fn words_per_row(&self) -> u32 {
         self.cells.div_ceil(u32::BITS)

@@ -1,4 +1,4 @@
-//! The recipe `voxelization`: a mesh on the device made voxels on the device, in every frame anew.
+//! The recipe `voxelization`: voxelizes a mesh on the device, anew in every frame.
 
 use crate::frame::{BindGroupId, Buffer, Builder, Executor, Frame, Pass, PipelineId, Workgroups};
 use crate::record::Record;
@@ -8,27 +8,28 @@ use lapidary_gpu::GpuError;
 use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
-/// The recipe's name.
+/// Name of the recipe.
 const RECIPE: &str = "voxelization";
 /// Invocations of a workgroup.
 const WORKGROUP: u32 = 64;
 /// Workgroups that share the triangles over many columns.
 const LARGE_GROUPS: u32 = 64;
-/// The most workgroups that may stand in a line.
+/// Maximum number of workgroups in one dimension.
 const MOST_WORKGROUPS: u32 = 65_535;
-/// The most triangles: a thread each.
+/// Maximum number of triangles: one thread each.
 pub const MOST_TRIANGLES: u32 = MOST_WORKGROUPS * WORKGROUP;
-/// Bytes of the counts.
+/// Size of the counts in bytes.
 const STATUS_BYTES: u64 = 12;
 
-/// What the last frame counted.
+/// The counts of the last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
     /// Voxels whose centre is inside.
     pub solid: u32,
-    /// Voxels that the surface touches, whether their centre is inside or not.
+    /// Voxels that the surface touches, whether or not their centre is inside.
     pub surface: u32,
-    /// Columns along x that the mesh crosses an odd number of times: none where it is closed. They are not filled.
+    /// Columns along x that the mesh crosses an odd number of times: none if it is closed. They are
+    /// not filled.
     pub odd_columns: u32,
 }
 
@@ -44,28 +45,30 @@ pub struct Voxelizer {
     cells: u32,
     vertices: u64,
     triangles: u64,
-    /// Of each vertex, of each triangle, of those over many columns, of each row.
+    /// Pipelines over the vertices, the triangles, the triangles over many columns, and the rows.
     kernels: [PipelineId; 4],
     grid: Buffer,
     beyond: Buffer,
     large: Buffer,
     corners: Buffer,
-    /// A bit for each voxel that is filled: [`VoxelGrid::words_per_row`] words a row.
+    /// One bit per voxel, set if it is filled: [`VoxelGrid::words_per_row`] words per row.
     pub matter: Buffer,
-    /// The same for the voxels that the surface touches, where these are set too.
+    /// One bit per voxel, set if the surface touches it; `None` if the effects leave these voxels
+    /// out.
     pub surface: Option<Buffer>,
     /// Three counts, in the order of [`Status`].
     pub status: Buffer,
 }
 
 impl Voxelizer {
-    /// For meshes of as many vertices and triangles as `mesh`, with the effects by the names of the recipe's overrides.
+    /// Creates the pipelines and buffers for meshes with as many vertices and triangles as `mesh`;
+    /// `effects` are values for the recipe's overrides, by name.
     ///
     /// # Errors
-    /// Where the recipe is not valid.
+    /// If the recipe is not valid.
     ///
     /// # Panics
-    /// For more than [`MOST_TRIANGLES`].
+    /// If the mesh has more than [`MOST_TRIANGLES`].
     pub fn new(
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
@@ -96,7 +99,7 @@ impl Voxelizer {
             kernels,
             grid: grid_buffer,
             beyond: storage("columns crossed beyond", columns.div_ceil(32) * 4),
-            // A list of none still has a place.
+            // Even an empty list has one entry.
             large: storage("large triangles", 4 + 4 * triangles.max(1)),
             corners: storage("vertices in the grid", 12 * vertices.max(1)),
             matter: storage("matter", bits),
@@ -105,12 +108,13 @@ impl Voxelizer {
         })
     }
 
-    /// Makes voxels of the mesh as it is then: `positions` holds three floats a vertex, `indices` three words a triangle, all of the buffer.
+    /// Voxelizes the mesh as it is when the frame runs: the whole of `positions` is read as three
+    /// floats per vertex, the whole of `indices` as three words per triangle.
     pub fn encode(&self, builder: &mut Builder<'_>, positions: Buffer, indices: Buffer) {
         for buffer in [self.matter, self.beyond, self.status].into_iter().chain(self.surface) {
             builder.clear(buffer);
         }
-        // What the list held does not matter, only how much.
+        // Only the list's length must be reset, not its contents.
         builder.pass(Pass::Clear { buffer: self.large, bytes: 4 });
         if self.triangles == 0 {
             return;
@@ -138,17 +142,17 @@ impl Voxelizer {
         builder.compute(RECIPE, dispatches, 1);
     }
 
-    /// Bytes of its buffers.
+    /// Size of the buffers in bytes.
     #[must_use]
     pub fn bytes(&self, frame: &Frame) -> u64 {
         let buffers = [self.grid, self.beyond, self.large, self.corners, self.matter, self.status];
         buffers.into_iter().chain(self.surface).map(|buffer| frame.buffer(buffer).bytes()).sum()
     }
 
-    /// The counts of the last frame that was submitted. It waits for the device.
+    /// Returns the counts of the last frame that was submitted. Waits for the device.
     ///
     /// # Errors
-    /// Where the device does.
+    /// If reading from the device fails.
     pub fn status(&self, executor: &Executor<'_>) -> Result<Status, GpuError> {
         let words = executor.words(self.status)?;
         Ok(Status { solid: words[0], surface: words[1], odd_columns: words[2] })

@@ -1,12 +1,14 @@
 //! Texture coordinates for a mesh that has none: an atlas of charts.
 //!
-//! The mesh is cut into charts (`atlas/charts.rs`), each drawn as it is seen along an axis of its own, and these are
-//! packed into the unit square (`atlas/packing.rs`). The scale is the same for all. What this costs is what a drawing
-//! foreshortens: a triangle that leans away from its chart's axis is drawn narrower by the cosine of the angle. Charts can be
-//! surrounded by what lies beside them on the mesh (`atlas/charts/halos.rs`), for what is blurred in the texture.
+//! The mesh is cut into charts (`atlas/charts.rs`), each projected along its own axis, and these
+//! are packed into the unit square (`atlas/packing.rs`). The scale is the same for all. The cost is
+//! foreshortening: a triangle that leans away from its chart's axis is narrowed by the cosine of
+//! the angle. Charts can be surrounded by their neighbours on the mesh (`atlas/charts/halos.rs`),
+//! for blurs in texture space.
 //!
-//! Written here, since no crate serves: bindings of xatlas build C++ of their own, and the scale that charts are packed at is sought, with turned
-//! boxes, which what packs boxes of given sizes (rectangle-pack, guillotiere) does not do.
+//! Written here because no crate fits: bindings of xatlas build its C++, and crates that pack boxes
+//! of given sizes (rectangle-pack, guillotiere) do not search for the common scale or turn the
+//! boxes.
 
 use std::collections::HashMap;
 
@@ -17,15 +19,18 @@ mod packing;
 
 use charts::Chart;
 
-/// The same triangles in the same order, with texture coordinates in the unit square. Vertices on the borders of charts
-/// stand there once for each chart, with the same position and normal; vertices of no triangle are left out.
+/// Returns the same triangles in the same order, with texture coordinates in the unit square.
+/// Vertices on the borders of charts are repeated once per chart, with the same position and
+/// normal; vertices of no triangle are dropped.
 ///
-/// A triangle is drawn clockwise with v down, so that nothing is mirrored as seen from outside. To the rounding of f32 no two
-/// triangles overlap. Charts are at least 8 texels apart in a texture of 1024², also where it repeats. A mesh of so many
-/// charts that these gutters fill the square, more than 4096, gets no texture coordinates.
+/// A triangle is drawn clockwise with v down, so that nothing is mirrored as seen from outside. No
+/// two triangles overlap, up to f32 rounding. Charts are at least 8 texels apart in a texture of
+/// 1024², also across its edges if it repeats. A mesh with so many charts that these gutters fill
+/// the square, more than 4096, gets no texture coordinates.
 ///
-/// `halo` is a length in the mesh's unit, 0 for none: up to so far away along edges, each chart is surrounded by its neighbours'
-/// triangles, in [`Mesh::halo`], drawn as it is. A triangle that leans too far away, or would be drawn over another, ends the halo there.
+/// `halo` is a length in the mesh's unit, 0 for none. Each chart is surrounded by its neighbours'
+/// triangles up to that far away along edges; they go into [`Mesh::halo`] and are drawn like the
+/// chart. The halo ends at a triangle that leans too far away or would overlap another.
 #[must_use]
 pub fn unwrap(mesh: &Mesh, halo: f32) -> Mesh {
     let charts = charts::charts(mesh, halo.into());
@@ -56,7 +61,7 @@ pub fn unwrap(mesh: &Mesh, halo: f32) -> Mesh {
     };
     let own = (0..).zip(&chart_of).flat_map(|(triangle, &chart)| corners(triangle, chart));
     let indices = own.map(|(vertex, chart)| place(vertex, chart)).collect();
-    // After all others, and with the chart's own vertices where they are the same.
+    // The halos follow all other triangles, and share the chart's vertices where they can.
     let halos = charts
         .iter()
         .enumerate()

@@ -17,9 +17,9 @@ mod vitrine;
 /// A scene that needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltIn {
-    /// What a user calls it.
+    /// Name that a user types.
     pub name: &'static str,
-    /// What it is and what it is for, in one paragraph.
+    /// Description of the scene and its purpose, in one paragraph.
     pub description: &'static str,
 }
 
@@ -152,16 +152,16 @@ pub const BUILT_IN: [BuiltIn; 28] = [
     },
 ];
 
-/// The names of all built-in scenes, as a list for a message.
+/// Returns the names of all built-in scenes, as a list for a message.
 #[must_use]
 pub fn names() -> String {
     BUILT_IN.map(|scene| scene.name).join(", ")
 }
 
-/// Other words for built-ins: what a user may well call them.
+/// Other names that a user may well give to built-ins.
 const ALIASES: [(&str, &str); 2] = [("diamond", "brilliant"), ("emerald", "step_cut")];
 
-/// The built-in scene called `name`, also by another word for it.
+/// Returns the built-in scene called `name`, also by an alias, or `None` if there is none.
 pub(super) fn named(name: &str) -> Option<&'static BuiltIn> {
     let meant = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, meant)| meant);
     BUILT_IN.iter().find(|scene| scene.name == meant)
@@ -170,13 +170,13 @@ pub(super) fn named(name: &str) -> Option<&'static BuiltIn> {
 /// A short portrait lens: about 27° from edge to edge.
 const VERTICAL_FOV: f32 = 0.47;
 
-/// Where brilliants are seen from, see [`scene`].
+/// Viewing angles of brilliants, see [`scene`].
 const BRILLIANT_ANGLES: (f32, f32) = (27.0, 11.0);
 
 /// The bunny of the Stanford 3D Scanning Repository, decimated and closed.
 const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 
-/// The scene called `name`, nothing of it from a file that it could be made without.
+/// Builds the scene called `name`, taking nothing from a file that can be built without it.
 pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
     let name = named(name).map_or(name, |scene| scene.name);
     match name {
@@ -186,7 +186,7 @@ pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
     }
 }
 
-/// The scene called `name`.
+/// Builds the scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     let name = named(name).map_or(name, |scene| scene.name);
     match name {
@@ -228,7 +228,7 @@ fn brilliant(name: &str, material: Material) -> Result<Scene, SceneError> {
     Ok(stone_scene(name, &stone, material, BRILLIANT_ANGLES))
 }
 
-/// The diamond brilliant from another mesh of the same surface.
+/// Builds the diamond brilliant from another mesh of the same surface.
 fn diamond(name: &str, averaging: Averaging, triangulation: Triangulation) -> Result<Scene, SceneError> {
     let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY)?;
     Ok(scene(name, stone.to_mesh_with(averaging, triangulation), materials::diamond(), BRILLIANT_ANGLES))
@@ -238,7 +238,8 @@ fn stone_scene(name: &str, stone: &Polyhedron, material: Material, angles: (f32,
     scene(name, stone.to_mesh(Averaging::default()), material, angles)
 }
 
-/// One body, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
+/// Builds a scene of one body, seen from `polar` degrees off the vertical and `azimuth` degrees
+/// from +z towards +x.
 fn scene(name: &str, mesh: Mesh, material: Material, (polar, azimuth): (f32, f32)) -> Scene {
     let object = Object { name: name.to_owned(), mesh, material };
     framed(name, vec![object], direction(polar, azimuth))
@@ -263,7 +264,7 @@ pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {
     Vec3::new(across * x, along, across * z)
 }
 
-/// The built-in whose name, or another word for it, is most like `name`.
+/// Returns the built-in whose name, or alias, is most like `name`.
 fn nearest(name: &str) -> &'static str {
     let known = BUILT_IN.iter().map(|scene| scene.name).chain(ALIASES.iter().map(|(alias, _)| *alias));
     let (_, nearest) = crate::nearest::nearest(name, known).unwrap_or_default();

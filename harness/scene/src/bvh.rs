@@ -1,36 +1,39 @@
-//! A bounding volume hierarchy over a mesh, as it goes into the storage buffers of `wgsl/recipes/trace.wgsl` and `gem_bvh.wgsl`.
+//! A bounding volume hierarchy over a mesh, in the layout of the storage buffers of
+//! `wgsl/recipes/trace.wgsl` and `gem_bvh.wgsl`.
 //!
-//! Built here, since no crate serves. obvhs 0.4 has the right layout, 32-byte nodes with adjacent children, and few
-//! dependencies; but its clustering does not bound the depth, which a shader's stack must, and with debug assertions,
-//! as the tests are built, it panics over some degenerate meshes and overflows the stack over 20,000 equal triangles.
-//! bvh 0.13 keeps an enum of nodes with parents, or a list of 36-byte nodes to skip through, which has no order from
-//! near to far, and it brings nalgebra. What is left to do is short: splits by the surface area heuristic in bins
-//! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), and halves wherever those would make
-//! the hierarchy too deep.
+//! Built here because no crate fits. obvhs 0.4 has the right layout, 32-byte nodes with adjacent
+//! children, and few dependencies; but its clustering does not bound the depth, as a shader's stack
+//! requires, and with debug assertions, as in the test builds, it panics on some degenerate meshes
+//! and overflows the stack with 20,000 equal triangles. bvh 0.13 keeps an enum of nodes with
+//! parents, or a list of 36-byte nodes to skip through, which has no near-to-far order, and it
+//! depends on nalgebra. The remaining work is short: splits by the surface area heuristic in bins
+//! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), and halving
+//! wherever those would make the hierarchy too deep.
 
 use glam::{DVec3, Vec3, Vec4};
 use lapidary_bvh_trace::traversal::BVH_TRACE_DEPTH;
 
 use super::Mesh;
 
-/// Most triangles in a leaf.
+/// Largest number of triangles in a leaf.
 const MOST_IN_A_LEAF: usize = 4;
-/// Places along each axis where a split is tried.
+/// Number of bins along each axis; splits are tried between them.
 const BINS: usize = 16;
-/// What a step down costs, relative to a triangle: two boxes and their way from memory.
+/// Cost of a step down relative to a triangle: two boxes and their transfer from memory.
 const STEP: f64 = 1.0;
 
 /// A hierarchy of boxes over the triangles of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
-    /// 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner, first), the last of each a `u32`
-    /// as bits. With count above 0 a leaf of the triangles first, …, first + count - 1; with 0 an inner node whose
-    /// children are the nodes first and first + 1. The root is the first node, and a node stands before its children.
-    /// None if the mesh has no triangle.
+    /// Nodes of 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner,
+    /// first), the last component of each being the bits of a `u32`. A node with count above 0 is a
+    /// leaf of the triangles first, …, first + count - 1; one with 0 is an inner node whose
+    /// children are the nodes first and first + 1. The root is the first node, and a node precedes
+    /// its children. Empty if the mesh has no triangle.
     pub nodes: Vec<[Vec4; 2]>,
-    /// Three vertex indices a triangle, in the order of the leaves.
+    /// Three vertex indices per triangle, in the order of the leaves.
     pub indices: Vec<u32>,
-    /// For each of these triangles its number in the mesh.
+    /// Number in the mesh of each of these triangles.
     pub order: Vec<u32>,
 }
 
@@ -43,7 +46,7 @@ struct Triangle {
 }
 
 impl Triangle {
-    /// The middle of the box; in f64, where the sum of two huge corners does not overflow.
+    /// Returns the middle of the box, in f64, where the sum of two huge corners does not overflow.
     fn middle(&self) -> DVec3 {
         0.5 * (self.lower.as_dvec3() + self.upper.as_dvec3())
     }
@@ -71,7 +74,8 @@ impl Extent {
         self.with(other.lower, other.upper)
     }
 
-    /// Half the surface; 0 if nothing is in it. In f64, which holds the square of every f32.
+    /// Returns half the surface area, 0 if the box is empty; in f64, which holds the square of
+    /// every f32.
     fn area(self) -> f64 {
         let size = (self.upper.as_dvec3() - self.lower.as_dvec3()).max(DVec3::ZERO);
         size.x * size.y + size.y * size.z + size.z * size.x
@@ -79,8 +83,9 @@ impl Extent {
 }
 
 impl Bvh {
-    /// The hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root. Triangles with a corner that is
-    /// not finite, or that does not exist, cannot be met and are left out.
+    /// Builds the hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root.
+    /// Triangles with a corner that is not finite, or that does not exist, cannot be hit and are
+    /// left out.
     #[must_use]
     pub fn build(mesh: &Mesh) -> Self {
         let corner = |index: u32| mesh.positions.get(index as usize).copied().filter(|position| position.is_finite());
@@ -102,7 +107,7 @@ impl Bvh {
         Self { nodes, indices: order.iter().flat_map(corners).collect(), order }
     }
 
-    /// The largest number of nodes below the root on the way to a leaf; 0 without nodes.
+    /// Returns the largest number of nodes below the root on the way to a leaf; 0 without nodes.
     #[must_use]
     pub fn depth(&self) -> usize {
         let mut depths = vec![0; self.nodes.len()];
@@ -117,7 +122,7 @@ impl Bvh {
     }
 }
 
-/// The nodes, and the triangles put into the order of the leaves.
+/// Builds the nodes, and sorts the triangles into the order of the leaves.
 fn nodes(triangles: &mut [Triangle]) -> Vec<[Vec4; 2]> {
     let mut nodes = vec![[Vec4::ZERO; 2]];
     let mut open = vec![(0, 0..triangles.len(), 0)];
@@ -129,25 +134,28 @@ fn nodes(triangles: &mut [Triangle]) -> Vec<[Vec4; 2]> {
             Some(middle) => {
                 let first = nodes.len();
                 nodes.extend([[Vec4::ZERO; 2]; 2]);
-                // The first child is built next, so that it and what it holds lie close by.
+                // The first child is built next, so that it and its contents are close by in
+                // memory.
                 open.push((first + 1, range.start + middle..range.end, depth + 1));
                 open.push((first, range.start..range.start + middle, depth + 1));
                 (0, first)
             }
         };
-        // A mesh has fewer than 2³² / 3 triangles and not twice as many nodes: its indices are counted by u32.
+        // A mesh has fewer than 2³² / 3 triangles and less than twice as many nodes, because its
+        // indices are counted by u32.
         let bits = |number: usize| f32::from_bits(number as u32);
         nodes[node] = [extent.lower.extend(bits(count)), extent.upper.extend(bits(first))];
     }
     nodes
 }
 
-/// Levels that halving needs for so many triangles.
+/// Returns the number of levels that halving needs for this many triangles.
 fn levels(count: usize) -> usize {
     count.div_ceil(MOST_IN_A_LEAF).next_power_of_two().ilog2() as usize
 }
 
-/// Puts those of the first child first, and returns how many they are; none for a leaf.
+/// Moves the triangles of the first child to the front and returns their number, or `None` for a
+/// leaf.
 fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
     if part.len() <= 1 {
         return None;
@@ -160,7 +168,7 @@ fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
         let share = (triangle.middle()[axis] - low[axis]) / size[axis];
         ((share * BINS as f64) as usize).min(BINS - 1)
     };
-    // The least (cost, axis, bin that the second child starts at), costs as areas times triangles.
+    // The cheapest (cost, axis, first bin of the second child); costs are areas times triangles.
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in (0..3).filter(|axis| size[*axis] > 0.0) {
         let mut bins = [(0usize, Extent::EMPTY); BINS];
@@ -173,7 +181,7 @@ fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
         for start in 1..BINS {
             let [first, second] =
                 [&bins[..start], &bins[start..]].map(|bins| bins.iter().copied().fold((0, Extent::EMPTY), join));
-            // As many levels as are left must do for halving either.
+            // The remaining levels must suffice for halving either child.
             if first.0.min(second.0) == 0 || depth + 1 + levels(first.0.max(second.0)) > BVH_TRACE_DEPTH {
                 continue;
             }

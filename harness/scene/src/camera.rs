@@ -1,27 +1,28 @@
-//! The camera, and where to put one so that a body fills the picture.
+//! The camera, and how to place one so that a body fills the picture.
 
 use glam::{DVec3, Vec3};
 
 /// A perspective camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Its position.
+    /// Position of the camera.
     pub eye: Vec3,
     /// A point on the line of sight, different from `eye`.
     pub target: Vec3,
-    /// The picture's upward direction: unit length, not along the line of sight.
+    /// Upward direction of the picture: unit length, not along the line of sight.
     pub up: Vec3,
-    /// The angle between the picture's lower and upper edge in radians, above 0 and below π.
+    /// Angle between the picture's lower and upper edge in radians, above 0 and below π.
     pub vertical_fov: f32,
 }
 
-/// Share of the picture's height that a framed body fills: tight, with room for its glow.
+/// Fraction of the picture's height that a framed body fills: tight, with room for its glow.
 const FILL_HEIGHT: f64 = 0.75;
-/// Share of a square picture's width that a framed body may fill.
+/// Fraction of a square picture's width that a framed body may fill.
 const FILL_WIDTH: f64 = 0.9;
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, another point not right above or below it, with its upward direction towards +y.
+    /// Returns a camera at `eye` that looks at `target`, a different point not directly above or
+    /// below it, with its upward direction towards +y.
     #[must_use]
     pub fn upright(eye: Vec3, target: Vec3, vertical_fov: f32) -> Self {
         let back = (eye - target).as_dvec3().normalize();
@@ -29,13 +30,13 @@ impl Camera {
         Self { eye, target, up: back.cross(right).as_vec3(), vertical_fov }
     }
 
-    /// A camera that sees all `points`, from the direction `toward_eye`, with the given vertical field
-    /// of view in radians (above 0, below π).
+    /// Returns a camera that sees all `points`, from the direction `toward_eye`, with the given
+    /// vertical field of view in radians (above 0, below π).
     ///
-    /// In a square picture the points fill three quarters of the height or nine tenths of the width,
-    /// whichever is reached first, and lie in the middle. The distance is exact, not that of a bounding
-    /// sphere. Without points, or with all in one place, the camera stands one unit away. A
-    /// `toward_eye` without length counts as +z.
+    /// In a square picture the points fill three quarters of the height or nine tenths of the
+    /// width, whichever is reached first, and lie in the middle. The distance is exact, not that of
+    /// a bounding sphere. Without points, or with all in one place, the camera stands one unit
+    /// away. A zero-length `toward_eye` counts as +z.
     #[must_use]
     pub fn framing(points: impl Iterator<Item = Vec3> + Clone, toward_eye: Vec3, vertical_fov: f32) -> Self {
         let back = toward_eye.as_dvec3().normalize_or(DVec3::Z);
@@ -63,20 +64,20 @@ impl Camera {
     }
 }
 
-/// How points spread along one picture axis.
+/// Extent of points along one picture axis.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
-    /// The least distance of the eye, along the line of sight from the origin, that keeps all points
+    /// Smallest distance of the eye, along the line of sight from the origin, that keeps all points
     /// within the slope.
     distance: f64,
-    /// Where the eye then stands on the axis.
+    /// Position of the eye on the axis at that distance.
     middle: f64,
 }
 
 impl Extent {
     /// A point at `y` on the axis and `w` towards the eye is within `slope` of the line of sight if
-    /// |y - middle| <= slope (distance - w). The largest y + slope·w and -y + slope·w are therefore
-    /// all that matter, and at the least distance both are met with equality.
+    /// |y - middle| <= slope (distance - w). So only the largest y + slope·w and -y + slope·w
+    /// matter, and at the smallest distance both hold with equality.
     fn of(points: impl Iterator<Item = DVec3>, axis: DVec3, back: DVec3, slope: f64) -> Self {
         let reach = points
             .map(|point| (point.dot(axis), slope * point.dot(back)))
@@ -91,7 +92,8 @@ impl Extent {
 mod tests {
     use super::*;
 
-    /// Picture coordinates of a point: 1 at the right and upper edge of a square picture.
+    /// Returns the picture coordinates of a point: 1 at the right and upper edge of a square
+    /// picture.
     fn project(camera: &Camera, point: Vec3) -> (f32, f32) {
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();

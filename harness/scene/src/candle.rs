@@ -1,7 +1,8 @@
-//! A candle that has burnt for a while: a bowl where the wax has melted about the wick, an uneven rim, and runs of wax down the side.
+//! A partly burnt candle: a bowl of melted wax around the wick, an uneven rim, and runs of wax down
+//! the side.
 //!
-//! Lengths are in millimetres; y is up and the candle stands on 0. Its curvature is continuous, so that light which is spread by
-//! curvature shows no seams.
+//! Lengths are in millimetres; y is up and the candle stands at 0. Its curvature is continuous, so
+//! that scattering which depends on curvature shows no seams.
 
 use glam::{DVec2, DVec3, dvec2};
 use std::f64::consts::{PI, TAU};
@@ -9,15 +10,15 @@ use std::f64::consts::{PI, TAU};
 use super::Mesh;
 use super::surfaces::grid;
 
-/// Quadrilaterals around, and along each span of the outline.
+/// Number of quadrilaterals around, and along each span of the outline.
 const COLUMNS: u32 = 64;
 const ROWS: u32 = 3;
 
-/// Where the side is before anything runs down it.
+/// Radius of the side without runs of wax.
 pub(super) const RADIUS: f64 = 15.0;
 
-/// Distance from the axis and height of the points that control the outline, a uniform cubic B-spline, from the middle of the bowl to the
-/// middle of the foot. Denser where it bends more.
+/// Distance from the axis and height of the control points of the outline, a uniform cubic B-spline
+/// from the centre of the bowl to the centre of the foot. Points are denser where it bends more.
 const OUTLINE: [[f64; 2]; 15] = [
     [0.0, 51.0],
     [5.5, 51.5],
@@ -36,16 +37,16 @@ const OUTLINE: [[f64; 2]; 15] = [
     [0.0, 0.0],
 ];
 
-/// The place along the outline, from 0 to 1, from which on the wax runs down: the top of the rim.
+/// Parameter along the outline, from 0 to 1, at the top of the rim; wax runs down beyond it.
 const RIM: f64 = 0.26;
 
-/// Wax that has run over the rim and stiffened.
+/// Wax that has run over the rim and solidified.
 struct Run {
-    /// From +z towards +x, in radians.
+    /// Azimuth from +z towards +x, in radians.
     azimuth: f64,
-    /// Height of its lower end.
+    /// Height of the lower end.
     end: f64,
-    /// Where it stands out by 1/e of its middle.
+    /// Distance from the middle at which the thickness has fallen to 1/e.
     half_width: f64,
 }
 
@@ -57,7 +58,8 @@ const RUNS: [Run; 5] = [
     Run { azimuth: 3.4, end: 35.0, half_width: 3.2 },
 ];
 
-/// The candle, 31 mm wide and 60 mm high, with texture coordinates: u around, v from the middle of the bowl to the middle of the foot.
+/// Returns the candle, 31 mm wide and 60 mm high, with texture coordinates: u runs around it, v
+/// from the centre of the bowl to the centre of the foot.
 #[must_use]
 pub fn mesh() -> Mesh {
     let spans = OUTLINE.len() as u32 - 1;
@@ -67,7 +69,7 @@ pub fn mesh() -> Mesh {
 fn point(uv: DVec2) -> DVec3 {
     let azimuth = TAU * uv.x.fract();
     let along = outline(uv.y);
-    // Nothing may move the poles apart.
+    // Zero on the axis, so that each pole stays a single point.
     let aside = (along.x / RADIUS).powi(4);
     let over_rim = aside * step((uv.y - RIM) / 0.025);
     let radius = along.x + over_rim * RUNS.iter().map(|run| run.depth(azimuth, along.y)).sum::<f64>();
@@ -76,7 +78,7 @@ fn point(uv: DVec2) -> DVec3 {
     DVec3::new(radius * azimuth.sin(), height, radius * azimuth.cos())
 }
 
-/// By central differences; at the poles along the axis.
+/// Returns the unit normal by central differences; at the poles it lies along the axis.
 fn normal(uv: DVec2) -> DVec3 {
     const DIFFERENCE: f64 = 1e-5;
     if uv.y <= 0.0 {
@@ -90,25 +92,26 @@ fn normal(uv: DVec2) -> DVec3 {
 }
 
 impl Run {
-    /// How far it stands out of the side.
+    /// Returns how far the run stands out from the side.
     fn depth(&self, azimuth: f64, height: f64) -> f64 {
         let turn = (azimuth - self.azimuth + PI).rem_euclid(TAU) - PI;
         let (aside, above) = (RADIUS * turn / self.half_width, (height - self.end) / self.half_width);
-        // A drop has gathered at its end.
+        // A drop has gathered at the end of the run.
         let drop = 0.8 * (-(above - 0.9).powi(2)).exp();
         (1.3 + drop) * step(3.0 * above) * (-aside * aside).exp()
     }
 }
 
-/// From 0 to 1, smoothly: the logistic function.
+/// The logistic function: a smooth step from 0 to 1.
 fn step(place: f64) -> f64 {
     1.0 / (1.0 + (-place).exp())
 }
 
-/// Distance from the axis and height at a place from 0, the middle of the bowl, to 1, the middle of the foot.
+/// Returns distance from the axis and height at a parameter from 0, the centre of the bowl, to 1,
+/// the centre of the foot.
 fn outline(place: f64) -> DVec2 {
     let last = OUTLINE.len() as i32 - 1;
-    // Beyond the axis is its mirror image.
+    // The outline is mirrored beyond the axis.
     let control = |number: i32| {
         let [radius, height] = OUTLINE[(last - (last - number.abs()).abs()) as usize];
         dvec2(if (0..=last).contains(&number) { radius } else { -radius }, height)

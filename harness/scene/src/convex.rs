@@ -1,5 +1,5 @@
-//! The facet planes of a convex mesh, found from the mesh itself: a cut stone from any file, not only from a list of
-//! planes.
+//! The facet planes of a convex mesh, found from the mesh itself, so that a cut stone can come from
+//! any file and not only from a list of planes.
 
 use std::collections::HashMap;
 
@@ -8,23 +8,26 @@ use glam::{DVec3, Vec3, Vec4};
 use super::polyhedron::{MAX_PLANES, Plane};
 use super::{Mesh, MeshDiagnosis};
 
-/// How far a vertex may lie from its facet's plane, relative to the mesh's largest coordinate: 32 times the 2^-24 by
-/// which storing it in f32 moves it. A plane through one triangle carries its corners' roundings on to the rest of the
-/// facet, the further the smaller the triangle; facets start from their largest triangle, so 32 is ample. Two facets
-/// that differ by less are one.
+/// Largest distance of a vertex from its facet's plane, relative to the mesh's largest coordinate:
+/// 32 times the 2^-24 by which storing it in f32 moves it. A plane through one triangle carries its
+/// corners' rounding errors on to the rest of the facet, the further the smaller the triangle;
+/// facets start from their largest triangle, so 32 is ample. Two facets that differ by less count
+/// as one.
 pub const TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 
-/// A convex body as a shader takes it.
+/// A convex body in the form that a shader uses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Convex {
-    /// A facet's unit outward normal n and its distance d from the origin: points inside have n · x <= d.
+    /// Unit outward normal n of each facet and its distance d from the origin: points inside have n
+    /// · x <= d.
     pub planes: Vec<Vec4>,
-    /// The facet of each triangle, in the order of the mesh's indices.
+    /// Facet of each triangle, in the order of the mesh's indices.
     pub face_of_triangle: Vec<u32>,
 }
 
 impl Convex {
-    /// The planes of `mesh` in f32, with every triangle's facet; `None` where [`planes_of_convex`] finds none.
+    /// Returns the planes of `mesh` in f32, with every triangle's facet; `None` if
+    /// [`planes_of_convex`] finds none.
     #[must_use]
     pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
         let facets = Facets::of(mesh)?;
@@ -33,19 +36,19 @@ impl Convex {
     }
 }
 
-/// What a mesh encloses, as far as finding its facets from inside goes.
+/// Kind of body that a mesh encloses, as far as it matters for finding its facets from inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Closed, and no facet sees another: at most [`MAX_PLANES`] planes bound it.
     Convex,
-    /// Closed, but not so.
+    /// Closed, but not convex in this sense.
     Concave,
     /// An edge has no triangle on its other side.
     Open,
 }
 
 impl Shape {
-    /// Of `mesh`.
+    /// Returns the shape of `mesh`.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         if !is_closed(mesh) {
@@ -58,23 +61,23 @@ impl Shape {
     }
 }
 
-/// The facet planes of a closed convex mesh, in the order of their first triangles.
+/// Returns the facet planes of a closed convex mesh, in the order of their first triangles.
 ///
-/// `None` where a vertex lies outside a plane by more than [`TOLERANCE`], where an edge has no triangle on its other
-/// side, where a triangle points inwards, and where there are more than [`MAX_PLANES`] facets.
+/// `None` if a vertex lies outside a plane by more than [`TOLERANCE`], an edge has no triangle on
+/// its other side, a triangle points inwards, or there are more than [`MAX_PLANES`] facets.
 #[must_use]
 pub fn planes_of_convex(mesh: &Mesh) -> Option<Vec<Plane>> {
     Facets::of(mesh).map(|facets| facets.planes)
 }
 
-/// Why there are no planes of a mesh, as the end of a sentence: ``is not convex``.
+/// Returns why a mesh has no planes, as the end of a sentence: ``is not convex``.
 #[must_use]
 pub fn obstacle(mesh: &Mesh) -> String {
     let faults = MeshDiagnosis::of(mesh);
     if !faults.is_solid() {
         return format!("is no closed solid ({})", faults.clauses().join(", "));
     }
-    // Facets are planes that neighbours differ by; of a smooth body each triangle is one.
+    // Facets are planes that differ between neighbours; on a smooth body each triangle is one.
     let triangles: Vec<Triangle> = mesh.triangles().map(Triangle::new).collect();
     let largest = mesh.positions.iter().fold(0.0, |most: f32, position| most.max(position.abs().max_element()));
     let tolerance = TOLERANCE * f64::from(largest);
@@ -89,12 +92,13 @@ pub fn obstacle(mesh: &Mesh) -> String {
     format!("has more than {MAX_PLANES} facets")
 }
 
-/// How far a vertex stands above the plane of a triangle, relative to the largest coordinate, that makes a dent and no rounding.
+/// Height of a vertex above the plane of a triangle, relative to the largest coordinate, beyond
+/// which it is a dent and not a rounding error.
 const DENT: f64 = 1.0 / (1 << 12) as f64;
-/// Each triangle is compared with all vertices.
+/// Largest number of triangles to probe, because each is compared with all vertices.
 const MOST_PROBED: usize = 4096;
 
-/// Triangles put together to facets.
+/// Triangles grouped into facets.
 struct Facets {
     planes: Vec<Plane>,
     face_of_triangle: Vec<u32>,
@@ -103,7 +107,7 @@ struct Facets {
 /// A triangle in f64.
 struct Triangle {
     corners: [DVec3; 3],
-    /// Its outward normal times its area.
+    /// Outward normal times the area.
     area: DVec3,
 }
 
@@ -113,12 +117,12 @@ impl Triangle {
         Self { corners, area: 0.5 * (b - a).cross(c - a) }
     }
 
-    /// The largest distance of a corner from `plane`.
+    /// Returns the largest distance of a corner from `plane`.
     fn reach(&self, plane: &Plane) -> f64 {
         self.corners.iter().map(|&corner| plane.height(corner).abs()).fold(0.0, f64::max)
     }
 
-    /// Whether its corners lie so nearly in one line that rounding alone gives it its normal.
+    /// Whether the corners are so nearly collinear that the normal is only rounding error.
     fn is_sliver(&self, tolerance: f64) -> bool {
         let [a, b, c] = self.corners;
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -146,7 +150,8 @@ impl Facets {
     }
 }
 
-/// Whether each directed edge has its opposite. Vertices at one position are one, whatever their normals.
+/// Whether each directed edge has its opposite. Vertices at one position count as one, whatever
+/// their normals.
 pub(super) fn is_closed(mesh: &Mesh) -> bool {
     let mut number_at = HashMap::new();
     // Adding 0 makes -0 and 0 the same bits.
@@ -169,8 +174,8 @@ pub(super) fn is_closed(mesh: &Mesh) -> bool {
     edges == opposite
 }
 
-/// The facet of each triangle, numbered by first appearance. The largest triangles come first, since their planes are
-/// the best known.
+/// Returns the facet of each triangle, numbered by first appearance. The largest triangles come
+/// first, because their planes are the most accurate.
 fn group(triangles: &[Triangle], tolerance: f64) -> Option<Vec<u32>> {
     let mut order: Vec<usize> = (0..triangles.len()).collect();
     order.sort_by(|&a, &b| triangles[b].area.length().total_cmp(&triangles[a].area.length()));
@@ -179,7 +184,7 @@ fn group(triangles: &[Triangle], tolerance: f64) -> Option<Vec<u32>> {
     for index in order {
         let triangle = &triangles[index];
         let sliver = triangle.is_sliver(tolerance);
-        // The facet opposite on a thin plate lies as near, but faces the other way.
+        // The opposite facet of a thin plate lies as near, but faces the other way.
         let alike = |plane: &Plane| sliver || plane.normal.dot(triangle.area) > 0.5 * triangle.area.length();
         let near = seeds.iter().enumerate().map(|(seed, plane)| (seed, plane, triangle.reach(plane)));
         let fitting = near.filter(|(_, plane, reach)| *reach <= tolerance && alike(plane));
@@ -203,7 +208,8 @@ fn group(triangles: &[Triangle], tolerance: f64) -> Option<Vec<u32>> {
     Some(renumbered.collect())
 }
 
-/// Each facet's plane from all of its triangles: the normal of the summed areas, in the middle of the corners' heights.
+/// Returns each facet's plane, fitted to all of its triangles: the normal of the summed areas, at
+/// the middle of the corners' heights.
 fn fit(triangles: &[Triangle], face_of_triangle: &[u32]) -> Vec<Plane> {
     let count = face_of_triangle.iter().max().map_or(0, |last| *last as usize + 1);
     let mut planes = vec![Plane { normal: DVec3::ZERO, distance: 0.0 }; count];

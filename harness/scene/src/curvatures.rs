@@ -1,14 +1,16 @@
-//! Mean curvature of each vertex of a mesh.
+//! Mean curvature at each vertex of a mesh.
 
 use super::Mesh;
 use super::normals::weld;
 
-/// The mean curvature of the surface that the normals belong to, for each vertex, in the inverse of the mesh's unit; 0 at vertices without a
-/// proper triangle.
+/// Returns, for each vertex, the mean curvature of the surface that the normals belong to, in the
+/// inverse of the mesh's unit; 0 at vertices without a proper triangle.
 ///
-/// Over a triangle the normal changes linearly, and so has one mean curvature there, by the same formula as a pixel's derivatives:
-/// Rusinkiewicz, "Estimating Curvatures and Their Derivatives on Triangle Meshes" (2004), with both sides in place of the screen's
-/// axes. A vertex has the mean over its triangles by area. Vertices at one place, as on the borders of charts, share it.
+/// Over a triangle the normal changes linearly, and so has one mean curvature there, by the same
+/// formula as a pixel's derivatives: Rusinkiewicz, "Estimating Curvatures and Their Derivatives on
+/// Triangle Meshes" (2004), with both sides in place of the screen's axes. A vertex has the
+/// area-weighted mean over its triangles. Vertices at one place, as on the borders of charts, share
+/// it.
 #[must_use]
 pub fn vertex_curvatures(mesh: &Mesh) -> Vec<f32> {
     let (welded, count) = weld(&mesh.positions);

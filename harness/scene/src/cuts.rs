@@ -17,13 +17,13 @@ pub enum CutError {
     /// A parameter outside its range.
     #[error("{cut}: {parameter} is {value}, but must lie {range}")]
     Parameter {
-        /// The cut's name.
+        /// Name of the cut.
         cut: &'static str,
-        /// The parameter, as its field is called.
+        /// Name of the parameter's field.
         parameter: &'static str,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What is allowed, as in "above 0 and below 1".
+        /// The valid range, as in "above 0 and below 1".
         range: &'static str,
     },
     /// Each parameter is in range, but together they make some facets vanish.
@@ -32,24 +32,24 @@ pub enum CutError {
          move them closer to the cut's usual ones"
     )]
     Facets {
-        /// The cut's name.
+        /// Name of the cut.
         cut: &'static str,
-        /// How many facets the cut has.
+        /// Number of facets of the cut.
         expected: usize,
-        /// How many are left.
+        /// Number of facets that remain.
         found: usize,
     },
-    /// The planes do not close.
+    /// The planes do not form a closed solid.
     #[error("{cut}: {problem}")]
     Open {
-        /// The cut's name.
+        /// Name of the cut.
         cut: &'static str,
         /// What is wrong with the planes.
         problem: PolyhedronError,
     },
 }
 
-/// The checks of one cut's parameters, which name the cut in their errors.
+/// Checks one cut's parameters and names the cut in their errors.
 #[derive(Debug, Clone, Copy)]
 struct Checked(&'static str);
 
@@ -74,7 +74,7 @@ impl Checked {
         if proper { Ok(()) } else { Err(error) }
     }
 
-    /// The solid of `planes`, which must have `expected` facets.
+    /// Returns the solid of `planes`, which must have `expected` facets.
     fn solid(self, planes: &[Plane], expected: usize) -> Result<Polyhedron, CutError> {
         let solid = Polyhedron::from_planes(planes).map_err(|problem| CutError::Open { cut: self.0, problem })?;
         let found = solid.planes().len();
@@ -82,12 +82,13 @@ impl Checked {
     }
 }
 
-/// The unit vector at `azimuth` radians from x towards y.
+/// Returns the unit vector at `azimuth` radians from x towards y.
 fn outward(azimuth: f64) -> DVec2 {
     DVec2::from_angle(azimuth)
 }
 
-/// A regular octahedron, the usual form of rough diamond, with its corners at distance 1 on the axes.
+/// Returns a regular octahedron, the usual form of rough diamond, with its corners at distance 1 on
+/// the axes.
 ///
 /// # Errors
 /// None with these fixed planes; the type is that of the other cuts.
@@ -117,10 +118,11 @@ impl PrismParameters {
     pub const PENTAGONAL: Self = Self { sides: 5, radius: 0.45, half_length: 0.6, cap_degrees: 51.8 };
 }
 
-/// A regular prism with `sides` side faces and as many cap faces at each end, or one if flat.
+/// Returns a regular prism with `sides` side faces and as many cap faces at each end, or one if
+/// flat.
 ///
 /// # Errors
-/// [`CutError::Parameter`] for a parameter outside its range.
+/// Returns [`CutError::Parameter`] for a parameter outside its range.
 pub fn prism(parameters: &PrismParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("prism");
     let &PrismParameters { sides, radius, half_length, cap_degrees } = parameters;

@@ -14,8 +14,8 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// Linear RGB radiance that arrives from a direction, in f64, by the recipe's rule: the studio, or the map's four nearest
-    /// texels.
+    /// Returns the linear RGB radiance that arrives from a direction, in f64, by the recipe's rule:
+    /// the studio, or the map's four nearest texels.
     #[must_use]
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         match self {

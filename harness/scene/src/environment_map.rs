@@ -7,37 +7,38 @@ use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use thiserror::Error;
 
-/// The largest width that is read, in pixels.
+/// Largest width that is read, in pixels.
 pub const MAX_WIDTH: u32 = 16_384;
-/// The largest height that is read, in pixels.
+/// Largest height that is read, in pixels.
 pub const MAX_HEIGHT: u32 = 8_192;
-/// Every file may have this many pixels: 16 MB decoded.
+/// Number of pixels that any file may have: 16 MB decoded.
 const FREE_PIXELS: u64 = 1 << 20;
-/// A larger map may have this many pixels per byte of file. Deflate reaches 1000 : 1, which is 125
-/// pixels of four half floats per byte, and only on a map of one colour.
+/// Number of pixels that a larger map may have per byte of file. Deflate reaches 1000 : 1, which is
+/// 125 pixels of four half floats per byte, and only for a map of one colour.
 const PIXELS_PER_BYTE: u64 = 128;
-/// No file larger than this is read: more than the largest map needs in 32-bit floats.
+/// Largest file that is read, in bytes: more than the largest map needs in 32-bit floats.
 const MAX_FILE_BYTES: u64 = 4 << 30;
 
-/// Light from all directions: the top row is straight up, the left and right edges meet.
+/// Light from all directions: the top row is straight up, and the left and right edges meet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvironmentMap {
-    /// Pixels in a row, at least 2.
+    /// Number of pixels in a row, at least 2.
     pub width: u32,
-    /// Rows, at least 2.
+    /// Number of rows, at least 2.
     pub height: u32,
-    /// Linear radiance in red, green and blue, and an alpha of no meaning; row by row from the top.
-    /// All finite and not negative.
+    /// Linear radiance in red, green and blue, and an unused alpha; row by row from the top. All
+    /// values are finite and non-negative.
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// Why there is no environment map. Each message is one line that says where, what, and what to do.
+/// Why an environment map cannot be loaded. Each message is one line that says where, what, and
+/// what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EnvironmentMapError {
     /// The file cannot be read.
     #[error("{}: cannot be read: {reason}; check that it exists and may be read", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The operating system's reason.
         reason: String,
@@ -49,16 +50,16 @@ pub enum EnvironmentMapError {
         path.display()
     )]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// The file is damaged, or of a kind of .hdr or .exr that is not read.
+    /// The file is damaged, or an unsupported kind of .hdr or .exr.
     #[error(
         "{}: cannot be decoded: {reason}; save it again as uncompressed or ZIP-compressed RGB",
         path.display()
     )]
     Decode {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The decoder's reason.
         reason: String,
@@ -66,11 +67,11 @@ pub enum EnvironmentMapError {
     /// Too small, too large, or larger than its file can hold.
     #[error("{}: it states {width} x {height} pixels, but {rule}", path.display())]
     Size {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its width in pixels.
+        /// Stated width in pixels.
         width: u32,
-        /// Its height in pixels.
+        /// Stated height in pixels.
         height: u32,
         /// What is allowed, and what to do.
         rule: String,
@@ -82,38 +83,40 @@ pub enum EnvironmentMapError {
         path.display()
     )]
     Pixel {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its column, from the left.
+        /// Column of the pixel, from the left.
         column: u32,
-        /// Its row, from the top.
+        /// Row of the pixel, from the top.
         row: u32,
         /// Red, green and blue.
         value: [f32; 3],
     },
 }
 
-/// Pixels with a negative part, which lossy compression leaves beside bright ones. Each such part counts as 0.
+/// Statistics of pixels with a negative component, as lossy compression leaves next to bright ones.
+/// Each such component counts as 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Clamped {
-    /// How many pixels have one.
+    /// Number of pixels with a negative component.
     pub pixels: usize,
-    /// The least part of any; 0 where none is negative.
+    /// The lowest component; 0 if none is negative.
     pub least: f32,
 }
 
 impl EnvironmentMap {
     /// Loads a .hdr or .exr file, told apart by its content, of any aspect ratio from 2 x 2 to
-    /// [`MAX_WIDTH`] x [`MAX_HEIGHT`] pixels. Colours count as linear, with Rec. 709 primaries. A .hdr file's pixels are divided by its
-    /// exposures and colour corrections, as the format has it; negative parts count as 0.
+    /// [`MAX_WIDTH`] x [`MAX_HEIGHT`] pixels. Colours are taken as linear, with Rec. 709 primaries.
+    /// The pixels of a .hdr file are divided by its exposures and colour corrections, as the format
+    /// requires; negative components count as 0.
     ///
     /// # Errors
-    /// [`EnvironmentMapError`], where the file cannot be used.
+    /// Returns an [`EnvironmentMapError`] if the file cannot be used.
     pub fn load(path: &Path) -> Result<Self, EnvironmentMapError> {
         Self::load_counting(path).map(|(map, _)| map)
     }
 
-    /// The same, and what of it was negative.
+    /// As [`EnvironmentMap::load`], and also returns statistics of the negative components.
     ///
     /// # Errors
     /// As [`EnvironmentMap::load`].
@@ -161,14 +164,15 @@ impl EnvironmentMap {
     }
 }
 
-/// What a Radiance picture starts with, before the name of the program that wrote it: `#?RADIANCE`, `#?RGBE` and others.
+/// Start of a Radiance picture, before the name of the program that wrote it: `#?RADIANCE`,
+/// `#?RGBE` and others.
 const RADIANCE: &[u8] = b"#?";
 
-/// A Radiance picture as radiance.
+/// Decodes a Radiance picture to radiance.
 fn radiance(bytes: &[u8], path: &Path) -> Result<DynamicImage, EnvironmentMapError> {
     let undecodable = |reason: String| EnvironmentMapError::Decode { path: path.to_owned(), reason };
     let first = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len());
-    // The decoder knows one program's name alone.
+    // The decoder knows only one program's name.
     let renamed = (&b"#?RADIANCE"[..]).chain(&bytes[first..]);
     let decoder =
         HdrDecoder::new(renamed).map_err(|error| undecodable(error.to_string().replace(char::is_control, " ")))?;
@@ -190,7 +194,7 @@ fn radiance(bytes: &[u8], path: &Path) -> Result<DynamicImage, EnvironmentMapErr
     Ok(image.into())
 }
 
-/// The whole picture, within what is read of `file_bytes` bytes.
+/// Decodes the whole picture, within the limits for a file of `file_bytes` bytes.
 fn decoded(
     mut decoder: impl ImageDecoder,
     file_bytes: usize,

@@ -1,4 +1,4 @@
-//! What goes wrong when a scene is opened.
+//! Errors when opening a scene.
 
 use std::path::PathBuf;
 
@@ -8,29 +8,29 @@ use super::built_in::names;
 use super::cuts::CutError;
 use super::gltf::GltfError;
 
-/// Why there is no scene. Each message is one line that says where, what, and what to do.
+/// Why a scene cannot be opened. Each message is one line that says where, what, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
     #[error("no scene is called {name:?}; did you mean {nearest}? Give one of {} or a .glb or .gltf file", names())]
     UnknownName {
-        /// What was asked for.
+        /// The name that was asked for.
         name: String,
-        /// The built-in name that is most like it.
+        /// The most similar built-in name.
         nearest: &'static str,
     },
     /// A file cannot be used.
     #[error("{}: {problem}", path.display())]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// What is wrong with the file.
         problem: GltfError,
     },
     /// Bytes that did not come from a file cannot be used.
     #[error(transparent)]
     Gltf(#[from] GltfError),
-    /// A cut's parameters do not make a stone.
+    /// The parameters of a cut do not make a stone.
     #[error(transparent)]
     Cut(#[from] CutError),
 }

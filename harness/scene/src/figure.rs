@@ -1,26 +1,27 @@
-//! A statue: a winged figure on a plinth, who raises a wreath. Feathers, arms and wreath are thin enough for light to pass; robe and plinth
-//! are not.
+//! A statue: a winged figure on a plinth, raising a wreath. Feathers, arms and wreath are thin
+//! enough for light to pass through; the robe and the plinth are not.
 //!
-//! Lengths are in millimetres; y is up, the plinth stands on 0, and the figure looks towards +z.
+//! Lengths are in millimetres; y is up, the plinth stands at 0, and the figure looks towards +z.
 
 use super::Mesh;
 use super::implicit::{Grid, difference, ellipsoid, intersection, limb, surface, union};
 use glam::{DQuat, DVec2, DVec3, dvec2, dvec3};
 
-/// The statue, 117 mm high.
+/// Returns the statue, 117 mm high.
 #[must_use]
 pub fn mesh() -> Mesh {
     surface(&field, &grid())
 }
 
-/// Cells of 1.3 mm at the face, wider on the wings, and more than twice as wide at the plinth's foot.
+/// Returns a grid with cells of 1.3 mm at the face, wider on the wings, and more than twice as wide
+/// at the plinth's foot.
 fn grid() -> Grid {
     let scale = |height: f64| 1.0 + 1.5 * (1.0 - height / 82.0).clamp(0.0, 1.0);
     let stretch = |aside: f64| 1.0 + 0.25 * ((aside - 9.0) / 8.0).clamp(0.0, 1.0);
     Grid::graded(dvec2(0.0, -1.0), dvec2(48.0, 20.0), [-4.0, 122.0], 1.28, scale, stretch)
 }
 
-/// Negative inside, positive outside.
+/// Signed field of the statue: negative inside, positive outside.
 fn field(point: DVec3) -> f64 {
     let body = union(robe(point), torso(point), 3.0);
     let body = union(body, arms(point), 2.2);
@@ -43,7 +44,7 @@ fn plinth(point: DVec3) -> f64 {
     union(union(foot, drum, 2.0), rim, 2.0)
 }
 
-/// Between given heights, the value for this one, smoothly.
+/// Interpolates smoothly between the `[height, value]` pairs of `table`.
 fn profile(height: f64, table: &[[f64; 2]]) -> f64 {
     let last = table.len() - 1;
     let above = table.iter().position(|[from, _]| height < *from).unwrap_or(last).max(1);
@@ -52,14 +53,14 @@ fn profile(height: f64, table: &[[f64; 2]]) -> f64 {
     first + (second - first) * share * share * (3.0 - 2.0 * share)
 }
 
-/// A long robe that falls in folds, over a knee that is bent.
+/// A long robe that falls in folds over a bent knee.
 fn robe(point: DVec3) -> f64 {
     let sway = profile(point.y, &[[10.0, 0.0], [52.0, 1.3], [66.0, 0.0]]);
     let across = dvec2(point.x - sway, 1.25 * (point.z + 0.5));
     let (radius, azimuth) = (across.length(), across.x.atan2(across.y));
     let wide = profile(point.y, &[[10.0, 15.2], [16.0, 13.2], [34.0, 10.8], [54.0, 9.3], [66.0, 6.2]]);
     let deep = profile(point.y, &[[10.0, 1.5], [40.0, 1.0], [62.0, 0.05]]);
-    // Folds that wander a little on their way down.
+    // The folds wander a little on their way down.
     let turn = 0.5 * (0.07 * point.y).sin();
     let folds = (10.0 * azimuth + 3.0 * turn).cos() + 0.55 * (6.0 * azimuth - 2.0 * turn + 1.0).sin();
     let cloth = 0.8 * (radius - wide - deep * folds);
@@ -78,7 +79,7 @@ fn torso(point: DVec3) -> f64 {
     let breasts = ellipsoid(sided - dvec3(3.5, 75.8, 3.6), dvec3(3.0, 3.0, 2.9));
     let trunk = union(union(union(hips, waist, 4.0), chest, 4.0), shoulders, 3.5);
     let trunk = union(trunk, breasts, 1.6);
-    // A sash from one shoulder to the other hip, and a belt.
+    // A sash from one shoulder to the opposite hip, and a belt.
     let across = (point - dvec3(0.0, 72.0, 0.0)).dot(dvec3(0.62, 0.78, 0.0));
     let pleats = 0.25 * (2.4 * across).cos();
     let sash = intersection(trunk - 0.9 - pleats, across.abs() - 3.4, 1.2);
@@ -87,7 +88,7 @@ fn torso(point: DVec3) -> f64 {
     union(union(union(trunk, sash, 0.8), belt, 0.8), neck, 2.5)
 }
 
-/// One arm up with the wreath, the other with its hand on the hip.
+/// One arm raised with the wreath, the other with its hand on the hip.
 fn arms(point: DVec3) -> f64 {
     let chain = |[shoulder, elbow, wrist]: [DVec3; 3], hand: f64| {
         let upper = limb(point, shoulder, elbow, [3.0, 2.2]);
@@ -142,11 +143,11 @@ fn head(point: DVec3) -> f64 {
     let nose = limb(local, dvec3(0.0, 1.2, 5.2), dvec3(0.0, -1.8, 6.4), [0.7, 0.95]);
     let wings = ellipsoid(sided - dvec3(0.7, -2.2, 5.8), DVec3::splat(0.8));
     let face = union(face, union(nose, wings, 0.7), 0.8);
-    // Two lips: a swelling with a groove across.
+    // Two lips: a bulge with a groove across.
     let mouth = ellipsoid(local - dvec3(0.0, -4.25, 4.8), dvec3(1.6, 1.0, 1.05));
     let parting = 0.16 * (-((local.y + 4.2) / 0.7).powi(2)).exp() * (1.0 - local.x * local.x / 3.0).max(0.0);
     let face = union(face, mouth + parting, 0.7);
-    // Parted hair in waves, drawn back into a knot.
+    // Parted, wavy hair, drawn back into a knot.
     let strands = 0.2 * (2.1 * local.y + 1.2 * local.z + 2.5 * (0.45 * sided.x).sin()).sin();
     let hair = ellipsoid(local - dvec3(0.0, 2.0, -1.3), dvec3(5.9, 5.9, 6.3)) - strands;
     let opening = ellipsoid(local - dvec3(0.0, -2.6, 6.0), dvec3(4.6, 6.6, 6.0));
@@ -157,7 +158,8 @@ fn head(point: DVec3) -> f64 {
     union(union(face, hair, 0.8), knot, 1.0)
 }
 
-/// A feather: a strip with a rounded edge that lies flat in a plane of constant z, and its half width and depth.
+/// A feather: a strip with a rounded edge that lies flat in a plane of constant z, given by its end
+/// points, half width and half depth.
 fn feather(point: DVec3, [from, to]: [DVec2; 2], [half_width, half_depth]: [f64; 2]) -> f64 {
     let (way, along) = (point.truncate() - from, to - from);
     let share = (way.dot(along) / along.length_squared()).clamp(0.0, 1.0);
@@ -169,11 +171,11 @@ fn feather(point: DVec3, [from, to]: [DVec2; 2], [half_width, half_depth]: [f64;
 /// Both wings, raised and half spread.
 fn wings(point: DVec3) -> f64 {
     let (root, wrist) = (dvec2(4.8, 77.0), dvec2(20.0, 99.0));
-    // Bent back from the shoulder blades on.
+    // Bent back from the shoulder blades outwards.
     let sided = dvec3(point.x.abs(), point.y, point.z + 5.6 + 0.2 * point.x.abs());
     let bone = feather(sided, [root, wrist], [2.5, 2.2]);
     let toward = |degrees: f64| DVec2::from_angle(degrees.to_radians());
-    // From the wing's tip round to the body: where a feather starts, where to, how long it is.
+    // From the wing's tip round to the body: start, angle in degrees and length of each feather.
     let primaries = (0..6).map(|k| {
         let k = f64::from(k);
         (wrist - dvec2(0.0, 0.4 * k), 34.0 - 20.0 * k, 24.0 - 0.6 * k)

@@ -1,4 +1,4 @@
-//! Writes a scene as binary glTF 2.0.
+//! Writer for scenes as binary glTF 2.0.
 
 use std::collections::BTreeSet;
 
@@ -11,62 +11,64 @@ use super::{Bounds, Camera, Density, Material, Mesh, Object, Scene};
 mod light;
 mod material;
 
-/// Why a scene cannot be written. Nothing is written then.
+/// Reason why a scene cannot be written. In that case no bytes are produced.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GlbError {
-    /// glTF cannot hold an empty scene.
+    /// The scene is empty, which glTF cannot represent.
     #[error("the scene has no objects, which glTF cannot say; add one")]
     Empty,
-    /// The camera has no place, direction or angle.
+    /// The camera's position, direction or field of view is invalid.
     #[error("the camera is not finite, or its field of view not above 0 and below 180°; mend it")]
     Camera,
-    /// The lists of a mesh do not fit together, or hold what glTF forbids.
+    /// The lists of a mesh are inconsistent, or contain values that glTF forbids.
     #[error("object {object:?} cannot be written as glTF: {problem}")]
     Object {
-        /// The object's name.
+        /// Name of the object.
         object: String,
-        /// What is wrong.
+        /// Problem and how to fix it.
         problem: &'static str,
     },
-    /// A light breaks what [`Light`](super::Light) promises.
+    /// A light violates the invariants of [`Light`](super::Light).
     #[error("light {light} cannot be written as glTF: {problem}")]
     Light {
-        /// Its place among the scene's lights, from 0.
+        /// Index into the scene's lights, from 0.
         light: usize,
-        /// What is wrong.
+        /// Problem and how to fix it.
         problem: &'static str,
     },
-    /// A .glb counts its bytes in 32 bits.
+    /// The file would be too large: a .glb stores its length in 32 bits.
     #[error("the scene needs {bytes} bytes, but a .glb holds at most {}; split it", u32::MAX)]
     TooLarge {
-        /// What the file would need.
+        /// Size in bytes that the file would need.
         bytes: u64,
     },
 }
 
-/// glTF's number for 32-bit floats.
+/// glTF component type of 32-bit floats.
 const FLOAT: u32 = 5126;
-/// glTF's number for 32-bit unsigned integers.
+/// glTF component type of 32-bit unsigned integers.
 const UNSIGNED_INT: u32 = 5125;
-/// Buffer view target of vertex attributes.
+/// Buffer view target for vertex attributes.
 const ARRAY_BUFFER: u32 = 34_962;
-/// Buffer view target of indices.
+/// Buffer view target for indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// The bytes of a .glb with the scene's objects, their materials (see below), its lights and its camera.
+/// Returns the bytes of a .glb with the scene's objects, materials (see below), lights and camera.
 ///
-/// A material is transmissive by `KHR_materials_transmission` and `KHR_materials_diffuse_transmission`, has its refractive index by
-/// `KHR_materials_ior`, its thickness and attenuation by `KHR_materials_volume`, and its dispersion by
-/// `KHR_materials_dispersion`. A Sellmeier equation, which glTF cannot say, is named in `extras.lapidary.sellmeier`; the dispersion beside it
-/// is what others make of it. A medium, a `sigma0` and a solver stand in `extras.lapidary`; others show the base colour. Lights
-/// go by `KHR_lights_punctual`.
+/// Transmission is written as `KHR_materials_transmission` and
+/// `KHR_materials_diffuse_transmission`, the refractive index as `KHR_materials_ior`, thickness and
+/// attenuation as `KHR_materials_volume`, and dispersion as `KHR_materials_dispersion`. glTF has no
+/// Sellmeier equation: its name goes into `extras.lapidary.sellmeier`, together with an approximate
+/// dispersion for other programs. A medium, a `sigma0` and a solver go into `extras.lapidary`;
+/// other programs show the base colour. Lights are written as `KHR_lights_punctual`.
 ///
-/// The same scene always gives the same bytes. [`super::gltf::parse`] gives the same meshes (without [`Mesh::halo`]), materials
-/// and lights back; of the camera it gives the same view, to rounding. A material of diffuse transmission with an attenuation but without a
-/// medium comes back with the one that the loader derives.
+/// The same scene always yields the same bytes. [`super::gltf::parse`] returns the same meshes
+/// (without [`Mesh::halo`]), materials and lights, and a camera with the same view up to rounding.
+/// A material with diffuse transmission and attenuation but no medium comes back with the medium
+/// that the loader derives.
 ///
 /// # Errors
-/// [`GlbError`], where a mesh or light is not well-formed or the file would pass 4 GiB.
+/// Returns a [`GlbError`] if a mesh or light is malformed or the file would exceed 4 GiB.
 pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
     if scene.objects.is_empty() {
         return Err(GlbError::Empty);
@@ -89,7 +91,8 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, GlbError> {
     container(json.as_bytes(), &document.binary)
 }
 
-/// A .glb container about a JSON and a binary chunk, each padded to four bytes.
+/// Returns a .glb container with a JSON and a binary chunk, each padded to a multiple of four
+/// bytes.
 ///
 /// # Errors
 /// [`GlbError::TooLarge`] from 4 GiB on.
@@ -102,7 +105,7 @@ pub fn container(json: &[u8], binary: &[u8]) -> Result<Vec<u8>, GlbError> {
     bytes.extend(2u32.to_le_bytes());
     bytes.extend(length.to_le_bytes());
     for (kind, padding, data) in [(b"JSON", b' ', json), (b"BIN\0", 0, binary)] {
-        // No more than `total`, which fits.
+        // At most `total`, which fits.
         bytes.extend((padded(data.len()) as u32).to_le_bytes());
         bytes.extend(kind);
         bytes.extend(data);
@@ -127,7 +130,7 @@ impl Document {
         if let Some(problem) = problem_of(mesh, &object.material) {
             return Err(GlbError::Object { object: object.name.clone(), problem });
         }
-        // glTF has no triangles that are not shown.
+        // glTF has no invisible triangles.
         let mesh = &mesh.without_halo();
         let bounds = Bounds::of(mesh.positions.iter().copied());
         let position = self.vectors(mesh.positions.iter().map(Vec3::to_array));
@@ -158,14 +161,14 @@ impl Document {
         Ok(())
     }
 
-    /// An accessor of vectors of `N` components.
+    /// Appends an accessor of vectors with `N` components and returns its index.
     fn vectors<const N: usize>(&mut self, vectors: impl ExactSizeIterator<Item = [f32; N]>) -> usize {
         let accessor = json!({"componentType": FLOAT, "count": vectors.len(), "type": format!("VEC{N}")});
         self.accessor(vectors.flatten().flat_map(f32::to_le_bytes), accessor, ARRAY_BUFFER)
     }
 
-    /// Appends an accessor with a buffer view of its own. All data is of four bytes, so that every
-    /// view is aligned.
+    /// Appends an accessor with its own buffer view and returns its index. All elements consist of
+    /// four-byte numbers, so every view is aligned.
     fn accessor(&mut self, data: impl Iterator<Item = u8>, mut accessor: Value, target: u32) -> usize {
         let start = self.binary.len();
         self.binary.extend(data);
@@ -180,7 +183,7 @@ impl Document {
         self.accessors.len() - 1
     }
 
-    /// The names of the materials' extensions, each once and sorted.
+    /// Names of the extensions that the materials use, sorted and without duplicates.
     fn extensions_used(&self) -> BTreeSet<&str> {
         let extensions = self.materials.iter().filter_map(|material| material["extensions"].as_object());
         extensions.flat_map(|extensions| extensions.keys().map(String::as_str)).collect()
@@ -218,7 +221,7 @@ impl Document {
     }
 }
 
-/// What glTF forbids in an object, if anything.
+/// Returns the first problem that keeps an object from being written as glTF, or `None`.
 fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
     let vertices = mesh.positions.len();
     let in_range = |&index: &u32| (index as usize) < vertices;
@@ -243,7 +246,7 @@ fn problem_of(mesh: &Mesh, material: &Material) -> Option<&'static str> {
     }
 }
 
-/// A glTF camera looks along its node's -z with +y up.
+/// Camera node. A glTF camera looks along its node's -z with +y up.
 fn camera_pose(camera: &Camera) -> Value {
     let back = (camera.eye - camera.target).normalize_or(Vec3::Z);
     let right = camera.up.cross(back).try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());

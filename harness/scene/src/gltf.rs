@@ -1,14 +1,16 @@
-//! Loads glTF 2.0: .glb, and .gltf with its buffers beside it or inside it.
+//! Loader for glTF 2.0: .glb files, and .gltf files with external or embedded buffers.
 //!
-//! The gltf crate only splits the JSON into its types here. Its validation refuses extensions that we
-//! know, and its readers trust what it validated, so every reference, range and number is checked here
-//! instead. What a file can make the loader allocate is bounded by [`MAX_FILE_BYTES`], [`MAX_SCENE_BYTES`], [`MAX_TRIANGLES`] and
-//! [`MAX_OBJECTS`], however small the file is: a few instances of a large mesh are as good as a large file.
+//! The gltf crate is used only to deserialise the JSON into its types. Its validation refuses
+//! extensions that we support, and its readers trust validated input, so every reference, range and
+//! number is checked here instead. [`MAX_FILE_BYTES`], [`MAX_SCENE_BYTES`], [`MAX_TRIANGLES`] and
+//! [`MAX_OBJECTS`] bound what a file can make the loader allocate, however small the file is: a few
+//! instances of a large mesh can need as much memory as a large file.
 //!
-//! Loaded are triangles (also strips and fans) with their first texture coordinates, node transforms and instances
-//! (`gltf/instances.rs`), the first perspective camera, directional, point and spot lights (`gltf/light_node.rs`), and materials
-//! (`gltf/material.rs`). What a file asks for beside that is listed in [`Scene::lacking`] (`gltf/survey.rs`): textures, skins, morph targets,
-//! animations and more. A body shows at rest, in factors alone.
+//! The loader reads triangles (also strips and fans) with their first texture coordinates, node
+//! transforms and instances (`gltf/instances.rs`), the first perspective camera, directional, point
+//! and spot lights (`gltf/light_node.rs`), and materials (`gltf/material.rs`). Anything else in the
+//! file is listed in [`Scene::lacking`] (`gltf/survey.rs`): textures, skins, morph targets,
+//! animations and more. Bodies are shown at rest, with material factors only.
 
 use std::path::Path;
 
@@ -39,24 +41,28 @@ mod survey;
 
 pub use error::GltfError;
 
-/// The largest file, and the largest sum of a file's buffers, that is read: 1 GiB.
+/// Maximum size of a file, and of all buffers of a file together: 1 GiB.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
-/// The most triangles in one scene, counting each instance: 2²⁴, and three times as many vertices. Such
-/// a scene takes 0.4 GB with shared vertices, 1.4 GB without, 1.8 GB if these have texture coordinates.
+/// Maximum number of triangles in a scene, counting every instance: 2²⁴; three times as many
+/// vertices are allowed. Such a scene takes 0.4 GB with shared vertices, 1.4 GB without, and 1.8 GB
+/// if unshared vertices have texture coordinates.
 pub const MAX_TRIANGLES: u64 = 1 << 24;
 
-/// The most bytes that all bodies of a scene take in memory, counting each instance: 2 GiB. The file and its buffers come on top.
+/// Maximum memory for all bodies of a scene, counting every instance: 2 GiB. The file and its
+/// buffers come on top.
 pub const MAX_SCENE_BYTES: u64 = 1 << 31;
 
-/// The most bodies of one scene: 2¹⁶. The instances of one primitive by `EXT_mesh_gpu_instancing` are one body, or a few where they are large.
+/// Maximum number of bodies in a scene: 2¹⁶. The `EXT_mesh_gpu_instancing` instances of a primitive
+/// form one body, or a few if they are large.
 pub const MAX_OBJECTS: u64 = 1 << 16;
 
-/// The largest world coordinate. Two edges within it are at most 2√3·10⁹ long, so the square of their
-/// cross product, the largest number that the shaders form of them, is below 1.5·10³⁸ and fits f32.
+/// Largest world coordinate. Two edges within it are at most 2√3·10⁹ long, so the square of their
+/// cross product, the largest number that the shaders compute from them, is below 1.5·10³⁸ and fits
+/// in an f32.
 pub const MAX_COORDINATE: f32 = 1e9;
 
-/// The extensions that are read.
+/// Supported extensions.
 pub const KNOWN_EXTENSIONS: [&str; 7] = [
     "KHR_materials_ior",
     "KHR_materials_transmission",
@@ -67,14 +73,14 @@ pub const KNOWN_EXTENSIONS: [&str; 7] = [
     "EXT_mesh_gpu_instancing",
 ];
 
-/// The vertical field of view of a scene without a camera of its own, in radians, and the direction
-/// in which its camera stands.
+/// Default camera for a scene without one: vertical field of view in radians, and direction towards
+/// the eye.
 const DEFAULT_VIEW: (f32, Vec3) = (0.47, Vec3::new(0.35, 0.45, 1.0));
 
-/// Loads a .glb or .gltf file. Buffers that it names are read relative to it.
+/// Loads a .glb or .gltf file. External buffers are resolved relative to it.
 ///
 /// # Errors
-/// [`SceneError::File`] with the path and what is wrong.
+/// [`SceneError::File`] with the path and the problem.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let in_file = |problem| SceneError::File { path: path.to_owned(), problem };
     let base = path.parent().unwrap_or(Path::new(""));
@@ -87,11 +93,11 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// Loads the bytes of a .glb or .gltf file. Buffers that it names are read from the folder `base`;
-/// without one, such a buffer is an error. A scene without a name is called `scene`.
+/// Parses the bytes of a .glb or .gltf file. External buffers are read from the folder `base`; if
+/// it is `None`, an external buffer is an error. A scene without a name is called `scene`.
 ///
 /// # Errors
-/// [`SceneError::Gltf`] with what is wrong.
+/// [`SceneError::Gltf`] with the problem.
 pub fn parse(bytes: &[u8], base: Option<&Path>) -> Result<Scene, SceneError> {
     let mut scene = parse_scene(bytes, base)?;
     if scene.name.is_empty() {

@@ -1,7 +1,8 @@
-//! Bodies that are where a function of space is negative, and their surfaces as triangle meshes.
+//! Implicit bodies (points where a function is negative) and triangle meshes of their surfaces.
 //!
-//! A field is a function from a point to a number that is negative inside, positive outside, and near the surface about the distance from it:
-//! the closer to that, the better its meshes. The functions here are such fields, and ways to join them.
+//! A field is a function from a point to a number that is negative inside, positive outside and,
+//! near the surface, approximately the distance from it: the better the approximation, the better
+//! the mesh. The functions here are such fields and ways to combine them.
 
 use glam::DVec3;
 
@@ -11,8 +12,8 @@ mod nets;
 pub use grid::Grid;
 pub use nets::surface;
 
-/// Distance from a rounded cone: a sphere of radius `from_radius` at `from` that moves to `to` while its radius goes to `to_radius`. Exact
-/// where both radii are equal, a capsule.
+/// Distance from a rounded cone: a sphere that moves from `from` to `to` while its radius changes
+/// from `from_radius` to `to_radius`. Exact if both radii are equal (a capsule).
 #[must_use]
 pub fn limb(point: DVec3, from: DVec3, to: DVec3, [from_radius, to_radius]: [f64; 2]) -> f64 {
     let (way, along) = (point - from, to - from);
@@ -20,35 +21,36 @@ pub fn limb(point: DVec3, from: DVec3, to: DVec3, [from_radius, to_radius]: [f64
     way.distance(share * along) - from_radius - share * (to_radius - from_radius)
 }
 
-/// Distance from an ellipsoid about the origin with these radii along the axes, to first order at its surface.
+/// Distance from an ellipsoid centred at the origin with these radii along the axes, to first order
+/// at its surface.
 #[must_use]
 pub fn ellipsoid(point: DVec3, radii: DVec3) -> f64 {
     let (scaled, gradient) = ((point / radii).length(), (point / (radii * radii)).length());
-    // In the middle both lengths vanish.
+    // Both lengths vanish at the centre.
     if gradient < f64::MIN_POSITIVE { -radii.min_element() } else { scaled * (scaled - 1.0) / gradient }
 }
 
-/// What lies in either of two bodies, given by their fields' values at a point. Where the two surfaces come nearer than `width` to
-/// one another, they flow together, by a parabola. 0 for a sharp edge.
+/// Union of two bodies, given the values of their fields at a point. Surfaces closer together than
+/// `width` are blended by a parabola; 0 gives a sharp edge.
 #[must_use]
 pub fn union(a: f64, b: f64, width: f64) -> f64 {
     let overlap = (width - (a - b).abs()).max(0.0);
     a.min(b) - if width > 0.0 { overlap * overlap / (4.0 * width) } else { 0.0 }
 }
 
-/// What lies in `a` and not in `b`; as [`union`].
+/// The part of `a` outside `b`; `width` as in [`union`].
 #[must_use]
 pub fn difference(a: f64, b: f64, width: f64) -> f64 {
     -union(-a, b, width)
 }
 
-/// What lies in both; as [`union`].
+/// The part common to both bodies; `width` as in [`union`].
 #[must_use]
 pub fn intersection(a: f64, b: f64, width: f64) -> f64 {
     -union(-a, -b, width)
 }
 
-/// The field's gradient, by central differences over `step` to either side.
+/// Returns the field's gradient, by central differences over `step` to either side.
 fn gradient(field: &(dyn Fn(DVec3) -> f64 + Sync), point: DVec3, step: f64) -> DVec3 {
     let along = |axis: DVec3| (field(point + step * axis) - field(point - step * axis)) / (2.0 * step);
     DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))

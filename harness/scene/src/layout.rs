@@ -1,4 +1,4 @@
-//! How a mesh lies in its texture: its charts, and where the texture closes on itself.
+//! Layout of a mesh in its texture: its charts, and the edges where the texture closes on itself.
 
 use std::collections::HashMap;
 
@@ -9,16 +9,16 @@ use super::Mesh;
 /// Where a mesh's charts lie.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Whether the surface goes on across the texture's edges, along u and along v: vertices on one edge stand on the other too, at the
-    /// same place.
+    /// Whether the surface continues across the texture's edges, along u and along v: vertices on
+    /// one edge have counterparts at the same place on the other.
     pub repeats: BVec2,
-    /// Lower and upper corner of each chart's box in texture coordinates. Charts are what triangles with common vertices make up, halos
-    /// included.
+    /// Lower and upper corner of each chart's box in texture coordinates. A chart consists of
+    /// triangles connected through common vertices, halos included.
     pub charts: Vec<[Vec2; 2]>,
 }
 
 impl Layout {
-    /// Of a mesh with texture coordinates for each vertex.
+    /// Returns the layout of a mesh with texture coordinates for each vertex.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         Self { repeats: repeats(mesh), charts: charts(mesh) }

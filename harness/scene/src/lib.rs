@@ -1,15 +1,16 @@
-//! Scenes: gem cuts made here, and glTF 2.0 files.
+//! Scenes: built-in gem cuts, and glTF 2.0 files.
 //!
-//! A [`Scene`] is a list of triangle meshes with materials, and a camera. [`Scene::open`] takes what a
-//! user types: the name of a built-in scene or the path of a file. World space is glTF's: right-handed,
-//! y up.
+//! A [`Scene`] is a list of triangle meshes with materials, and a camera. [`Scene::open`] takes
+//! what a user types: the name of a built-in scene or the path of a file. World space follows glTF:
+//! right-handed, y up.
 //!
 //! ```
 //! use lapidary_scene::Scene;
 //!
 //! let scene = Scene::open("brilliant")?;
 //! for object in &scene.objects {
-//!     println!("{}: {} triangles, index {}", object.name, object.mesh.triangle_count(), object.material.ior);
+//!     let triangles = object.mesh.triangle_count();
+//!     println!("{}: {triangles} triangles, index {}", object.name, object.material.ior);
 //! }
 //! # Ok::<(), lapidary_scene::SceneError>(())
 //! ```
@@ -66,46 +67,47 @@ pub use view::clip_from_world;
 
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
-/// Samples along each side of a pixel, where nothing else is asked for.
+/// Default number of samples along each side of a pixel.
 pub const SAMPLES: u32 = 4;
 
-/// One body of a scene.
+/// A body in a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// The node's name, or the mesh's.
+    /// Name of the node, or of its mesh if the node has none.
     pub name: String,
-    /// Its surface in world space.
+    /// Surface in world space.
     pub mesh: Mesh,
-    /// Its material.
+    /// Material of the whole body.
     pub material: Material,
 }
 
 /// Bodies, lights and a camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// The built-in's name, the glTF scene's name, or the file's.
+    /// Name of the built-in scene, of the glTF scene, or of the file.
     pub name: String,
-    /// The bodies, in the file's order.
+    /// Bodies, in the file's order.
     pub objects: Vec<Object>,
-    /// The lights, beside the environment.
+    /// Lights other than the environment.
     pub lights: Vec<Light>,
-    /// Where to look at them from.
+    /// Camera that looks at the bodies.
     pub camera: Camera,
-    /// What its file asks for and nothing here draws, each named once.
+    /// Features that the file asks for and this renderer does not draw, each listed once.
     pub lacking: Vec<String>,
 }
 
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The least coordinates.
+    /// Smallest coordinates.
     pub min: Vec3,
-    /// The greatest coordinates.
+    /// Largest coordinates.
     pub max: Vec3,
 }
 
 impl Bounds {
-    /// The smallest box about `points`; a box without size at the origin if there are none.
+    /// Returns the smallest box around `points`, or a box of zero size at the origin if there are
+    /// none.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         let grow = |bounds: Self, point: Vec3| Self { min: bounds.min.min(point), max: bounds.max.max(point) };
@@ -115,13 +117,13 @@ impl Bounds {
         points.fold(first, grow)
     }
 
-    /// The middle of the box.
+    /// Returns the centre of the box.
     #[must_use]
     pub fn centre(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Half the diagonal: the radius of a sphere about the centre that holds the box.
+    /// Returns half the diagonal: the radius of the bounding sphere about the centre.
     #[must_use]
     pub fn radius(&self) -> f32 {
         0.5 * self.min.distance(self.max)
@@ -129,17 +131,19 @@ impl Bounds {
 }
 
 impl Scene {
-    /// The scene that a user names on the command line: a built-in name, or else a .glb or .gltf file.
+    /// Opens the scene that a user names on the command line: a built-in name, or a .glb or .gltf
+    /// file.
     ///
     /// # Errors
-    /// [`SceneError::UnknownName`] for a word that is neither a built-in nor looks like a file, and
-    /// what [`gltf::load`] says of a file.
+    /// Returns [`SceneError::UnknownName`] for a word that is neither a built-in nor looks like a
+    /// file, and the error of [`gltf::load`] for a file.
     pub fn open(argument: &str) -> Result<Self, SceneError> {
         if names_a_file(argument) { gltf::load(Path::new(argument)) } else { Self::named(argument) }
     }
 
-    /// What a picture of the scene that [`Scene::open`] takes is called, without an extension: a file's own stem, whatever the file says of
-    /// itself, or a built-in's name. No path leads out of the folder that it is put in.
+    /// Returns the file name, without an extension, for a picture of the scene that [`Scene::open`]
+    /// would open: the file's own stem, whatever name the file states, or the built-in's name. The
+    /// result is never a path that leads out of the output folder.
     #[must_use]
     pub fn stem(argument: &str) -> OsString {
         if names_a_file(argument) {
@@ -148,15 +152,17 @@ impl Scene {
         built_in::named(argument).map_or("scene", |scene| scene.name).into()
     }
 
-    /// The built-in scene called `name`; see [`BUILT_IN`].
+    /// Returns the built-in scene called `name`; see [`BUILT_IN`].
     ///
     /// # Errors
-    /// [`SceneError::UnknownName`] with the nearest built-in name if there is none called `name`.
+    /// Returns [`SceneError::UnknownName`] with the nearest built-in name if there is none called
+    /// `name`.
     pub fn named(name: &str) -> Result<Self, SceneError> {
         built_in::build(name)
     }
 
-    /// The same scene with all that this program can make made anew, where [`Scene::named`] reads a stored copy of what takes long.
+    /// Returns the same scene as [`Scene::named`], but rebuilds every mesh that this program can
+    /// build instead of reading the stored copies of slow ones.
     ///
     /// # Errors
     /// As [`Scene::named`].
@@ -164,13 +170,14 @@ impl Scene {
         built_in::make(name)
     }
 
-    /// The box about all vertices; without size at the origin if there are none.
+    /// Returns the box around all vertices, of zero size at the origin if there are none.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         Bounds::of(vertices(&self.objects))
     }
 
-    /// The same bodies seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x, framed anew.
+    /// Returns the same bodies seen from `polar` degrees off the vertical and `azimuth` degrees
+    /// from +z towards +x, with a newly framed camera.
     #[must_use]
     pub fn seen_from(&self, polar: f32, azimuth: f32) -> Self {
         let camera =
@@ -178,7 +185,7 @@ impl Scene {
         Self { camera, ..self.clone() }
     }
 
-    /// The number of triangles of all bodies.
+    /// Returns the number of triangles in all bodies.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         let counts = self.objects.iter().map(|o| o.mesh.triangle_count());
@@ -186,7 +193,8 @@ impl Scene {
     }
 }
 
-/// Whether a user means a file: no built-in, and it looks like one or is there.
+/// Whether a user means a file: the argument is no built-in name, and it looks like a file or
+/// exists.
 fn names_a_file(argument: &str) -> bool {
     let path = Path::new(argument);
     let extension = path.extension().map(OsStr::to_ascii_lowercase);
@@ -194,7 +202,7 @@ fn names_a_file(argument: &str) -> bool {
     built_in::named(argument).is_none() && (looks_like_a_file || path.is_file())
 }
 
-/// All vertex positions of `objects`.
+/// Returns all vertex positions of `objects`.
 fn vertices(objects: &[Object]) -> impl Iterator<Item = Vec3> + Clone + '_ {
     let meshes = objects.iter().map(|object| &object.mesh);
     meshes.flat_map(|mesh| mesh.positions.iter().copied())

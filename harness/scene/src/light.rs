@@ -1,4 +1,4 @@
-//! Lights that are points or far away. What surrounds the scene on all sides is its environment.
+//! Point and directional lights. Light from all around the scene is its environment.
 
 use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_PI_2;
@@ -6,75 +6,79 @@ use std::f32::consts::FRAC_PI_2;
 /// A light without size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// So far away that its rays are parallel.
+    /// A light so far away that its rays are parallel.
     Directional {
-        /// Unit, towards the light.
+        /// Unit vector towards the light.
         toward: Vec3,
-        /// What a surface square to it receives, linear RGB, at least 0.
+        /// Irradiance on a surface perpendicular to the light, linear RGB, at least 0.
         irradiance: Vec3,
     },
-    /// A point that shines to all sides alike.
+    /// A point that radiates equally in all directions.
     Point {
-        /// In world space.
+        /// Position in world space.
         position: Vec3,
         /// Radiant intensity, linear RGB, at least 0: the irradiance at distance 1.
         intensity: Vec3,
     },
-    /// A point that shines into a cone.
+    /// A point that radiates into a cone.
     Spot {
-        /// In world space.
+        /// Position in world space.
         position: Vec3,
-        /// Unit, along the cone's axis, away from the light.
+        /// Unit vector along the cone's axis, away from the light.
         direction: Vec3,
-        /// Radiant intensity about the axis, linear RGB, at least 0: the irradiance there at distance 1.
+        /// Radiant intensity along the axis, linear RGB, at least 0: the irradiance there at
+        /// distance 1.
         intensity: Vec3,
-        /// The angle from the axis up to which the intensity is whole, in radians: at least 0 and less than `outer_angle`.
+        /// Angle from the axis within which the intensity is full, in radians: at least 0 and less
+        /// than `outer_angle`.
         inner_angle: f32,
-        /// The angle from the axis from which on there is no light, in radians: at most π/2.
+        /// Angle from the axis beyond which there is no light, in radians: at most π/2.
         outer_angle: f32,
     },
 }
 
-/// What arrives at a point from a light, if nothing stands between.
+/// Light that arrives at a point if nothing blocks it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {
-    /// Unit, towards the light. At the very place of a light there is none, and nothing arrives: 0.
+    /// Unit vector towards the light; 0 at the exact position of a light, where nothing arrives.
     pub direction: DVec3,
-    /// Of the light, infinite for a directional one.
+    /// Distance to the light, infinite for a directional one.
     pub distance: f64,
-    /// On a surface square to the direction, linear RGB.
+    /// Irradiance on a surface perpendicular to the direction, linear RGB.
     pub irradiance: DVec3,
 }
 
-/// How a spot's intensity falls off from its inner to its outer angle: by ((c - `edge`) `slope`)², limited to 0 to 1, where c is the cosine
-/// of the angle from the axis. So recommends it `KHR_lights_punctual`, but for its lower limit of .001 to the difference of
-/// the cosines, which would dim the middle of a cone of less than 2.6°.
+/// Falloff of a spot's intensity from its inner to its outer angle: ((c - `edge`) `slope`)²,
+/// clamped to 0 to 1, where c is the cosine of the angle from the axis. This is the formula that
+/// `KHR_lights_punctual` recommends, without its lower limit of .001 for the difference of the
+/// cosines, which would dim the middle of a cone of less than 2.6°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Falloff {
-    /// The outer angle's cosine.
+    /// Cosine of the outer angle.
     pub edge: f64,
-    /// One over the difference of the two angles' cosines.
+    /// Reciprocal of the difference of the two angles' cosines.
     pub slope: f64,
 }
 
 impl Falloff {
-    /// Between two angles in radians, 0 ≤ `inner` < `outer` ≤ π/2.
+    /// Returns the falloff between two angles in radians, 0 ≤ `inner` < `outer` ≤ π/2.
     #[must_use]
     pub fn between(inner: f32, outer: f32) -> Self {
         let [inner, outer] = [f64::from(inner), f64::from(outer)];
-        // The difference of the cosines as a product: cosines of small angles are all 1.
+        // The difference of the cosines as a product, because cosines of small angles all round to
+        // 1.
         let difference = 2.0 * (0.5 * (outer + inner)).sin() * (0.5 * (outer - inner)).sin();
         Self { edge: outer.cos(), slope: 1.0 / difference }
     }
 
-    /// The share of the intensity in a direction at this cosine to the axis.
+    /// Returns the fraction of the intensity in a direction with this cosine to the axis.
     fn share(self, cosine: f64) -> f64 {
         ((cosine - self.edge) * self.slope).clamp(0.0, 1.0).powi(2)
     }
 }
 
 impl Light {
-    /// What arrives from it at a point.
+    /// Returns the light that arrives at a point.
     #[must_use]
     pub fn arrival(&self, position: DVec3) -> Arrival {
         match *self {
@@ -93,7 +97,7 @@ impl Light {
         }
     }
 
-    /// Linear RGB: a sun's irradiance, a lamp's intensity.
+    /// Returns a directional light's irradiance or a lamp's intensity, linear RGB.
     #[must_use]
     pub fn power(&self) -> Vec3 {
         match *self {
@@ -103,7 +107,7 @@ impl Light {
         }
     }
 
-    /// Which of its fields' promises is broken, and what to do; nothing for a sound light.
+    /// Returns which field is invalid and what to do, or `None` if the light is valid.
     #[must_use]
     pub fn problem(&self) -> Option<&'static str> {
         let is_light = |light: Vec3| light.is_finite() && light.cmpge(Vec3::ZERO).all();
@@ -125,12 +129,12 @@ impl Light {
     }
 }
 
-/// Whether a cone may have these angles, in radians.
+/// Whether these angles, in radians, are valid for a cone.
 pub(super) fn are_cone_angles(inner: f32, outer: f32) -> bool {
     0.0 <= inner && inner < outer && outer <= FRAC_PI_2
 }
 
-/// What arrives from a point of this intensity.
+/// Returns the light that arrives from a point of this intensity.
 fn from_place(place: Vec3, intensity: Vec3, position: DVec3) -> Arrival {
     let way = place.as_dvec3() - position;
     let distance = way.length();
@@ -155,7 +159,7 @@ mod tests {
         }
     }
 
-    /// At this angle from the axis, at distance 2.
+    /// Returns the light that arrives at this angle from the axis, at distance 2.
     fn arrival(light: Light, angle: f64) -> Arrival {
         let below = DVec3::new(angle.sin(), -angle.cos(), 0.0);
         let found = light.arrival(DVec3::new(1.0, 2.0, 3.0) + 2.0 * below);
@@ -176,7 +180,8 @@ mod tests {
         assert_eq!(arrival(light, 0.1), arrival(Light::Point { position, intensity }, 0.1));
     }
 
-    /// glTF's own lines: scale = 1 / (cos i - cos o), offset = -cos o · scale, saturate(c · scale + offset)².
+    /// glTF's own formula: scale = 1 / (cos i - cos o), offset = -cos o · scale,
+    /// saturate(c · scale + offset)².
     #[test]
     fn between_its_angles_a_spot_falls_off_as_gltf_has_it() {
         let (inner, outer) = (0.3f64, 0.7f64);
@@ -191,12 +196,13 @@ mod tests {
             assert!(found < last + 1e-7);
             last = found;
         }
-        // The middle of the difference of the cosines.
+        // The middle of the range of cosines.
         let middle = (0.5 * (inner.cos() + outer.cos())).acos();
         assert!((arrival(spot(0.3, 0.7), middle).irradiance.x - 0.5).abs() < 1e-6);
     }
 
-    /// The integral of the share over the sphere: with u = cos, 2π [(1 - cos i) + (cos i - cos o) / 3].
+    /// The integral of the falloff over the sphere: with u = cos,
+    /// 2π [(1 - cos i) + (cos i - cos o) / 3].
     #[test]
     fn a_spots_flux_is_the_integral_of_its_falloff() {
         for (inner, outer) in [(0.0, 0.5), (0.4, 0.9), (0.0, FRAC_PI_2), (1.0, FRAC_PI_2)] {

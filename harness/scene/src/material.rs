@@ -1,60 +1,69 @@
-//! What a body is made of, as far as glTF says it, and a little further.
+//! Materials: those of glTF, with a few extensions.
 
 use super::{Medium, Solver};
 use glam::Vec3;
 use lapidary_dispersion::oracle as dispersion;
 
-/// What a body is made of.
+/// Optical properties of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// The material's name, or `default`.
+    /// Name of the material, or `default`.
     pub name: String,
-    /// Base colour factor, linear RGB, each 0 to 1: what light that crosses the surface is multiplied by.
+    /// Base colour factor, linear RGB, each 0 to 1. Light that crosses the surface is multiplied by
+    /// it.
     pub base_color: Vec3,
-    /// Refractive index relative to air at the helium d line, 587.6 nm, from 1 to [`LARGEST_INDEX`](Self::LARGEST_INDEX).
+    /// Refractive index relative to air at the helium d line, 587.6 nm, from 1 to
+    /// [`LARGEST_INDEX`](Self::LARGEST_INDEX).
     pub ior: f32,
     /// How the refractive index depends on the wavelength.
     pub dispersion: Dispersion,
-    /// What is left of white light after `attenuation_distance` inside, linear RGB, each 0 to 1. A 0, which
-    /// glTF allows, has no finite extinction: whoever takes its logarithm clamps it first.
+    /// Colour of white light after `attenuation_distance` inside, linear RGB, each 0 to 1. A 0,
+    /// which glTF allows, has no finite extinction, so code that takes the logarithm must clamp it
+    /// first.
     pub attenuation_color: Vec3,
-    /// In world units, above 0 and no subnormal number; infinite where the body absorbs nothing.
+    /// Distance in world units, above 0 and not subnormal; infinite if the body absorbs nothing.
     pub attenuation_distance: f32,
-    /// The share of the light at the surface that goes straight through it, 0 (opaque) to 1 (clear): `KHR_materials_transmission`.
+    /// Fraction of the light at the surface that passes straight through it, 0 (opaque) to 1
+    /// (clear): `KHR_materials_transmission`.
     pub transmission: f32,
-    /// The share that goes through it to all sides alike, 0 to 1: `KHR_materials_diffuse_transmission`.
+    /// Fraction that passes through it diffusely, 0 to 1: `KHR_materials_diffuse_transmission`.
     pub diffuse_transmission: f32,
-    /// What that light is multiplied by, linear RGB, each 0 to 1.
+    /// Colour that the diffusely transmitted light is multiplied by, linear RGB, each 0 to 1.
     pub diffuse_transmission_color: Vec3,
-    /// Of the body beneath the surface, in world units, at least 0: `KHR_materials_volume`. 0 is a thin wall, without an inside that
-    /// would bend or absorb light.
+    /// Thickness of the body beneath the surface, in world units, at least 0:
+    /// `KHR_materials_volume`. 0 is a thin wall, without an interior that would refract or absorb
+    /// light.
     pub thickness: f32,
-    /// Of the surface, 0 (a mirror) to 1, as glTF has it: its square is the width of the microfacets' slopes.
+    /// Roughness of the surface, 0 (a mirror) to 1, as in glTF: its square is the width of the
+    /// distribution of microfacet slopes.
     pub roughness: f32,
-    /// Whether both sides of its surface are meant to be seen, as glTF's `doubleSided` has it. Of a solid only one can be.
+    /// Whether both sides of the surface are meant to be seen, as glTF's `doubleSided`. A solid
+    /// shows only one.
     pub double_sided: bool,
-    /// Of the curvature-dependent reflectance function: the Gaussian's width in radians is this times the curvature. In world units,
-    /// for red, green and blue, at least 0 and finite. `None` where the material does not say.
+    /// Width coefficient of the curvature-dependent reflectance function: the Gaussian's width in
+    /// radians is this times the curvature. In world units, for red, green and blue, at least 0 and
+    /// finite. `None` if the material does not define it.
     pub sigma0: Option<Vec3>,
-    /// How the inside scatters light; `None` where the material does not say.
+    /// How the inside scatters light; `None` if the material does not define it.
     pub medium: Option<Medium>,
-    /// By what the body is drawn; `None` where the material does not say. Only a body that scatters light has one.
+    /// Technique that draws the body; `None` if the material does not define it. Only a scattering
+    /// body has one.
     pub solver: Option<Solver>,
 }
 
 /// How a refractive index depends on the wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Dispersion {
-    /// Not at all.
+    /// No dispersion.
     None,
-    /// By glTF's `KHR_materials_dispersion`: 20 / V_d, above 0, with the index at the d line beside it.
+    /// glTF's `KHR_materials_dispersion`: 20 / V_d, above 0, together with the index at the d line.
     Abbe(f32),
-    /// By a measured Sellmeier equation, which gives the index at the d line too: the material's `ior` is then
-    /// [`Mineral::index`].
+    /// A measured Sellmeier equation, which also gives the index at the d line: the material's
+    /// `ior` is then [`Mineral::index`].
     Sellmeier(Mineral),
 }
 
-/// A material whose Sellmeier equation is known.
+/// A material with a known Sellmeier equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mineral {
     /// Diamond (Peter 1923).
@@ -70,10 +79,10 @@ pub enum Mineral {
 }
 
 impl Mineral {
-    /// Every mineral, each once.
+    /// All minerals, each once.
     pub const ALL: [Self; 5] = [Self::Diamond, Self::Corundum, Self::Quartz, Self::CrownGlass, Self::CubicZirconia];
 
-    /// What `extras.lapidary.sellmeier` calls it in a glTF file.
+    /// Returns its name in `extras.lapidary.sellmeier` of a glTF file.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -85,14 +94,14 @@ impl Mineral {
         }
     }
 
-    /// The mineral with this [`Mineral::name`].
+    /// Returns the mineral with this [`Mineral::name`], or `None` if there is none.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|mineral| mineral.name() == name)
     }
 
-    /// The refractive index that its Sellmeier equation gives at the helium d line, 587.5618 nm, to five
-    /// decimals.
+    /// Returns the refractive index from its Sellmeier equation at the helium d line, 587.5618 nm,
+    /// to five decimals.
     #[must_use]
     pub const fn index(self) -> f32 {
         match self {
@@ -104,7 +113,7 @@ impl Mineral {
         }
     }
 
-    /// Its Sellmeier equation.
+    /// Returns its Sellmeier equation.
     const fn sellmeier(self) -> dispersion::DispersionSellmeier {
         match self {
             Self::Diamond => dispersion::DISPERSION_DIAMOND,
@@ -115,8 +124,8 @@ impl Mineral {
         }
     }
 
-    /// Its Abbe number V_d = (n_d - 1)/(n_F - n_C) by the same equation: what is left of the equation where a
-    /// reader knows `KHR_materials_dispersion` alone.
+    /// Returns its Abbe number V_d = (n_d - 1)/(n_F - n_C) from the same equation: the only part of
+    /// the equation that reaches a reader that knows just `KHR_materials_dispersion`.
     #[must_use]
     pub const fn abbe_number(self) -> f32 {
         match self {
@@ -130,7 +139,8 @@ impl Mineral {
 }
 
 impl Material {
-    /// glTF's default material: white, opaque, with refractive index 1.5, without dispersion or absorption.
+    /// Returns glTF's default material: white, opaque, refractive index 1.5, no dispersion or
+    /// absorption.
     #[must_use]
     pub fn standard() -> Self {
         Self {
@@ -152,13 +162,14 @@ impl Material {
         }
     }
 
-    /// The formulas are tested up to it; germanium in the infrared has it, and nothing clear to the eye comes near.
+    /// Largest refractive index; the formulas are tested up to it. Germanium reaches it in the
+    /// infrared, and no visibly clear material comes near.
     pub const LARGEST_INDEX: f32 = 4.0;
 
-    /// Which of its fields' promises is broken, and what to do; nothing for a sound material.
+    /// Returns which field is invalid and what to do, or `None` if the material is valid.
     #[must_use]
     pub fn problem(&self) -> Option<&'static str> {
-        // Written so that NaN breaks every promise.
+        // Written so that NaN fails every check.
         let is_color = |color: Vec3| color.to_array().iter().all(|part| (0.0..=1.0).contains(part));
         let is_length = |length: Vec3| length.is_finite() && length.cmpge(Vec3::ZERO).all();
         let disperses = match self.dispersion {
@@ -198,13 +209,13 @@ impl Material {
 }
 
 impl Material {
-    /// Whether the inside scatters light, by a width or by a medium.
+    /// Whether the inside scatters light, as given by `sigma0` or by a medium.
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.sigma0.is_some() || self.medium.is_some()
     }
 
-    /// Whether light goes straight through, unscattered.
+    /// Whether light passes straight through, unscattered.
     #[must_use]
     pub fn is_clear(&self) -> bool {
         self.transmission > 0.0 && !self.scatters()
@@ -216,7 +227,7 @@ impl Material {
         self.attenuation_color != Vec3::ONE && self.attenuation_distance.is_finite()
     }
 
-    /// The refractive index at a wavelength in nanometres.
+    /// Returns the refractive index at a wavelength in nanometres.
     #[must_use]
     pub fn index_at(&self, wavelength: f64) -> f64 {
         match self.dispersion {

@@ -1,49 +1,53 @@
-//! Matter that scatters light, and how dense it is where.
+//! Scattering media and their density distributions.
 
 use glam::{UVec3, Vec3};
 use lapidary_veins::{self as veins, VeinsPattern};
 use std::sync::Arc;
 
-/// Matter that scatters light. Coefficients are those at density 1, per unit of length, for red, green and blue, at least 0 and finite.
+/// A scattering medium. Coefficients are those at density 1, per unit of length, for red, green and
+/// blue, at least 0 and finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
-    /// Scattering coefficient; the reduced one, what is left of forward scattering after similarity theory, where `anisotropy` is 0.
+    /// Scattering coefficient. If `anisotropy` is 0, it is the reduced one, corrected for forward
+    /// scattering by similarity theory.
     pub scattering: Vec3,
     /// Absorption coefficient.
     pub absorption: Vec3,
-    /// Mean cosine of a scattering, g of Henyey and Greenstein, of at most [`MOST_ANISOTROPY`](Self::MOST_ANISOTROPY) either way; 0 where light
-    /// is scattered to all sides alike.
+    /// Mean cosine of a scattering event, g of Henyey and Greenstein, with magnitude at most
+    /// [`MOST_ANISOTROPY`](Self::MOST_ANISOTROPY); 0 for isotropic scattering.
     pub anisotropy: f32,
-    /// What the coefficients are multiplied by.
+    /// Density, by which the coefficients are multiplied.
     pub density: Density,
 }
 
-/// How dense matter is where.
+/// Spatial distribution of density.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Density {
     /// 1 everywhere.
     Uniform,
     /// Veined stone, in world space.
     Veins(VeinsPattern),
-    /// Measured or simulated.
+    /// Measured or simulated densities on a grid.
     Grid(Arc<DensityGrid>),
 }
 
-/// Densities at the middles of a box's cells, between which they are interpolated linearly; outside of those the nearest counts.
+/// Densities at the centres of a box's cells, linearly interpolated between them; beyond the
+/// outermost centres the nearest counts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DensityGrid {
     least: Vec3,
     greatest: Vec3,
     size: UVec3,
-    /// x fastest, z slowest.
+    /// Densities, x fastest, z slowest.
     densities: Vec<f32>,
     least_density: f32,
     most: f32,
 }
 
 impl DensityGrid {
-    /// A grid of `size` cells over the box from `least` to `greatest`; x is counted fastest, z slowest. None where the box is empty or not finite,
-    /// the number of densities another, or a density not finite and at least 0.
+    /// Returns a grid of `size` cells over the box from `least` to `greatest`; x varies fastest, z
+    /// slowest. `None` if the box is empty or not finite, the number of densities does not match,
+    /// or a density is negative or not finite.
     #[must_use]
     pub fn new(least: Vec3, greatest: Vec3, size: UVec3, densities: Vec<f32>) -> Option<Self> {
         let count = size.as_u64vec3().element_product();
@@ -55,19 +59,19 @@ impl DensityGrid {
         sound.then_some(Self { least, greatest, size, densities, least_density, most })
     }
 
-    /// The box's least and greatest coordinates.
+    /// Returns the box's smallest and largest coordinates.
     #[must_use]
     pub fn bounds(&self) -> [Vec3; 2] {
         [self.least, self.greatest]
     }
 
-    /// Cells along each axis.
+    /// Returns the number of cells along each axis.
     #[must_use]
     pub fn size(&self) -> UVec3 {
         self.size
     }
 
-    /// Of each cell, x fastest, z slowest.
+    /// Returns the density of each cell, x fastest, z slowest.
     #[must_use]
     pub fn densities(&self) -> &[f32] {
         &self.densities
@@ -90,7 +94,7 @@ impl DensityGrid {
 }
 
 impl Density {
-    /// The density at a point, from 0 to [`most`](Self::most).
+    /// Returns the density at a point, from 0 to [`most`](Self::most).
     #[must_use]
     pub fn at(&self, position: Vec3) -> f32 {
         let density = match self {
@@ -102,7 +106,7 @@ impl Density {
         density.min(self.most())
     }
 
-    /// No density is greater.
+    /// Returns an upper bound of the density.
     #[must_use]
     pub fn most(&self) -> f32 {
         match self {
@@ -112,7 +116,7 @@ impl Density {
         }
     }
 
-    /// No density is less.
+    /// Returns a lower bound of the density.
     #[must_use]
     pub fn least(&self) -> f32 {
         match self {
@@ -134,36 +138,38 @@ impl Density {
             && octaves <= veins::VEINS_MOST_OCTAVES
     }
 
-    /// The greatest density of veins.
+    /// Largest density of veins.
     pub const MOST: f32 = 1000.0;
 }
 
 impl Medium {
-    /// The most that light may be scattered forwards or back.
+    /// Largest magnitude of the anisotropy, forwards or backwards.
     pub const MOST_ANISOTROPY: f32 = 0.99;
 
-    /// The most that is taken from light, per unit of length: three times its square is finite in single precision.
+    /// Largest extinction, per unit of length: three times its square is finite in single
+    /// precision.
     pub const MOST_EXTINCTION: f32 = 1e18;
 
-    /// Matter of one density that scatters light to all sides alike.
+    /// Returns a medium of uniform density that scatters isotropically.
     #[must_use]
     pub const fn isotropic(scattering: Vec3, absorption: Vec3) -> Self {
         Self { scattering, absorption, anisotropy: 0.0, density: Density::Uniform }
     }
 
-    /// What is left of the scattering coefficient where light that is scattered forwards goes on: similarity theory.
+    /// Returns the scattering coefficient corrected for forward scattering by similarity theory.
     #[must_use]
     pub fn reduced_scattering(&self) -> Vec3 {
         self.scattering * (1.0 - self.anisotropy)
     }
 
-    /// What scattering, so reduced, and absorption take together: one over the transport mean free path.
+    /// Returns the sum of reduced scattering and absorption: the reciprocal of the transport mean
+    /// free path.
     #[must_use]
     pub fn transport_extinction(&self) -> Vec3 {
         self.reduced_scattering() + self.absorption
     }
 
-    /// Which of its fields' promises is broken, and what to do; nothing for a sound medium.
+    /// Returns which field is invalid and what to do, or `None` if the medium is valid.
     pub(super) fn problem(&self) -> Option<&'static str> {
         let is_length = |length: Vec3| length.is_finite() && length.cmpge(Vec3::ZERO).all();
         if !is_length(self.scattering) || !is_length(self.absorption) {

@@ -8,35 +8,36 @@ use super::normals::{Averaging, shared_normals};
 
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
 ///
-/// The loader and the cuts of this crate always give meshes whose parts fit together:
-/// `normals` is as long as `positions`, `uvs` is too or empty, every normal has unit length, `indices` is a multiple of
-/// three long and every index is below `positions.len()`. Triangles wind counter-clockwise seen
-/// from outside.
+/// The loader and the cuts of this crate always give consistent meshes: `normals` is as long as
+/// `positions`, `uvs` is as long or empty, every normal has unit length, the length of `indices` is
+/// a multiple of three, and every index is below `positions.len()`. Triangles wind
+/// counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
-    /// Vertex positions. Unit: the scene's own length unit.
+    /// Vertex positions, in the scene's own length unit.
     pub positions: Vec<Vec3>,
     /// A unit normal for each position, pointing out of the body.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates for each position, v down as in glTF; empty where there are none.
+    /// Texture coordinates for each position, v down as in glTF; empty if there are none.
     pub uvs: Vec<Vec2>,
     /// Three indices into `positions` for each triangle.
     pub indices: Vec<u32>,
-    /// Three indices into `positions` for each triangle that exists in texture space alone: a second copy of what lies beside a chart,
-    /// drawn beside it, so that a blur there sees across the chart's border. Empty where there are none; only texture diffusion reads it.
+    /// Three indices into `positions` for each triangle that exists only in texture space: a second
+    /// copy of a chart's surroundings, drawn next to it so that a blur there can cross the chart's
+    /// border. Empty if there are none; only texture diffusion reads it.
     pub halo: Vec<u32>,
 }
 
 impl Mesh {
-    /// A mesh whose normals are averaged over the triangles about each position; see
-    /// [`shared_normals`] for what happens to degenerate triangles.
+    /// Returns a mesh whose normals are averaged over the triangles around each position; see
+    /// [`shared_normals`] for the treatment of degenerate triangles.
     #[must_use]
     pub fn with_shared_normals(positions: Vec<Vec3>, indices: Vec<u32>, averaging: Averaging) -> Self {
         let normals = shared_normals(&positions, &indices, averaging);
         Self { positions, normals, uvs: Vec::new(), indices, halo: Vec::new() }
     }
 
-    /// The mesh turned by `rotation`, of unit length, and then moved by `translation`.
+    /// Returns the mesh rotated by `rotation`, of unit length, and then moved by `translation`.
     #[must_use]
     pub fn placed(&self, rotation: DQuat, translation: DVec3) -> Self {
         let position = |p: &Vec3| (rotation * p.as_dvec3() + translation).as_vec3();
@@ -50,13 +51,13 @@ impl Mesh {
         }
     }
 
-    /// The mesh `factor` times as large, above 0, about the origin.
+    /// Returns the mesh scaled about the origin by `factor`, above 0.
     #[must_use]
     pub fn scaled(&self, factor: f32) -> Self {
         Self { positions: self.positions.iter().map(|position| factor * *position).collect(), ..self.clone() }
     }
 
-    /// The mesh without `halo` and without the vertices of that alone.
+    /// Returns the mesh without `halo` and without the vertices that only the halo uses.
     #[must_use]
     pub fn without_halo(&self) -> Self {
         let count = self.positions.len();
@@ -82,8 +83,9 @@ impl Mesh {
         }
     }
 
-    /// Adds the triangles of `other`, so that one draw call shows both. No vertex becomes shared: each body
-    /// keeps the normals that it had alone. Together they may have 2³² vertices. Texture coordinates are kept where both have them.
+    /// Adds the triangles of `other`, so that one draw call shows both. No vertex becomes shared:
+    /// each body keeps the normals that it had alone. Together they may have 2³² vertices. Texture
+    /// coordinates are kept if both have them.
     pub fn append(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
         if self.uvs.len() == self.positions.len() && other.uvs.len() == other.positions.len() {
@@ -98,17 +100,18 @@ impl Mesh {
         }
     }
 
-    /// Without pairs of triangles that have the same three corners and face opposite ways, as simplified scans have them: they enclose nothing,
-    /// and a ray that meets one leaves where it enters.
+    /// Returns the mesh without pairs of triangles that have the same three corners and face
+    /// opposite ways, as in simplified scans: they enclose nothing, and a ray that hits one leaves
+    /// where it enters.
     #[must_use]
     pub fn without_folds(&self) -> Self {
-        // Both zeros are one place.
+        // 0 and -0 are the same place.
         let place = |index: u32| (self.positions[index as usize] + 0.0).to_array().map(f32::to_bits);
         let mut waiting: HashMap<[[u32; 3]; 3], Vec<usize>> = HashMap::new();
         let mut kept = vec![true; self.indices.len() / 3];
         for (number, triangle) in self.indices.chunks_exact(3).enumerate() {
             let mut corners = [place(triangle[0]), place(triangle[1]), place(triangle[2])];
-            // From the least corner on: what is left is the sense of rotation.
+            // Rotated to start at the least corner, so that only the winding differs.
             let least = (0..3).min_by_key(|&corner| corners[corner]).unwrap_or_default();
             corners.rotate_left(least);
             let [first, second, third] = corners;
@@ -121,14 +124,14 @@ impl Mesh {
         Self { indices: whole.flat_map(|(triangle, _)| triangle).copied().collect(), ..self.clone() }
     }
 
-    /// The number of whole triangles.
+    /// Returns the number of whole triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
     }
 
-    /// The corners of each triangle, in winding order. A triangle with an index past the end of
-    /// `positions` is left out.
+    /// Returns the corners of each triangle, in winding order. A triangle with an index past the
+    /// end of `positions` is left out.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         self.indices.chunks_exact(3).filter_map(|triangle| {
             let corner = |k: usize| self.positions.get(triangle[k] as usize).copied();
@@ -136,8 +139,8 @@ impl Mesh {
         })
     }
 
-    /// The enclosed volume, positive where the triangles wind counter-clockwise seen from outside, and the
-    /// area. The volume of an open mesh says nothing.
+    /// Returns the enclosed volume, positive if the triangles wind counter-clockwise seen from
+    /// outside, and the area. The volume of an open mesh is meaningless.
     #[must_use]
     pub fn volume_and_area(&self) -> (f64, f64) {
         let parts = self.triangles().map(|corners| {
@@ -148,7 +151,7 @@ impl Mesh {
         parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     }
 
-    /// The memory that the lists hold, in bytes.
+    /// Returns the size of the lists in bytes.
     #[must_use]
     pub fn byte_size(&self) -> u64 {
         let vectors = self.positions.len() + self.normals.len();

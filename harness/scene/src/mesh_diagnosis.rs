@@ -1,4 +1,5 @@
-//! What keeps a mesh from being the surface of a solid: one diagnosis for the notes, for the choice of a rung and for the random walks.
+//! Defects that keep a mesh from being the surface of a solid: one diagnosis for the notes, for the
+//! choice of a rung and for the random walks.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,30 +7,34 @@ use glam::DVec3;
 
 use super::{Bounds, Mesh};
 
-/// Corners that lie nearer together than this times the mesh's largest coordinate are one: four times the 2^-24 by which f32 rounds.
-/// Where a surface is a grid that closes upon itself, its seam is open by that much.
+/// Distance, relative to the mesh's largest coordinate, below which corners count as one: four
+/// times the 2^-24 by which f32 rounds. If a surface is a grid that closes upon itself, its seam is
+/// open by that much.
 const TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
 
-/// What is wrong with a mesh as the surface of a solid. All counts are 0 for a sound one.
+/// Defects of a mesh as the surface of a solid. All counts are 0 for a sound one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MeshDiagnosis {
-    /// Edges with an odd number of triangles: the rim of a hole, or a fin.
+    /// Number of edges with an odd number of triangles: the rim of a hole, or a fin.
     pub open_edges: usize,
-    /// Edges whose triangles are even in number and do not run against each other: neighbours of opposite winding.
+    /// Number of edges with an even number of triangles that do not run against each other:
+    /// neighbours of opposite winding.
     pub turned_edges: usize,
-    /// Connected parts that enclose a negative volume and do not lie inside another part, as a cavity does: their triangles run clockwise
-    /// seen from outside.
+    /// Number of connected parts that enclose a negative volume and, unlike a cavity, do not lie
+    /// inside another part: their triangles run clockwise seen from outside.
     pub inverted_parts: usize,
-    /// Triangles beyond the first with the same three corners, in either winding.
+    /// Number of triangles beyond the first with the same three corners, in either winding.
     pub doubled: usize,
-    /// Triangles without area.
+    /// Number of triangles without area.
     pub degenerate: usize,
-    /// Whether all corners lie in one plane, so that nothing is enclosed. True of a mesh without any triangle that has area.
+    /// Whether all corners lie in one plane, so that nothing is enclosed. Also true if no triangle
+    /// of the mesh has area.
     pub is_flat: bool,
 }
 
 impl MeshDiagnosis {
-    /// Of a mesh in any state; indices past its positions are passed over. Takes time linear in its size.
+    /// Diagnoses a mesh in any state, skipping indices past its positions, in time linear in its
+    /// size.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         let welded = Welded::of(mesh);
@@ -51,19 +56,19 @@ impl MeshDiagnosis {
         }
     }
 
-    /// Whether the surface has no hole, no fin, no turned neighbours, and encloses something.
+    /// Whether the surface has no hole, no fin and no turned neighbours, and encloses something.
     #[must_use]
     pub fn is_closed(self) -> bool {
         self.open_edges == 0 && self.turned_edges == 0 && !self.is_flat
     }
 
-    /// Whether rays inside find their way: closed, facing outwards, and nothing there twice.
+    /// Whether rays inside can be traced reliably: closed, facing outwards, and nothing doubled.
     #[must_use]
     pub fn is_solid(self) -> bool {
         self.is_closed() && self.inverted_parts == 0 && self.doubled == 0
     }
 
-    /// What is wrong, in clauses for a message; nothing for a sound solid.
+    /// Returns the defects as clauses for a message; empty for a sound solid.
     #[must_use]
     pub fn clauses(self) -> Vec<String> {
         let counted = |count: usize, one: &str, many: &str| match count {
@@ -72,7 +77,7 @@ impl MeshDiagnosis {
             count => Some(format!("{count} {many}")),
         };
         let flat = self.is_flat.then(|| "all corners lie in one plane".to_owned());
-        // A sheet is open all around, which says nothing more.
+        // A flat sheet is open all around, so its open edges add no information.
         let open = if self.is_flat { 0 } else { self.open_edges };
         [
             flat,
@@ -92,7 +97,8 @@ impl MeshDiagnosis {
     }
 }
 
-/// How many edges have more triangles on one side than on the other, in either way that [`MeshDiagnosis`] tells apart; none in a closed mesh.
+/// Returns the number of edges with more triangles on one side than on the other, of both kinds
+/// that [`MeshDiagnosis`] tells apart; 0 for a closed mesh.
 #[must_use]
 pub fn open_edges(mesh: &Mesh) -> usize {
     let (open, turned) = Welded::of(mesh).unbalanced_edges();
@@ -103,7 +109,7 @@ pub fn open_edges(mesh: &Mesh) -> usize {
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
     corners: [usize; 3],
-    /// Twice its area, as a vector; zero where rounding alone gives it a direction.
+    /// Area vector times two; zero if its direction would be only rounding error.
     across: DVec3,
 }
 
@@ -112,14 +118,14 @@ impl Triangle {
         self.across != DVec3::ZERO
     }
 
-    /// From corner to corner, without those of no length.
+    /// Returns the edges from corner to corner, without those of zero length.
     fn edges(&self) -> impl Iterator<Item = (usize, usize)> {
         let [a, b, c] = self.corners;
         [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to)
     }
 }
 
-/// A mesh by places, each of which stands for all vertices there.
+/// A welded mesh: each place stands for all vertices at that position.
 struct Welded {
     places: Vec<DVec3>,
     triangles: Vec<Triangle>,
@@ -137,7 +143,8 @@ impl Welded {
             let [a, b, c] = corners.map(|corner| places[corner]);
             let (u, v) = (b - a, c - a);
             let across = u.cross(v);
-            // Differences of f32 are exact to 1e-16 in f64, so a sine below 1e-12 has no direction left.
+            // Differences of f32 are exact to 1e-16 in f64, so a sine below 1e-12 has no direction
+            // left.
             let has_area = across.length() > 1e-12 * u.length() * v.length();
             Some(Triangle { corners, across: if has_area { across } else { DVec3::ZERO } })
         };
@@ -145,9 +152,11 @@ impl Welded {
         Self { places, triangles, tolerance }
     }
 
-    /// Edges with an odd number of triangles, and others with more of them on one side than on the other.
+    /// Returns the number of edges with an odd number of triangles, and of others with more
+    /// triangles on one side than on the other.
     fn unbalanced_edges(&self) -> (usize, usize) {
-        // How many triangles, and by how many more run from the lower number to the higher.
+        // Number of triangles, and how many more of them run from the lower number to the higher
+        // than back.
         let mut edges: HashMap<(usize, usize), (u32, i32)> = HashMap::new();
         for (from, to) in self.triangles.iter().flat_map(Triangle::edges) {
             let (count, balance) = edges.entry((from.min(to), from.max(to))).or_default();
@@ -159,7 +168,8 @@ impl Welded {
         (odd, unbalanced.count() - odd)
     }
 
-    /// Parts of negative volume that are no cavities. A part's volume is about its own middle, so that a hole far from the origin weighs little.
+    /// Returns the number of parts with negative volume that are not cavities. The volume of a part
+    /// is taken about its own middle, so that a hole far from the origin weighs little.
     fn inverted_parts(&self) -> usize {
         let parts = self.parts();
         let volume = |part: &[usize]| -> f64 {
@@ -175,7 +185,7 @@ impl Welded {
             Bounds::of(corners.map(|corner| self.places[corner].as_vec3()))
         };
         let measured: Vec<(f64, Bounds)> = parts.iter().map(|part| (volume(part), bounds(part))).collect();
-        // What an open or flat part encloses is rounding or less.
+        // An open or flat part encloses no more than rounding error.
         let least = |bounds: &Bounds| self.tolerance * f64::from(bounds.radius()).powi(2);
         let (inverted, others): (Vec<_>, Vec<_>) =
             measured.into_iter().partition(|(volume, bounds)| *volume < -least(bounds));
@@ -185,7 +195,7 @@ impl Welded {
         inverted.iter().filter(|(_, bounds)| !is_cavity(bounds)).count()
     }
 
-    /// The triangles, by number, of each part that hangs together by its places.
+    /// Returns the triangles, by number, of each part that is connected through its places.
     fn parts(&self) -> Vec<Vec<usize>> {
         let mut parents: Vec<usize> = (0..self.places.len()).collect();
         fn root(parents: &mut [usize], mut place: usize) -> usize {
@@ -218,14 +228,16 @@ impl Welded {
         let Some(largest) = largest.filter(|triangle| triangle.has_area()) else { return true };
         let (normal, origin) = (largest.across.normalize(), self.places[largest.corners[0]]);
         let height = |corner: usize| normal.dot(self.places[corner] - origin).abs();
-        // The largest triangle's corners carry their roundings on to the rest, eightfold at most: where it is an eighth as wide as the mesh.
+        // The largest triangle's corners carry their rounding errors on to the rest, at most
+        // eightfold: that is if it is an eighth as wide as the mesh.
         self.triangles.iter().flat_map(|triangle| triangle.corners).all(|corner| height(corner) <= 8.0 * self.tolerance)
     }
 }
 
-/// The places of positions, and for each position the number of its place.
+/// Returns the places of positions, and for each position the number of its place.
 fn weld(positions: impl Iterator<Item = DVec3>, tolerance: f64) -> (Vec<DVec3>, Vec<usize>) {
-    // A cell is twice as wide as the tolerance, so that what is near lies in one of the eight cells about a corner of it.
+    // A cell is twice as wide as the tolerance, so that near positions lie in one of the eight
+    // cells around one of its corners.
     let cell =
         |position: DVec3| (position / (2.0 * tolerance).max(f64::MIN_POSITIVE)).floor().to_array().map(|x| x as i64);
     let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();

@@ -1,16 +1,16 @@
-//! The nearest known name to one that is not known.
+//! Finds the known name nearest to an unknown one.
 
-/// The similarity from which on one name may be meant for another.
+/// Similarity above which a name is suggested.
 const CLOSE: f64 = 0.75;
 
-/// The nearest of `known`, with its similarity from 0 to 1; none where nothing is known.
+/// Returns the nearest of `known`, with its similarity from 0 to 1; `None` if `known` is empty.
 pub fn nearest<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> Option<(f64, &'a str)> {
     let similarities = known.into_iter().map(|name| (strsim::jaro_winkler(unknown, name), name));
     similarities.max_by(|left, right| left.0.total_cmp(&right.0))
 }
 
-/// [`suggest`] for a function of a module, as `MODULE::FUNCTION`: names in a module differ after the module's name alone, which is left out of the
-/// comparison.
+/// [`suggest`] for a function of a module, as `MODULE::FUNCTION`. Names in a module differ only
+/// after the module's name, so that prefix is left out of the comparison.
 pub fn suggest_function(module: &str, unknown: &str, known: &[&str]) -> String {
     let short =
         |name: &str| name.strip_prefix(module).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name).to_owned();
@@ -21,7 +21,7 @@ pub fn suggest_function(module: &str, unknown: &str, known: &[&str]) -> String {
     }
 }
 
-/// `; did you mean ...?` where a name is close, else the list of all names.
+/// Returns `; did you mean ...?` if a name is close, or else the list of all names.
 pub fn suggest(unknown: &str, known: &[&str]) -> String {
     match nearest(unknown, known.iter().copied()) {
         Some((similarity, name)) if similarity > CLOSE => format!("; did you mean `{name}`?"),

@@ -11,31 +11,31 @@ use glam::{DVec3, Vec3};
 
 use super::Mesh;
 
-/// How the normals of the faces about a vertex are weighted in its shared normal.
+/// How the normals of the faces around a vertex are weighted in its shared normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Averaging {
-    /// Each face counts once. On a triangle list each *triangle* is a face, so that the result
-    /// depends on how facets were cut into triangles.
+    /// Each face counts once. On a triangle list each *triangle* is a face, so the result depends
+    /// on how facets were cut into triangles.
     Plain,
-    /// Each face counts by its interior angle at the vertex. The triangles of a flat facet add up to
-    /// the facet's own angle, so that the result does not depend on triangulation.
+    /// Each face counts by its interior angle at the vertex. The triangles of a flat facet add up
+    /// to the facet's own angle, so the result does not depend on the triangulation.
     #[default]
     Angle,
     /// Each face counts by its area. On a triangle list only the area of the triangles that touch
-    /// the vertex counts, so that the result depends on triangulation.
+    /// the vertex counts, so the result depends on the triangulation.
     Area,
 }
 
-/// The normal of a vertex without any proper triangle, or whose faces cancel: straight up.
+/// Normal of a vertex that has no proper triangle, or whose faces cancel: straight up.
 pub const FALLBACK_NORMAL: Vec3 = Vec3::Y;
 
-/// Where the sum of weighted unit normals is this much shorter than the sum of weights, what is left
-/// is rounding: f64 accumulation of n terms keeps about n · 1e-16, and a vertex with 10⁴ faces is
-/// beyond any mesh here.
+/// Length of the sum of weighted unit normals, relative to the sum of weights, below which only
+/// rounding error is left: f64 accumulation of n terms keeps about n · 1e-16, and a vertex with 10⁴
+/// faces is beyond any mesh here.
 const CANCELLED: f64 = 1e-12;
 
-/// A weighted sum of unit normals, kept in f64 so that the result does not depend on the order of the
-/// faces in any digit that f32 shows.
+/// A weighted sum of unit normals, kept in f64 so that the result does not depend on the order of
+/// the faces in any digit that f32 shows.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct NormalSum {
     sum: DVec3,
@@ -48,18 +48,18 @@ impl NormalSum {
         self.weight += weight;
     }
 
-    /// The unit mean, or [`FALLBACK_NORMAL`] where nothing was added or everything cancelled.
+    /// Returns the unit mean, or [`FALLBACK_NORMAL`] if nothing was added or everything cancelled.
     pub(super) fn normal(self) -> Vec3 {
         let length = self.sum.length();
         if length > CANCELLED * self.weight { (self.sum / length).as_vec3() } else { FALLBACK_NORMAL }
     }
 }
 
-/// A normal for each of `positions`, averaged over the triangles that touch it.
+/// Returns a normal for each of `positions`, averaged over the triangles that touch it.
 ///
 /// Vertices at exactly equal positions (0 and -0 are equal) share one normal, whichever index a
-/// triangle uses. A triangle without area, with a non-finite corner or with an index past the end of
-/// `positions` contributes nothing. A vertex without any contribution gets [`FALLBACK_NORMAL`].
+/// triangle uses. A triangle without area, with a non-finite corner or with an index past the end
+/// of `positions` contributes nothing. A vertex without any contribution gets [`FALLBACK_NORMAL`].
 /// Every result has unit length.
 #[must_use]
 pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging) -> Vec<Vec3> {
@@ -86,11 +86,11 @@ pub fn shared_normals(positions: &[Vec3], indices: &[u32], averaging: Averaging)
     welded.into_iter().map(|vertex| sums[vertex].normal()).collect()
 }
 
-/// The cosine of the largest angle between two normals of one position that are one: 1°. Exporters that split vertices along the seams of a texture
-/// write the same normal twice, but for rounding.
+/// Cosine of the largest angle, 1°, between two normals at one position that count as the same.
+/// Exporters that split vertices along texture seams write the same normal twice, up to rounding.
 const SAME_NORMAL: f32 = 0.999_848;
 
-/// Whether normals at one position differ, as where each face has normals of its own.
+/// Whether normals at one position differ, as in flat shading.
 #[must_use]
 pub fn has_hard_edges(mesh: &Mesh) -> bool {
     let (welded, count) = weld(&mesh.positions);
@@ -102,7 +102,8 @@ pub fn has_hard_edges(mesh: &Mesh) -> bool {
     })
 }
 
-/// One normal for each position: the mesh's own, or where it has hard edges the mean of its triangles' by angle.
+/// Returns one normal for each position: the mesh's own, or, if it has hard edges, the
+/// angle-weighted mean of its triangles' normals.
 #[must_use]
 pub fn soft_normals(mesh: &Mesh) -> Cow<'_, [Vec3]> {
     if has_hard_edges(mesh) {
@@ -111,7 +112,8 @@ pub fn soft_normals(mesh: &Mesh) -> Cow<'_, [Vec3]> {
     Cow::Borrowed(&mesh.normals)
 }
 
-/// For each position the number of its first exact equal, and how many different ones there are.
+/// Returns, for each position, the number of its first exact equal, and how many different ones
+/// there are.
 pub(super) fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
     let mut seen = HashMap::with_capacity(positions.len());
     let welded = positions
@@ -126,7 +128,7 @@ pub(super) fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
     (welded, seen.len())
 }
 
-/// The unit normal and the area of a triangle, or nothing where it has none.
+/// Returns the unit normal and the area of a triangle, or `None` if it has no area.
 fn plane_of([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     let (u, v) = (b - a, c - a);
     let cross = u.cross(v);
@@ -136,8 +138,8 @@ fn plane_of([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     proper.then(|| (cross / length, 0.5 * length))
 }
 
-/// The angle at `vertex` between its two neighbours, in radians, 0 to π. The arctangent keeps it
-/// exact near 0 and π, where an arccosine loses half its digits.
+/// Returns the angle at `vertex` between its two neighbours, in radians, 0 to π. The arctangent
+/// keeps it exact near 0 and π, where an arccosine loses half its digits.
 pub(super) fn interior_angle(previous: DVec3, vertex: DVec3, next: DVec3) -> f64 {
     let (u, v) = (previous - vertex, next - vertex);
     u.cross(v).length().atan2(u.dot(v))
@@ -187,7 +189,8 @@ mod tests {
             assert_eq!(*softened, soft.normals[index as usize]);
         }
         assert!(matches!(soft_normals(&soft), Cow::Borrowed(_)));
-        // The built-ins' own averages stay as they are, also those that are not by angle, and seams that differ by rounding.
+        // The built-ins' own averages stay unchanged, including those not weighted by angle and
+        // seams that differ by rounding.
         for name in ["brilliant_plain", "brilliant_area", "prism_chain", "skin"] {
             assert!(!has_hard_edges(&crate::Scene::named(name).unwrap().objects[0].mesh), "{name}");
         }

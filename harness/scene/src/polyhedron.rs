@@ -22,14 +22,14 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through `point` with the outward `normal`.
+    /// Returns the plane through `point` with the outward `normal`.
     #[must_use]
     pub fn through(point: DVec3, normal: DVec3) -> Self {
         let normal = normal.normalize_or_zero();
         Self { normal, distance: normal.dot(point) }
     }
 
-    /// Signed distance of `point` from the plane, positive outside.
+    /// Returns the signed distance of `point` from the plane, positive outside.
     #[must_use]
     pub fn height(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.distance
@@ -39,16 +39,16 @@ impl Plane {
 /// Why planes do not make a polyhedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum PolyhedronError {
-    /// A plane without direction, or with a part that is not a number.
+    /// A plane without a direction, or with a component that is not a number.
     #[error("plane {plane} has a zero or non-finite normal or distance; give it a direction")]
     BadPlane {
-        /// Its place in the list, from 0.
+        /// Index of the plane in the list, from 0.
         plane: usize,
     },
-    /// The number of triples grows with the cube of the number of planes.
+    /// Too many planes: the number of triples grows with the cube of the number of planes.
     #[error("{planes} planes are too many for one stone; use at most {MAX_PLANES}")]
     TooManyPlanes {
-        /// How many were given.
+        /// Number of planes given.
         planes: usize,
     },
     /// No corner lies on the inner side of all planes, or all corners lie in one plane.
@@ -57,15 +57,16 @@ pub enum PolyhedronError {
          move them outwards or add the missing sides"
     )]
     Empty,
-    /// A face has an edge with nothing on its other side.
+    /// A face has an edge without a neighbouring face.
     #[error("the planes leave an open side; add planes until the solid is closed")]
     Unbounded,
 }
 
-/// The most planes that [`Polyhedron::from_planes`] takes: 256³/6 triples are a second's work.
+/// Largest number of planes that [`Polyhedron::from_planes`] takes: 256³/6 triples take about a
+/// second.
 pub const MAX_PLANES: usize = 256;
 
-/// A bounded convex polyhedron. Faces run counter-clockwise seen from outside.
+/// A bounded convex polyhedron. Faces wind counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyhedron {
     planes: Vec<Plane>,
@@ -74,14 +75,15 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// The intersection of the half-spaces of `planes`.
+    /// Returns the intersection of the half-spaces of `planes`.
     ///
-    /// Planes that bound no face, and repeated planes, are dropped; the others keep their order. The
-    /// tolerance is relative to the largest distance of a plane from the origin, so the solid should
-    /// lie about the origin.
+    /// Planes that bound no face, and repeated planes, are dropped; the others keep their order.
+    /// The tolerance is relative to the largest distance of a plane from the origin, so the solid
+    /// should lie around the origin.
     ///
     /// # Errors
-    /// [`PolyhedronError`], where the planes are not proper, enclose nothing or leave a side open.
+    /// Returns a [`PolyhedronError`] if the planes are invalid, enclose nothing or leave a side
+    /// open.
     pub fn from_planes(planes: &[Plane]) -> Result<Self, PolyhedronError> {
         if planes.len() > MAX_PLANES {
             return Err(PolyhedronError::TooManyPlanes { planes: planes.len() });
@@ -130,53 +132,57 @@ impl Polyhedron {
         Self { planes, vertices, faces }
     }
 
-    /// The planes that bound a face, in the order of [`Polyhedron::faces`], with unit normals.
+    /// Returns the planes that bound a face, in the order of [`Polyhedron::faces`], with unit
+    /// normals.
     #[must_use]
     pub fn planes(&self) -> &[Plane] {
         &self.planes
     }
 
-    /// The corners.
+    /// Returns the corners, each once.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// The faces, as loops of indices into [`Polyhedron::vertices`], counter-clockwise seen from
-    /// outside. A loop starts at its highest corner, so that equal facets all round a stone start
-    /// alike and a kite is later cut along its axis.
+    /// Returns the faces as loops of indices into [`Polyhedron::vertices`], counter-clockwise seen
+    /// from outside. A loop starts at its highest corner, so that equal facets all round a stone
+    /// start alike and a kite is later cut along its axis.
     #[must_use]
     pub fn faces(&self) -> &[Vec<usize>] {
         &self.faces
     }
 
-    /// The number of edges: each belongs to two faces.
+    /// Returns the number of edges; each belongs to two faces.
     #[must_use]
     pub fn edge_count(&self) -> usize {
         self.faces.iter().map(Vec::len).sum::<usize>() / 2
     }
 
-    /// The planes as `(normal, distance)` in f32 and in the coordinates of [`Polyhedron::to_mesh`].
+    /// Returns the planes as `(normal, distance)` in f32, in the coordinates of
+    /// [`Polyhedron::to_mesh`].
     #[must_use]
     pub fn mesh_planes(&self) -> Vec<Vec4> {
         let to_mesh = |plane: &Plane| y_up(plane.normal).extend(plane.distance as f32);
         self.planes.iter().map(to_mesh).collect()
     }
 
-    /// A mesh with shared normals, turned to glTF's y up: (x, y, z) becomes (x, z, -y).
+    /// Returns a mesh with shared normals, turned to glTF's y up: (x, y, z) becomes (x, z, -y).
     ///
-    /// Shared normals are averaged over *faces*, so the triangulation does not change them: by a
-    /// face's interior angle, plainly, or by a face's whole area. A face of three or four corners is
-    /// a fan from its first corner, a larger one a fan from its centroid ([`Triangulation::Centroid`]).
+    /// Shared normals are averaged over *faces*, so the triangulation does not change them. Each
+    /// face is weighted by its interior angle, equally, or by its whole area. A face of three or
+    /// four corners becomes a fan from its first corner, a larger one a fan from its centroid
+    /// ([`Triangulation::Centroid`]).
     #[must_use]
     pub fn to_mesh(&self, averaging: Averaging) -> Mesh {
         self.to_mesh_with(averaging, Triangulation::Centroid)
     }
 
-    /// [`Polyhedron::to_mesh`] with another way to cut faces of five and more corners into triangles.
+    /// [`Polyhedron::to_mesh`] with another triangulation of faces with five or more corners.
     ///
-    /// The surface is the same, and so are the shared normals; vertices inside a face carry its plane
-    /// normal. No way puts a vertex onto an edge, so that all of them give closed meshes.
+    /// The surface is the same, and so are the shared normals; vertices inside a face carry the
+    /// normal of its plane. No triangulation puts a vertex on an edge, so all of them give closed
+    /// meshes.
     #[must_use]
     pub fn to_mesh_with(&self, averaging: Averaging, triangulation: Triangulation) -> Mesh {
         let mut mesh = Mesh {
@@ -217,7 +223,7 @@ impl Polyhedron {
         sums.into_iter().map(NormalSum::normal).collect()
     }
 
-    /// The normal of a face times its area.
+    /// Returns the normal of a face times its area.
     fn area_vector(&self, face: &[usize]) -> DVec3 {
         let origin = self.vertices[face[0]];
         let fan =
@@ -225,7 +231,7 @@ impl Polyhedron {
         fan.sum()
     }
 
-    /// The centroid of a face's area.
+    /// Returns the centroid of a face's area.
     fn centroid(&self, face: &[usize]) -> DVec3 {
         let origin = self.vertices[face[0]];
         let direction = self.area_vector(face).normalize_or_zero();
@@ -253,7 +259,7 @@ impl Polyhedron {
     }
 }
 
-/// From z up to glTF's y up: a quarter turn about x, in f32.
+/// Converts z up to glTF's y up in f32: a quarter turn about x.
 fn y_up(v: DVec3) -> Vec3 {
     Vec3::new(v.x as f32, v.z as f32, -v.y as f32)
 }

@@ -1,20 +1,22 @@
-//! From wavelengths to linear Rec. 709 RGB and back: CIE 1931's observer under daylight.
+//! From wavelengths to linear Rec. 709 RGB and back, with the CIE 1931 observer under daylight.
 //!
-//! Environments are RGB. Three basis spectra make a spectrum of an RGB colour: σ_R above 591
-//! nm, σ_G between, σ_B below 489 nm, with soft crossovers. They are nowhere negative and add up to 1. A picture's RGB
-//! is the integral of a spectrum with the matching functions under D65. To get the very colour back that went in,
-//! radiance uses the σ combined by the inverse of their own 3×3 integral: ρ_c. It lies within 3 % of σ, and adds up to
-//! 1 as well, since the integral of white is white.
+//! Environments are RGB. Three basis spectra turn an RGB colour into a spectrum: σ_R above 591 nm,
+//! σ_G between, σ_B below 489 nm, with soft crossovers. They are nowhere negative and add up to 1.
+//! A picture's RGB is the integral of a spectrum with the matching functions under D65. To get back
+//! exactly the colour that went in, radiance uses ρ_c, the σ combined by the inverse of their own
+//! 3×3 integral. It lies within 3 % of σ, and also adds up to 1, since the integral of white is
+//! white.
 
 use glam::{DMat3, DVec3};
 
-/// The shortest wavelength in nm.
+/// Shortest wavelength in nm.
 pub const SHORTEST: f64 = 400.0;
-/// The longest wavelength in nm. Outside of these two lie 0.03 % of the luminance and 0.3 % of the red and blue of D65.
+/// Longest wavelength in nm. 0.03 % of the luminance and 0.3 % of the red and blue of D65 lie
+/// outside these two limits.
 pub const LONGEST: f64 = 700.0;
 
-/// x̄, ȳ and z̄ of the CIE 1931 standard observer (2°) at 400, 410 ... 700 nm. Source: CIE 15 (Colorimetry), table T.4;
-/// data set doi:10.25039/CIE.DS.xvudnb9b.
+/// x̄, ȳ and z̄ of the CIE 1931 standard observer (2°) at 400, 410 ... 700 nm. Source: CIE 15
+/// (Colorimetry), table T.4; data set doi:10.25039/CIE.DS.xvudnb9b.
 const OBSERVER: [[f64; 3]; 31] = [
     [0.014310, 0.000396, 0.067850],
     [0.043510, 0.001210, 0.207400],
@@ -49,8 +51,8 @@ const OBSERVER: [[f64; 3]; 31] = [
     [0.011359, 0.004102, 0.000000],
 ];
 
-/// Relative spectral power of the CIE standard illuminant D65 at 400, 410 ... 700 nm. Source: CIE 15, table T.1; data
-/// set doi:10.25039/CIE.DS.hjfjmt59.
+/// Relative spectral power of the CIE standard illuminant D65 at 400, 410 ... 700 nm. Source: CIE
+/// 15, table T.1; data set doi:10.25039/CIE.DS.hjfjmt59.
 const DAYLIGHT: [f64; 31] = [
     82.7549, 91.4860, 93.4318, 86.6823, 104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
     104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880, 88.6856, 90.0062, 89.5991, 87.6987, 83.2886,
@@ -60,28 +62,29 @@ const DAYLIGHT: [f64; 31] = [
 /// Chromaticities (x, y, z) of the red, green and blue of ITU-R BT.709, which sRGB shares.
 const PRIMARIES: [[f64; 3]; 3] = [[0.64, 0.33, 0.03], [0.30, 0.60, 0.10], [0.15, 0.06, 0.79]];
 
-/// Where blue gives way to green, and green to red, in nm, with the widths of the two logistic curves. With these the
-/// integral of the σ comes nearest to the identity, rounded to whole nm: then ρ differs least from σ.
+/// Crossovers from blue to green and from green to red, in nm, with the widths of the two logistic
+/// curves. Rounded to whole nm, these bring the integral of the σ closest to the identity, so that
+/// ρ differs least from σ.
 const CROSSOVERS: [(f64, f64); 2] = [(489.0, 9.0), (591.0, 7.0)];
 
-/// The fewest wavelengths that tell three colours apart.
+/// Fewest wavelengths that can tell three colours apart.
 pub const FEWEST: usize = 3;
 
-/// One of the wavelengths that stand for a spectrum.
+/// One of the wavelengths that represent a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavelength {
-    /// In nm.
+    /// Wavelength in nm.
     pub nanometres: f64,
-    /// What linear RGB radiance seen at this wavelength alone adds to a pixel's linear RGB. Over all wavelengths these
-    /// add up to the identity.
+    /// Contribution of linear RGB radiance, seen at this wavelength alone, to a pixel's linear RGB.
+    /// Over all wavelengths these add up to the identity.
     pub weights: DMat3,
 }
 
-/// `count` wavelengths at equal distances from [`SHORTEST`] to [`LONGEST`]; 31 are the tables' own, others are
-/// interpolated linearly.
+/// Returns `count` equally spaced wavelengths from [`SHORTEST`] to [`LONGEST`]; 31 match the
+/// tables, other counts are interpolated linearly.
 ///
 /// # Panics
-/// With fewer than [`FEWEST`].
+/// If `count` is less than [`FEWEST`].
 #[must_use]
 pub fn weights(count: usize) -> Vec<Wavelength> {
     assert!(count >= FEWEST, "a spectrum needs at least {FEWEST} wavelengths, not {count}");
@@ -89,7 +92,7 @@ pub fn weights(count: usize) -> Vec<Wavelength> {
     let grid: Vec<f64> = (0..count).map(|k| SHORTEST + step * k as f64).collect();
     let rgb_from_xyz = DMat3::from_cols_array_2d(&PRIMARIES).inverse();
     let stimuli: Vec<DVec3> = grid.iter().map(|&nanometres| rgb_from_xyz * stimulus(nanometres)).collect();
-    // The light's own sum is white, on this grid as it is: each channel is scaled to 1.
+    // Each channel is scaled so that the illuminant sums to 1 (white) on this grid.
     let white: DVec3 = stimuli.iter().sum();
     let stimuli: Vec<DVec3> = stimuli.iter().map(|stimulus| *stimulus / white).collect();
     let integral = grid.iter().zip(&stimuli).map(|(&nanometres, stimulus)| outer(*stimulus, basis(nanometres)));
@@ -101,7 +104,7 @@ pub fn weights(count: usize) -> Vec<Wavelength> {
     grid.iter().zip(&stimuli).map(wavelength).collect()
 }
 
-/// X, Y and Z of daylight at one wavelength, up to a factor.
+/// Returns X, Y and Z of daylight at one wavelength, up to a factor.
 fn stimulus(nanometres: f64) -> DVec3 {
     let place = (nanometres - SHORTEST) / 10.0;
     let below = (place.floor() as usize).min(OBSERVER.len() - 2);
@@ -110,14 +113,15 @@ fn stimulus(nanometres: f64) -> DVec3 {
     observer * (DAYLIGHT[below] + share * (DAYLIGHT[below + 1] - DAYLIGHT[below]))
 }
 
-/// σ at one wavelength: blue takes its share, red its share of the rest, green what is left.
+/// Returns σ at one wavelength: blue takes its share, red its share of the rest, green the
+/// remainder.
 fn basis(nanometres: f64) -> DVec3 {
     let [above_blue, above_green] =
         CROSSOVERS.map(|(middle, width)| 1.0 / (1.0 + ((middle - nanometres) / width).exp()));
     DVec3::new(above_blue * above_green, above_blue * (1.0 - above_green), 1.0 - above_blue)
 }
 
-/// The matrix with elements a_row · b_column.
+/// Returns the matrix with elements a_row · b_column.
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
@@ -130,7 +134,7 @@ mod tests {
         wavelengths.iter().fold(DMat3::ZERO, |sum, wavelength| sum + wavelength.weights)
     }
 
-    /// The colour of light of one wavelength, brightest channel 1.
+    /// Returns the colour of light of one wavelength, with the brightest channel scaled to 1.
     fn hue(nanometres: f64) -> DVec3 {
         let wavelengths = weights(301);
         let seen = wavelengths.iter().find(|wavelength| wavelength.nanometres == nanometres).unwrap();
@@ -153,8 +157,9 @@ mod tests {
         assert!(white.abs_diff_eq(DVec3::ONE, 1e-12), "{white}");
     }
 
-    /// sRGB's white is x = 0.3127, y = 0.3290, and its matrix from XYZ is printed in IEC 61966-2-1. Cut off at 400 and
-    /// 700 nm white lacks 0.15 % of its X and 0.2 % of its Z, which stretches the matrix by up to 0.3 %.
+    /// sRGB's white is x = 0.3127, y = 0.3290, and its matrix from XYZ is printed in IEC 61966-2-1.
+    /// Cut off at 400 and 700 nm, white lacks 0.15 % of its X and 0.2 % of its Z, which stretches
+    /// the matrix by up to 0.3 %.
     #[test]
     fn white_point_and_matrix_are_srgbs() {
         let white: DVec3 = (0..31).map(|k| stimulus(SHORTEST + 10.0 * f64::from(k))).sum();
@@ -174,7 +179,7 @@ mod tests {
             assert!(basis(wavelength.nanometres).min_element() >= 0.0);
             assert!((basis(wavelength.nanometres).element_sum() - 1.0).abs() < 1e-15);
         }
-        // Row by row the weights are one stimulus times ρ, so that ρ is a row over what it sums to.
+        // Row by row, the weights are one stimulus times ρ, so ρ is a row divided by its sum.
         for Wavelength { weights, nanometres } in weights(31) {
             let basis = basis(nanometres);
             let white = weights * DVec3::ONE;

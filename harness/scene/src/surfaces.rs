@@ -1,23 +1,26 @@
-//! Smooth closed surfaces with exact normals, round ones with texture coordinates.
+//! Smooth closed surfaces with exact normals; the round ones have texture coordinates.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 use super::Mesh;
 
-/// A sphere about the origin by longitude and latitude, its poles on the y axis: `columns` around, half as many from pole to pole.
-/// u runs around once, v from the upper pole to the lower; the first and last column of vertices are at one place.
+/// Returns a sphere about the origin by longitude and latitude, its poles on the y axis, with
+/// `columns` quadrilaterals around and half as many from pole to pole. u runs around once, v from
+/// the upper pole to the lower; the first and last column of vertices coincide.
 #[must_use]
 pub fn sphere(radius: f64, columns: u32) -> Mesh {
     grid([columns, columns / 2], |uv| {
-        // Exactly 0 at both poles and once around, so that what meets there has one position.
+        // Exactly 0 at both poles and after one turn, so that vertices that meet there have one
+        // position.
         let (across, azimuth) = ((PI * uv.y.min(1.0 - uv.y)).sin(), TAU * uv.x.fract());
         let normal = DVec3::new(across * azimuth.sin(), (PI * uv.y).cos(), across * azimuth.cos());
         (radius * normal, normal)
     })
 }
 
-/// A torus about the y axis: a tube of radius `minor` about a circle of radius `major`. u runs around the axis, v around the tube.
+/// Returns a torus about the y axis: a tube of radius `minor` around a circle of radius `major`. u
+/// runs around the axis, v around the tube.
 #[must_use]
 pub fn torus(major: f64, minor: f64, columns: u32, rows: u32) -> Mesh {
     grid([columns, rows], |uv| {
@@ -28,13 +31,15 @@ pub fn torus(major: f64, minor: f64, columns: u32, rows: u32) -> Mesh {
     })
 }
 
-/// A box about the origin that reaches as far as `half` along the axes, its edges and corners rounded with `radius`, by `steps` quadrilaterals
-/// from the middle of an edge to each of its two faces. Its faces are flat up to their borders. Without texture coordinates.
+/// Returns a box about the origin with half sizes `half`, its edges and corners rounded with
+/// `radius`, by `steps` quadrilaterals from the middle of an edge to each of its two faces. Its
+/// faces are flat up to their borders. It has no texture coordinates.
 #[must_use]
 pub fn rounded_box(half: DVec3, radius: f64, steps: u32) -> Mesh {
-    // The tangent of the angle from a face's normal, at its greatest exactly 1, so that two faces meet in the same positions.
+    // Tangent of the angle from a face's normal, at most exactly 1, so that two faces meet in the
+    // same positions.
     let tangent = |step: u32| if step == steps { 1.0 } else { (FRAC_PI_4 * f64::from(step) / f64::from(steps)).tan() };
-    // Across a face: about the edge on one side, then about the one on the other.
+    // Across a face: around the edge on one side, then around the one on the other.
     let lower = (0..=steps).rev().map(|step| (-1.0, -tangent(step)));
     let places: Vec<(f64, f64)> = lower.chain((0..=steps).map(|step| (1.0, tangent(step)))).collect();
     let mut mesh = Mesh::default();
@@ -67,8 +72,9 @@ pub fn rounded_box(half: DVec3, radius: f64, steps: u32) -> Mesh {
     mesh
 }
 
-/// A grid of `size` quadrilaterals over the unit square, u to the right and v down as seen from outside, by position and unit normal.
-/// Triangles without area, as at a pole, are left out.
+/// Returns a grid of `columns` × `rows` quadrilaterals over the unit square, u to the right and v
+/// down as seen from outside; `surface` gives position and unit normal. Triangles without area, as
+/// at a pole, are left out.
 pub(super) fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3, DVec3)) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {
@@ -86,7 +92,7 @@ pub(super) fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3,
             let lower_left = upper_left + columns + 1;
             for corners in [[upper_left, lower_left, upper_left + 1], [upper_left + 1, lower_left, lower_left + 1]] {
                 let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
-                // Vertices at a pole are apart by rounding alone.
+                // Vertices at a pole differ only by rounding.
                 let least = 1e-6 * (a - b).length_squared().max((c - b).length_squared());
                 if (b - a).cross(c - a).length() > least {
                     mesh.indices.extend(corners);
@@ -107,7 +113,8 @@ mod tests {
         assert!((found_volume / volume - 1.0).abs() < 5e-3, "{found_volume}, {volume}");
         assert!((found_area / area - 1.0).abs() < 5e-3, "{found_area}, {area}");
         assert!(mesh.uvs.len() == mesh.positions.len() && mesh.normals.len() == mesh.positions.len());
-        // Texture coordinates turn over no triangle: clockwise with v down is counter-clockwise from outside.
+        // No triangle is flipped in texture space: clockwise with v down is counter-clockwise from
+        // outside.
         for triangle in mesh.indices.chunks_exact(3) {
             let [a, b, c]: [Vec2; 3] = [0, 1, 2].map(|k| mesh.uvs[triangle[k] as usize]);
             assert!((b - a).perp_dot(c - a) < 0.0);
@@ -121,8 +128,9 @@ mod tests {
         check(&sphere(2.0, 128), 4.0 / 3.0 * PI * 8.0, 4.0 * PI * 4.0);
     }
 
-    /// Steiner's formula: of what is within `r` of a box with edges a, b, c, the volume is abc + 2r(ab + bc + ca) + πr²(a + b + c) + 4/3πr³,
-    /// and the area its derivative by r.
+    /// Steiner's formula: the volume within `r` of a box with edges a, b, c is
+    /// abc + 2r(ab + bc + ca) + πr²(a + b + c) + 4/3πr³, and the area is its derivative with
+    /// respect to r.
     #[test]
     fn a_rounded_box_has_its_volume_its_area_and_flat_faces() {
         let (half, r) = (DVec3::new(7.0, 2.0, 4.0), 0.75);

@@ -58,7 +58,7 @@ fn built_in_materials_have_their_minerals_indices() {
 
 #[test]
 fn coloured_stones_take_their_colour_on_the_way() {
-    // Which channel passes most, and which least.
+    // The channels that transmit most and least.
     for (name, strongest, weakest) in [("sapphire", 2, 0), ("ruby", 0, 1), ("step_cut", 1, 0)] {
         let material = Scene::named(name).unwrap().objects[0].material.clone();
         assert_eq!(material.attenuation_distance, 2.0);
@@ -72,7 +72,7 @@ fn coloured_stones_take_their_colour_on_the_way() {
     }
 }
 
-/// The meshes of a scene's only object that no triangle connects.
+/// Returns the unconnected meshes of a scene's only object.
 fn bodies(scene: &Scene) -> Vec<Mesh> {
     assert_eq!(scene.objects.len(), 1, "one object is one draw call");
     let mesh = &scene.objects[0].mesh;
@@ -133,8 +133,9 @@ fn prisms_share_normals_within_themselves_alone() {
         let positions: HashSet<_> = vertices(&scene.objects).map(|p| p.to_array().map(f32::to_bits)).collect();
         assert_eq!(positions.len(), scene.objects[0].mesh.positions.len(), "{name}: two prisms touch");
         for body in bodies(&scene) {
-            // Averaged over its own faces. By angle, so that the diagonals of its sides do not count; from
-            // positions rounded some units from the origin, hence not to the last bit.
+            // Averaged over the prism's own faces: by angle, so that the diagonals of its sides do
+            // not count; from positions rounded some units from the origin, hence not to the last
+            // bit.
             let alone = Mesh::with_shared_normals(body.positions.clone(), body.indices.clone(), Averaging::Angle);
             for (shared, alone) in body.normals.iter().zip(&alone.normals) {
                 assert!(shared.distance(*alone) < 2e-5, "{name}: {shared} and {alone}");
@@ -184,13 +185,14 @@ fn every_prism_of_the_chain_hangs_at_an_angle_of_its_own() {
         let upright = Quat::from_rotation_arc(*axis, Vec3::Y);
         let (top, bottom) = tips(link);
         let offsets = link.positions.iter().map(|p| upright * (p - 0.5 * (top + bottom)));
-        // Any but the tips, which lie on the axis.
+        // Any vertex except the tips, which lie on the axis.
         let edge = offsets.max_by(|p, q| p.with_y(0.0).length().total_cmp(&q.with_y(0.0).length())).unwrap();
         edge.x.atan2(edge.z).to_degrees().rem_euclid(72.0)
     };
     let turns: Vec<f32> = links.iter().zip(&axes).map(turn).collect();
     for (k, turn) in turns.iter().enumerate() {
-        // 31° again and again, less whole pentagons, comes within 10° of an earlier turn, and no nearer.
+        // Multiples of 31°, reduced by whole pentagons, come within 10° of an earlier turn, and no
+        // nearer.
         let apart = |other: &f32| (turn - other).abs().min(72.0 - (turn - other).abs());
         assert!(turns[k + 1..].iter().all(|other| apart(other) > 9.9), "{turns:?}");
     }
@@ -211,7 +213,7 @@ fn every_built_in_is_closed() {
 
 #[test]
 fn translucent_bodies_have_texture_coordinates() {
-    // Where light only goes through, no blur along the surface shows it.
+    // If light only passes through, blur along the surface cannot show it.
     for built_in in BUILT_IN {
         for object in &Scene::named(built_in.name).unwrap().objects {
             let vertices = object.mesh.positions.len();
@@ -234,7 +236,7 @@ fn stone_is_lit_by_one_light_and_has_its_size() {
         let height = scene.bounds().max.y - scene.bounds().min.y;
         assert!((height - size).abs() < 1.0, "{name}: {height}");
     }
-    // Of the dragon and the figure, whose light comes from behind, the eye sees the dark side.
+    // The dragon and the figure are lit from behind, so the eye sees the dark side.
     for name in ["dragon", "figure"] {
         let scene = Scene::named(name).unwrap();
         let Light::Directional { toward, .. } = scene.lights[0] else { panic!("a sun") };
@@ -242,14 +244,14 @@ fn stone_is_lit_by_one_light_and_has_its_size() {
     }
 }
 
-/// `./cook scene figure --out harness/assets/figure.glb` brings it up to date.
+/// `./cook scene figure --out harness/assets/figure.glb` updates the stored file.
 #[test]
 fn the_stored_figure_is_what_is_made() {
     let [stored, made] =
         [Scene::named("figure"), Scene::made("figure")].map(|scene| scene.unwrap().objects.remove(0).mesh);
     assert_eq!(stored.indices, made.indices);
     let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
-    // Sines differ in their last digit from one system to another.
+    // Sines differ in their last digit between systems.
     assert!(furthest(&stored.positions, &made.positions) < 1e-3 && furthest(&stored.normals, &made.normals) < 1e-2);
 }
 
@@ -258,7 +260,7 @@ fn triangulations_change_the_table_alone() {
     let mesh = |name: &str| Scene::named(name).unwrap().objects.remove(0).mesh;
     let usual = mesh("brilliant");
     let corners = 57;
-    // Eight triangles about the middle; six from a corner; six in a zigzag; six of 25 needles.
+    // Eight triangles around the middle; six from a corner; six in a zigzag; six of 25 needles.
     for (name, triangles) in [("brilliant_fan", 6), ("brilliant_strip", 6), ("brilliant_sliver", 150)] {
         let other = mesh(name);
         assert_eq!(other.triangle_count(), usual.triangle_count() - 8 + triangles, "{name}");
@@ -366,7 +368,7 @@ fn a_halo_goes_where_its_mesh_goes_and_stays_out_of_all_else() {
     assert_eq!(corners(&bunny, &bunny.indices), corners(&bare, &bare.indices));
     let moved = bunny.placed(DQuat::IDENTITY, DVec3::X);
     assert_eq!(moved.halo, bunny.halo);
-    // Its vertices then stand between those of two bodies.
+    // The halo's vertices then lie between those of two bodies.
     let mut both = bunny.clone();
     both.append(&moved);
     assert_eq!(corners(&both, &both.halo), [corners(&bunny, &bunny.halo), corners(&moved, &moved.halo)].concat());
@@ -375,7 +377,7 @@ fn a_halo_goes_where_its_mesh_goes_and_stays_out_of_all_else() {
     assert_eq!(both.without_halo(), bare_both);
 }
 
-/// A tetrahedron, and on one of its corners a triangle and its other side.
+/// A tetrahedron and, on one of its corners, a triangle and its reverse.
 #[test]
 fn folds_are_taken_away_and_nothing_else() {
     let tetrahedron = vec![0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];

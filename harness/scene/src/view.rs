@@ -1,9 +1,10 @@
-//! From places on the picture to directions, as the rasteriser maps them.
+//! Maps positions in the picture to directions, as the rasteriser does.
 
 use crate::{Bounds, Camera, Scene};
 use glam::{DVec3, Mat4, Vec3};
 
-/// Clip space of a whole picture of `scene`. Depth runs from 0 near to 1 far.
+/// Returns the matrix from world to clip space for a whole picture of `scene`. Depth runs from 0
+/// (near) to 1 (far).
 #[must_use]
 pub fn clip_from_world(scene: &Scene, width: u32, height: u32) -> Mat4 {
     let camera = &scene.camera;
@@ -13,7 +14,8 @@ pub fn clip_from_world(scene: &Scene, width: u32, height: u32) -> Mat4 {
     clip_from_view * glam::camera::rh::view::look_at_mat4(camera.eye, camera.target, camera.up)
 }
 
-/// Near and far distances that enclose the scene, apart by at most 1e4 so that depth keeps its digits.
+/// Returns near and far distances that enclose the scene, with a ratio of at most 1e4 so that depth
+/// keeps its digits.
 fn depth_range(camera: &Camera, bounds: &Bounds) -> (f32, f32) {
     let forward = (camera.target - camera.eye).normalize_or(Vec3::NEG_Z);
     let middle = (bounds.centre() - camera.eye).dot(forward);
@@ -23,11 +25,11 @@ fn depth_range(camera: &Camera, bounds: &Bounds) -> (f32, f32) {
     (near, far)
 }
 
-/// A camera over a picture of a given size.
+/// A camera with a picture of a given size.
 pub struct View {
-    /// The camera's place.
+    /// Position of the camera.
     pub eye: DVec3,
-    /// The line of sight, and the picture's half sides at distance 1.
+    /// Line of sight, and half the sides of the picture at distance 1.
     forward: DVec3,
     half_right: DVec3,
     half_up: DVec3,
@@ -36,7 +38,7 @@ pub struct View {
 }
 
 impl View {
-    /// A camera over a picture of `width` × `height` pixels.
+    /// Returns a camera with a picture of `width` × `height` pixels.
     #[must_use]
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let (eye, target) = (camera.eye.as_dvec3(), camera.target.as_dvec3());
@@ -54,14 +56,16 @@ impl View {
         }
     }
 
-    /// The unit direction in which `x` pixels from the left and `y` pixels from the top lie; pixel k spans k to k + 1.
+    /// Returns the unit direction through the position `x` pixels from the left and `y` pixels from
+    /// the top; pixel k spans k to k + 1.
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
         let right = 2.0 * x / self.width - 1.0;
         let up = 1.0 - 2.0 * y / self.height;
         (self.forward + self.half_right * right + self.half_up * up).normalize()
     }
 
-    /// How the picture shows a point; nothing where it lies behind the eye or beside the picture.
+    /// Returns how the picture shows a point, or `None` if it lies behind the eye or outside the
+    /// picture.
     pub fn sight(&self, point: DVec3) -> Option<Sight> {
         let way = point - self.eye;
         let depth = way.dot(self.forward);
@@ -75,7 +79,7 @@ impl View {
             return None;
         }
         let distance = way.length();
-        // A pixel's area at depth 1, by the sides' halves.
+        // A pixel's area at depth 1, from half the sides.
         let pixel = 4.0 * self.half_right.length() * self.half_up.length() / (self.width * self.height);
         Some(Sight { x, y, toward: -way / distance, distance, weight: distance / (depth.powi(3) * pixel) })
     }
@@ -84,15 +88,15 @@ impl View {
 /// How a picture shows a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
-    /// In pixels from the left.
+    /// Distance from the left edge in pixels.
     pub x: f64,
-    /// In pixels from the top.
+    /// Distance from the top edge in pixels.
     pub y: f64,
     /// Unit direction from the point to the eye.
     pub toward: DVec3,
-    /// From the point to the eye.
+    /// Distance from the point to the eye.
     pub distance: f64,
-    /// The mean radiance over the pixel that a radiant intensity of 1 from the point adds.
+    /// Mean radiance over the pixel added by a radiant intensity of 1 at the point.
     pub weight: f64,
 }
 
@@ -101,7 +105,7 @@ mod tests {
     use super::*;
     use glam::{Vec3, Vec4Swizzles as _};
 
-    /// The solid angle of a pixel is what its corners' directions span.
+    /// The solid angle of a pixel is that spanned by the directions to its corners.
     #[test]
     fn an_intensity_is_spread_over_a_pixels_solid_angle() {
         let camera = Camera { vertical_fov: 0.9, ..Camera::framing([Vec3::ZERO].into_iter(), Vec3::Z, 0.9) };
@@ -112,14 +116,14 @@ mod tests {
                 .map(|(a, b)| (view.direction(x + a, y + b) - view.direction(x - a, y - b)) / (2.0 * shift));
             let solid_angle = right.cross(down).length();
             let sight = view.sight(view.eye + 3.0 * view.direction(x, y)).expect("in the picture");
-            // What a point of intensity 1 sends to the eye, over the solid angle.
+            // The irradiance at the eye from a point of intensity 1, divided by the solid angle.
             assert!((sight.weight * 9.0 * solid_angle - 1.0).abs() < 1e-6, "{sight:?}");
         }
         assert!(view.sight(view.eye - view.direction(32.0, 24.0)).is_none());
         assert!(view.sight(view.eye + view.direction(-1.0, 24.0)).is_none());
     }
 
-    /// The matrix that the renderer's camera is made of, with f32's digits.
+    /// The matrix behind the renderer's camera, to f32 precision.
     #[test]
     fn directions_project_back_to_their_pixels() {
         let camera = Camera {

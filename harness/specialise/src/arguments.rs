@@ -1,14 +1,15 @@
-//! Function arguments: one that is the same constant in every call becomes that constant, and one that nobody reads is
-//! no longer passed.
+//! Function arguments: an argument that is the same constant in every call becomes that constant,
+//! and an argument that is never read is no longer passed.
 
 use super::operands;
 use super::value::{Globals, Value};
 use naga::{Constant, Expression, Function, Handle, Module, Span, Statement};
 use std::collections::HashMap;
 
-/// Puts an argument's value in its place wherever every call passes the same one; whether there was any.
+/// Replaces each argument by its value if every call passes the same constant; returns whether
+/// there was any.
 ///
-/// Entry points are left alone: the pipeline calls them.
+/// Entry points are left alone, since the pipeline calls them.
 pub(super) fn propagate_constant_arguments(module: &mut Module) -> bool {
     let calls = common_arguments(module);
     let mut changed = false;
@@ -25,7 +26,8 @@ pub(super) fn propagate_constant_arguments(module: &mut Module) -> bool {
                 Value::Literal(literal) => Expression::Literal(literal),
                 Value::Constant(constant) => Expression::Constant(constant),
                 Value::Zero(ty) => Expression::ZeroValue(ty),
-                // Its parts cannot be put before it among the function's expressions, but before it in the module.
+                // The parts of a composite cannot be inserted before it among the function's
+                // expressions, so it becomes a constant of the module.
                 composite => {
                     let ty = function.arguments[index].ty;
                     let init = composite.write(&mut module.global_expressions);
@@ -43,7 +45,8 @@ pub(super) fn propagate_constant_arguments(module: &mut Module) -> bool {
     changed
 }
 
-/// Per called function and argument: the constant that all calls pass, where they do.
+/// Returns, for each called function and each of its arguments, the constant that all calls pass;
+/// `None` if they differ.
 fn common_arguments(module: &Module) -> Vec<(Handle<Function>, Vec<Option<Value>>)> {
     let globals = Globals::of(module);
     let mut common: HashMap<Handle<Function>, Vec<Option<Value>>> = HashMap::new();
@@ -66,14 +69,14 @@ fn common_arguments(module: &Module) -> Vec<(Handle<Function>, Vec<Option<Value>
             }
         });
     }
-    // In the order of the module, so that the same module always comes out the same.
+    // Module order, so that the same module always gives the same result.
     let mut common: Vec<_> = common.into_iter().collect();
     common.sort_by_key(|(callee, _)| callee.index());
     common
 }
 
-/// Drops the arguments that no expression names, in functions and in their calls; whether there was any. The module is
-/// compact, so that an expression is one in use.
+/// Drops the arguments that no expression refers to, from functions and from their calls; returns
+/// whether there was any. The module is compact, so every expression in it is in use.
 pub(super) fn drop_unread_arguments(module: &mut Module) -> bool {
     let mut kept: HashMap<Handle<Function>, Vec<usize>> = HashMap::new();
     for (handle, function) in module.functions.iter_mut() {

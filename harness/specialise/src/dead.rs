@@ -1,14 +1,16 @@
-//! Drops what has no effect: stores to variables that nobody reads, calls of functions that change nothing and whose
-//! result nobody reads, and the branches and loops that are left with neither.
+//! Drops code without effect: stores to variables that are never read, calls of pure functions
+//! whose result is never read, and the branches and loops that contain nothing else.
 //!
-//! Everything is taken for dead until something that matters needs it. What matters is a return, a discard, a write to
-//! what is not the function's own, and whatever may be seen by other invocations; statements keep their order.
+//! Everything is assumed dead until something that matters needs it. Returns, discards, writes to
+//! anything that is not the function's own, and whatever other invocations may see matter. The
+//! order of statements does not change.
 
 use super::operands;
 use naga::{Arena, Block, Expression, Function, Handle, LocalVariable, Module, Statement};
 use std::collections::{HashMap, HashSet};
 
-/// Drops the dead statements of every function. Names of dead expressions go as well, since naga keeps what has a name.
+/// Drops the dead statements of every function, and the names of dead expressions, since naga keeps
+/// every named expression.
 pub(super) fn drop_dead_statements(module: &mut Module) {
     let pure = pure_functions(module);
     let functions = module.functions.iter_mut().map(|(_, function)| function);
@@ -22,10 +24,11 @@ pub(super) fn drop_dead_statements(module: &mut Module) {
     }
 }
 
-/// The functions that change nothing but their own variables, so that a call is needed for its result alone.
+/// Returns the functions that change nothing but their own variables, so that a call is needed only
+/// for its result.
 fn pure_functions(module: &Module) -> HashSet<Handle<Function>> {
     let mut pure = HashSet::new();
-    // A function stands behind those that it calls.
+    // A function comes after those that it calls.
     for (handle, function) in module.functions.iter() {
         let mut is_pure = true;
         operands::for_each_statement(&function.body, &mut |statement| {
@@ -52,14 +55,14 @@ fn pure_functions(module: &Module) -> HashSet<Handle<Function>> {
     pure
 }
 
-/// Whether a break and a continue matter where they stand.
+/// Whether a `break` and a `continue` matter at this place.
 #[derive(Clone, Copy)]
 struct Leaving {
     by_break: bool,
     by_continue: bool,
 }
 
-/// What the needed statements of a function use. Both sets only grow.
+/// The expressions and variables used by the needed statements of a function. Both sets only grow.
 struct Uses<'a> {
     expressions: &'a Arena<Expression>,
     pure: &'a HashSet<Handle<Function>>,
@@ -70,7 +73,8 @@ struct Uses<'a> {
 impl<'a> Uses<'a> {
     fn of(function: &'a Function, body: &Block, pure: &'a HashSet<Handle<Function>>) -> Self {
         let mut uses = Uses { expressions: &function.expressions, pure, live: HashSet::new(), read: HashSet::new() };
-        // A store is needed once its variable is read, perhaps by what stands before it: until nothing is new.
+        // A store is needed once its variable is read, perhaps by an earlier statement: repeat
+        // until nothing is new.
         loop {
             let before = uses.live.len();
             uses.block_is_needed(body, Leaving { by_break: true, by_continue: true });
@@ -80,7 +84,7 @@ impl<'a> Uses<'a> {
         }
     }
 
-    /// Marks an expression and all that it is made of.
+    /// Marks an expression and all its operands as live.
     fn mark(&mut self, expression: Handle<Expression>) {
         let mut pending = vec![expression];
         while let Some(expression) = pending.pop() {
@@ -93,7 +97,8 @@ impl<'a> Uses<'a> {
         }
     }
 
-    /// Whether a statement of the block is needed. Marks what the needed ones use: every one is looked at.
+    /// Whether any statement of the block is needed. Visits every statement, and marks what the
+    /// needed ones use.
     fn block_is_needed(&mut self, block: &Block, leaving: Leaving) -> bool {
         let mut needed = false;
         for statement in block.iter() {
@@ -102,7 +107,7 @@ impl<'a> Uses<'a> {
         needed
     }
 
-    /// Whether a statement of one of the blocks inside `statement` is needed, likewise.
+    /// Whether any statement of the blocks inside `statement` is needed; marks in the same way.
     fn inside_is_needed(&mut self, statement: &Statement, leaving: Leaving) -> bool {
         let mut needed = false;
         for block in operands::blocks(statement) {
@@ -111,10 +116,10 @@ impl<'a> Uses<'a> {
         needed
     }
 
-    /// Whether a statement is needed, as far as is known yet. Marks what it uses if it is.
+    /// Whether a statement is needed, as far as is known yet. If it is, marks what it uses.
     fn is_needed(&mut self, statement: &Statement, leaving: Leaving) -> bool {
         let needed = match statement {
-            // An emitted expression is needed by those who use it.
+            // An emitted expression is needed only by its users.
             Statement::Emit(_) => false,
             Statement::Break => leaving.by_break,
             Statement::Continue => leaving.by_continue,
@@ -137,9 +142,11 @@ impl<'a> Uses<'a> {
         needed
     }
 
-    /// Whether a break and a continue inside a statement matter. Out of a switch, a break does if anything else in the
-    /// switch does; out of a loop, or on to its next round, either does if anything else in the loop does. A loop
-    /// without effect is taken to end.
+    /// Returns whether a `break` and a `continue` inside a statement matter.
+    ///
+    /// A `break` out of a switch matters if anything else in the switch does. A `break` or
+    /// `continue` of a loop matters if anything else in the loop does. A loop without effect is
+    /// assumed to end.
     fn leaving_from_inside(&mut self, statement: &Statement, leaving: Leaving) -> Leaving {
         match statement {
             Statement::Switch { .. } => {
@@ -155,7 +162,7 @@ impl<'a> Uses<'a> {
         }
     }
 
-    /// The block without the statements that are not needed.
+    /// Returns the block without the statements that are not needed.
     fn keep_needed(&mut self, block: Block) -> Block {
         self.keep(block, Leaving { by_break: true, by_continue: true })
     }
@@ -188,7 +195,8 @@ impl<'a> Uses<'a> {
     }
 }
 
-/// Drops the local variables that no expression names. The module is compact, so that an expression is one in use.
+/// Drops the local variables that no expression refers to. The module is compact, so every
+/// expression in it is in use.
 pub(super) fn drop_unused_locals(module: &mut Module) {
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     for function in functions.chain(module.entry_points.iter_mut().map(|entry| &mut entry.function)) {
@@ -213,7 +221,7 @@ pub(super) fn drop_unused_locals(module: &mut Module) {
     }
 }
 
-/// Takes the names of the constants that are not used, since naga keeps what has a name.
+/// Removes the names of unused constants, since naga keeps every named constant.
 pub(super) fn forget_unused_constants(module: &mut Module) {
     let mut used = HashSet::new();
     let functions = module.functions.iter().map(|(_, function)| function);

@@ -1,9 +1,10 @@
-//! Folds what is known of one function: scalars whose operands are constants, loads of local variables whose value is
-//! known, and the branches, switches and loops that depend on them.
+//! Folds everything known about one function: scalars with constant operands, loads of local
+//! variables whose value is known, and the branches, switches and loops that depend on them.
 //!
-//! One walk through the body in order of control, with the local variables' known values beside it. Where paths meet,
-//! a variable stays known if they agree on it; round a loop it stays known if the loop never writes it. Expressions are
-//! replaced where they stand, so that handles stay valid: nothing is renumbered here.
+//! A single walk visits the body in the order of control flow, with the known values of the local
+//! variables. Where paths meet, a variable stays known if they agree on it; across a loop, it stays
+//! known if the loop never writes it. Expressions are replaced in place, so that handles stay
+//! valid: nothing is renumbered here.
 
 mod control;
 
@@ -14,14 +15,15 @@ use naga::{
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// What a local variable holds.
+/// The known value of a local variable.
 #[derive(Clone, Copy)]
 enum Held {
     /// A scalar constant.
     Literal(Literal),
     /// The value of an expression that is in scope.
     Expression(Handle<Expression>),
-    /// A vector, as the variable's own initial value writes it. No statement evaluates that, so a load is replaced by a copy.
+    /// A vector, as written in the variable's initial value. No statement evaluates that
+    /// expression, so a load is replaced by a copy of it.
     Initial(Handle<Expression>),
 }
 
@@ -37,17 +39,18 @@ impl Held {
     }
 }
 
-/// What local variables hold, where that is known.
+/// The values of local variables, as far as they are known.
 type Known = HashMap<Handle<LocalVariable>, Held>;
 
-/// Whether control goes on behind a block. It does not behind a return, discard, break or continue on every path.
+/// Whether control continues after a block. It does not if every path ends in a return, discard,
+/// break or continue.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Flow {
     GoesOn,
     Ends,
 }
 
-/// Folds a function in place. `module` lends its types and constants; its functions are not read.
+/// Folds a function in place. `module` provides types and constants; its functions are not read.
 pub(super) fn fold_function(module: &mut Module, function: &mut Function) {
     let mut known = initial_values(module, function);
     let body = std::mem::take(&mut function.body);
@@ -56,7 +59,8 @@ pub(super) fn fold_function(module: &mut Module, function: &mut Function) {
     let (body, _) = folder.block(body, &mut known);
     let stands_for = folder.stands_for;
     function.body = body;
-    // `let x = v;` names a load that is no longer there: the name goes to the value, unless that has its own.
+    // `let x = v;` names a load that is gone: the name moves to the value, unless the value has its
+    // own.
     for (expression, value) in stands_for {
         if let Some(name) = function.named_expressions.get(&expression).cloned()
             && !function.expressions[value].needs_pre_emit()
@@ -66,8 +70,8 @@ pub(super) fn fold_function(module: &mut Module, function: &mut Function) {
     }
 }
 
-/// What each scalar variable holds on entry: its initial value, or the zero that WGSL gives one without. Of vectors those
-/// that are written out.
+/// Returns the values of the local variables on entry. A scalar holds its initial value, or the
+/// zero that WGSL assigns without one; a vector is known only if its initial value is written out.
 fn initial_values(module: &Module, function: &Function) -> Known {
     let globals = Globals::of(module);
     let value = |local: &LocalVariable| match local.init {
@@ -92,24 +96,26 @@ fn initial_values(module: &Module, function: &Function) -> Known {
 struct Folder<'a> {
     module: &'a mut Module,
     expressions: &'a mut Arena<Expression>,
-    /// The operand that a `select` on a constant takes, and the value that a load finds.
+    /// Replacements: for a `select` on a constant, the operand that it takes; for a load, the value
+    /// that it finds.
     stands_for: BTreeMap<Handle<Expression>, Handle<Expression>>,
-    /// The expressions that have been evaluated up to here and may be used, in order.
+    /// The expressions evaluated so far that may be used, in order.
     scope: Vec<Handle<Expression>>,
 }
 
 impl Folder<'_> {
-    /// Folds the statements of a block; what can never be reached behind one is dropped.
+    /// Folds the statements of a block; drops those that can never be reached.
     fn block(&mut self, block: Block, known: &mut Known) -> (Block, Flow) {
         let mut folded = Block::with_capacity(block.len());
         for (mut statement, span) in block.span_into_iter() {
-            // Of a loop, the operand is used at its end.
+            // The operand of a loop is used only at its end.
             if !matches!(statement, Statement::Loop { .. }) {
                 operands::of_statement(&mut statement, &mut |operand| *operand = self.resolve(*operand));
             }
             let flow = match statement {
                 Statement::Emit(range) => self.emit(range, span, known, &mut folded),
-                // Its variables are the function's, so that nothing in naga's IR needs it to stay one.
+                // In naga's IR a block's variables belong to the function, so the block can be
+                // dissolved.
                 Statement::Block(inner) => {
                     let (mut inner, flow) = self.block(inner, known);
                     folded.append(&mut inner);
@@ -139,7 +145,8 @@ impl Folder<'_> {
         (folded, Flow::GoesOn)
     }
 
-    /// Folds a block that stays inside its statement, so that what is evaluated in it cannot be used behind it.
+    /// Folds a block that stays inside its statement, so that values evaluated in it cannot be used
+    /// after it.
     fn inner_block(&mut self, block: Block, known: &mut Known) -> (Block, Flow) {
         let outer = self.scope.len();
         let folded = self.block(block, known);
@@ -148,7 +155,8 @@ impl Folder<'_> {
         folded
     }
 
-    /// Folds what is evaluated here. A literal must not be emitted, so the range falls into the parts between them.
+    /// Folds the expressions that are evaluated here. A literal must not be emitted, so the range
+    /// is split at literals.
     fn emit(&mut self, range: Range<Expression>, span: Span, known: &Known, folded: &mut Block) -> Flow {
         let mut part: Option<(Handle<Expression>, Handle<Expression>)> = None;
         let mut finish = |part: &mut Option<_>| {
@@ -169,7 +177,7 @@ impl Folder<'_> {
         Flow::GoesOn
     }
 
-    /// Replaces an expression by its value, where that is known.
+    /// Replaces an expression by its value if that is known.
     fn expression(&mut self, handle: Handle<Expression>, known: &Known) {
         let mut expression = self.expressions[handle].clone();
         operands::of_expression(&mut expression, &mut |operand| *operand = self.resolve(*operand));
@@ -200,9 +208,9 @@ impl Folder<'_> {
         *self.expressions.get_mut(handle) = value.map_or(expression, Expression::Literal);
     }
 
-    /// What an operand has come down to.
+    /// Returns the expression that replaces an operand, or the operand itself.
     fn resolve(&self, operand: Handle<Expression>) -> Handle<Expression> {
-        // What it stands for was an operand itself, and resolved.
+        // One step is enough: a replacement was itself an operand, and so already resolved.
         self.stands_for.get(&operand).copied().unwrap_or(operand)
     }
 
@@ -217,7 +225,7 @@ impl Folder<'_> {
         }
     }
 
-    /// Notes what a plain statement writes to local variables.
+    /// Records the writes of a simple statement to local variables.
     fn write(&mut self, statement: &Statement, known: &mut Known) {
         if let Statement::Store { pointer, value } = *statement
             && let Expression::LocalVariable(local) = self.expressions[pointer]
@@ -236,13 +244,15 @@ impl Folder<'_> {
         forget(known, &written);
     }
 
-    /// What a variable holds once an expression is stored in it. Results of atomics and the like are not followed.
+    /// Returns the value that a variable holds after an expression is stored in it; `None` for
+    /// results of atomics and the like, which are not tracked.
     fn held(&self, value: Handle<Expression>) -> Option<Held> {
         let usable = self.expressions[value].needs_pre_emit() || self.scope.contains(&value);
         self.scalar(value).map(Held::Literal).or(usable.then_some(Held::Expression(value)))
     }
 
-    /// The local variables that a statement may write, without those inside it. A pointer that is handed on counts.
+    /// Collects the local variables that a statement may write, apart from the statements inside
+    /// it. A pointer that is passed on counts as written.
     fn written_by(&self, statement: &Statement, written: &mut HashSet<Handle<LocalVariable>>) {
         let pointers = match statement {
             Statement::Store { pointer, .. } => vec![*pointer],
@@ -251,7 +261,7 @@ impl Folder<'_> {
         written.extend(pointers.iter().filter_map(|pointer| operands::local_of_pointer(self.expressions, *pointer)));
     }
 
-    /// The local variables that may be written somewhere in a block.
+    /// Collects the local variables that may be written anywhere in a block.
     fn written_in(&self, block: &Block, written: &mut HashSet<Handle<LocalVariable>>) {
         operands::for_each_statement(block, &mut |statement| self.written_by(statement, written));
     }

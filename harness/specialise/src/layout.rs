@@ -1,31 +1,33 @@
-//! How a shader lays out its structs in buffers: each field by name, kind and offset, as naga has them.
+//! The layout of a shader's structs in buffers, taken from naga: name, kind and offset of each
+//! field.
 
 use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner, VectorSize};
 
 /// A struct in a uniform or storage buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StructLayout {
-    /// Its size in bytes, which is also the distance between two in an array.
+    /// Size in bytes, which is also the stride in an array.
     pub size: usize,
-    /// Its fields in order. A field of an inner struct is named `outer.inner`.
+    /// Fields in order. A field of an inner struct is named `outer.inner`.
     pub fields: Vec<Field>,
 }
 
-/// A field of scalars: one, a vector, a matrix, or an array of these.
+/// A field made of scalars: a scalar, a vector, a matrix, or an array of these.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
+    /// Name of the field.
     pub name: String,
-    /// Its type, as WGSL writes it: `vec3<f32>`.
+    /// Type in WGSL notation: `vec3<f32>`.
     pub ty: String,
-    /// The kind of its scalars, which are 32 bits wide.
+    /// Kind of the scalars, which are 32 bits wide.
     pub kind: ScalarKind,
-    /// Byte offset of each scalar from the start of the struct, of a matrix column by column.
+    /// Byte offset of each scalar from the start of the struct; a matrix is listed column by
+    /// column.
     pub offsets: Vec<usize>,
 }
 
 impl StructLayout {
-    /// The layout of each struct of a module that is made of scalars of 32 bits, by its name.
+    /// Returns the name and layout of each struct in a module that consists of 32-bit scalars.
     pub fn all(module: &Module) -> impl Iterator<Item = (&str, StructLayout)> {
         module.types.iter().filter_map(|(_, ty)| {
             let TypeInner::Struct { span, .. } = ty.inner else { return None };
@@ -36,7 +38,7 @@ impl StructLayout {
     }
 }
 
-/// None if one of them is not made of scalars of 32 bits.
+/// Adds the fields of a struct; `None` if one of them does not consist of 32-bit scalars.
 fn add_fields(module: &Module, ty: &Type, outer: &str, base: usize, fields: &mut Vec<Field>) -> Option<()> {
     let TypeInner::Struct { members, .. } = &ty.inner else { return None };
     for member in members {
@@ -59,7 +61,7 @@ fn kind(module: &Module, ty: Handle<Type>) -> Option<ScalarKind> {
     }
 }
 
-/// A type of scalars of 32 bits, as WGSL writes it.
+/// Returns a type of 32-bit scalars in WGSL notation; `None` for any other type.
 fn type_name(module: &Module, ty: Handle<Type>) -> Option<String> {
     let scalar = |kind: ScalarKind| match kind {
         ScalarKind::Float => Some("f32"),
@@ -79,7 +81,8 @@ fn type_name(module: &Module, ty: Handle<Type>) -> Option<String> {
     })
 }
 
-/// The byte offset of each word of a type that lies at `base`; none if it is not made of scalars of 32 bits, or has an array of runtime size.
+/// Returns the byte offset of each word of a type at offset `base`; `None` if the type does not
+/// consist of 32-bit scalars, or has an array of runtime size.
 pub fn word_offsets(module: &Module, ty: Handle<Type>, base: usize) -> Option<Vec<usize>> {
     let of_parts = |parts: &mut dyn Iterator<Item = (Handle<Type>, usize)>| {
         parts

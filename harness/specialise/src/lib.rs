@@ -1,26 +1,31 @@
-//! Specialises a shader: only what the chosen override values call for is left, so that what a scene does not ask for
-//! is neither compiled nor bound.
+//! Specialises a shader: keeps only the code that the chosen override values need, so that nothing
+//! a scene does not ask for is compiled or bound.
 //!
-//! All of it happens on naga's IR, pass by pass:
+//! Everything happens on naga's IR, pass by pass:
 //!
-//! 1. `keep_entry_points`: the others go.
-//! 2. `apply_overrides`: naga gives every `override` its value and evaluates the constant expressions above it.
+//! 1. `keep_entry_points`: drops the other entry points.
+//! 2. `apply_overrides`: naga gives every `override` its value and evaluates the constant
+//!    expressions above it.
 //! 3. In rounds, until nothing changes:
-//!    - `fold`: branches, switches and loops on what is constant, with the local variables between (naga lowers `&&`
-//!      and `||` to an `if` and a variable);
-//!    - `dead`: stores that nobody reads, calls without effect whose result nobody reads;
-//!    - naga's own compaction: functions, globals, types and expressions that nothing reaches;
-//!    - `arguments`: those that are the same constant in every call, those that nobody reads.
-//! 4. `stages`: what a vertex stage hands on and no fragment stage reads; if there was any, 3. again.
-//! 5. `finish`: constants that nothing uses, and naga's validation.
+//!    - `fold`: folds branches, switches and loops on constants, with the local variables between
+//!      them (naga lowers `&&` and `||` to an `if` and a variable);
+//!    - `dead`: drops stores that are never read, and calls without effect whose result is never
+//!      read;
+//!    - naga's own compaction: drops unreachable functions, globals, types and expressions;
+//!    - `arguments`: replaces arguments that are the same constant in every call, drops those that
+//!      are never read.
+//! 4. `stages`: drops vertex outputs that no fragment stage reads; if there were any, step 3 is
+//!    repeated.
+//! 5. `finish`: drops unused constants and runs naga's validation.
 //!
-//! What is left does what the whole shader does with these values, to the bit: a sum of floats is never computed here,
-//! and calls and stores keep their order. A function whose result is used stays a function, and a function's result is
-//! never taken for constant.
+//! The result is identical, to the bit, to that of the whole shader with these values: sums of
+//! floats are never computed here, and calls and stores keep their order. A function whose result
+//! is used stays a function, and its result is never treated as constant.
 //!
-//! Two limits. A loop without effect is dropped, which would be seen if it did not end. And an argument that becomes a
-//! constant falls under WGSL's rules for constants when the module is written as text: a division by a zero that only
-//! now is known is then an error, where the device would have given a value.
+//! There are two limits. A loop without effect is dropped, which would be visible if it did not
+//! end. And an argument that becomes a constant falls under WGSL's rules for constants when the
+//! module is written as text: a division by a zero that becomes known only then is an error,
+//! although the device would have returned a value.
 
 mod arguments;
 mod dead;
@@ -43,15 +48,15 @@ use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
 use naga::{Module, WithSpan};
 
-/// Why a shader could not be specialised.
+/// The reasons why a shader could not be specialised.
 #[derive(Debug, thiserror::Error)]
 pub enum SpecialiseError {
     /// The module has no entry point of that name.
     #[error("no entry point `{name}`; the shader has {found}")]
     NoEntryPoint {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are.
+        /// The names that exist.
         found: String,
     },
     /// An override has no value, a value has no override, or a value does not fit.
@@ -60,21 +65,24 @@ pub enum SpecialiseError {
     /// An override is the length of a workgroup array, which naga's IR ties to the override itself.
     #[error("override `{name}` is the length of an array; give the array a constant length")]
     ArrayLength {
-        /// The override.
+        /// Name of the override.
         name: String,
     },
-    /// The shader is not valid, before or after.
+    /// The shader is not valid, before or after specialisation.
     #[error("the shader is not valid {when} it was specialised: {error}")]
     Invalid {
-        /// "before" points at the shader, "after" at a fault of the specialisation.
+        /// "before" means that the shader is at fault, "after" that the specialisation is.
         when: &'static str,
-        /// naga's word.
+        /// The error reported by naga.
         error: Box<WithSpan<naga::valid::ValidationError>>,
     },
 }
 
-/// The part of a shader that the named entry points need with these override values: (override's name or `@id`, value),
-/// a bool as 0 or 1. An override that is not named keeps its default.
+/// Returns the part of a shader that the named entry points need with the given override values,
+/// and its validation info.
+///
+/// `constants` are pairs of an override's name or `@id` and its value, with a bool as 0 or 1. An
+/// override that is not named keeps its default.
 pub fn specialise(
     ir: Module,
     constants: &[(&str, f64)],
@@ -109,7 +117,8 @@ fn fold_in_rounds(module: &mut Module) {
     }
 }
 
-/// The module with the named entry points alone. First of all, so that an override of another needs no value.
+/// Returns the module with only the named entry points. This comes first, so that overrides of
+/// other entry points need no value.
 fn keep_entry_points(mut module: Module, names: &[&str]) -> Result<Module, SpecialiseError> {
     for name in names {
         if !module.entry_points.iter().any(|entry| entry.name == *name) {
@@ -122,7 +131,7 @@ fn keep_entry_points(mut module: Module, names: &[&str]) -> Result<Module, Speci
     Ok(module)
 }
 
-/// The module with constants instead of overrides.
+/// Returns the module with constants instead of overrides.
 fn apply_overrides(module: &Module, info: &ModuleInfo, constants: &[(&str, f64)]) -> Result<Module, SpecialiseError> {
     let constants = constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
     let (module, _) = process_overrides(module, info, None, &constants)
@@ -130,7 +139,7 @@ fn apply_overrides(module: &Module, info: &ModuleInfo, constants: &[(&str, f64)]
     Ok(module.into_owned())
 }
 
-/// Folds each function, with the types and constants of the module at hand.
+/// Folds each function, with the module's types and constants available.
 fn fold_functions(module: &mut Module) {
     let mut functions = std::mem::take(&mut module.functions);
     for (_, function) in functions.iter_mut() {
@@ -144,7 +153,8 @@ fn fold_functions(module: &mut Module) {
     module.entry_points = entry_points;
 }
 
-/// Statements, expressions and variables of all functions: a round that found anything to fold or drop leaves fewer.
+/// Returns the number of statements, expressions and variables in all functions. It falls in every
+/// round that folds or drops anything.
 fn size(module: &Module) -> usize {
     let functions = module.functions.iter().map(|(_, function)| function);
     functions
@@ -157,11 +167,12 @@ fn size(module: &Module) -> usize {
         .sum()
 }
 
-/// Drops the last of what is unused, and validates.
+/// Drops everything still unused, and validates.
 fn finish(mut module: Module) -> Result<(Module, ModuleInfo), SpecialiseError> {
     dead::forget_unused_constants(&mut module);
     compact(&mut module, KeepUnused::No);
-    // naga hands back the overrides that it has replaced; compaction drops all but those that a type still names.
+    // naga returns the overrides that it has replaced; compaction drops all but those that a type
+    // still refers to.
     if let Some((_, left)) = module.overrides.iter().next() {
         let name = left.name.clone().or(left.id.map(|id| format!("@id({id})"))).unwrap_or_default();
         return Err(SpecialiseError::ArrayLength { name });

@@ -1,9 +1,10 @@
-//! Which expressions an expression or a statement refers to. naga has these visits for itself alone.
+//! Visits the expressions that an expression or a statement refers to. naga has such visitors but
+//! does not export them.
 
 use naga::{AtomicFunction, Expression, GatherMode, Handle, ImageQuery, RayPipelineFunction, RayQueryFunction};
 use naga::{SampleLevel, Statement};
 
-/// What is done to each reference.
+/// Callback for each reference.
 type Visit<'a> = &'a mut dyn FnMut(&mut Handle<Expression>);
 
 /// Visits the operands of an expression.
@@ -99,8 +100,8 @@ pub(super) fn of_expression(expression: &mut Expression, visit: Visit<'_>) {
     }
 }
 
-/// Visits the operands of a statement: neither those of the statements inside it, nor the result that it defines, nor
-/// what it emits.
+/// Visits the operands of a statement, but not those of the statements inside it, the result that
+/// it defines, or the expressions that it emits.
 pub(super) fn of_statement(statement: &mut Statement, visit: Visit<'_>) {
     match statement {
         Statement::Emit(_)
@@ -195,17 +196,18 @@ fn of_atomic(fun: &mut AtomicFunction, visit: Visit<'_>) {
     }
 }
 
-/// The operands of an expression, in order.
+/// Returns the operands of an expression, in order.
 pub(crate) fn list_of_expression(expression: &Expression) -> Vec<Handle<Expression>> {
     let mut operands = Vec::new();
     of_expression(&mut expression.clone(), &mut |operand| operands.push(*operand));
     operands
 }
 
-/// The operands of a statement, in order; see [`of_statement`].
+/// Returns the operands of a statement, in order; see [`of_statement`].
 pub(super) fn list_of_statement(statement: &Statement) -> Vec<Handle<Expression>> {
     let mut operands = Vec::new();
-    // A statement is cloned with the blocks inside it, which a visit must not touch anyway.
+    // Cloning a statement would also clone the blocks inside it, which a visit must not touch
+    // anyway.
     match statement {
         Statement::If { condition, .. } => operands.push(*condition),
         Statement::Switch { selector, .. } => operands.push(*selector),
@@ -216,7 +218,7 @@ pub(super) fn list_of_statement(statement: &Statement) -> Vec<Handle<Expression>
     operands
 }
 
-/// The blocks inside a statement, in order.
+/// Returns the blocks inside a statement, in order.
 pub(super) fn blocks(statement: &Statement) -> Vec<&naga::Block> {
     match statement {
         Statement::Block(block) => vec![block],
@@ -237,7 +239,8 @@ pub fn for_each_statement(block: &naga::Block, visit: &mut dyn FnMut(&Statement)
     }
 }
 
-/// Calls `visit` for each statement of a block and of the blocks inside it, which it may change.
+/// Calls `visit` for each statement of a block and of the blocks inside it; `visit` may change the
+/// statement.
 pub(super) fn for_each_statement_mut(block: &mut naga::Block, visit: &mut dyn FnMut(&mut Statement)) {
     for statement in block.iter_mut() {
         visit(statement);
@@ -259,7 +262,8 @@ pub(super) fn for_each_statement_mut(block: &mut naga::Block, visit: &mut dyn Fn
     }
 }
 
-/// The local variable that a pointer points into, where it is one of the function's own.
+/// Returns the local variable that a pointer points into; `None` if it is not one of the function's
+/// own.
 pub(super) fn local_of_pointer(
     expressions: &naga::Arena<Expression>,
     mut pointer: Handle<Expression>,
@@ -267,7 +271,8 @@ pub(super) fn local_of_pointer(
     loop {
         match expressions[pointer] {
             Expression::LocalVariable(local) => return Some(local),
-            // Of a value instead of a pointer, these end at something else than a local variable.
+            // If the base is a value rather than a pointer, the chain ends at something other than
+            // a local variable.
             Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => pointer = base,
             _ => return None,
         }

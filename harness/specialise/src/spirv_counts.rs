@@ -1,5 +1,5 @@
-//! What a shader is made of, counted in the SPIR-V that naga writes for each entry point alone: a figure that no driver
-//! changes, beside the measured times.
+//! Static size of a shader, counted in the SPIR-V that naga writes for each entry point alone. The
+//! counts do not depend on a driver, and complement the measured times.
 
 use crate::operands;
 use naga::back::spv;
@@ -9,38 +9,39 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The counts of a vertex and a fragment entry point.
 ///
-/// An instruction is one that does something: all that stand inside the functions that the entry point reaches, except
-/// what only declares or structures: `OpFunction`, `OpFunctionParameter`, `OpFunctionEnd`, `OpLabel`, `OpVariable`,
-/// `OpSelectionMerge`, `OpLoopMerge`, `OpLine`, `OpNoLine`, `OpNop`. Branches, calls and loads count. A function counts
-/// once however often it is called, a loop's body once whatever its rounds, and both sides of a branch.
+/// All instructions inside the functions that the entry point reaches are counted, except those
+/// that only declare or structure: `OpFunction`, `OpFunctionParameter`, `OpFunctionEnd`, `OpLabel`,
+/// `OpVariable`, `OpSelectionMerge`, `OpLoopMerge`, `OpLine`, `OpNoLine`, `OpNop`. Branches, calls
+/// and loads count. A function counts once however often it is called, a loop body once whatever
+/// its number of iterations, and both sides of a branch count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpirvCounts {
-    /// Instructions that the vertex entry point reaches.
+    /// Number of instructions that the vertex entry point reaches.
     pub vertex_instructions: u32,
-    /// Instructions that the fragment entry point reaches.
+    /// Number of instructions that the fragment entry point reaches.
     pub fragment_instructions: u32,
-    /// Bytes of the uniform buffers, and of the arrays of constants, that either entry point uses, each once. A struct
-    /// of constants with an array in it counts whole.
+    /// Size in bytes of the uniform buffers and the constant arrays that either entry point uses,
+    /// each counted once. A struct of constants that contains an array counts in full.
     pub constant_bytes: u32,
-    /// Storage buffers that either entry point uses.
+    /// Number of storage buffers that either entry point uses.
     pub storage_bindings: u32,
 }
 
-/// Why there are no counts.
+/// The reason why there are no counts.
 #[derive(Debug, thiserror::Error)]
 pub enum SpirvCountsError {
     /// naga cannot write the entry point.
     #[error("entry point `{entry_point}` cannot be written as SPIR-V: {error}")]
     Write {
-        /// Its name.
+        /// Name of the entry point.
         entry_point: String,
-        /// naga's word.
+        /// The error reported by naga.
         error: spv::Error,
     },
 }
 
-/// Counts what a vertex and a fragment entry point of a valid module are made of. Its overrides have been applied, as
-/// [`specialise`](crate::specialise) does.
+/// Counts the contents of a vertex and a fragment entry point of a valid module. Its overrides have
+/// been applied, as [`specialise`](crate::specialise) does.
 pub fn spirv_counts(
     ir: &Module,
     info: &ModuleInfo,
@@ -58,14 +59,15 @@ pub fn spirv_counts(
     })
 }
 
-/// The instructions of all entry points of a valid module without overrides; 0 of one that SPIR-V cannot say.
+/// Returns the number of instructions of all entry points of a valid module without overrides. An
+/// entry point that SPIR-V cannot express counts as 0.
 pub fn instructions(ir: &Module, info: &ModuleInfo) -> usize {
     let of =
         |entry: &naga::EntryPoint| instructions_of(ir, info, entry.stage, &entry.name).unwrap_or_default() as usize;
     ir.entry_points.iter().map(of).sum()
 }
 
-/// The instructions that one entry point reaches.
+/// Returns the number of instructions that one entry point reaches.
 fn instructions_of(
     ir: &Module,
     info: &ModuleInfo,
@@ -73,7 +75,7 @@ fn instructions_of(
     entry_point: &str,
 ) -> Result<u32, SpirvCountsError> {
     let options = spv::Options {
-        // The shader as written: without bounds on loops, turned axes or clamped depths.
+        // The shader as written: without loop bounds, flipped axes or clamped depths.
         flags: spv::WriterFlags::empty(),
         force_loop_bounding: false,
         ..spv::Options::default()
@@ -100,10 +102,11 @@ mod op {
     pub const NO_LINE: u16 = 317;
 }
 
-/// Words before the first instruction: magic number, version, generator, bound, schema.
+/// Number of words before the first instruction: magic number, version, generator, bound, schema.
 const HEADER_WORDS: usize = 5;
 
-/// Counts the instructions in the functions that the entry points of a SPIR-V module reach; see [`SpirvCounts`].
+/// Counts the instructions in the functions that the entry points of a SPIR-V module reach; see
+/// [`SpirvCounts`].
 fn reached_instructions(words: &[u32]) -> u32 {
     #[derive(Default)]
     struct Body {
@@ -119,9 +122,9 @@ fn reached_instructions(words: &[u32]) -> u32 {
         let (instruction, behind) = rest.split_at(length);
         rest = behind;
         match opcode {
-            // Execution model, then the function.
+            // Operands: execution model, function.
             op::ENTRY_POINT => pending.push(instruction[2]),
-            // Result type, then the function.
+            // Operands: result type, function.
             op::FUNCTION => inside = Some(instruction[2]),
             op::FUNCTION_END => inside = None,
             op::FUNCTION_PARAMETER | op::VARIABLE | op::LABEL | op::SELECTION_MERGE | op::LOOP_MERGE => {}
@@ -131,7 +134,7 @@ fn reached_instructions(words: &[u32]) -> u32 {
                 let body = bodies.entry(function).or_default();
                 body.instructions += 1;
                 if opcode == op::FUNCTION_CALL {
-                    // Result type, result, then the function.
+                    // Operands: result type, result, function.
                     body.calls.push(instruction[3]);
                 }
             }
@@ -150,10 +153,11 @@ fn reached_instructions(words: &[u32]) -> u32 {
     instructions
 }
 
-/// What some entry points use, themselves and through the functions that they call.
+/// The globals and constant tables that some entry points use, directly or through the functions
+/// that they call.
 struct Used {
     globals: BTreeSet<Handle<naga::GlobalVariable>>,
-    /// The type of each table of constants, once for each table.
+    /// Type of each table of constants, once per table.
     tables: Vec<Handle<Type>>,
 }
 
@@ -183,11 +187,11 @@ impl Used {
         used
     }
 
-    /// Adds the tables of constants that a function uses: those with a name once for all, `named`; those written out in
-    /// its expressions each for itself.
+    /// Adds the tables of constants that a function uses. A table with a name counts once overall,
+    /// tracked in `named`; a table written out in an expression counts each time.
     fn add_tables(&mut self, ir: &Module, function: &Function, named: &mut BTreeSet<Handle<naga::Constant>>) {
         let mut parts = BTreeSet::new();
-        // From the back: the whole is met before its parts.
+        // In reverse order, so that the whole comes before its parts.
         for (handle, expression) in function.expressions.iter().rev() {
             if let Expression::Constant(constant) = *expression
                 && !parts.contains(&handle)
@@ -208,7 +212,7 @@ impl Used {
         }
     }
 
-    /// The types of the global variables of an address space.
+    /// Returns the types of the used global variables in an address space.
     fn globals_in(&self, ir: &Module, space: AddressSpace) -> impl Iterator<Item = Handle<Type>> {
         let variables = self.globals.iter().map(|global| &ir.global_variables[*global]);
         variables.filter(move |variable| variable.space == space).map(|variable| variable.ty)
@@ -221,7 +225,7 @@ impl Used {
     }
 }
 
-/// The functions that a function calls.
+/// Returns the functions that a function calls.
 fn callees(function: &Function) -> BTreeSet<Handle<Function>> {
     let mut callees = BTreeSet::new();
     operands::for_each_statement(&function.body, &mut |statement| {
@@ -232,7 +236,7 @@ fn callees(function: &Function) -> BTreeSet<Handle<Function>> {
     callees
 }
 
-/// Whether a type is an array or a struct that has one, somewhere.
+/// Whether a type is an array or a struct that contains one at any depth.
 fn holds_array(ir: &Module, ty: Handle<Type>) -> bool {
     match &ir.types[ty].inner {
         TypeInner::Array { .. } => true,
@@ -241,7 +245,7 @@ fn holds_array(ir: &Module, ty: Handle<Type>) -> bool {
     }
 }
 
-/// Whether an expression is written out of constants alone.
+/// Whether an expression consists of constants only.
 fn is_constant(function: &Function, expression: Handle<Expression>) -> bool {
     match &function.expressions[expression] {
         Expression::Literal(_) | Expression::Constant(_) | Expression::ZeroValue(_) => true,
@@ -262,7 +266,7 @@ mod tests {
         spirv_counts(&module, &info, "v", "f").unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// Each instruction: opcode and operands.
+    /// Assembles a module from instructions: opcode and operands of each.
     fn module(instructions: &[(u16, &[u32])]) -> Vec<u32> {
         let mut words = vec![0; HEADER_WORDS];
         for (opcode, operands) in instructions {
@@ -316,7 +320,7 @@ mod tests {
         let more = counts(&PLAIN.replace("f32(i)", "sin(f32(i)) * 3.0"));
         assert_eq!(more.vertex_instructions, plain.vertex_instructions + 2);
         assert_eq!(more.fragment_instructions, plain.fragment_instructions);
-        // One that nobody calls is not reached; naga writes it all the same.
+        // A function that is never called is not reached, although naga writes it.
         let unused = format!("fn unused(x: f32) -> f32 {{ return sin(x) + cos(x); }} {PLAIN}");
         assert_eq!(counts(&unused), plain);
     }
@@ -339,7 +343,7 @@ mod tests {
                 return vec4f(view.eye, 1.0) + PLANES[u32(at.x)];
             }";
         let found = counts(source);
-        // The struct is 80 bytes, the table 48 in whichever function it is read.
+        // The struct is 80 bytes; the table is 48, whichever function reads it.
         assert_eq!((found.constant_bytes, found.storage_bindings), (80 + 48, 1));
     }
 
@@ -354,7 +358,8 @@ mod tests {
         let (whole, surface) = (of(&[]), of(&[("EFFECT_PROXY_GEOMETRY", 0.0)]));
         assert!(surface.fragment_instructions < whole.fragment_instructions, "{surface:?} {whole:?}");
         assert!(surface.vertex_instructions < whole.vertex_instructions, "{surface:?} {whole:?}");
-        // Two uniform blocks: 64 + 12, padded to 80, and 52, padded to 64; the normals are not read.
+        // Two uniform blocks: 64 + 12, padded to 80, and 52, padded to 64; the normals are not
+        // read.
         assert_eq!((surface.constant_bytes, surface.storage_bindings), (80, 3));
         assert_eq!((whole.constant_bytes, whole.storage_bindings), (80, 4));
     }

@@ -1,4 +1,4 @@
-//! What a vertex stage hands on and no fragment stage reads.
+//! Drops vertex outputs that no fragment stage reads.
 
 use crate::validate;
 use naga::proc::{Alignment, Layouter};
@@ -7,11 +7,13 @@ use naga::{Arena, Binding, EntryPoint, Expression, Function, Handle, Module, Sha
 use naga::{TypeInner, WithSpan};
 use std::collections::HashSet;
 
-/// Drops the members of the struct between a vertex and a fragment stage that nothing reads; whether there was any. What
-/// only they needed is dead then. The module is compact, so that an expression is one in use.
+/// Drops the unread members of the struct between a vertex and a fragment stage; returns whether
+/// there was any. Code that only they needed is then dead. The module is compact, so every
+/// expression in it is in use.
 ///
-/// Where the stages name two structs, or only one of the stages is kept, nothing is dropped: a fragment stage may not
-/// ask for what no vertex stage gives. Nor is a member that the vertex stage assigns by itself.
+/// Nothing is dropped if the stages name two different structs, or if only one of the stages is
+/// kept: a fragment stage may not ask for an input that no vertex stage provides. A member that the
+/// vertex stage assigns individually is kept too.
 pub(super) fn drop_unread_members(module: &mut Module) -> Result<bool, Box<WithSpan<ValidationError>>> {
     let Some(handed_on) = handed_on(module) else { return Ok(false) };
     let info = validate(module)?;
@@ -43,7 +45,8 @@ pub(super) fn drop_unread_members(module: &mut Module) -> Result<bool, Box<WithS
     Ok(true)
 }
 
-/// The struct that the vertex stage returns and every fragment stage takes, where nothing else depends on its layout.
+/// Returns the struct that the vertex stage returns and every fragment stage takes; `None` if
+/// anything else depends on its layout.
 fn handed_on(module: &Module) -> Option<Handle<Type>> {
     let of = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
     let returned = of(ShaderStage::Vertex).find_map(|entry| entry.function.result.as_ref()).map(|result| result.ty)?;
@@ -77,19 +80,20 @@ fn members(module: &Module, ty: Handle<Type>) -> Vec<StructMember> {
     }
 }
 
-/// All functions, the entry points' behind the others.
+/// Returns all functions, followed by those of the entry points.
 fn functions(module: &Module) -> impl Iterator<Item = &Function> {
     let functions = module.functions.iter().map(|(_, function)| function);
     functions.chain(module.entry_points.iter().map(|entry| &entry.function))
 }
 
-/// The same in the same order, to be changed.
+/// Returns the same functions in the same order, mutably.
 fn functions_mut(module: &mut Module) -> impl Iterator<Item = &mut Function> {
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     functions.chain(module.entry_points.iter_mut().map(|entry| &mut entry.function))
 }
 
-/// For each function, in order, the expressions that take a member out of the struct or out of a variable of its type.
+/// Returns, for each function in order, the expressions that access a member of the struct or of a
+/// variable of its type.
 fn accesses(module: &Module, info: &ModuleInfo, ty: Handle<Type>) -> Vec<Vec<Handle<Expression>>> {
     let infos = module.functions.iter().map(|(handle, _)| &info[handle]);
     let infos = infos.chain((0..module.entry_points.len()).map(|index| info.get_entry_point(index)));
@@ -107,7 +111,7 @@ fn accesses(module: &Module, info: &ModuleInfo, ty: Handle<Type>) -> Vec<Vec<Han
     functions(module).zip(infos).map(accesses).collect()
 }
 
-/// The members that an expression names.
+/// Returns the indices of the members that an expression accesses.
 fn read_members(module: &Module, info: &ModuleInfo, ty: Handle<Type>) -> HashSet<usize> {
     let accesses = functions(module).zip(accesses(module, info, ty));
     accesses
@@ -120,7 +124,7 @@ fn read_members(module: &Module, info: &ModuleInfo, ty: Handle<Type>) -> HashSet
         .collect()
 }
 
-/// Leaves out the other components wherever the struct is composed.
+/// Removes the dropped components wherever the struct is composed.
 fn keep_components(expressions: &mut Arena<Expression>, composed: Handle<Type>, kept: &[usize]) {
     for (_, expression) in expressions.iter_mut() {
         if let Expression::Compose { ty, components } = expression
@@ -131,7 +135,7 @@ fn keep_components(expressions: &mut Arena<Expression>, composed: Handle<Type>, 
     }
 }
 
-/// A struct of these members, one behind another as WGSL lays them out.
+/// Returns a struct of these members, laid out one after another by WGSL's rules.
 fn laid_out(module: &Module, mut members: Vec<StructMember>) -> TypeInner {
     let mut layouter = Layouter::default();
     layouter.update(module.to_ctx()).expect("a valid module's types have a layout");

@@ -1,12 +1,12 @@
-//! Constant values: read off an arena of expressions, written into another, compared, and computed with by naga's own
-//! constant evaluator, so that WGSL's rules are stated nowhere twice.
+//! Constant values: read from one arena of expressions, written to another, compared, and computed
+//! by naga's own constant evaluator, so that WGSL's rules are not implemented twice.
 
 use super::operands;
 use naga::proc::{ConstantEvaluator, Emitter, ExpressionKindTracker, HashableLiteral, Layouter};
 use naga::{Arena, Constant, Expression, Handle, Literal, Module, ScalarKind, Span, Type, TypeInner, UnaryOperator};
 use naga::{UniqueArena, VectorSize};
 
-/// A constant, whatever arena it was found in. A scalar is always `Literal`.
+/// A constant, independent of the arena it was found in. A scalar is always a `Literal`.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Literal(Literal),
@@ -16,7 +16,7 @@ pub(super) enum Value {
     Splat(VectorSize, Box<Value>),
 }
 
-/// Where constants are looked up: the parts of a module that hold them.
+/// The parts of a module in which constants are looked up.
 #[derive(Clone, Copy)]
 pub(super) struct Globals<'a> {
     types: &'a UniqueArena<Type>,
@@ -29,7 +29,7 @@ impl<'a> Globals<'a> {
         Globals { types: &module.types, constants: &module.constants, expressions: &module.global_expressions }
     }
 
-    /// The zero of a scalar type.
+    /// Returns the zero of a scalar type; `None` for any other type.
     pub(super) fn zero(self, ty: Handle<Type>) -> Option<Literal> {
         match self.types[ty].inner {
             TypeInner::Scalar(scalar) => Literal::zero(scalar),
@@ -39,7 +39,8 @@ impl<'a> Globals<'a> {
 }
 
 impl Value {
-    /// The value of an expression; none where it is not a constant, or not one whose parts are all written out.
+    /// Returns the value of an expression; `None` if it is not a constant, or if not all its parts
+    /// are written out.
     pub(super) fn of(
         globals: Globals<'_>,
         expressions: &Arena<Expression>,
@@ -52,7 +53,7 @@ impl Value {
                 let init = globals.constants[*constant].init;
                 match Value::of(globals, globals.expressions, init) {
                     Some(scalar @ Value::Literal(_)) => scalar,
-                    // By its name: a table stays one table.
+                    // Refer to it by name, so that a table stays a single table.
                     _ => Value::Constant(*constant),
                 }
             }
@@ -67,7 +68,7 @@ impl Value {
         })
     }
 
-    /// The value of a scalar expression, where it is known.
+    /// Returns the value of a scalar expression; `None` if it is not known.
     pub(super) fn scalar(
         globals: Globals<'_>,
         expressions: &Arena<Expression>,
@@ -79,7 +80,7 @@ impl Value {
         }
     }
 
-    /// Appends expressions that make the value, operands first.
+    /// Appends expressions that produce the value, operands first, and returns the last one.
     pub(super) fn write(&self, expressions: &mut Arena<Expression>) -> Handle<Expression> {
         let expression = match self {
             Value::Literal(literal) => Expression::Literal(*literal),
@@ -93,7 +94,7 @@ impl Value {
         expressions.append(expression, Span::UNDEFINED)
     }
 
-    /// Whether both are written alike, to the bit: 0 and -0 are two values.
+    /// Whether both values are identical to the bit: 0 and -0 differ.
     pub(super) fn is(&self, other: &Value) -> bool {
         match (self, other) {
             (Value::Literal(left), Value::Literal(right)) => same_bits(*left, *right),
@@ -112,14 +113,14 @@ impl Value {
     }
 }
 
-/// Whether two literals are of one type and one bit pattern.
+/// Whether two literals have the same type and bit pattern.
 pub(super) fn same_bits(left: Literal, right: Literal) -> bool {
     HashableLiteral::from(left) == HashableLiteral::from(right)
 }
 
-/// The value of an expression whose operands are constants, where it is a scalar that every device agrees on: a bool or
-/// an integer, or a float that is picked from the operands or has its sign turned. Sums and functions of floats are
-/// left to the device, whose rounding may be another.
+/// Evaluates an expression whose operands are constants; `None` unless the result is a scalar that
+/// all devices agree on. That is a bool, an integer, or a float that is selected from the operands
+/// or negated. Sums and functions of floats are left to the device, whose rounding may differ.
 pub(super) fn evaluate(
     module: &mut Module,
     expressions: &Arena<Expression>,
@@ -161,7 +162,8 @@ pub(super) fn evaluate(
         &mut block,
         true,
     )
-    // What WGSL forbids in a constant, as an overflow, and what naga cannot evaluate, stays for the device.
+    // Whatever WGSL forbids in a constant, such as overflow, and whatever naga cannot evaluate is
+    // left to the device.
     .try_eval_and_append(expression, Span::UNDEFINED)
     .ok()?;
     let literal = Value::scalar(Globals::of(module), &scratch, result)?;

@@ -1,4 +1,4 @@
-//! Built-ins and operators of two and three floats, over samples.
+//! Built-ins and operators of two and three floats, measured on samples.
 
 use super::{Measured, Start};
 use lapidary_assay::dispatch::DispatchError;
@@ -7,34 +7,34 @@ use lapidary_assay::interpreter::{Float, Slack};
 use lapidary_assay::slack::allowance::{Accuracy as _, Wgsl};
 use rayon::prelude::*;
 
-/// A function of three floats, of which it may leave some out.
+/// A function of up to three floats.
 struct Sampled {
     name: &'static str,
-    /// Its WGSL, of `x`, `y` and `z`.
+    /// Its WGSL expression in `x`, `y` and `z`.
     expression: &'static str,
     function: Option<Float>,
     exact: fn([f32; 3]) -> f64,
-    /// How far WGSL lets it be off; none where that is not what the row asks.
+    /// Returns the largest error that WGSL allows; `None` if the row measures something else.
     reach: fn([f32; 3], f64) -> Option<f64>,
-    /// How many of its arguments count.
+    /// Number of arguments that the function uses.
     arguments: usize,
     draw: Draw,
 }
 
-/// How arguments are drawn.
+/// How arguments are sampled.
 #[derive(Clone, Copy)]
 enum Draw {
-    /// Any bits.
+    /// Random bit patterns.
     Bits,
-    /// Sizes from 2^-16 to 2^16, so that sums and products meet.
+    /// Magnitudes from 2^-16 to 2^16, so that the terms of sums and products are comparable.
     Sizes,
-    /// A positive base, and an exponent for which the power is a float's size.
+    /// A positive base, and an exponent such that the power is within the range of floats.
     Power,
 }
 
 const SAMPLES: u64 = 1 << 24;
 
-/// Rows of a dispatch.
+/// Rows per dispatch.
 const ROWS: u64 = 1 << 16;
 
 fn wide([x, y, z]: [f32; 3]) -> [f64; 3] {
@@ -116,14 +116,15 @@ const SAMPLED: [Sampled; 8] = [
     },
 ];
 
-/// As exp2(y log2(x)): what the logarithm and the product may be off by goes through the power.
+/// Returns the error bound of exp2(y log2(x)): the errors of the logarithm and the product
+/// propagate through the power.
 fn power([x, y, _]: [f32; 3], exact: f64) -> f64 {
     let (logarithm, slack) = Float::Log2.exact(x, x);
     let product = f64::from(y) * logarithm;
     let exponent = Wgsl.reach(None, logarithm.into(), slack) * f64::from(y).abs()
         + Wgsl.reach(None, product.into(), Slack::Rounded);
     let (_, last) = Float::Exp2.exact(product as f32, 0.0);
-    // Beyond first order, since the exponent may be off by much.
+    // Not only to first order, since the exponent's error may be large.
     exact * (exponent.exp2() - 1.0) + Wgsl.reach(None, exact.into(), last) * exponent.exp2()
 }
 

@@ -1,4 +1,5 @@
-//! How accurate a device's own functions are: every built-in of one float over all floats, those of two, and what sums and products round to, over samples.
+//! Accuracy of a device's built-in functions: those of one float over all floats, and those of two,
+//! as well as the rounding of sums and products, on samples.
 
 mod binary;
 mod page;
@@ -12,33 +13,34 @@ use lapidary_assay::runner::Runner;
 use lapidary_assay::slack::allowance::{Accuracy, Wgsl};
 use serde::{Deserialize, Serialize};
 
-/// Makes what runs a function of WGSL source.
+/// Creates the runner for a function of WGSL source.
 pub type Start<'a> = &'a dyn Fn(&str, &str) -> Result<Box<dyn Runner + 'a>, DispatchError>;
 
-/// A built-in over a range of its argument.
+/// Measurements of a built-in over a range of its argument.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// As WGSL names it; of an infix operator the expression.
+    /// The built-in's name in WGSL, or the expression of an infix operator.
     pub name: String,
-    /// Which arguments.
+    /// Description of the range of arguments.
     pub range: String,
-    /// How many were tried.
+    /// Number of arguments tried.
     pub inputs: u64,
-    /// Those with a result that is not the nearest float.
+    /// Number of results that are not the nearest float.
     pub not_nearest: u64,
-    /// The largest error in units in the last place of the exact value, where that is a normal float.
+    /// Largest error in units in the last place of the exact value, where that is a normal float.
     pub max_ulp: f64,
-    /// The argument of that error; two of a function of two.
+    /// The argument with that error; two for a function of two.
     pub at: Vec<f32>,
-    /// The largest error.
+    /// Largest absolute error.
     pub max_absolute: f64,
-    /// The largest error over what WGSL lets a device be off; none where it states nothing for the range.
+    /// Largest ratio of the error to the one that WGSL allows; `None` if WGSL states none for the
+    /// range.
     pub of_wgsl: Option<f64>,
-    /// The argument of that.
+    /// The argument with that ratio.
     pub of_wgsl_at: Vec<f32>,
-    /// Subnormal results that are zero.
+    /// Number of subnormal results that were flushed to zero.
     pub flushed: u64,
-    /// Results that are not finite where the exact one is a float's size.
+    /// Number of non-finite results whose exact value is within the range of floats.
     pub nonfinite: u64,
 }
 
@@ -59,11 +61,11 @@ impl Measured {
         }
     }
 
-    /// Adds a result; `reach` is how far WGSL lets it be off, none where it does not state that.
+    /// Adds a result; `reach` returns the error that WGSL allows, `None` if WGSL states none.
     #[inline(always)]
     fn add(&mut self, arguments: &[f32], result: f32, exact: f64, reach: impl FnOnce() -> Option<f64>) {
         self.inputs += 1;
-        // Its neighbour may be an infinity.
+        // The adjacent float may be an infinity.
         if exact.is_nan() || exact.abs() >= f64::from(f32::MAX) {
             return;
         }
@@ -73,7 +75,7 @@ impl Measured {
         }
         let nearest = exact as f32;
         if result == nearest {
-            // Half a unit is rounding's.
+            // Half a unit is due to rounding.
             let error = (f64::from(result) - exact).abs();
             self.max_absolute = self.max_absolute.max(error);
             return;
@@ -117,49 +119,49 @@ impl Measured {
     }
 }
 
-/// What was measured of a device.
+/// The measurements of a device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The device and its driver.
     pub adapter: String,
-    /// Of the floats every how many-th was tried, by functions of one.
+    /// Distance between the bit patterns tried by functions of one float.
     pub stride: u32,
-    /// A row for each built-in and range.
+    /// One row per built-in and range.
     pub rows: Vec<Measured>,
 }
 
-/// Measures a device; `tick` is told after each function.
+/// Measures a device; `tick` is called with the name of each function.
 ///
 /// # Errors
-/// Where the device refuses.
+/// Returns an error if the device fails.
 pub fn measure(adapter: &str, start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Result<Report, DispatchError> {
     let mut rows = unary::measure(start, stride, tick)?;
     rows.extend(binary::measure(start, tick)?);
     Ok(Report { adapter: adapter.to_owned(), stride, rows })
 }
 
-/// How many functions [`measure`] tells of.
+/// Returns the number of functions for which [`measure`] calls `tick`.
 pub fn count() -> usize {
     unary::BUILTINS.len() + binary::count()
 }
 
-/// lapidary's reference device, as it was measured: `docs/measurements/lavapipe/builtins.json`.
+/// Measured accuracy of lapidary's reference device: `docs/measurements/lavapipe/builtins.json`.
 #[derive(Debug)]
 pub struct Lavapipe {
     report: Report,
 }
 
 impl Lavapipe {
-    /// What the record holds.
+    /// Returns the contents of the record.
     ///
     /// # Errors
-    /// Where it is no such record.
+    /// Returns an error if it is not such a record.
     pub fn recorded() -> Result<Lavapipe, serde_json::Error> {
         let text = include_str!("../../../../docs/measurements/lavapipe/builtins.json");
         Ok(Lavapipe { report: serde_json::from_str(text)? })
     }
 
-    /// The row of a function at an argument.
+    /// Returns the row of a function for an argument; `None` if it was not measured.
     fn of(&self, function: Float, argument: f32) -> Option<&Measured> {
         let name = unary::name(function);
         let range = unary::range(function, argument);
@@ -174,7 +176,7 @@ impl Accuracy for Lavapipe {
             return 0.0;
         }
         let unit = lapidary_assay::tolerance::ulp_of(exact.value);
-        // Sums, products and quotients are the nearest float: the record says so too.
+        // Sums, products and quotients are rounded to the nearest float: the record says so too.
         let measured = function.and_then(|(function, argument)| self.of(function, argument)).map_or(0.0, |row| {
             let by_share = row.of_wgsl.map_or(f64::INFINITY, |share| share * wgsl);
             (row.max_ulp * unit).min(row.max_absolute).min(by_share)

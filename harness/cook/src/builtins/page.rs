@@ -1,9 +1,9 @@
-//! The measured built-ins as a table.
+//! The measured built-ins as tables.
 
 use super::Report;
 use std::fmt::Write as _;
 
-/// A table of what was measured.
+/// Returns a table of the measurements.
 pub fn text(report: &Report) -> String {
     let every = if report.stride == 1 { "all floats".to_owned() } else { format!("every {}th float", report.stride) };
     let mut text = format!(
@@ -46,7 +46,8 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-/// A table of several devices side by side, of the built-ins and ranges that WGSL states an accuracy of: the largest error over the allowed one, and in ulp.
+/// Returns a table that compares devices, for the built-ins and ranges with an accuracy in WGSL:
+/// the largest ratio of the error to the allowed one, and the largest error in ulp.
 pub fn side_by_side(reports: &[(&str, Report)]) -> String {
     let names: Vec<&str> = reports.iter().map(|(name, _)| *name).collect();
     let mut table = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
@@ -59,7 +60,7 @@ pub fn side_by_side(reports: &[(&str, Report)]) -> String {
                 found.map_or("-".to_owned(), |found| {
                     let share = found.of_wgsl.unwrap_or_default();
                     let share = if share > 1.0 { format!("**{share:.2}**") } else { format!("{share:.2}") };
-                    // Next to a zero of the function there is no end to it.
+                    // Near a zero of the function the error in ulp is unbounded.
                     let ulp = format!(" ({:.1} ulp)", found.max_ulp.max(0.5));
                     if found.max_ulp < 1e4 { share + &ulp } else { share }
                 })

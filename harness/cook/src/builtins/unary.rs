@@ -1,4 +1,4 @@
-//! Built-ins of one float, over all floats.
+//! Built-ins of one float, measured over all floats.
 
 use super::{Measured, Start};
 use lapidary_assay::dispatch::DispatchError;
@@ -13,11 +13,11 @@ pub(super) struct Builtin {
     ranges: &'static [Range],
 }
 
-/// What a built-in should return.
+/// The exact result of a built-in.
 enum Truth {
-    /// WGSL states how accurate it is.
+    /// WGSL states the accuracy.
     Stated(Float),
-    /// WGSL derives that from other functions, or does not state it.
+    /// WGSL derives the accuracy from other functions, or does not state it.
     Derived(fn(f64) -> f64),
 }
 
@@ -27,7 +27,7 @@ impl Builtin {
     }
 }
 
-/// Which arguments: those with a size up to a limit; WGSL states how accurate the function is there, or does not.
+/// A range of arguments: magnitudes up to a limit, and whether WGSL states an accuracy for them.
 struct Range {
     name: &'static str,
     to: f32,
@@ -71,25 +71,26 @@ pub(super) const BUILTINS: [Builtin; 18] = [
     derived("atanh", f64::atanh),
 ];
 
-/// The name of a built-in in the record.
+/// Returns the name of a built-in in the record.
 pub(super) fn name(function: Float) -> &'static str {
     let found = BUILTINS.iter().find(|builtin| builtin.is(function));
     found.map_or_else(|| super::binary::name(function), |builtin| builtin.name)
 }
 
-/// The range of a built-in that an argument lies in; none of those that have no ranges.
+/// Returns the range of a built-in that contains an argument; `None` for those without ranges.
 pub(super) fn range(function: Float, argument: f32) -> Option<&'static str> {
     let found = BUILTINS.iter().find(|builtin| builtin.is(function))?;
     found.ranges.iter().find(|range| argument.abs() <= range.to).map(|range| range.name)
 }
 
-/// Results of a row.
+/// Results per row.
 const RESULTS: u32 = 64;
 
-/// Rows of a dispatch.
+/// Rows per dispatch.
 const ROWS: u32 = 32_768;
 
-/// A function from the first of so many bit patterns, and the distance between them, to the results for all of them.
+/// Returns the source of a function that takes the first of a series of bit patterns and the
+/// distance between them, and returns the results for all of them.
 fn source(builtin: &str) -> String {
     let part = |index: u32| {
         let first = 4 * index;
@@ -118,7 +119,7 @@ pub(super) fn measure(start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Res
         let mut results = Vec::new();
         for batch in (0..inputs).step_by((ROWS * RESULTS) as usize) {
             let count = (inputs - batch).min((ROWS * RESULTS).into());
-            // The first pattern of each row; the last row may hold more than there are.
+            // The first pattern of each row; the last row may contain more than are left.
             let starts =
                 (0..count).step_by(RESULTS as usize).map(|index| ((batch + index) as u32).wrapping_mul(stride));
             let arguments: Vec<u32> = starts.flat_map(|start| [start, stride]).collect();
@@ -139,7 +140,7 @@ pub(super) fn measure(start: Start<'_>, stride: u32, tick: &dyn Fn(&str)) -> Res
     Ok(rows)
 }
 
-/// What these results are worth, range by range; they begin with that of input `first`.
+/// Measures the results by range; they start with that of input `first`.
 fn judged(
     builtin: &Builtin,
     like: &[Measured],
@@ -151,7 +152,7 @@ fn judged(
         like.iter().map(|row| Measured::new(&row.name, &row.range, row.of_wgsl.is_some())).collect();
     for (index, word) in (first..inputs).zip(words) {
         let x = f32::from_bits((index as u32).wrapping_mul(stride));
-        // Of infinities and NaNs the standard says nothing, and it lets a device read a subnormal as 0.
+        // WGSL does not specify infinities and NaNs, and lets a device treat a subnormal as 0.
         if !x.is_normal() && x != 0.0 {
             continue;
         }
@@ -174,7 +175,7 @@ mod tests {
     use super::*;
     use lapidary_assay::interpreter::{Nearest, Program};
 
-    /// The kernel calls the function for the patterns that it says.
+    /// The kernel evaluates the function for the patterns that it should.
     #[test]
     fn every_pattern_is_met_once() {
         let program = Program::new(&source("sqrt"), "many.wgsl", "many").expect("valid");

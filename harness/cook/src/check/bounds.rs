@@ -1,30 +1,33 @@
-//! What a user's file may hold before a compiler sees it: naga, and the compiler of a driver, go down into a text as deep
-//! as it nests.
+//! Limits of a user's file, checked before a compiler sees it: both naga and driver compilers
+//! recurse as deeply as the text nests.
 
 use crate::text_file;
 use lapidary_assay::tokens::tokens;
 use std::path::Path;
 
-/// Bytes of a file; all modules of the cookbook together take a fifth of it.
+/// Largest size of a file in bytes; all modules of the cookbook together have a fifth of it.
 const MOST_BYTES: u64 = 1 << 20;
-/// Brackets inside one another, as WGSL promises for the braces of a function (section 2.4, limits).
+/// Deepest nesting of brackets: what WGSL guarantees for the braces of a function (section 2.4,
+/// limits).
 const DEEPEST_BRACKETS: usize = 127;
-/// Operators, calls and `else` in a row or inside one another: far more than a person writes, and well within the stack.
+/// Most operators, calls and `else` that may be chained or nested: far more than a person writes,
+/// and safe for the stack.
 const MOST_OPERATORS: usize = 2_000;
 
-/// The text of a user's file. An error is one line with the file's name.
+/// Returns the text of a user's file. An error is a single line with the file's name.
 pub fn read(path: &Path) -> Result<String, String> {
     text_file::read(path, MOST_BYTES)
 }
 
-/// Checks that a text nests no deeper than compilers go. An error is one line with place and remedy.
+/// Checks that a text nests no deeper than compilers can handle. An error is a single line with
+/// place and remedy.
 pub fn check(path: &str, text: &str) -> Result<(), String> {
     let tokens = tokens(text);
-    // The operators so far at each level of brackets, and their sum.
+    // The number of operators so far at each level of brackets, and their sum.
     let mut levels = vec![0usize];
     let mut total = 0;
     for (index, token) in tokens.iter().enumerate() {
-        // Whether the token ends the links of its level, or is one more.
+        // Whether the token ends the chain of its level, and how many links it adds.
         let (ends, links) = match token.text {
             "(" | "[" | "{" => {
                 levels.push(0);
@@ -89,7 +92,7 @@ mod tests {
             let chain = format!("fn f() {{ if (x) {{ }} {} }}", link.repeat(20_000));
             assert!(check("f", &chain).is_err(), "{link}");
         }
-        // Unbalanced text is naga's to refuse.
+        // Unbalanced text is left for naga to reject.
         check("f", "}}}}))))]]]] ,;").expect("no nesting");
     }
 }

@@ -1,4 +1,4 @@
-//! Where two devices give other bits for the same inputs, and by how much.
+//! Differences in bits between the results of two devices for the same inputs.
 
 use super::Row;
 use lapidary_assay::dispatch::{DispatchError, ROWS_PER_DISPATCH};
@@ -13,26 +13,27 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt::Write as _;
 
-/// What two devices make of the same random inputs.
+/// Differences between the results of two devices for the same random inputs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
-    /// Inputs that both were given.
+    /// Number of inputs that both were given.
     pub inputs: u64,
-    /// Those with a result of other bits.
+    /// Number of inputs whose results differ in any bit.
     pub differing: u64,
-    /// Those with another bool or integer.
+    /// Number of inputs whose results differ in a bool or an integer.
     pub discrete: u64,
-    /// The largest distance, in ulp of the larger result's largest component; zeros of either sign are the same.
+    /// Largest distance in ulp of the larger result's largest component; zeros of either sign are
+    /// equal.
     pub max_ulp: f64,
-    /// The median distance of those that differ.
+    /// Median distance of the results that differ.
     pub median_ulp: f64,
-    /// The input of the largest distance.
+    /// The input with the largest distance.
     #[serde(skip)]
     pub worst: Words,
 }
 
 impl Difference {
-    /// The two together. The median is that of the more numerous.
+    /// Combines two differences. The median is that of the one with more differing results.
     pub fn join(self, other: Difference) -> Difference {
         let (larger, smaller) = if other.max_ulp > self.max_ulp { (other, self) } else { (self, other) };
         let more = if larger.differing >= smaller.differing { &larger } else { &smaller };
@@ -46,10 +47,10 @@ impl Difference {
     }
 }
 
-/// Runs a formula's random inputs, those of `settings`, through both.
+/// Runs a formula's random inputs, as given by `settings`, on both runners.
 ///
 /// # Errors
-/// Where one of them refuses.
+/// Returns an error if one of them fails.
 pub fn between(
     one: &mut dyn Runner,
     other: &mut dyn Runner,
@@ -75,7 +76,7 @@ pub fn between(
             let (distance, is_discrete) = apart(&formula.result, one, other);
             found.discrete += u64::from(is_discrete);
             distances.push(distance);
-            // The first of all counts, however near.
+            // The first difference always counts, however small.
             if found.worst.is_empty() || distance > found.max_ulp {
                 found.max_ulp = distance;
                 found.worst.clone_from(row);
@@ -87,7 +88,7 @@ pub fn between(
     Ok(found)
 }
 
-/// The functions whose bits differ, the most different first.
+/// Returns the functions whose bits differ, the largest difference first.
 pub fn differing(rows: &[Row]) -> Vec<(&Row, &Difference)> {
     let mut differing: Vec<(&Row, &Difference)> = rows
         .iter()
@@ -99,7 +100,7 @@ pub fn differing(rows: &[Row]) -> Vec<(&Row, &Difference)> {
     differing
 }
 
-/// A table of them, and how many do not differ.
+/// Returns a table of these functions, and the number of functions that do not differ.
 pub fn table(rows: &[Row]) -> String {
     let differing = differing(rows);
     let same = rows.len() - differing.len();
@@ -122,7 +123,8 @@ pub fn table(rows: &[Row]) -> String {
     table
 }
 
-/// The largest distance over the floats of a result, and whether a bool or an integer differs; beyond one of those the floats belong to another case.
+/// Returns the largest distance between the floats of two results, and whether a bool or an integer
+/// differs; in that case the floats belong to different branches and are not compared.
 fn apart(shape: &Shape, one: &[u32], other: &[u32]) -> (f64, bool) {
     let leaves = shape.leaves();
     let words = |leaf: &lapidary_assay::shape::Leaf| leaf.start..leaf.start + leaf.length;
@@ -136,7 +138,7 @@ fn apart(shape: &Shape, one: &[u32], other: &[u32]) -> (f64, bool) {
         let (one, other) = (floats(one), floats(other));
         let scale = one.iter().chain(&other).fold(0.0, |scale: f64, float| scale.max(float.abs()));
         let apart = largest(one.iter().zip(&other).map(|(one, other)| (one - other).abs()));
-        // JSON has no infinity, and no NaN.
+        // JSON has neither infinity nor NaN.
         if apart.is_finite() && scale.is_finite() { apart / ulp_of(scale) } else { f64::MAX }
     });
     (distances.fold(0.0, f64::max), false)

@@ -1,32 +1,32 @@
-//! A user's file is worked on in a thread of its own, with a stack for deep texts, while its time and memory are watched: a
-//! compiler may be asked for more than the machine has.
+//! Processes a user's file in a separate thread with a large stack for deeply nested texts, while
+//! its time and memory are monitored: a compiler may request more than the machine has.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The stack: naga goes down some kilobytes for each of the operators that may follow one another in a text.
+/// Stack size in bytes: naga needs some kilobytes for each operator that a text may chain.
 const STACK_BYTES: usize = 512 << 20;
-/// The memory that the work may take; checks of the cookbook's own functions stay below a tenth of it.
+/// Memory limit in bytes; checks of the cookbook's own functions need less than a tenth of it.
 const MOST_BYTES: u64 = 2 << 30;
-/// The time for reading and compiling. Running has none: `--cases` decides it.
+/// Time limit for reading and compiling. Running has no limit: its duration follows from `--cases`.
 const MOST_COMPILING: Duration = Duration::from_secs(120);
-/// Between two looks at memory and time.
+/// Interval between two checks of memory and time.
 const LOOK: Duration = Duration::from_millis(10);
-/// The name of the thread, by which its panics are told apart.
+/// Name of the thread, by which its panics are recognised.
 const THREAD: &str = "a user's file";
 
-/// What the thread is at.
+/// What the thread is currently doing.
 #[derive(Clone, Debug)]
 pub struct Stage(Arc<Mutex<(String, Option<Instant>)>>);
 
 impl Stage {
-    /// Something that compiles, and so has a time limit.
+    /// Starts a compilation step, which has a time limit.
     pub fn compiling(&self, what: &str) {
         self.set(what, Some(Instant::now()));
     }
 
-    /// Something that takes the time that it takes.
+    /// Starts a step without a time limit.
     pub fn running(&self, what: &str) {
         self.set(what, None);
     }
@@ -40,30 +40,30 @@ impl Stage {
     }
 }
 
-/// Why the work was given up; one line.
+/// Why the work was aborted; each message is a single line.
 #[derive(Debug, thiserror::Error)]
 pub enum GuardError {
-    /// Too much memory.
+    /// The memory limit was exceeded.
     #[error("{0} takes over {most} MiB of memory; make its arrays smaller", most = MOST_BYTES >> 20)]
     Memory(String),
-    /// Too much time.
+    /// The time limit was exceeded.
     #[error("{0} takes over {most} s; make it simpler", most = MOST_COMPILING.as_secs())]
     Time(String),
-    /// A fault of the compiler or of this program.
+    /// The compiler or this program panicked.
     #[error("{stage} breaks the compiler ({reason}); change the lines that it cannot take")]
     Panic {
-        /// What it was at.
+        /// The stage at which it panicked.
         stage: String,
-        /// The panic's word.
+        /// The panic's message.
         reason: String,
     },
-    /// The system gives no thread.
+    /// The system could not create a thread.
     #[error("no thread with a stack of {size} MiB: {0}", size = STACK_BYTES >> 20)]
     Thread(std::io::Error),
 }
 
-/// Does `work` in a thread of its own. Where it takes too much the error comes at once, and the thread ends with the
-/// process, which is to end then.
+/// Runs `work` in a separate thread. If a limit is exceeded, the error is returned immediately; the
+/// thread only ends with the process, which should then exit.
 pub fn watched<T: Send + 'static>(work: impl FnOnce(&Stage) -> T + Send + 'static) -> Result<T, GuardError> {
     watched_within(MOST_BYTES, work)
 }
@@ -80,7 +80,7 @@ fn watched_within<T: Send + 'static>(
     let thread = std::thread::Builder::new()
         .name(THREAD.to_owned())
         .stack_size(STACK_BYTES)
-        // Where nobody waits any more, the process is about to end.
+        // If nobody is waiting any more, the process is about to end.
         .spawn(move || sender.send(work(&its_stage)).unwrap_or_default())
         .map_err(GuardError::Thread)?;
     loop {
@@ -109,7 +109,7 @@ fn watched_within<T: Send + 'static>(
     Err(GuardError::Panic { stage: stage.get().0, reason })
 }
 
-/// The process's memory; 0 where the system does not say.
+/// Returns the process's resident memory in bytes; 0 if the system does not report it.
 fn resident_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let kibibytes =
@@ -117,7 +117,7 @@ fn resident_bytes() -> u64 {
     kibibytes.map_or(0, |kibibytes: u64| kibibytes << 10)
 }
 
-/// A panic of the thread becomes an error; it is not to be printed besides.
+/// Suppresses the message of a panic in the thread, because it becomes an error.
 fn silence_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -143,7 +143,7 @@ mod tests {
         });
         let error = error.expect_err("a panic").to_string();
         assert_eq!(error, "compiling `f` breaks the compiler (no such type); change the lines that it cannot take");
-        // Far more than a thread usually has.
+        // Needs far more stack than a thread usually has.
         fn deep(depth: u64) -> u64 {
             let frame = std::hint::black_box([depth; 64]);
             if depth == 0 { frame[0] } else { deep(depth - 1) + frame[63] - depth + 1 }

@@ -1,10 +1,11 @@
-//! A function as a browser runs it: the same kernel, as text, through another compiler and another driver.
+//! A function run by a browser: the same kernel, as text, with a different compiler and driver.
 
 use lapidary_assay::dispatch::{DispatchError, ENTRY_POINT, KernelText, ROWS_PER_DISPATCH, WORKGROUP_SIZE};
 use lapidary_assay::runner::Runner;
 use lapidary_browser::{Browser, BrowserError, Buffer, Compute};
 
-/// A kernel in a browser. Turns of loops are not counted: an endless one ends with the browser's patience.
+/// A kernel in a browser. Loop iterations are not counted: an endless loop ends when the browser
+/// gives up.
 #[derive(Debug)]
 pub struct InBrowser<'browser> {
     browser: &'browser Browser,
@@ -12,7 +13,7 @@ pub struct InBrowser<'browser> {
 }
 
 impl<'browser> InBrowser<'browser> {
-    /// The kernel in that browser, which compiles it when it first runs.
+    /// Returns the kernel in that browser, which compiles it on its first run.
     pub fn new(browser: &'browser Browser, kernel: KernelText) -> Self {
         Self { browser, kernel }
     }
@@ -64,7 +65,7 @@ impl Runner for InBrowser<'_> {
     }
 
     fn loops(&self) -> bool {
-        // So that the first dispatch is a short one.
+        // Makes the first dispatch a short one.
         true
     }
 

@@ -1,5 +1,6 @@
-//! A long check in parts: rows of one function from several seeds joined, and a file that holds what is done, so that a run goes on where another ended, and runs on several machines
-//! become one.
+//! A long check in parts: joins the rows of a function from several seeds, and stores the progress
+//! in a file, so that a run can resume where another ended, and runs on several machines can be
+//! merged.
 
 use super::Row;
 use crate::cookbook::{self, release};
@@ -12,28 +13,28 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Random inputs of a part: a longer check takes as many from each of several seeds, one after the other.
+/// Random inputs per part: a longer check takes that many from each of several seeds in turn.
 pub const PART: u64 = 1 << 20;
 
-/// Bytes of a record.
+/// Largest size of a record in bytes.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// What was done of a long check.
+/// The progress of a long check.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// What was compared with what, and on which device.
+    /// Description of what was compared, and on which device.
     pub about: String,
-    /// Random inputs from each seed.
+    /// Random inputs per seed.
     pub cases: u64,
-    /// How many parts, a function from a seed each, the whole check has, in all shards.
+    /// Number of parts of the whole check in all shards; a part is one function with one seed.
     pub parts: usize,
-    /// A row for each function.
+    /// One row per function.
     pub rows: Vec<Row>,
-    /// The text of each function's module, as a hash.
+    /// Hash of each module's text.
     texts: BTreeMap<String, String>,
 }
 
-/// A record's file. What is written is borrowed: it is written after every part.
+/// The file format of a record. Borrowed for writing, because it is written after every part.
 #[derive(Serialize, Deserialize)]
 struct Stored<'a> {
     about: Cow<'a, str>,
@@ -46,20 +47,21 @@ struct Stored<'a> {
 }
 
 impl Record {
-    /// An empty one.
+    /// Returns an empty record.
     pub fn new(about: &str, cases: u64, parts: usize) -> Record {
         Record { about: about.to_owned(), cases, parts, rows: Vec::new(), texts: BTreeMap::new() }
     }
 
-    /// How many parts are done.
+    /// Returns the number of parts done.
     pub fn done(&self) -> usize {
         self.rows.iter().map(|row| row.seeds.len()).sum()
     }
 
-    /// What a file holds; the empty one where there is none.
+    /// Reads a record from a file; if the file does not exist, returns an empty record.
     ///
     /// # Errors
-    /// One line: where the file is no record, or one of another check.
+    /// Returns a one-line message if the file is not a record, or is the record of a different
+    /// check.
     pub fn open(path: &Path, about: &str, cases: u64, parts: usize) -> Result<Record, String> {
         if !path.exists() {
             return Ok(Record::new(about, cases, parts));
@@ -79,10 +81,10 @@ impl Record {
         Ok(found)
     }
 
-    /// What a file holds.
+    /// Reads a record from a file.
     ///
     /// # Errors
-    /// One line: where it cannot be read, or is no record.
+    /// Returns a one-line message if the file cannot be read or is not a record.
     pub fn read(path: &Path) -> Result<Record, String> {
         let text = text_file::read(path, MOST_BYTES)?;
         let found: Result<Stored<'_>, _> = serde_json::from_str(&text);
@@ -93,7 +95,7 @@ impl Record {
         Ok(Record { about: about.into_owned(), cases, parts, rows, texts: texts.into_owned() })
     }
 
-    /// What a file of it holds.
+    /// Returns the record as the text of a file.
     pub fn text(&self) -> String {
         let Record { about, cases, parts, rows, texts } = self;
         let stored = Stored {
@@ -107,7 +109,7 @@ impl Record {
         serde_json::to_string(&stored).unwrap_or_else(|error| unreachable!("{error}"))
     }
 
-    /// Refuses what was recorded of another text.
+    /// Returns an error if the record is of a different text.
     fn check_texts(&self, path: &Path) -> Result<(), String> {
         match self.texts.iter().find(|(module, text)| text_hash(module) != **text) {
             None => Ok(()),
@@ -117,7 +119,7 @@ impl Record {
         }
     }
 
-    /// Whether a function was tested from a seed.
+    /// Whether a function was tested with a seed.
     pub fn holds(&self, function: &str, seed: u64) -> bool {
         self.rows.iter().any(|row| row.function == function && row.seeds.contains(&seed))
     }
@@ -135,7 +137,7 @@ impl Record {
         }
     }
 
-    /// The rows in the cookbook's order.
+    /// Returns the record with its rows in the cookbook's order.
     #[must_use]
     pub fn in_order(mut self) -> Record {
         let order: BTreeMap<&str, usize> =
@@ -144,10 +146,11 @@ impl Record {
         self
     }
 
-    /// Several as one.
+    /// Merges several records into one.
     ///
     /// # Errors
-    /// One line: where they are of other checks or other texts, or hold the same part twice.
+    /// Returns a one-line message if they belong to different checks or texts, or if a part occurs
+    /// twice.
     pub fn merge(records: Vec<(String, Record)>) -> Result<Record, String> {
         let mut records = records.into_iter();
         let (first, mut merged) = records.next().ok_or("no record to merge")?;
@@ -177,20 +180,21 @@ impl Record {
     }
 }
 
-/// A hash of a module's text, as its version line has it.
+/// Returns the hash of a module's text as in its version line.
 fn text_hash(module: &str) -> String {
     cookbook::module(module).map_or_else(String::new, |module| release::text_hash(module.whole))
 }
 
 impl Row {
-    /// The two together, of one function from other seeds: what fails of either, the worst of both.
+    /// Combines two rows of one function with different seeds: the failures of either, the worst of
+    /// both.
     #[must_use]
     pub fn join(mut self, mut other: Row) -> Row {
         let badness = |row: &Row| (row.failed > 0, !row.passed, row.worst_ratio);
         if badness(&other).partial_cmp(&badness(&self)) == Some(Ordering::Greater) {
             return other.join(self);
         }
-        // This one is the worse: its worst input, its failure and its command stay.
+        // This row is the worse: its worst input, failure and command are kept.
         self.cases += other.cases;
         self.failed += other.failed;
         self.nonfinite += other.nonfinite;
@@ -231,7 +235,7 @@ impl Row {
         self.seconds += other.seconds;
         self.seeds.extend(other.seeds);
         self.seeds.sort_unstable();
-        // An edge that one missed and the other reached is reached.
+        // An edge is reached if either row reached it.
         self.passed = self.is_right() && (self.cases < DEFAULT_CASES || self.missed_edges.is_empty());
         self
     }
@@ -278,7 +282,7 @@ mod tests {
         let joined = missing(&["one"]).join(missing(&["two"]));
         assert!(joined.passed && joined.missed_edges.is_empty(), "{joined:?}");
         assert!(!missing(&["one"]).join(missing(&["one", "two"])).passed);
-        // One broke a promise at a larger share of its bound; the other has the failing input.
+        // One row broke a promise at a larger share of its bound; the other has the failing input.
         let mut promise = Row { passed: false, ..row(1, 0, 3.6) };
         promise.broken_promises.push("a promise".to_owned());
         let invariant = Row { reason: Some("an invariant".to_owned()), ..row(2, 1, 2.0) };

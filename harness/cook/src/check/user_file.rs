@@ -1,4 +1,5 @@
-//! A user's file of WGSL: which of the cookbook's functions it holds, which it lacks, and what else is in it.
+//! A user's WGSL file: which of the cookbook's functions it contains, which are missing, and what
+//! else is in it.
 
 use super::{CheckError, bounds, select};
 use crate::cookbook::release::{History, Standing};
@@ -9,28 +10,28 @@ use lapidary_scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A user's file.
+/// The source file to check.
 #[derive(Clone, Debug)]
 pub struct UserFile {
-    /// Its path, for messages.
+    /// Path of the file, for messages.
     pub path: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
 }
 
-/// What of a file is checked, and what there is to say of the rest.
+/// The functions of a file to check, and remarks on the rest.
 #[derive(Debug)]
 pub struct Contents {
     /// The functions to check.
     pub formulas: Vec<&'static Formula>,
-    /// One line each: functions that are lacking or unknown, and what else takes no part.
+    /// One-line notes: functions that are missing or unknown, and other items that are not checked.
     pub notes: Vec<String>,
-    /// Of each module with a function in the file: which release it is, and what was mended since.
+    /// For each module with a function in the file: which release it is, and what was fixed since.
     pub releases: Vec<Standing>,
 }
 
 impl UserFile {
-    /// Reads a file, and refuses one that no compiler could take.
+    /// Reads a file, and rejects one that no compiler could handle.
     pub fn read(path: &Path) -> Result<UserFile, CheckError> {
         let text = bounds::read(path).map_err(CheckError::File)?;
         let path = path.display().to_string();
@@ -38,7 +39,8 @@ impl UserFile {
         Ok(UserFile { path, text })
     }
 
-    /// What the file holds of what `filter` asks for: a module, one function, or all that it has where there is none.
+    /// Returns the functions in the file that `filter` selects: a module's, a single one, or all of
+    /// them (`None`).
     pub fn contents(&self, filter: Option<&str>) -> Result<Contents, CheckError> {
         let in_path = |error| CheckError::Dispatch { path: self.path.clone(), error };
         let asked = select(filter)?;
@@ -50,7 +52,7 @@ impl UserFile {
             .copied()
             .filter(|formula| held.contains(formula.function) || points.contains(formula.function))
             .collect();
-        // One function that is asked for by name must be there.
+        // A single function requested by name must exist.
         if let ([only], Some(true)) = (asked.as_slice(), filter.map(|filter| filter.contains("::")))
             && formulas.is_empty()
         {
@@ -96,7 +98,7 @@ impl UserFile {
         (!lacking.is_empty()).then(|| format!("{}: lacks {lacks} of module `{}`; not checked", self.path, module.name))
     }
 
-    /// Functions with a module's prefix that the module does not have.
+    /// Returns notes on functions that have a module's prefix but do not exist in the module.
     fn unknown(&self, filter: Option<&str>, held: &BTreeSet<&str>) -> Vec<String> {
         let modules = cookbook::modules().iter().filter(|module| filter.is_none_or(|filter| filter == module.name));
         let mut notes = Vec::new();
@@ -119,7 +121,7 @@ impl UserFile {
         notes
     }
 
-    /// What a module does not hold.
+    /// Returns a note on items that a module does not contain; `None` if there are none.
     fn others(&self, ir: &naga::Module) -> Option<String> {
         let names = |kind: &str, names: Vec<&str>| (!names.is_empty()).then(|| format!("{kind} {}", names.join(", ")));
         let variables =

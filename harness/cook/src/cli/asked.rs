@@ -1,4 +1,4 @@
-//! What `cook render` and `cook plan` ask alike: a scene, and what of it is drawn how.
+//! Arguments shared by `cook render` and `cook plan`: a scene, and how its objects are drawn.
 
 use super::Failure;
 use lapidary_plan::{Decisions, Effect, Effects, GRAMMAR, Note, Quality, Rung, Scattering};
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 pub(super) struct Asked {
     #[arg(help = format!("{}, or a glTF 2.0 file", scene::names()))]
     pub(super) scene: String,
-    /// In pixels.
+    /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
     pub(super) size: (u32, u32),
     #[arg(
@@ -22,18 +22,19 @@ pub(super) struct Asked {
         help = format!("How much of the light's way is followed: {GRAMMAR}. Where left out, by-material: each object as `cook plan` explains")
     )]
     rung: Option<Rung>,
-    /// How much time each object's technique may take: fast, good or best. The ladders' pages name the rungs; `cook plan` says which one
-    /// and how far off it is. Good where left out.
+    /// Time budget of each object's technique: fast, good or best; good by default. The ladders'
+    /// pages name the rungs; `cook plan` shows the chosen rung and its error.
     #[arg(long, value_name = "QUALITY", value_parser = parse_quality)]
     quality: Option<Quality>,
-    /// What is drawn though no material calls for it: shadow, which lights then cast on all that is drawn by its surface alone; and how
-    /// what scatters light is drawn, whatever its thickness against the mean free path: cdrf or optical_path.
+    /// Draw effects that no material calls for. shadow: lights cast shadows on everything that is
+    /// drawn by its surface alone. cdrf, optical_path: draw all scattering materials by this
+    /// technique, whatever their thickness relative to the mean free path.
     #[arg(long = "with", value_name = "EFFECT", value_delimiter = ',', value_parser = [CDRF, OPTICAL_PATH, SHADOW])]
     with: Vec<String>,
-    /// An effect that is left out though the scene calls for it, by the name that `cook plan` gives it.
+    /// Leave out an effect that the scene calls for, by its name in `cook plan`.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     without: Vec<Effect>,
-    /// A latitude-longitude .exr or .hdr image; the procedural studio where left out.
+    /// Latitude-longitude .exr or .hdr image; the procedural studio by default.
     #[arg(long, value_name = "FILE")]
     environment: Option<PathBuf>,
 }
@@ -55,7 +56,7 @@ fn parse_quality(text: &str) -> Result<Quality, String> {
 }
 
 impl Asked {
-    /// The rung that was asked for, else each material's own.
+    /// Returns the requested rung, or each material's own by default.
     pub(super) fn rung(&self) -> Rung {
         self.rung.unwrap_or(Rung::ByMaterial)
     }
@@ -64,7 +65,8 @@ impl Asked {
         self.with.iter().any(|with| with == name)
     }
 
-    /// The settings of what is asked, the rest as usual, and what should be known of the environment.
+    /// Returns the settings for these arguments, with defaults for the rest, and notes on the
+    /// environment.
     pub(super) fn settings(&self, scene: &Scene) -> Result<(Settings, Vec<Note>), Failure> {
         let mut notes = Vec::new();
         let environment = match &self.environment {
@@ -98,8 +100,9 @@ impl Asked {
         Ok((Settings { without: Effects::of(&self.without), ..settings }, notes))
     }
 
-    /// A rung or technique that no body can be drawn by would be believed to matter. To leave out an effect that nothing calls for is to have what was
-    /// wanted.
+    /// Refuses a rung or technique that cannot draw any body: the user would believe that it
+    /// matters. Leaving out an effect that nothing calls for is accepted, since the result is what
+    /// was wanted.
     fn refuse_what_is_ignored(&self, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
         if settings.rung.is_for_clear_stones() && !scene.objects.iter().any(|object| object.material.is_clear()) {
             return Err(Failure(format!(
@@ -108,13 +111,14 @@ impl Asked {
                 scene.name, settings.rung
             )));
         }
-        // The reference has no recipes, but can do without the environment's diffuse light.
+        // The reference has no recipes, but can leave out the environment's diffuse light.
         if settings.rung == Rung::Reference {
             if settings.shadows {
                 return Err(Failure(format!("rung `reference` casts shadows anyway; leave --with {SHADOW} out")));
             }
             let others: Vec<&Effect> = self.without.iter().filter(|effect| **effect != Effect::Environment).collect();
-            // What a scene calls for is what its materials do; and deciding measures bodies.
+            // A scene's materials decide what it calls for. Evaluated lazily, because deciding
+            // measures bodies.
             let usual = Settings { rung: Rung::ByMaterial, ..settings.clone() };
             let calls_for = |effect: &Effect| {
                 scene.objects.iter().any(|object| Decisions::of(object, scene, &usual.request()).has(*effect))
@@ -123,7 +127,7 @@ impl Asked {
                 Err(Failure(format!("rung `reference` knows no --without {effect}; leave it out or take another rung")))
             });
         }
-        // Deciding measures bodies.
+        // Only if needed, because deciding measures bodies.
         if settings.shadows {
             let all: Vec<Decisions> =
                 scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request())).collect();

@@ -1,15 +1,15 @@
-//! The browser of a command: started once, ended with the command.
+//! Browser of a command: started at most once, and closed when the command ends.
 
 use super::Failure;
 use lapidary_browser::{Adapter, Browser};
 use std::sync::OnceLock;
 
-/// What there is to say where there is none.
+/// Message if no browser is installed.
 pub(super) const MISSING: &str = "no Chromium or Chrome is on the PATH; install one";
 
 static BROWSER: OnceLock<Result<Browser, String>> = OnceLock::new();
 
-/// The browser, started at the first call.
+/// Returns the browser, which the first call starts.
 pub(super) fn started(adapter: Adapter) -> Result<&'static Browser, Failure> {
     let start = || {
         let program = Browser::find().ok_or(MISSING)?;
@@ -18,13 +18,13 @@ pub(super) fn started(adapter: Adapter) -> Result<&'static Browser, Failure> {
     BROWSER.get_or_init(start).as_ref().map_err(|fault| Failure(fault.clone()))
 }
 
-/// Refuses where a browser is required, as in `.ci/run`.
+/// Returns an error if a browser is required, as in `.ci/run`.
 pub(super) fn may_be_missing() -> Result<(), Failure> {
     let required = std::env::var_os("LAPIDARY_CHROMIUM").is_some_and(|value| value == "required");
     if required { Err(Failure(format!("{MISSING} (LAPIDARY_CHROMIUM=required)"))) } else { Ok(()) }
 }
 
-/// Ends it, where it was started.
+/// Closes the browser if it was started.
 pub(super) fn close() {
     if let Some(Ok(browser)) = BROWSER.get() {
         browser.close();

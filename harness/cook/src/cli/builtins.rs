@@ -9,7 +9,8 @@ use lapidary_cook::check::in_browser::InBrowser;
 use lapidary_render::file;
 use std::path::PathBuf;
 
-/// How accurate a device's built-in functions are: those of one float over all floats, the others over samples.
+/// Measures the accuracy of a device's built-in functions: those of one float over all floats, the
+/// others over samples.
 ///
 /// Takes a quarter of an hour over all floats; --stride 256 takes seconds.
 #[derive(clap::Args)]
@@ -20,20 +21,21 @@ pub(super) struct Arguments {
     /// Try every N-th float.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::whole(1..=1_u32 << 20))]
     stride: u32,
-    /// Measure Chromium's adapter instead: swiftshader, which it brings along, or own, the one that it takes by itself.
+    /// Measure Chromium's adapter instead: swiftshader (included in Chromium), or own (the adapter
+    /// that it chooses by itself).
     #[arg(long, value_name = "ADAPTER", num_args = 0..=1, require_equals = true, default_missing_value = "swiftshader")]
     browser: Option<Adapter>,
-    /// A folder for the table, builtins.txt, and builtins.json.
+    /// Folder for the table (builtins.txt) and builtins.json.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// One JSON document on stdout, and nothing else.
+    /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(folder) = &arguments.out {
-        // Before the minutes that it takes.
+        // Before the measurement, which takes minutes.
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure(format!("{}: cannot be made: {error}", folder.display())))?;
         file::check_writable(&folder.join("builtins.txt"))?;

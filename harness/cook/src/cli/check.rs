@@ -17,50 +17,58 @@ use lapidary_render::file;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Property tests of formulas: shader, mirror and oracle compared on random inputs, the worst failure shrunk.
+/// Property tests of formulas: compares shader, mirror and oracle on random inputs, and shrinks the
+/// worst failure.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook check refraction\n  ./cook check fresnel::dielectric --cases 1000000\n  ./cook check refraction --portable\n  ./cook check refraction --wgsl my_engine/refraction.wgsl"
 )]
 pub(super) struct Arguments {
-    /// A module, or one function of it as MODULE::FUNCTION; all where left out.
+    /// A module, or one of its functions as MODULE::FUNCTION; all modules by default.
     #[arg(value_name = "MODULE[::FUNCTION]")]
     filter: Option<String>,
     /// Test this file's functions instead of the cookbook's, to the cookbook's tolerance.
     #[arg(long, value_name = "FILE")]
     wgsl: Option<PathBuf>,
-    /// Test on devices that err in every operation as far as WGSL lets them, to the portable bounds; no adapter is needed.
+    /// Test on simulated devices whose every operation errs as far as WGSL allows, to the portable
+    /// bounds. No adapter is needed.
     #[arg(long, conflicts_with = "failures")]
     portable: bool,
-    /// The same with sums of three and more terms, and products, in other orders, as WGSL lets a compiler take them.
+    /// The same, with products and with sums of three or more terms evaluated in other orders, as
+    /// WGSL allows a compiler to do.
     #[arg(long, requires = "portable")]
     reassociate: bool,
-    /// Test in Chromium, which has another WGSL compiler and another driver, to the portable bounds; and say where its results have other bits than
-    /// the adapter's. swiftshader, which it brings along, or own: the adapter that it takes by itself. Where no Chromium is on the PATH, functions are
-    /// skipped, and counted; LAPIDARY_CHROMIUM=required makes that a fault.
+    /// Test in Chromium, which has another WGSL compiler and another driver, to the portable
+    /// bounds, and report results whose bits differ from the adapter's. swiftshader is included in
+    /// Chromium; own is the adapter that it chooses by itself. If no Chromium is on the PATH,
+    /// functions are skipped and counted; LAPIDARY_CHROMIUM=required makes that an error.
     #[arg(long, value_name = "ADAPTER", num_args = 0..=1, require_equals = true, default_missing_value = "swiftshader", conflicts_with_all = ["portable", "failures"])]
     browser: Option<Adapter>,
-    /// Random inputs a function; over 1,048,576, so many from each of several seeds, and no fewer than asked for.
+    /// Random inputs per function. Above 1,048,576, that many are drawn from each of several seeds,
+    /// and no fewer in total than requested.
     #[arg(long, default_value_t = DEFAULT_CASES, value_parser = number::whole(1..=1_u64 << 40))]
     cases: u64,
-    /// Where the random inputs start; the same seed gives the same inputs.
+    /// First seed of the random inputs; the same seed gives the same inputs.
     #[arg(long, default_value_t = Settings::default().seed, value_parser = number::whole(0..=u64::MAX))]
     seed: u64,
-    /// Folder for failing inputs, a file a function; target/lapidary/failures where left out, none for --wgsl. The
-    /// cookbook's own functions are tested with what is there first.
+    /// Folder for failing inputs, one file per function; target/lapidary/failures by default, none
+    /// for --wgsl. The cookbook's own functions are first tested with the inputs already there.
     #[arg(long, value_name = "DIR")]
     failures: Option<PathBuf>,
-    /// Test the I-th of N parts of the work, to share it between machines or runs: of the functions, and where there are over 1,048,576 --cases of the seeds from which
-    /// so many are drawn each.
+    /// Test the I-th of N parts of the work, to divide it between machines or runs. The work is
+    /// divided by function and, above 1,048,576 --cases, also by seed, with that many cases for
+    /// each seed.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// A file for the results as they come. Where it is there from a run that was ended, this one goes on from it.
+    /// File for the results, written as they come. If it exists from an interrupted run, this run
+    /// continues it.
     #[arg(long, value_name = "FILE", conflicts_with = "wgsl")]
     record: Option<PathBuf>,
-    /// Run nothing: show these records, such as those of all shards, as one; with --record, write that too.
+    /// Run nothing: show these records, such as those of all shards, as one; with --record, also
+    /// write it.
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["filter", "wgsl", "portable", "browser", "cases", "seed", "shard", "failures"])]
     merge: Vec<PathBuf>,
-    /// One JSON document on stdout, and nothing else.
+    /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
 }
@@ -68,7 +76,7 @@ pub(super) struct Arguments {
 /// One part of several.
 #[derive(Clone, Copy, Debug)]
 struct Shard {
-    /// From 1.
+    /// Number of the part, from 1.
     index: usize,
     count: usize,
 }
@@ -86,17 +94,18 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Every N-th part, so that the slow ones of a module fall to several parts; all of them without a shard.
+    /// Takes every N-th item, so that the slow ones of a module are spread over several parts; all
+    /// items without a shard.
     fn share<T>(shard: Option<Self>, all: Vec<T>) -> Vec<T> {
         let Self { index, count } = shard.unwrap_or(Self { index: 1, count: 1 });
         all.into_iter().skip(index - 1).step_by(count).collect()
     }
 }
 
-/// What was checked, and what there is to say besides.
+/// Results of a check, with notes.
 #[derive(Default)]
 struct Checked {
-    /// What was compared with what.
+    /// The two sides of the comparison.
     about: String,
     rows: Vec<Row>,
     notes: Vec<String>,
@@ -134,7 +143,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             Checked { about, rows: record.in_order().rows, ..Checked::default() }
         }
         Some(path) => {
-            // What the command line alone can be wrong in goes before the file, and both before the device.
+            // Errors in the command line alone are reported before the file is read, and both
+            // before the device is opened.
             check::select(arguments.filter.as_deref())?;
             let file = UserFile::read(path)?;
             let on = on(context, arguments)?;
@@ -152,10 +162,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     said(&checked, arguments.json)
 }
 
-/// Says what was found.
+/// Prints the results.
 fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
     if json {
-        // stdout is the array alone.
+        // stdout holds only the array.
         for line in text::notes(&checked.notes, &checked.releases) {
             eprintln!("cook: {line}");
         }
@@ -166,10 +176,10 @@ fn said(checked: &Checked, json: bool) -> Result<Outcome, Failure> {
     Ok(if checked.rows.iter().all(Row::passed) { Outcome::Passed } else { Outcome::Failed })
 }
 
-/// The inputs in parts of [`record::PART`], from one seed after the other.
+/// Splits the inputs into parts of [`record::PART`], with consecutive seeds.
 fn parts(arguments: &Arguments) -> Vec<Settings> {
     let Arguments { cases, seed, wgsl, .. } = arguments;
-    // A user's file is a matter of seconds.
+    // A user's file takes only seconds.
     if *cases <= record::PART || wgsl.is_some() {
         return vec![Settings { cases: *cases, seed: *seed }];
     }
@@ -178,17 +188,17 @@ fn parts(arguments: &Arguments) -> Vec<Settings> {
         .collect()
 }
 
-/// Where and from what functions are tested.
+/// Device and source of the functions under test.
 struct Bench<'a> {
     on: On<'a>,
     source: Source<'a>,
     regressions: Option<&'a Regressions>,
-    /// What a user's file is at, for who waits for it.
+    /// Progress on a user's file, for the watchdog; `None` for the cookbook's own functions.
     stage: Option<&'a Stage>,
 }
 
 impl Bench<'_> {
-    /// Compiles all, so that a wrong signature is said before minutes of testing.
+    /// Compiles all functions, so that a wrong signature is reported before minutes of testing.
     fn prepare<'f>(&self, formulas: impl Iterator<Item = &'f Formula>) -> Result<(), CheckError> {
         let mut prepared = BTreeSet::new();
         for formula in formulas.filter(|formula| prepared.insert(formula.function)) {
@@ -200,7 +210,8 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Tests one after the other; `keep` takes each row. `before` of them all were done in another run.
+    /// Runs the tests in order and passes each row to `keep`. `before` tests were already done in
+    /// another run.
     fn run<E: From<CheckError>>(
         &self,
         work: &[(&Formula, Settings)],
@@ -222,7 +233,7 @@ impl Bench<'_> {
     }
 }
 
-/// Tests part by part, and writes after each what is done.
+/// Tests part by part, and writes the record after each.
 fn in_parts(
     bench: &Bench<'_>,
     work: Vec<(&'static Formula, Settings)>,
@@ -241,7 +252,7 @@ fn in_parts(
     })
 }
 
-/// Several records as one.
+/// Merges several records into one.
 fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
     let read = |path: &PathBuf| Record::read(path).map(|record| (path.display().to_string(), record));
     let records = arguments.merge.iter().map(read).collect::<Result<_, _>>().map_err(Failure)?;
@@ -259,7 +270,8 @@ fn merged(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Without a browser nothing is checked in one: said and counted, and a fault where one is required.
+/// Without a browser nothing can be checked in one: reports the number of functions skipped, or
+/// returns an error if a browser is required.
 fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
     browser::may_be_missing()?;
     let count = match &arguments.wgsl {
@@ -276,7 +288,7 @@ fn skipped(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::Passed)
 }
 
-/// What the check runs on.
+/// Device that the check runs on.
 fn on(context: &Context, arguments: &Arguments) -> Result<On<'static>, Failure> {
     Ok(match arguments {
         Arguments { reassociate: true, .. } => On::Slack(Reassociation::Reordered),

@@ -11,28 +11,29 @@ use lapidary_scene::nearest;
 use lapidary_wgsl::Recipe;
 use std::path::PathBuf;
 
-/// One self-contained file to paste: modules, or a recipe with all that it requires.
+/// Prints one self-contained file to paste: modules, or a recipe with everything that it requires.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook copy refraction fresnel --out optics.wgsl\n  ./cook copy gem --effects proxy_geometry --to hlsl --out gem.hlsl\n  ./cook copy refraction::refract --to spirv --out refract.spv"
 )]
 pub(super) struct Arguments {
-    /// Modules, or one recipe. SPIR-V and GLSL hold entry points: there, name one function as MODULE::FUNCTION (it is
-    /// wrapped in a compute kernel); for GLSL also one entry point of a recipe, as gem::gem_fragment.
+    /// Modules, or one recipe. SPIR-V and GLSL need entry points. For these, name one function as
+    /// MODULE::FUNCTION (it is wrapped in a compute kernel); for GLSL also one entry point of a
+    /// recipe, such as gem::gem_fragment.
     #[arg(required = true, value_name = "MODULE|RECIPE")]
     names: Vec<String>,
-    /// The effects of a recipe that are on; as the recipe has them where left out.
+    /// Effects of a recipe to switch on; the recipe's own defaults if omitted.
     #[arg(long, value_delimiter = ',', value_name = "a,b")]
     effects: Option<Vec<String>>,
-    /// The shading language.
+    /// Shading language.
     #[arg(long, value_enum, default_value = "wgsl")]
     to: Target,
-    /// Where to write it; stdout where left out.
+    /// Output file; stdout by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
-/// What the names stand for.
+/// Meaning of the names on the command line.
 enum Selection {
     Modules(Vec<&'static Module>),
     Function(&'static Module, String),
@@ -116,7 +117,8 @@ fn of_modules(modules: &[&Module], to: Target) -> Result<Vec<u8>, Failure> {
 
 fn of_function(module: &Module, function: &str, to: Target) -> Result<Vec<u8>, Failure> {
     if to == Target::Wgsl {
-        // A function may call its module's others; WGSL needs no entry point, so the module is the copy.
+        // A function may call others of its module, and WGSL needs no entry point, so the whole
+        // module is copied.
         let is_naive = module.function(function).is_some_and(|function| function.accuracy == Accuracy::Naive);
         return Ok(if is_naive { module.whole } else { module.source }.as_bytes().to_vec());
     }
@@ -145,7 +147,7 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
     if to == Target::Glsl && entry.is_none() {
         return Err(Failure(format!("GLSL holds one entry point; name one of {}", points.join(", "))));
     }
-    // The writers know no overrides: each takes its default here.
+    // The writers do not support overrides: each is replaced by its default here.
     let constants = naga::back::PipelineConstants::default();
     let (ir, info) = naga::back::pipeline_constants::process_overrides(
         &ir,
@@ -157,11 +159,12 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
     translate(&ir, &info, to, entry).map_err(Failure)
 }
 
-/// The recipe with its effects switched, in the text itself, so that every language follows.
+/// Returns the recipe with its effects switched in the text itself, so that this applies to every
+/// language.
 fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Failure> {
     let source = recipe.compose();
     let Some(wanted) = wanted else { return Ok(source) };
-    // `--effects ""` switches all of them off.
+    // `--effects ""` switches all effects off.
     let wanted: Vec<&String> = wanted.iter().filter(|effect| !effect.is_empty()).collect();
     let known = effects(&source);
     if let Some(unknown) = wanted.iter().find(|effect| !known.contains(effect)) {

@@ -16,8 +16,8 @@ use lapidary_render::file;
 use serde::{Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
 
-/// What accuracy costs: the error and the time of every rung of a ladder. Times are the least of interleaved rounds; leave the machine
-/// alone meanwhile.
+/// Measures what accuracy costs: the error and the time of every rung of a ladder. Times are the
+/// minimum over interleaved rounds; leave the machine alone meanwhile.
 #[derive(clap::Args)]
 #[command(
     subcommand_required = true,
@@ -40,19 +40,19 @@ enum Technique {
     Sphere(sphere::Arguments),
 }
 
-/// Where a report comes from and where it goes.
+/// Source and destination of a report.
 #[derive(clap::Args)]
 struct Report {
-    /// Show an earlier run's NAME.json, such as gem.json, again instead of measuring.
+    /// Show an earlier run's NAME.json, such as gem.json, instead of measuring.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
-    /// One JSON document on stdout, a row for each thing measured, and nothing else.
+    /// Print one JSON document on stdout, with a row for each measurement, and nothing else.
     #[arg(long)]
     json: bool,
-    /// A folder for the text, the plots and NAME.json, which holds everything.
+    /// Folder for the text, the plots, and NAME.json with all data.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Pages, comma-separated, whose generated tables are made anew.
+    /// Pages, comma-separated, whose generated tables are updated.
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     fill: Vec<PathBuf>,
 }
@@ -82,7 +82,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
 }
 
-/// Runs what takes minutes behind a progress bar.
+/// Runs a measurement of several minutes behind a progress bar.
 fn behind_a_bar<T>(
     run: impl FnOnce(&mut dyn FnMut(&'static str, u64, u64)) -> Result<T, CostError>,
 ) -> Result<T, Failure> {
@@ -96,24 +96,24 @@ fn behind_a_bar<T>(
     Ok(done)
 }
 
-/// Bytes of a record or a page; the largest record takes a hundredth.
+/// Maximum size of a record or a page in bytes; the largest record takes a hundredth of it.
 const MOST_BYTES: u64 = 64 << 20;
 
 fn read_text(path: &Path) -> Result<String, Failure> {
     text_file::read(path, MOST_BYTES).map_err(Failure)
 }
 
-/// Where a report goes, found fit before anything is measured.
+/// Destinations of a report, checked before anything is measured.
 struct Places<'a> {
     technique: &'static str,
     report: &'a Report,
     pages: Vec<(&'a PathBuf, String)>,
 }
 
-/// What is shown of a report.
+/// Forms in which a report is shown.
 struct Shown {
     text: String,
-    /// The document of `--json`.
+    /// Document for `--json`.
     rows: String,
     /// Names and contents of plots.
     plots: Vec<(String, String)>,
@@ -135,7 +135,7 @@ impl<'a> Places<'a> {
         Ok(Self { technique, report, pages })
     }
 
-    /// The report of `--from`, or a new one.
+    /// Returns the report of `--from`, or measures a new one.
     fn report<R: DeserializeOwned>(&self, measure: impl FnOnce() -> Result<R, Failure>) -> Result<R, Failure> {
         let Some(path) = &self.report.from else { return measure() };
         let technique = self.technique;
@@ -145,7 +145,8 @@ impl<'a> Places<'a> {
         })
     }
 
-    /// Writes the report's files and pages, all of them or none that is not whole, and shows it.
+    /// Writes the report's files and pages, and shows the report. No file is left partially
+    /// written.
     fn write<R: Tables + Serialize>(&self, report: &R, shown: &Shown) -> Result<Outcome, Failure> {
         let fill = |(path, page): &(&'a PathBuf, String)| match page::fill(page, report) {
             Ok(filled) => Ok((*path, filled)),

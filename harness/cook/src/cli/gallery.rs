@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook gallery --open")]
 pub(super) struct Arguments {
-    /// Where to write it; target/gallery of the cookbook where left out.
+    /// Output folder; target/gallery of the cookbook by default.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Show it in the browser.
+    /// Show the gallery in the browser.
     #[arg(long)]
     open: bool,
 }
@@ -87,7 +87,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     Ok(Outcome::Passed)
 }
 
-/// The committed plots, each with its module's or recipe's name: to measure anew takes minutes and a quiet machine.
+/// Committed plots, each with the name of its module or recipe. Measuring again takes minutes and a
+/// quiet machine.
 fn plots() -> Vec<(String, Picture)> {
     let figure = |name: &str, file: &str, command: &str, title: &str, paragraph: &str| {
         let picture = Picture {
@@ -162,7 +163,7 @@ fn plots() -> Vec<(String, Picture)> {
     ]
 }
 
-/// Hands the page to the system's own opener.
+/// Opens the page with the system's default program.
 fn open(page: &Path) -> Result<(), Failure> {
     let (program, first) = match std::env::consts::OS {
         "macos" => ("open", None),

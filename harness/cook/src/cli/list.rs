@@ -6,14 +6,14 @@ use lapidary_assay::dispatch::signature::Signature;
 use lapidary_cook::cookbook;
 use serde::Serialize;
 
-/// Modules and functions: signature and promised accuracy of each.
+/// Lists modules and functions: signature and stated accuracy of each.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook list --json")]
 pub(super) struct Arguments {
-    /// One JSON document on stdout, and nothing else.
+    /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
-    /// The modules as a table of the README.
+    /// Print the modules as the table of the README.
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
 }

@@ -1,5 +1,6 @@
-//! The commands. Each returns an [`Outcome`] or a [`Failure`]; this file turns those into exit codes: 0 for success, 1
-//! for a check that failed, 2 for bad usage or bad input, with one clear line on stderr.
+//! The commands. Each returns an [`Outcome`] or a [`Failure`]; this file turns those into exit
+//! codes: 0 for success, 1 for a check that failed, 2 for bad usage or bad input, with one clear
+//! line on stderr.
 
 mod asked;
 mod browser;
@@ -24,16 +25,16 @@ use clap::{Parser, Subcommand};
 use lapidary_gpu::{AdapterChoice, Gpu};
 use std::process::ExitCode;
 
-/// Whether what was checked holds.
+/// Whether the checks passed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// All is well.
+    /// All checks passed.
     Passed,
     /// A check ran and failed.
     Failed,
 }
 
-/// One clear line: what, where, what to do.
+/// One clear line: the problem, where it is, and what to do.
 #[derive(Debug)]
 pub(crate) struct Failure(pub(crate) String);
 
@@ -47,7 +48,7 @@ impl<E: std::error::Error> From<E> for Failure {
 #[derive(Parser)]
 #[command(name = "cook", version, arg_required_else_help = true, after_help = "Example: ./cook gallery --open")]
 struct Arguments {
-    /// Which GPU: lavapipe, any, or part of an adapter's name; LAPIDARY_ADAPTER where left out.
+    /// GPU to use: lavapipe, any, or part of an adapter's name; LAPIDARY_ADAPTER by default.
     #[arg(long, global = true, value_name = "NAME")]
     adapter: Option<AdapterChoice>,
     #[command(subcommand)]
@@ -71,24 +72,24 @@ enum Command {
     Snapshots(snapshots::Arguments),
 }
 
-/// What every command may use.
+/// State shared by all commands.
 pub(crate) struct Context {
     adapter: AdapterChoice,
 }
 
 impl Context {
-    /// The process's device, opened at the first use.
+    /// Returns the device of the process, opened on first use.
     pub(crate) fn gpu(&self) -> Result<&'static Gpu, Failure> {
         Ok(Gpu::shared(&self.adapter)?)
     }
 }
 
-/// Parses the command line, runs the command, reports.
+/// Parses the command line, runs the command and reports errors.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse_from(number::joined(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are no errors; clap knows which stream and which code.
+            // Help and version are not errors; clap knows the right stream and exit code.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }

@@ -3,18 +3,20 @@
 use super::{Failure, Outcome, output};
 use std::path::{Path, PathBuf};
 
-/// The files of a new technique, with functions to replace; they pass every test as they are. What to do with them: CONTRIBUTING.md.
+/// Writes the files of a new technique, with functions to replace; they pass every test as they
+/// are. Next steps: CONTRIBUTING.md.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook new thin_film")]
 pub(super) struct Arguments {
-    /// Its name: small letters, digits and single underscores, as `thin_film`.
+    /// Name of the technique: lower-case letters, digits and single underscores, such as
+    /// `thin_film`.
     name: String,
-    /// The cookbook's folder, where it is not the one that this program was built from.
+    /// Folder of the cookbook, if it is not the one that this program was built from.
     #[arg(long = "in", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
 
-/// The technique's files, and what they hold, with `NAME` for the name.
+/// Paths and contents of the technique's files, with `NAME` in place of the name.
 const FILES: [(&str, &str); 8] = [
     ("wgsl/NAME.wgsl", include_str!("new/module.wgsl")),
     ("wgsl/naive/NAME.wgsl", include_str!("new/naive.wgsl")),
@@ -26,13 +28,13 @@ const FILES: [(&str, &str); 8] = [
     ("docs/NAME.md", include_str!("new/page.md")),
 ];
 
-/// The manifests that cargo needs a line in, each after the line before it in the order of names, and the line.
+/// Manifests that need a line for cargo, and that line; the lines are sorted by name.
 const MANIFESTS: [(&str, &str); 2] = [
     ("Cargo.toml", "lapidary-NAME = { path = \"crates/NAME\" }"),
     ("harness/cook/Cargo.toml", "lapidary-NAME = { workspace = true, features = [\"formulas\"] }"),
 ];
 
-/// The changelog, and the heading below which a new module is named.
+/// The changelog, and the heading under which a new module is listed.
 const CHANGELOG: (&str, &str) = ("CHANGELOG.md", "### New\n\n");
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -52,15 +54,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::Passed)
 }
 
-/// A file to be written whole.
+/// A file to be written as a whole.
 struct Change {
     path: PathBuf,
     text: String,
-    /// Not there yet; otherwise changed.
+    /// Whether the file is created; otherwise an existing one is changed.
     is_new: bool,
 }
 
-/// Refuses what cannot name a module.
+/// Returns an error if the name cannot be that of a module.
 fn check_name(name: &str) -> Result<(), String> {
     let fault =
         |what: &str| Err(format!("`{name}` {what}; choose a name of small letters, digits and single underscores"));
@@ -79,7 +81,7 @@ fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Everything to be written; nothing is yet.
+/// Returns all changes to be written, without writing anything.
 fn changes(root: &Path, name: &str) -> Result<Vec<Change>, String> {
     let named = |text: &str| text.replace("NAME", name);
     let mut changes = Vec::new();
@@ -116,9 +118,10 @@ fn read(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("{}: cannot be read: {error}", path.display()))
 }
 
-/// The manifest with a dependency's line among those of the modules, which are in order; none where there are none.
+/// Returns the manifest with a dependency's line inserted among those of the modules, which are
+/// sorted; `None` if there are none.
 fn with_line(manifest: &str, line: &str) -> Option<String> {
-    // Those of the same form: up to the name, and from the name on.
+    // Lines of the same form up to the name, and from the name on.
     let form =
         |line: &str| line.starts_with("lapidary-") && (line.contains("crates/") || line.contains("\"formulas\""));
     let lines: Vec<&str> = manifest.lines().collect();
@@ -131,7 +134,7 @@ fn with_line(manifest: &str, line: &str) -> Option<String> {
 
 /// Writes all files, or none.
 fn write(changes: &[Change]) -> Result<(), String> {
-    // First all of it beside its places; what is renamed then needs no more room.
+    // Everything is written to temporary files first; renaming them then needs no more space.
     let beside = |path: &Path| path.with_extension("cook-new");
     let made = |path: &Path, text: &str| {
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
@@ -142,7 +145,8 @@ fn write(changes: &[Change]) -> Result<(), String> {
     });
     if result.is_err() {
         for Change { path, .. } in changes {
-            // What cannot be removed either is what the message is about; a folder that holds something stays.
+            // If removing these fails as well, the message already covers the cause; non-empty
+            // folders stay.
             let _ = std::fs::remove_file(beside(path));
             let _ = path.parent().map(std::fs::remove_dir);
             let _ = path.parent().and_then(Path::parent).map(std::fs::remove_dir);

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// A parser of whole numbers in a range, whose message says the range.
+/// Returns a parser of whole numbers whose error message states the range.
 pub(super) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
@@ -16,8 +16,9 @@ where
     }
 }
 
-/// The arguments with each word that looks like a negative number joined to the option before it: `--seed -1` becomes `--seed=-1`, so that the
-/// option's own parser answers. By itself clap takes the number for an option that it does not know.
+/// Joins each argument that looks like a negative number to the option before it: `--seed -1`
+/// becomes `--seed=-1`, so that the option's own parser reports any error. Without this, clap would
+/// take the number for an unknown option.
 pub(super) fn joined(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::new();
     for argument in arguments {

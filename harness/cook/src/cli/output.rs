@@ -1,4 +1,4 @@
-//! What commands say on stdout: an error where it cannot be written, but for a reader that has had enough.
+//! Output of commands on stdout. A failed write is an error, unless the reader has closed the pipe.
 
 use super::Failure;
 use std::io::Write as _;
@@ -14,7 +14,7 @@ pub(super) fn bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Ok(()) => Ok(()),
-        // `cook list | head` is no mistake.
+        // `cook list | head` is not an error.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Failure(format!("stdout: cannot be written: {error}"))),
     }

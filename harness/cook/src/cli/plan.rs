@@ -9,7 +9,8 @@ use lapidary_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Which effects a scene calls for and why, and which passes, pipelines and resources follow. Needs no GPU.
+/// Shows which effects a scene calls for and why, and the resulting passes, pipelines and
+/// resources. Needs no GPU.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook plan vitrine\n  ./cook plan wax --with cdrf\n  ./cook plan ruby --quality best\n  ./cook plan my_stone.glb --without dispersion --json"
@@ -17,7 +18,7 @@ use std::collections::BTreeMap;
 pub(super) struct Arguments {
     #[command(flatten)]
     asked: Asked,
-    /// One JSON document on stdout, and nothing else.
+    /// Print one JSON document on stdout, and nothing else.
     #[arg(long)]
     json: bool,
 }
@@ -30,7 +31,7 @@ struct Document<'a> {
     passes: Vec<PassRow<'a>>,
     pipelines: Vec<PipelineRow<'a>>,
     resources: Vec<ResourceRow<'a>>,
-    /// What `cook frame` writes to `frame.json`.
+    /// The document that `cook frame` writes to `frame.json`.
     frame: lapidary_render::frame::Document,
     notes: Vec<String>,
     lacking: &'a [String],
@@ -42,9 +43,10 @@ struct ObjectRow<'a> {
     material: &'a str,
     rung: String,
     reason: &'a str,
-    /// None where the rung is named by the user or the material.
+    /// `None` if the user or the material names the rung.
     quality: Option<&'static str>,
-    /// By its committed ladder: the mean over the views, the worst view, and what is measured.
+    /// From the committed ladder: mean error over the views, then the worst view and the error
+    /// measure.
     error: Option<f64>,
     worst_error: Option<f64>,
     error_measure: Option<&'static str>,

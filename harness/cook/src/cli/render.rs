@@ -15,7 +15,7 @@ use lapidary_scene::Scene;
 use lapidary_scene::nearest::suggest;
 use std::path::PathBuf;
 
-/// Renders a scene: a built-in's name, or a .glb or .gltf file.
+/// Renders a scene: a built-in by name, or a .glb or .gltf file.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook render brilliant\n  ./cook render ruby --quality best --from 0,0\n  ./cook render brilliant --rung proxy-1+paper\n  ./cook render quartz --rung reference --size 256x256 --out quartz.exr\n  ./cook render my_stone.glb --size 1920x1080 --out stone.exr --environment studio.hdr"
@@ -23,10 +23,12 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(flatten)]
     asked: Asked,
-    /// PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in this folder where left out.
+    /// Output file, PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in the current
+    /// folder by default.
     #[arg(long, value_name = "F.png|F.exr")]
     out: Option<PathBuf>,
-    /// Degrees off the vertical, and from +z towards +x; the scene's own camera where left out.
+    /// Camera direction in degrees off the vertical, and from +z towards +x; the scene's own camera
+    /// by default.
     #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
     from: Option<(f32, f32)>,
     /// Factor on radiance before the tone curve.
@@ -51,72 +53,76 @@ pub(super) struct Arguments {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Gem recipes")]
 struct Gem {
-    /// Factor of the paper's dispersion, eq. (12), for rungs +paper; 1 where left out.
+    /// Factor on the paper's dispersion, eq. (12), for rungs with +paper; 1 by default.
     #[arg(long, value_name = "FACTOR", value_parser = parse_positive)]
     strength: Option<f32>,
-    /// What a ray still carries at its last hit: taken from the environment along it, which is the default, or dropped.
+    /// Energy that a ray still carries at its last hit: replaced by the environment in the ray's
+    /// direction (the default), or dropped.
     #[arg(long, value_name = "WAY", value_parser = ["environment", "dropped"])]
     rest: Option<String>,
-    /// The longest way of a ray inside, in units of length.
+    /// Maximum distance that a ray travels inside, in units of length.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     distance_limit: Option<f32>,
-    /// Whether a ray inside ends when what it carries can no longer be seen; where left out, from 16 hits
-    /// on, which that makes faster.
+    /// Whether a ray inside ends when its contribution can no longer be seen. On by default for
+    /// rungs of 16 hits or more, which it makes faster.
     #[arg(long, value_name = "WHETHER", value_parser = ["on", "off"])]
     throughput_limit: Option<String>,
-    /// By a geometry buffer and a lighting pass, as a deferred renderer does.
+    /// Draw with a geometry buffer and a lighting pass, as a deferred renderer does.
     #[arg(long)]
     deferred: bool,
-    /// The proxy's centre: stable, which is the default, or the paper's eq. (4).
+    /// Centre of the proxy: stable (the default), or the paper's eq. (4).
     #[arg(long, value_name = "FORM", value_parser = ["stable", "paper"])]
     centre: Option<String>,
 }
 
-/// Options of scattering bodies that are drawn by their curvature.
+/// Options for scattering bodies drawn by their curvature.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Scattering bodies by their curvature")]
 struct Diffuse {
-    /// Which curvature spreads the light: from the pixel's derivatives mean, which is the default, towards
-    /// (each light) or naive (|dN| / |dP|); or vertex, the mesh's mean curvature.
+    /// Curvature that spreads the light. From the pixel's derivatives: mean (the default), towards
+    /// (towards each light) or naive (|dN| / |dP|). From the mesh: vertex, its mean curvature.
     #[arg(long, value_name = "FORM", value_parser = parse_curvature)]
     curvature: Option<Curvature>,
 }
 
-/// Options of scattering bodies that light comes through.
+/// Options for translucent scattering bodies.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Scattering bodies by optical paths")]
 struct OpticalPath {
-    /// What light loses along its way through a body: this share of what scattering and absorption take; 0.18 where left out.
+    /// Share of scattering and absorption that attenuates light along its path through a body; 0.18
+    /// by default.
     #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
     extinction_scale: Option<f32>,
 }
 
-/// Options of the reference of clear stones.
+/// Options of the reference for clear stones.
 #[derive(clap::Args)]
 #[command(next_help_heading = "The reference of clear stones")]
 struct Reference {
-    /// Wavelengths that it follows; 31 where left out.
+    /// Number of wavelengths; 31 by default.
     #[arg(long, value_parser = number::whole(0..=usize::MAX))]
     wavelengths: Option<usize>,
-    /// The share of a camera ray's energy that it need not follow; 1e-4 where left out.
+    /// Share of a camera ray's energy that may be left untraced; 1e-4 by default.
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     energy_bound: Option<f64>,
 }
 
-/// Options of the reference of scattering bodies.
+/// Options of the reference for scattering bodies.
 #[derive(clap::Args)]
 #[command(next_help_heading = "The reference of scattering bodies")]
 struct Walks {
-    /// Walks for each pixel; 256 where left out.
+    /// Walks per pixel; 256 by default.
     #[arg(long, value_parser = number::whole(0..=u32::MAX))]
     walks: Option<u32>,
-    /// Where they set out: from the lights there is less noise, but no environment.
+    /// Where the walks start: starting from the lights gives less noise, but leaves out the
+    /// environment.
     #[arg(long, value_name = "END", value_parser = parse_origin)]
     walks_from: Option<Origin>,
-    /// Another seed gives other walks; 1 where left out.
+    /// Seed of the walks; 1 by default.
     #[arg(long, value_parser = number::whole(0..=u64::MAX))]
     seed: Option<u64>,
-    /// What surfaces do to walks: nothing (matched), or bend and reflect light by the material's ior (dielectric).
+    /// Effect of surfaces on walks: none (matched), or refraction and reflection by the material's
+    /// ior (dielectric).
     #[arg(long, value_parser = ["matched", "dielectric"])]
     boundary: Option<String>,
 }
@@ -151,7 +157,7 @@ impl Walks {
 }
 
 impl Arguments {
-    /// The settings of what is asked, with the options of each technique.
+    /// Returns the requested settings with the options of each technique.
     fn settings(&self, asked: Settings) -> Settings {
         let (diffuse, reference) = (DiffuseOptions::default(), ReferenceOptions::default());
         let curvature = self.diffuse.as_ref().and_then(|of| of.curvature).unwrap_or(diffuse.curvature);
@@ -200,7 +206,8 @@ fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
-/// Options of a technique that draws no object would be believed to have been obeyed.
+/// Refuses options of a technique that draws no object: the user would believe that they took
+/// effect.
 fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
     let usual = Settings::of_size(1, 1);
     let inside = GemOptions { deferred: false, ..settings.gem } != usual.gem;
@@ -224,7 +231,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
         }),
     ];
     let asked: Vec<_> = asked.into_iter().filter(|(_, is_asked, _)| *is_asked).collect();
-    // Deciding measures bodies.
+    // Returns early, because deciding measures bodies.
     if asked.is_empty() {
         return Ok(());
     }
@@ -240,7 +247,7 @@ fn refuse_what_is_ignored(arguments: &Arguments, scene: &Scene, settings: &Setti
     }
 }
 
-/// Whether what was found before drawing is said more closely by what was found in it.
+/// Whether a note from before drawing is repeated with more detail by a note from drawing.
 fn is_told_again(note: &Note, found: &[Note]) -> bool {
     let Note::NotSolid { objects, rung: Rung::OpticalPath(_), .. } = note else { return false };
     objects.count == 1
@@ -256,7 +263,8 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     let settings = arguments.settings(asked);
     refuse_what_is_ignored(arguments, &scene, &settings)?;
     let out = arguments.out.clone().unwrap_or_else(|| {
-        // Not the scene's name, which a file may give itself: it would choose where the picture goes.
+        // Not the scene's name, which comes from the file: it would decide where the picture is
+        // written.
         let mut name = Scene::stem(&arguments.asked.scene);
         name.push(".png");
         PathBuf::from(name)

@@ -6,13 +6,14 @@ use lapidary_scene as scene;
 use lapidary_scene::{Scene, glb};
 use std::path::PathBuf;
 
-/// Writes a built-in scene as a glTF 2.0 binary, meshes, materials, lights and camera, to be opened elsewhere.
+/// Writes a built-in scene as binary glTF 2.0, with meshes, materials, lights and camera, for use
+/// in other programs.
 #[derive(clap::Args)]
 #[command(after_help = "Example: ./cook scene brilliant --out harness/assets/brilliant.glb")]
 pub(super) struct Arguments {
     #[arg(help = format!("one of {}", scene::names()))]
     name: String,
-    /// Where to write it.
+    /// Output file.
     #[arg(long, value_name = "F.glb")]
     out: PathBuf,
 }

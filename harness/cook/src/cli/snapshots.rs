@@ -8,7 +8,7 @@ use lapidary_scene::nearest::suggest;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  ./cook snapshots\n  ./cook snapshots --accept\n  ./cook snapshots strip")]
 pub(super) struct Arguments {
-    /// One picture alone, by its file's name; all where left out.
+    /// One picture, by its file name; all by default.
     #[arg(value_parser = parse_name)]
     name: Option<String>,
     /// Make the new pictures the references. Look at them first.

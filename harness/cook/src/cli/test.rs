@@ -6,33 +6,35 @@ use lapidary_gpu::ADAPTER_VARIABLE;
 use std::path::Path;
 use std::process::Command;
 
-/// The whole test suite, or a part: the same build that `cook` itself runs from.
+/// Runs the whole test suite or a part of it, in the same build that `cook` itself runs from.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  ./cook test\n  ./cook test --quick\n  ./cook test hard_cases\n  ./cook test parity --quick --show"
 )]
 pub(super) struct Arguments {
-    /// Run the tests whose names hold this.
+    /// Run only the tests whose names contain this text.
     filter: Option<String>,
-    /// Leave out the mutation tests and what takes long of the others: about a minute.
+    /// Skip the mutation tests and the slowest of the others: takes about a minute.
     #[arg(long)]
     quick: bool,
-    /// Leave nothing to samples: every picture as it is seen, every rung.
+    /// Test everything instead of samples: every picture as displayed, beyond its linear radiance,
+    /// and every rung.
     #[arg(long, conflicts_with = "quick")]
     whole: bool,
-    /// Judge every mutant, not only those of the modules that changed since the record.
+    /// Judge every mutant, not only those of modules that changed since the record.
     #[arg(long, conflicts_with = "quick")]
     all_mutants: bool,
-    /// Write anew what is generated from the modules: releases and version lines, signatures, README's table, docs/check.md.
-    /// With --all-mutants: judge them alone, and record the score.
+    /// Update the files generated from the modules: releases and version lines, signatures,
+    /// README's table, docs/check.md. With --all-mutants: only judge the mutants, and record the
+    /// score.
     #[arg(long, conflicts_with_all = ["filter", "quick"])]
     refresh: bool,
-    /// Show what the tests measure, too.
+    /// Also show what the tests measure.
     #[arg(long)]
     show: bool,
 }
 
-/// What a quick run leaves out: the tests with one of these in their names.
+/// Tests that a quick run skips: those whose names contain one of these.
 const SLOW: [&str; 35] = [
     "allowance::",
     "antialiasing::",
@@ -71,27 +73,27 @@ const SLOW: [&str; 35] = [
     "walked_references::",
 ];
 
-/// What makes tests write instead of compare.
+/// Variables that make tests write instead of compare.
 const REFRESHING: [(&str, &str); 4] = [
     ("LAPIDARY_REFRESH_RELEASE", "1"),
     ("LAPIDARY_REFRESH_PAGES", "1"),
     ("INSTA_UPDATE", "always"),
     ("INSTA_FORCE_PASS", "1"),
 ];
-/// The tests that can.
+/// Tests that can write.
 const GENERATED: [&str; 3] = ["releases::", "text::", "user_file::the_page_shows"];
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    // Says at once what is missing, before minutes of building.
+    // Reports a missing device at once, before minutes of building.
     context.gpu()?;
     let seed = SuiteSeed::of_environment().map_err(Failure)?;
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
-    // Whoever names tests gets them.
+    // Tests that are named explicitly are always run.
     let is_short = arguments.quick && arguments.filter.is_none();
     if is_short {
         eprintln!("left out: mutants, and the tests named {}", SLOW.join(", "));
     }
-    // The mutation tests last and apart: cargo stops at the first target that fails.
+    // Mutation tests run last and separately, because cargo stops at the first target that fails.
     let parts: [&[&str]; 2] = [
         &["--workspace", "--lib", "--bins", "--test", "suite", "--test", "wgsl", "--test", "fuzz"],
         &["--package", "lapidary-cook", "--test", "mutation"],
@@ -110,7 +112,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         command.arg("test").args(*part).arg("--manifest-path");
         command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml"));
         command.env(ADAPTER_VARIABLE, context.adapter.to_string());
-        // The same for all parts, whatever changes in the tree meanwhile.
+        // The same seed for all parts, even if the tree changes meanwhile.
         command.env(SEED_VARIABLE, seed.value.to_string());
         if arguments.whole {
             command.env("LAPIDARY_WHOLE", "1");
@@ -142,7 +144,7 @@ mod tests {
     use super::SLOW;
     use std::path::{Path, PathBuf};
 
-    /// Every Rust file below a folder.
+    /// Collects every Rust file below a folder.
     fn files(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let path = entry.path();
@@ -154,7 +156,7 @@ mod tests {
         }
     }
 
-    /// A word that no test's name holds leaves nothing out, and nobody sees it.
+    /// An entry that matches no test would skip nothing, and go unnoticed.
     #[test]
     fn what_a_quick_run_leaves_out_is_there() {
         let mut found = Vec::new();

@@ -1,57 +1,58 @@
-//! What a module's comments say: its header and the tags of each function. Format in `docs/contract.md`.
+//! Contents of a module's comments: its header and the tags of each function. The format is
+//! described in `docs/contract.md`.
 
 use super::release;
 use lapidary_assay::accuracy_line::Accuracy;
 
-/// The licence line that every module carries.
+/// Licence line of every module.
 pub const LICENCE: &str = "MIT-0 OR Apache-2.0";
-/// The tags of a function, in their order.
+/// Tags of a function, in order.
 pub const TAGS: [&str; 5] = ["Returns", "Units", "Domain", "Outside", "Accuracy"];
 
-/// A module's header.
+/// Header of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// The module's name.
+    /// Name of the module.
     pub name: String,
-    /// Its purpose in one line.
+    /// Purpose of the module in one line.
     pub purpose: String,
-    /// The release and the hash of the text that its `// Version:` line states; a module has one.
+    /// Release and hash of the text from the `// Version:` line; always present in a module.
     pub version: Option<(String, String)>,
-    /// Where its mathematics comes from.
+    /// Source of the mathematics.
     pub source: String,
 }
 
-/// The comment of a function.
+/// Comment of a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionDoc {
-    /// Its WGSL name.
+    /// WGSL name of the function.
     pub name: String,
-    /// The line of its `fn`, from 1.
+    /// Line of the `fn`, from 1.
     pub line: usize,
-    /// What it does and why so.
+    /// What the function does, and why it does so.
     pub summary: String,
-    /// What it returns.
+    /// Meaning of the result.
     pub returns: String,
-    /// In which units.
+    /// Units of the result and parameters.
     pub units: String,
-    /// Where its accuracy holds.
+    /// Domain in which the stated accuracy holds.
     pub domain: String,
-    /// What it does elsewhere.
+    /// Behaviour outside the domain.
     pub outside: String,
-    /// The tolerance of its tests.
+    /// Tolerance of the tests.
     pub accuracy: Accuracy,
 }
 
-/// Where a comment breaks the contract.
+/// A comment that breaks the contract.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeaderFault {
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong and what is expected.
+    /// Problem, and what is expected instead.
     pub message: String,
 }
 
-/// Reads the header of a module.
+/// Parses the header of a module.
 pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
     let fault = |line: usize, message: &str| HeaderFault { line, message: message.to_owned() };
     let mut lines = source.lines();
@@ -78,7 +79,7 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
     let Some(source_line) = source_line.filter(|source| !source.trim().is_empty()) else {
         return Err(fault(at, "expected `// Source: <paper, book or specification, with equation numbers>`"));
     };
-    // A source may run on, up to an empty comment line or the end of the comment.
+    // A source may continue up to an empty comment line or the end of the comment.
     let needs = ["requires:", "parts:", "compares:"];
     let more = lines
         .map_while(|line| line.strip_prefix("// ").map(str::trim))
@@ -87,7 +88,7 @@ pub fn parse_header(source: &str) -> Result<Header, HeaderFault> {
     Ok(Header { name: name.to_owned(), purpose: purpose.to_owned(), version, source })
 }
 
-/// Reads the comment of every function of a module.
+/// Parses the comment of every function of a module.
 pub fn parse_functions(source: &str) -> Result<Vec<FunctionDoc>, HeaderFault> {
     let lines: Vec<&str> = source.lines().collect();
     let mut functions = Vec::new();

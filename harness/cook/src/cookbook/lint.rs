@@ -1,4 +1,4 @@
-//! The module contract as checks over the text and over naga's IR. A finding fails the tests.
+//! The module contract as checks of the text and of naga's IR. A finding fails the tests.
 
 use super::header::{self, Header};
 use super::marks;
@@ -9,7 +9,7 @@ use lapidary_assay::dispatch::signature::of_type;
 use naga::{Expression, Function, Handle};
 use std::fmt;
 
-/// The rules, by name.
+/// Rules of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rule {
     /// naga parses and validates the module by itself.
@@ -18,36 +18,36 @@ pub enum Rule {
     Header,
     /// Every function has its tags, and its accuracy line fits its result.
     FunctionComment,
-    /// Naive forms, and no others, stand in `wgsl/naive/`.
+    /// `wgsl/naive/` contains all naive forms, and nothing else.
     Place,
-    /// Functions, structs and consts only.
+    /// Only functions, structs and consts.
     PureFunctions,
-    /// Every global name starts with the module's.
+    /// Every global name starts with the module's name.
     Prefix,
-    /// Names that naga or naga_oil would rename or refuse.
+    /// No names that naga or naga_oil would rename or refuse.
     Identifier,
-    /// Every literal carries its type.
+    /// Every literal states its type.
     Literal,
     /// No comparison of a value with itself.
     SelfComparison,
-    /// Parentheses where the grammar wants them between operators.
+    /// Parentheses where the grammar requires them between operators.
     Precedence,
-    /// The lines that are there for an effect alone are marked.
+    /// Lines that exist only for an effect are marked.
     Mark,
     /// No two modules define the same name; all of them compile as one.
     Composition,
 }
 
-/// A breach of the contract.
+/// A violation of the contract.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// Which rule.
+    /// Violated rule.
     pub rule: Rule,
-    /// Which module.
+    /// Name of the module.
     pub module: String,
-    /// Line from 1; 0 where the rule is about the whole.
+    /// Line from 1; 0 if the rule concerns the whole text.
     pub line: usize,
-    /// What is wrong, why it matters, what to do.
+    /// Problem, why it matters, and what to do.
     pub message: String,
 }
 
@@ -57,9 +57,9 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Checks one module, with the naive forms that follow it, against every rule that concerns it alone.
+/// Checks one module and its naive forms against every rule that concerns a single module.
 pub fn lint(name: &str, source: &str, naive: &str) -> Vec<Finding> {
-    // Of the module's own; after an empty one those of the naive forms begin.
+    // Lines of the module itself; the naive forms begin after an empty line.
     let own_lines = source.lines().count();
     let whole = format!("{source}\n{naive}");
     let mut findings = Vec::new();
@@ -85,8 +85,8 @@ pub fn lint(name: &str, source: &str, naive: &str) -> Vec<Finding> {
     findings
 }
 
-/// Checks what no module is: the text of a recipe with its parts, each by itself. `effects` are those that its marks may
-/// name.
+/// Checks text that is not a module: a recipe and its parts, each separately. `effects` are those
+/// that marks may name.
 pub fn lint_recipe(name: &str, source: &str, effects: &[String]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut report = |rule, line, message| {
@@ -106,7 +106,7 @@ fn findings_of_operators(source: &str, report: &mut Report<'_>) {
     }
 }
 
-/// Checks that all modules compile as one text, in this order and in the reverse.
+/// Checks that all modules compile as one text, in this order and in reverse.
 pub fn lint_composition(modules: &[(&str, &str)]) -> Vec<Finding> {
     let forwards: Vec<&str> = modules.iter().map(|(_, source)| *source).collect();
     let backwards: Vec<&str> = forwards.iter().rev().copied().collect();
@@ -145,7 +145,7 @@ fn check_functions(source: &str, own_lines: usize, module: &naga::Module, report
             report(Rule::FunctionComment, 0, format!("`{name}`: `fn` must start its line, after its comment"));
             continue;
         };
-        // What fails is not pasted.
+        // Code that fails is not pasted.
         let is_naive = comment.accuracy == Accuracy::Naive;
         if is_naive != (comment.line > own_lines) {
             let folder = if is_naive { "wgsl/naive" } else { "wgsl" };
@@ -206,7 +206,8 @@ fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Rep
             report(Rule::Prefix, line_of(source, found), message);
         }
     }
-    // In the text, since naga keeps no name of a local const, and one only of two names for the same value.
+    // Checked in the text, because naga drops the names of local consts, and keeps only one of two
+    // names for the same value.
     for (line, code) in code_lines(source) {
         for found in identifiers(code).filter(|found| found.ends_with('_') || found.contains("__")) {
             let message = format!("`{found}`: naga renames what ends in `_` or holds `__`, and naga_oil refuses it");
@@ -224,7 +225,7 @@ fn check_names(name: &str, source: &str, module: &naga::Module, report: &mut Rep
     }
 }
 
-/// The identifiers and keywords of a line, in order.
+/// Iterates over the identifiers and keywords of a line, in order.
 fn identifiers(code: &str) -> impl Iterator<Item = &str> {
     let word = |c: char| c.is_alphanumeric() || c == '_';
     code.split(move |c| !word(c)).filter(|token| token.starts_with(|c: char| c.is_alphabetic() || c == '_'))
@@ -247,7 +248,7 @@ fn check_self_comparison(source: &str, module: &naga::Module, report: &mut Repor
     }
 }
 
-/// Whether two expressions read the same thing.
+/// Whether two expressions read the same value.
 fn same(function: &Function, left: Handle<Expression>, right: Handle<Expression>) -> bool {
     if left == right {
         return true;
@@ -258,7 +259,7 @@ fn same(function: &Function, left: Handle<Expression>, right: Handle<Expression>
             Expression::AccessIndex { base: left, index: first },
             Expression::AccessIndex { base: right, index: second },
         ) => first == second && same(function, *left, *right),
-        // Two calls may return different things.
+        // Two calls may return different values.
         (Expression::CallResult(_), _) => false,
         (left, right) => left == right,
     }
@@ -282,12 +283,12 @@ fn check_literals(source: &str, report: &mut Report<'_>) {
     }
 }
 
-/// Each line from 1 without its comment.
+/// Iterates over the lines, numbered from 1, without comments.
 fn code_lines(source: &str) -> impl Iterator<Item = (usize, &str)> {
     source.lines().enumerate().map(|(index, line)| (index + 1, line.split("//").next().unwrap_or_default()))
 }
 
-/// Tokens that start with a digit, exponents and suffixes included.
+/// Tokens that start with a digit, including exponents and suffixes.
 fn numeric_literals(code: &str) -> Vec<&str> {
     let bytes = code.as_bytes();
     let mut literals = Vec::new();
@@ -316,7 +317,7 @@ fn numeric_literals(code: &str) -> Vec<&str> {
     literals
 }
 
-/// The first line on which `word` stands, from 1; 0 where it does not.
+/// First line that contains `word`, from 1; 0 if there is none.
 fn line_of(source: &str, word: &str) -> usize {
     source
         .lines()

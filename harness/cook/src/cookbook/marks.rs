@@ -1,48 +1,49 @@
-//! Which lines of a recipe are there for an effect alone, and which only without it, as their marks say. Format in
-//! `docs/contract.md`.
+//! Marks of the lines of a recipe that belong to an effect, or that replace it. The format is
+//! described in `docs/contract.md`.
 
-/// A line of a recipe with what its marks say.
+/// A line of a recipe with its marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line<'a> {
-    /// From 1.
+    /// Line number, from 1.
     pub number: usize,
-    /// Its text, without the mark.
+    /// Text of the line, without the mark.
     pub text: &'a str,
-    /// The line goes where one of these effects is off.
+    /// Effects that the line needs: it is removed if one of them is off.
     pub with: Vec<&'a str>,
-    /// Where there are any, the line is a comment, and becomes one of the shader where one of these effects is off.
+    /// Effects that the line replaces. If there are any, the line is a comment, and becomes a line
+    /// of the shader if one of these effects is off.
     pub without: Vec<&'a str>,
 }
 
-/// What is wrong with the marks.
+/// Error in the marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// What is wrong, and what is expected.
+    /// Problem, and what is expected instead.
     pub message: String,
 }
 
-/// The effect that a line of WGSL declares, by its name in a mark.
+/// Name, as used in marks, of the effect that a line of WGSL declares; `None` if it declares none.
 pub fn effect_of(line: &str) -> Option<String> {
     let name = line.strip_prefix("override EFFECT_")?.split(':').next()?;
     Some(name.trim().to_lowercase())
 }
 
-/// The override of an effect.
+/// Name of an effect's override.
 pub fn override_of(effect: &str) -> String {
     format!("EFFECT_{}", effect.to_uppercase())
 }
 
-/// The effects that a text declares, in its order.
+/// Effects that a text declares, in order.
 pub fn effects(source: &str) -> Vec<String> {
     source.lines().filter_map(effect_of).collect()
 }
 
-/// The lines of a text, without those that hold nothing but a mark.
+/// Parses the lines of a text, without those that hold only a mark.
 pub fn lines(source: &str) -> Result<Vec<Line<'_>>, Fault> {
     let mut lines = Vec::new();
-    // The stretches that are open, each with its first line.
+    // Open marked ranges, each with its first line.
     let mut open: Vec<(&str, usize)> = Vec::new();
     for (number, text) in (1..).zip(source.lines()) {
         let fault = |message: String| Fault { line: number, message };
@@ -71,13 +72,13 @@ pub fn lines(source: &str) -> Result<Vec<Line<'_>>, Fault> {
     }
 }
 
-/// The effects of the stretches that are open.
+/// Effects of the open marked ranges.
 fn within<'a>(open: &[(&'a str, usize)]) -> Vec<&'a str> {
     open.iter().flat_map(|(names, _)| names.split(',')).collect()
 }
 
-/// Checks a text's marks: each names one of `known`; each effect that the text declares has a line beside its override;
-/// and all lines that name an override of an effect are marked as its.
+/// Checks a text's marks: each names one of `known`, and all lines that name the override of an
+/// effect are marked with that effect.
 pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
     let lines = match lines(source) {
         Ok(lines) => lines,
@@ -102,7 +103,8 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
     faults
 }
 
-/// Checks the effects of a whole recipe: each has lines beside its override, else it does nothing.
+/// Returns the effects of a whole recipe that do nothing, because they have no lines besides their
+/// override.
 pub fn idle_effects(source: &str) -> Result<Vec<String>, Fault> {
     let lines = lines(source)?;
     let is_idle = |effect: &String| {

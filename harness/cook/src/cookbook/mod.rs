@@ -1,5 +1,5 @@
-//! The cookbook as data: what the modules' comments promise, the contract that modules and recipes keep, and how they are written for other
-//! shading languages.
+//! The cookbook as data: the promises in the modules' comments, the contract of modules and
+//! recipes, and their translation to other shading languages.
 
 pub mod header;
 pub mod lint;
@@ -11,38 +11,38 @@ pub mod translate;
 use header::{FunctionDoc, Header};
 use std::sync::OnceLock;
 
-/// One technique's WGSL module.
+/// WGSL module of one technique.
 #[derive(Clone, Debug)]
 pub struct Module {
-    /// Its name, the same in `wgsl/`, `crates/`, `docs/` and `snapshots/`.
+    /// Name, the same in `wgsl/`, `crates/`, `docs/` and `snapshots/`.
     pub name: &'static str,
-    /// Its WGSL, as it is pasted.
+    /// WGSL text, as it is pasted.
     pub source: &'static str,
-    /// The forms that fail, which follow it.
+    /// Naive forms, which follow the module.
     pub naive: &'static str,
-    /// Both, as they are tested.
+    /// Module and naive forms together, as they are tested.
     pub whole: &'static str,
-    /// Its doc page, Markdown.
+    /// Doc page in Markdown.
     pub page: &'static str,
-    /// What its header says.
+    /// Parsed header.
     pub header: Header,
-    /// What its functions' comments say, in order of the files: lines are those of `whole`.
+    /// Parsed comments of the functions, in the order of the files; line numbers refer to `whole`.
     pub functions: Vec<FunctionDoc>,
 }
 
 impl Module {
-    /// The function of that WGSL name, with or without the module's prefix.
+    /// Returns the function of that WGSL name, with or without the module's prefix.
     pub fn function(&self, name: &str) -> Option<&FunctionDoc> {
         let prefixed = format!("{}_{name}", self.name);
         self.functions.iter().find(|function| function.name == name || function.name == prefixed)
     }
 }
 
-/// All modules, in the order of their names.
+/// Returns all modules, sorted by name.
 ///
 /// # Panics
-/// Where a module's comments break the contract, with the line and what is expected: the sources are compiled in, so
-/// only an edit of the cookbook itself can do this.
+/// If a module's comments break the contract, with the line and what is expected: the sources are
+/// compiled in, so only an edit of the cookbook itself can cause this.
 pub fn modules() -> &'static [Module] {
     static MODULES: OnceLock<Vec<Module>> = OnceLock::new();
     MODULES.get_or_init(|| {
@@ -64,7 +64,7 @@ pub fn modules() -> &'static [Module] {
     })
 }
 
-/// The module of that name.
+/// Returns the module of that name, or `None`.
 pub fn module(name: &str) -> Option<&'static Module> {
     modules().iter().find(|module| module.name == name)
 }

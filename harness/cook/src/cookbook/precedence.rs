@@ -1,8 +1,9 @@
-//! Operators that WGSL's grammar keeps apart and naga lets pass: other compilers, Chromium's among them, refuse `a | b << c` without parentheses.
+//! Operators that WGSL's grammar does not allow to be mixed, although naga accepts it: other
+//! compilers, including Chromium's, refuse `a | b << c` without parentheses.
 
 use std::mem::take;
 
-/// What stands between two operands.
+/// Kind of an operator between two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Arithmetic,
@@ -12,7 +13,7 @@ enum Kind {
     ShortCircuit,
 }
 
-/// Longer ones first.
+/// Longer operators first.
 const OPERATORS: [(&str, Kind); 18] = [
     ("<<", Kind::Shift),
     (">>", Kind::Shift),
@@ -34,15 +35,16 @@ const OPERATORS: [(&str, Kind); 18] = [
     ("%", Kind::Arithmetic),
 ];
 
-/// After these a sign has one operand.
+/// Keywords after which a sign is a unary operator.
 const KEYWORDS: [&str; 6] = ["return", "if", "while", "case", "else", "switch"];
-/// Before these names' angle brackets there is no comparison.
+/// Names whose following angle brackets are not comparisons.
 const TEMPLATES: [&str; 6] = ["array", "atomic", "bitcast", "ptr", "var", "texture_storage_2d"];
 
-/// The lines, from 1, on which operators stand side by side that need parentheses, each with the operators.
+/// Returns the lines, from 1, on which operators are mixed that need parentheses, each with the
+/// operators.
 pub fn mixed_operators(source: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
-    // The operators between the brackets that are open, level by level.
+    // Operators within the open brackets, one list per level.
     let mut levels: Vec<Vec<(&str, Kind)>> = vec![Vec::new()];
     for (line, text) in (1..).zip(source.lines()) {
         let mut rest = text.split("//").next().unwrap_or_default();
@@ -103,7 +105,8 @@ pub fn mixed_operators(source: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// Whether the grammar lets these stand side by side: bitwise operators with their own alone, shifts neither with arithmetic nor with another, && not with ||.
+/// Whether the grammar allows these operators together: bitwise operators only with themselves,
+/// shifts not with arithmetic or with another shift, && not with ||.
 fn are_compatible(operators: &[(&str, Kind)]) -> bool {
     let has = |kind: Kind| operators.iter().any(|(_, other)| *other == kind);
     let of = |kind: Kind| operators.iter().filter(move |(_, other)| *other == kind).map(|(name, _)| *name);

@@ -1,42 +1,44 @@
-//! Releases of the modules: what a pasted copy is, told by its tokens, and what was mended since.
+//! Releases of the modules: identifies a pasted copy by its tokens, and lists the fixes since then.
 //!
-//! `wgsl/releases/<release>.json` holds a hash of each function with the structs and consts that it uses, and one of each
-//! module's text, which the module's own `// Version:` line repeats. `CHANGELOG.md` says what changed, by function.
+//! `wgsl/releases/<release>.json` holds a hash of each function with the structs and consts that it
+//! uses, and a hash of each module's text, which the module's own `// Version:` line repeats.
+//! `CHANGELOG.md` lists the changes by function.
 
 use lapidary_assay::tokens::{Item, items, tokens};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-/// The release that this is, or will be.
+/// Number of the current or upcoming release.
 pub const CURRENT: &str = env!("CARGO_PKG_VERSION");
-/// What starts the line of a module's header that holds release and hash.
+/// Prefix of the header line that holds release and hash.
 const TAG: &str = "// Version: ";
 
-/// A release's hashes, as `wgsl/releases/` keeps them.
+/// Hashes of a release, as stored in `wgsl/releases/`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Release {
-    /// Its number.
+    /// Release number.
     pub release: String,
-    /// Its modules by name.
+    /// Modules by name.
     pub modules: BTreeMap<String, Hashes>,
 }
 
-/// A module's hashes in one release.
+/// Hashes of a module in one release.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hashes {
-    /// Of its text without the `// Version:` line.
+    /// Hash of the text without the `// Version:` line.
     pub text: String,
-    /// Of each function with the structs and consts that it uses, by tokens: comments and white space do not count. What a
-    /// function calls has a hash of its own.
+    /// Hash of each function with the structs and consts that it uses, by tokens: comments and
+    /// white space are ignored. Functions that it calls have their own hashes.
     pub functions: BTreeMap<String, String>,
 }
 
 impl Hashes {
-    /// The hashes of a text of the module `name`: of those functions in it that carry the module's prefix.
+    /// Computes the hashes of a text of the module `name`, for the functions that carry the
+    /// module's prefix.
     pub fn of(name: &str, source: &str) -> Hashes {
         let code = tokens(source);
-        // Only the module's own: in a larger file other names may be those of locals here.
+        // Only the module's own: in a larger file, other names may coincide with locals here.
         let own: Vec<Item<'_>> = items(&code).into_iter().filter(|item| belongs(name, item.name)).collect();
         let functions = own.iter().filter(|item| item.kind == "fn");
         let functions = functions.map(|function| (function.name.to_owned(), function_hash(&own, function))).collect();
@@ -44,12 +46,13 @@ impl Hashes {
     }
 }
 
-/// Whether a name starts with the module's: in the way of functions, structs or consts.
+/// Whether a name starts with the module's name, in the style of functions, structs or consts.
 fn belongs(module: &str, name: &str) -> bool {
     lapidary_wgsl::prefixes(module).iter().any(|prefix| name.starts_with(prefix))
 }
 
-/// Of a function's tokens, then of those of the structs and consts that it uses in the order of their names.
+/// Hash of a function's tokens, then of those of the structs and consts that it uses, sorted by
+/// name.
 fn function_hash(own: &[Item<'_>], function: &Item<'_>) -> String {
     let mut reached = BTreeSet::from([function.name]);
     let mut ahead = vec![function];
@@ -71,15 +74,15 @@ fn function_hash(own: &[Item<'_>], function: &Item<'_>) -> String {
     hash.hex()
 }
 
-/// Of a module's text without its `// Version:` line; line ends do not count.
+/// Hash of a module's text without its `// Version:` line; line endings are ignored.
 pub fn text_hash(source: &str) -> String {
     let mut hash = Fnv::default();
     source.lines().filter(|line| !line.starts_with(TAG)).for_each(|line| hash.add(line));
     hash.hex()
 }
 
-/// The 64-bit hash of Fowler, Noll and Vo (FNV-1a), each text ended by a zero byte. It tells texts apart that nobody made to
-/// collide.
+/// 64-bit hash of Fowler, Noll and Vo (FNV-1a), each text terminated by a zero byte. It
+/// distinguishes texts that were not made to collide.
 struct Fnv(u64);
 
 impl Default for Fnv {
@@ -100,14 +103,14 @@ impl Fnv {
     }
 }
 
-/// The release and the hash that a text's first `// Version:` line states; none where there is no such line.
+/// Release and hash from the first `// Version:` line of a text; `None` if there is no such line.
 pub fn stated(source: &str) -> Option<(&str, &str)> {
     let line = source.lines().find_map(|line| line.strip_prefix(TAG))?;
     line.trim_end().split_once(", hash ")
 }
 
-/// A module's text with the line that states its release and its hash, in the place of an earlier one or after the
-/// licence.
+/// Returns a module's text with the line that states its release and hash, in place of an earlier
+/// one or after the licence.
 pub fn with_version(source: &str) -> String {
     let version = format!("{TAG}{CURRENT}, hash {}", text_hash(source));
     let mut lines: Vec<&str> = source.lines().filter(|line| !line.starts_with(TAG)).collect();
@@ -117,20 +120,20 @@ pub fn with_version(source: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The releases and what changed between them.
+/// Releases and the changes between them.
 #[derive(Clone, Debug)]
 pub struct History {
-    /// The releases, the oldest first; the last is the current one.
+    /// Releases, oldest first; the last is the current one.
     pub releases: Vec<Release>,
-    /// The changelog's entries that name functions.
+    /// Entries of the changelog that name functions.
     pub changes: Vec<Change>,
 }
 
 impl History {
-    /// The cookbook's own.
+    /// Returns the cookbook's own history.
     ///
     /// # Panics
-    /// Where a table in `wgsl/releases/` is damaged, which a test forbids.
+    /// If a table in `wgsl/releases/` is damaged, which a test rules out.
     pub fn of_cookbook() -> &'static History {
         static HISTORY: OnceLock<History> = OnceLock::new();
         HISTORY.get_or_init(|| {
@@ -141,10 +144,11 @@ impl History {
         })
     }
 
-    /// Where those `functions` of the module `name` stand that are in `text`.
+    /// Compares those `functions` of the module `name` that occur in `text` with the releases.
     pub fn standing(&self, name: &str, functions: &[&str], text: &str) -> Standing {
         let found = Hashes::of(name, text);
-        // Of several modules pasted together, the first line below this one's heading.
+        // If several modules are pasted together, take the first version line below this module's
+        // heading.
         let start = text.find(&format!("// {name}: "));
         let stated = start.and_then(|start| stated(&text[start..])).map(|(release, _)| release.to_owned());
         let origin = |function: &&str| {
@@ -154,7 +158,8 @@ impl History {
             };
             let holding: Vec<String> =
                 self.releases.iter().filter(holds).map(|release| release.release.clone()).collect();
-            // Of releases with the same text it is the one that the header states, or else may be the first.
+            // Among releases with the same text, take the one that the header states, or else the
+            // oldest.
             let since = holding.iter().find(|release| stated.as_ref() == Some(*release)).or(holding.first()).cloned();
             let changes = since.as_deref().map_or_else(Vec::new, |since| self.changes_since(function, since));
             Some(Origin { function: (*function).to_owned(), since, release: holding.last().cloned(), changes })
@@ -169,7 +174,7 @@ impl History {
         .with_oldest(self)
     }
 
-    /// What was changed in a function after a release, the oldest first.
+    /// Changes to a function after a release, oldest first.
     fn changes_since(&self, function: &str, release: &str) -> Vec<String> {
         let from = self.position(release);
         let concerns = |change: &&Change| {
@@ -188,16 +193,16 @@ impl History {
 /// An entry of `CHANGELOG.md` that names functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
-    /// The release that brought it.
+    /// Release that introduced the change.
     pub release: String,
-    /// The functions.
+    /// Names of the functions.
     pub functions: Vec<String>,
     /// What changed and why.
     pub text: String,
 }
 
-/// Reads entries such as "- `one`, `two`: text", which may run on over indented lines, below headings such as
-/// "## 0.2.0 (unreleased)".
+/// Parses entries such as "- `one`, `two`: text", which may continue on indented lines, below
+/// headings such as "## 0.2.0 (unreleased)".
 pub fn parse_changes(changelog: &str) -> Vec<Change> {
     let mut changes: Vec<Change> = Vec::new();
     let mut release = "";
@@ -224,31 +229,34 @@ pub fn parse_changes(changelog: &str) -> Vec<Change> {
     changes
 }
 
-/// Where a function of a user's file stands.
+/// Origin of a function in a user's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// The function.
+    /// Name of the function.
     pub function: String,
-    /// The newest release whose function it is; none where it is none's.
+    /// Newest release that contains this version of the function; `None` if no release does.
     pub release: Option<String>,
-    /// The release that it may have been copied from, of those with the same text: the one that the file states, or the oldest.
+    /// Release that it may have been copied from, among those with the same text: the one that the
+    /// file states, or the oldest.
     pub since: Option<String>,
-    /// What was changed in it since then, the oldest first; where the text is the same, in what it promises or calls.
+    /// Changes since then, oldest first; if the text is the same, changes to what it promises or
+    /// calls.
     pub changes: Vec<String>,
 }
 
-/// Where a module's functions of a user's file stand.
+/// Origins of the functions of one module in a user's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Standing {
-    /// The module.
+    /// Name of the module.
     pub module: String,
-    /// Its functions in the file, in the module's order.
+    /// Functions in the file, in the module's order.
     pub origins: Vec<Origin>,
-    /// The release that its `// Version:` line in the file states, where there is one.
+    /// Release stated by its `// Version:` line in the file; `None` if there is no such line.
     pub stated: Option<String>,
-    /// The oldest release that a function is left from; none where all are the current one's or no release's.
+    /// Oldest release of an outdated function; `None` if all functions are of the current release
+    /// or of none.
     pub oldest: Option<String>,
-    /// The current release.
+    /// Current release.
     pub current: String,
 }
 
@@ -260,7 +268,8 @@ impl Standing {
         self
     }
 
-    /// A few lines for a reader: which release, what was changed since, what is no release's.
+    /// Describes the origin in a few lines: the release, the changes since, and the functions of no
+    /// release.
     pub fn describe(&self) -> String {
         let Standing { module, current, .. } = self;
         let own: Vec<String> = self

@@ -1,8 +1,8 @@
-//! The cookbook's WGSL in other shading languages, through naga's writers.
+//! Translation of the cookbook's WGSL to other shading languages, by naga's writers.
 
 use naga::back;
 
-/// What to write (`--to`).
+/// Output language (`--to`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Target {
     /// The cookbook's own text.
@@ -18,15 +18,17 @@ pub enum Target {
 }
 
 impl Target {
-    /// Whether the target holds whole shaders only, so that a module's functions need an entry point around them.
+    /// Whether the target only supports whole shaders, so that a module's functions need an entry
+    /// point.
     pub fn needs_entry_point(self) -> bool {
         matches!(self, Self::Spirv | Self::Glsl)
     }
 }
 
-/// Writes a validated module. GLSL holds one entry point a text, so it is given by name; elsewhere all are written.
+/// Writes a validated module. A GLSL text has one entry point, given by name; other targets include
+/// all.
 ///
-/// Returns the bytes of the text, or of the SPIR-V words; an error holds the writer's own word.
+/// Returns the bytes of the text or of the SPIR-V words; an error holds the writer's own message.
 pub fn translate(
     module: &naga::Module,
     info: &naga::valid::ModuleInfo,

@@ -1,5 +1,6 @@
-//! The ladder of the curvature-dependent reflectance: each rung's error against the convolution and against spheres of random walks,
-//! and its time beside Lambert's law and a blur in texture space.
+//! The ladder of the curvature-dependent reflectance: each rung's error against the convolution and
+//! against random walks through spheres, and its time compared with Lambert's law and a blur in
+//! texture space.
 
 pub mod error;
 mod frames;
@@ -25,31 +26,33 @@ use serde::{Deserialize, Serialize};
 
 /// The ladder's name.
 pub const TECHNIQUE: &str = "cdrf";
-/// The rungs: none, the cheapest, tables, closed forms, the definition, another function, and the way that the ladder does without.
+/// The rungs: no technique, the cheapest, tables, closed forms, the definition, another function,
+/// and the blur that the others replace.
 pub const RUNGS: [&str; 10] =
     [LAMBERT, "wrap", PAPER, "table-257-rgba16f", "table-257-r32f", "cheap", "accurate", "quadrature", SPHERICAL, BLUR];
-/// What costs are measured against.
+/// The baseline that costs are compared with.
 pub const LAMBERT: &str = "lambert";
 /// The paper's rung.
 pub const PAPER: &str = "table-256-rgba8";
-/// The rung that is no approximation of the others' function, and is compared with its own definition.
+/// The rung that approximates a different function from the others and is compared with its own
+/// definition.
 pub const SPHERICAL: &str = "spherical";
-/// What the technique replaces.
+/// The blur in texture space, which the technique replaces.
 pub const BLUR: &str = "blur";
-/// The rungs without a table that stand for the convolution.
+/// The rungs without a table that approximate the convolution.
 const ANALYTIC: [&str; 3] = ["cheap", "accurate", "quadrature"];
 
 /// The measures of a row.
 pub const MEASURES: [&str; 3] = ["largest", "rms", "walks"];
 
-/// What is measured, and how carefully.
+/// What to measure, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Rounds of timing; none leaves times out.
+    /// Rounds of timing; 0 skips timing.
     pub rounds: u32,
-    /// Width and height of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
-    /// The rungs.
+    /// The rungs to measure.
     pub rungs: Vec<Reflectance>,
 }
 
@@ -60,53 +63,56 @@ impl Default for Options {
     }
 }
 
-/// All of one rung.
+/// All results of one rung.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RungReport {
     /// The rung's name.
     pub rung: String,
-    /// From the convolution, and of the spherical form from its own definition; none of the blur, which is no function of angle and width.
+    /// Distance from the convolution, or for the spherical form from its own definition; `None` for
+    /// the blur, which is not a function of angle and width.
     pub distance: Option<Distance>,
-    /// What is left beside spheres of random walks; none of the blur.
+    /// Residuals against random walks through spheres; `None` for the blur.
     pub residuals: Option<Residuals>,
-    /// The frames that it draws.
+    /// The frames drawn with the rung.
     pub frames: Vec<FrameReport>,
     /// Bytes of its textures for one material.
     pub texture_bytes: u64,
-    /// Bytes of the timed mesh beside positions, normals and indices: curvatures, where they come from there, or what its texture needs.
+    /// Bytes of the timed mesh besides positions, normals and indices: curvatures, if they come
+    /// from the mesh, or what the texture needs.
     pub mesh_bytes: u64,
-    /// Another rung's lit part is faster with curvature from either source, and it errs no more.
+    /// Whether another rung's lit part is faster with curvature from either source and has no
+    /// larger error.
     pub dominated: bool,
 }
 
-/// The ladder, measured.
+/// The measured ladder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CdrfReport {
     /// The device and its driver.
     pub adapter: String,
-    /// The size of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
     /// Rounds of timing.
     pub rounds: u32,
-    /// Vertices of the timed mesh, as it is shown.
+    /// Number of vertices of the timed mesh as displayed.
     pub vertices: usize,
-    /// How many spheres of random walks there are.
+    /// Number of spheres simulated by random walks.
     pub spheres: usize,
-    /// From cheap to exact.
+    /// The rungs, from cheap to exact.
     pub rungs: Vec<RungReport>,
     /// Lookup tables of several sizes and formats.
     pub tables: Vec<TableReport>,
-    /// Whole pictures beside random walks.
+    /// Whole pictures compared with random walks.
     pub scenes: Vec<SceneReport>,
-    /// How far the spherical form is from the convolution on the circle.
+    /// Distance of the spherical form from the convolution on the circle.
     pub spherical_from_circular: Distance,
 }
 
-/// Measures the ladder. `progress` is told what is done, and how much of it.
+/// Measures the ladder. `progress` receives the current step, the work done and the total.
 ///
 /// # Errors
 ///
-/// Where the record of spheres is missing, or the device refuses.
+/// Returns an error if the record of spheres is missing or if the device fails.
 pub fn run(
     gpu: &Gpu,
     options: &Options,
@@ -155,17 +161,18 @@ pub fn run(
 }
 
 impl RungReport {
-    /// The frame of that part of the work and that source of curvature; where none is used, the same for either.
+    /// Returns the frame for a part of the work and a source of curvature; a rung without curvature
+    /// has the same frame for either source.
     pub fn frame(&self, part: Part, source: CurvatureSource) -> Option<&FrameReport> {
         self.frames.iter().find(|frame| frame.part == part && frame.curvature.is_none_or(|used| used == source))
     }
 
-    /// Its time in milliseconds.
+    /// Returns the time of that frame in milliseconds.
     pub fn ms(&self, part: Part, source: CurvatureSource) -> Option<f64> {
         Some(self.frame(part, source)?.timing?.ms)
     }
 
-    /// Its error by the measure of that number in [`MEASURES`].
+    /// Returns the error, by index into [`MEASURES`].
     fn error(&self, measure: usize) -> Option<f64> {
         match measure {
             0 => self.distance.map(|distance| distance.largest),
@@ -174,7 +181,8 @@ impl RungReport {
         }
     }
 
-    /// Whether this rung is faster than `other` in the lit part, with curvature from either source, and errs no more.
+    /// Whether this rung is faster than `other` in the lit part, with curvature from either source,
+    /// and has no larger error.
     fn beats(&self, other: &Self) -> bool {
         let faster = |source| match (self.ms(Part::Lit, source), other.ms(Part::Lit, source)) {
             (Some(mine), Some(others)) => mine < others,
@@ -190,19 +198,20 @@ impl RungReport {
     }
 }
 
-/// Whether the errors of two rungs by a measure can be compared: the spherical form is measured against another function, but by walks.
+/// Whether the errors of two rungs in a measure are comparable. The spherical form has a different
+/// definition, so only its distance from random walks is comparable with the others'.
 fn are_comparable(rungs: [&str; 2], error_measure: &str) -> bool {
     let [one, other] = rungs.map(|rung| rung == SPHERICAL);
     error_measure == MEASURES[2] || one == other
 }
 
 impl CdrfReport {
-    /// The rung of that name.
+    /// Returns the rung with that name.
     pub fn rung(&self, name: &str) -> Option<&RungReport> {
         self.rungs.iter().find(|rung| rung.rung == name)
     }
 
-    /// How many times as long `slow` takes as `fast`.
+    /// Returns the time of `slow` divided by the time of `fast`.
     pub fn ratio(&self, slow: &str, fast: &str, part: Part, source: CurvatureSource) -> Option<f64> {
         Some(self.rung(slow)?.ms(part, source)? / self.rung(fast)?.ms(part, source)?)
     }
@@ -212,7 +221,8 @@ impl CdrfReport {
         mark(&mut self.rungs, RungReport::beats, |rung| &mut rung.dominated);
     }
 
-    /// A row for each rung, measure and view, a view being a part of the work and a source of curvature: `lit+screen`.
+    /// Returns one row per rung, measure and view; a view is a part of the work and a source of
+    /// curvature, such as `lit+screen`.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for rung in &self.rungs {
@@ -235,7 +245,7 @@ impl CdrfReport {
         rows
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         table::text(self)
     }

@@ -1,4 +1,4 @@
-//! What the end of a ray costs: what is done with its rest, and where it ends.
+//! What the end of a ray costs: what happens to its remainder, and where it ends.
 
 use super::seen::{SAMPLES, Watched};
 use super::{CostError, Errors};
@@ -8,7 +8,7 @@ use lapidary_render as render;
 use lapidary_render::{GemOptions, Settings};
 use serde::{Deserialize, Serialize};
 
-/// One way to end a ray, and its errors.
+/// One way to end a ray, with its errors.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Choice {
     /// The rung.
@@ -17,12 +17,13 @@ pub struct Choice {
     pub choice: String,
     /// The view's name.
     pub view: String,
-    /// Against the reference.
+    /// Errors against the reference.
     pub errors: Errors,
 }
 
 impl Choice {
-    /// Rung, choice, and the means over the views of FLIP, RMSE and signed energy, in the order in which they were measured.
+    /// Returns rung, choice, and the means over the views of FLIP, RMSE and signed energy, in the
+    /// order of measurement.
     pub(super) fn means(choices: &[Self]) -> Vec<(&str, &str, [f64; 3])> {
         let mut keys: Vec<(&str, &str)> = choices.iter().map(|c| (c.rung.as_str(), c.choice.as_str())).collect();
         let mut seen = Vec::new();
@@ -41,10 +42,10 @@ impl Choice {
     }
 }
 
-/// Distance limits, in radii of the stone.
+/// Distance limits in radii of the stone.
 const LIMITS: [f32; 4] = [2.0, 4.0, 8.0, 16.0];
 
-/// The ways on some rungs, in every view.
+/// Measures the ways to end a ray for some rungs, in every view.
 pub(super) fn measure(gpu: &Gpu, watched: &[Watched]) -> Result<Vec<Choice>, CostError> {
     let mut found = Vec::new();
     for name in ["proxy-1+tracker", "convex-8+tracker"] {

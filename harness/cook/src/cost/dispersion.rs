@@ -1,4 +1,5 @@
-//! Tracked colours against those of separate wavelengths through the same geometry, so that dispersion alone differs.
+//! Compares tracked colours with those of separate wavelengths through the same geometry, so that
+//! only the dispersion differs.
 
 use super::CostError;
 use super::views::View;
@@ -11,27 +12,31 @@ use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// Side of the pictures that are compared, one sample a pixel, so that a pixel is one ray.
+/// Width and height of the compared pictures; there is one sample per pixel, so that a pixel is one
+/// ray.
 const SIDE: u32 = 256;
 
-/// How far the colours of a rung's trackers are from three separate wavelengths', where all three meet the same facets.
+/// Difference between the colours of a rung's trackers and those of three separate wavelengths,
+/// where all three meet the same facets.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Colours {
-    /// Geometry and hits.
+    /// The rung's geometry and number of hits.
     pub rung: String,
     /// The view's name.
     pub view: String,
-    /// Share of the stone's pixels whose three wavelengths meet the same facets throughout.
+    /// Fraction of the stone's pixels in which the three wavelengths meet the same facets
+    /// throughout.
     pub shared: f64,
-    /// RMS of the difference in radiance there: no dispersion at all.
+    /// RMS difference in radiance over these pixels without dispersion.
     pub none_rms: f64,
-    /// The paper's tracker, as printed.
+    /// RMS difference with the paper's tracker as printed.
     pub paper_rms: f64,
-    /// The factor of eq. (12) that serves the paper best: in this view, over these pixels.
+    /// The factor of eq. (12) that fits the paper's tracker best in this view and over these
+    /// pixels.
     pub strength: f32,
-    /// The paper's tracker at that strength.
+    /// RMS difference with the paper's tracker at that strength.
     pub fitted_rms: f64,
-    /// The exact tracker.
+    /// RMS difference with the exact tracker.
     pub tracker_rms: f64,
 }
 
@@ -47,7 +52,7 @@ fn with_spectrum(rung: Rung, spectrum: Spectrum) -> Rung {
     }
 }
 
-/// RMS of the difference over the pixels of `mask`.
+/// Returns the RMS difference over the pixels of `mask`.
 fn difference(one: &Picture, other: &Picture, mask: &[bool]) -> f64 {
     let pixels = one.linear.iter().zip(&other.linear).zip(mask).filter(|(_, masked)| **masked);
     let (sum, count) = pixels.fold((0.0, 0.0), |(sum, count), ((one, other), _)| {
@@ -57,7 +62,8 @@ fn difference(one: &Picture, other: &Picture, mask: &[bool]) -> f64 {
     (sum / count).sqrt()
 }
 
-/// Where `error` is least: at 0, or at the best of a grid over all magnitudes and golden sections about it; and how large it is there.
+/// Returns the position and the value of the minimum of `error`: 0, or the best of a grid over all
+/// magnitudes, refined by golden-section search.
 fn least(mut error: impl FnMut(f32) -> Result<f64, CostError>) -> Result<(f32, f64), CostError> {
     const STEPS: i32 = 14;
     let step = |k: i32| 2f32.powf(-0.75 * k as f32);
@@ -80,7 +86,8 @@ fn least(mut error: impl FnMut(f32) -> Result<f64, CostError>) -> Result<(f32, f
     Ok(best)
 }
 
-/// The colours of `paper`'s geometry and hits in a view, the paper's tracker fitted to it.
+/// Measures the colours for the geometry and hits of `paper` in a view, and fits the paper's
+/// tracker to it.
 pub(super) fn colours(gpu: &Gpu, paper: Rung, view: &View, scene: &Scene) -> Result<Colours, CostError> {
     let picture = |spectrum, strength| render::render(gpu, scene, &settings(with_spectrum(paper, spectrum), strength));
     let separate = picture(Spectrum::Separate(3), 1.0)?;
@@ -102,7 +109,8 @@ pub(super) fn colours(gpu: &Gpu, paper: Rung, view: &View, scene: &Scene) -> Res
     })
 }
 
-/// Which pixels show the stone by three wavelengths that meet the same facets, and are totally reflected at the same.
+/// Returns the pixels in which all three wavelengths meet the same facets and are totally reflected
+/// at the same ones.
 fn shared(scene: &Scene, rung: Rung, picture: &Picture) -> Result<Vec<bool>, CostError> {
     let settings = settings(rung, 1.0);
     let viewer = Viewer::new(scene, SIDE, SIDE);

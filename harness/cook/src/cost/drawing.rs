@@ -1,14 +1,14 @@
-//! What plots share: their size and colours, the frame and the legend, the marks of an axis, labels beside points, and the line of the
-//! rungs to choose from.
+//! Shared parts of plots: size and colours, frame and legend, axis ticks, point labels, and the
+//! staircase line of the best rungs.
 
 use super::CostError;
 use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Width and height of a plot.
+/// Width and height of a plot in pixels.
 pub const SIZE: (u32, u32) = (1200, 760);
-/// Of a series: colour-blind safe (Okabe and Ito 2008).
+/// Colours of the series, safe for colour-blind readers (Okabe and Ito 2008).
 pub(super) const COLORS: [RGBColor; 5] = [
     RGBColor(0x00, 0x00, 0x00),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -16,20 +16,20 @@ pub(super) const COLORS: [RGBColor; 5] = [
     RGBColor(0x00, 0x9e, 0x73),
     RGBColor(0xcc, 0x79, 0xa7),
 ];
-/// Of lines that others are compared with.
+/// Colour of lines that others are compared with.
 pub(super) const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);
-/// Of a grid.
+/// Colour of the grid.
 pub(super) const LIGHT: RGBColor = RGBColor(0xee, 0xee, 0xee);
-/// About a legend.
+/// Colour of a legend's border.
 const FRAME: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
 
-/// Whether a plot was drawn.
+/// The result of drawing a plot.
 pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// What is drawn on.
+/// The surface that a plot is drawn on.
 pub(super) type Root<'text> = DrawingArea<SVGBackend<'text>, Shift>;
 
-/// What `draw` draws on white, as SVG.
+/// Returns what `draw` draws on a white background, as SVG.
 pub(super) fn written(draw: impl FnOnce(&Root<'_>) -> Drawn) -> Result<String, CostError> {
     let mut text = String::new();
     let drawn = || -> Drawn {
@@ -43,7 +43,7 @@ pub(super) fn written(draw: impl FnOnce(&Root<'_>) -> Drawn) -> Result<String, C
     Ok(text)
 }
 
-/// A chart's caption, and room for its axes.
+/// Returns a chart builder with a caption and room for the axes.
 pub(super) fn captioned<'root, 'text>(
     root: &'root Root<'text>,
     caption: impl AsRef<str>,
@@ -53,17 +53,17 @@ pub(super) fn captioned<'root, 'text>(
     builder
 }
 
-/// A line in a legend.
+/// Returns a line symbol for a legend.
 pub(super) fn line(color: RGBColor, width: u32) -> impl Fn((i32, i32)) -> PathElement<(i32, i32)> {
     move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(width))
 }
 
-/// A disc in a legend.
+/// Returns a disc symbol for a legend.
 pub(super) fn disc(color: RGBColor) -> impl Fn((i32, i32)) -> Circle<(i32, i32), i32> {
     move |(x, y)| Circle::new((x + 9, y), 5, color.filled())
 }
 
-/// Draws the legend of all series that have a label.
+/// Draws the legend of all labelled series.
 pub(super) fn legend<'text, C: CoordTranslate>(
     chart: &mut ChartContext<'text, SVGBackend<'text>, C>,
     position: SeriesLabelPosition,
@@ -78,29 +78,29 @@ pub(super) fn legend<'text, C: CoordTranslate>(
     Ok(())
 }
 
-/// Limits of a logarithmic axis about `values`, with a margin.
+/// Returns the limits of a logarithmic axis around `values`, with a margin.
 pub(super) fn span(values: impl Iterator<Item = f64> + Clone, margin: f64) -> std::ops::Range<f64> {
     let low = values.clone().fold(f64::INFINITY, f64::min);
     let high = values.fold(0.0, f64::max);
     low / margin..high * margin
 }
 
-/// Those of an axis's labels that lie on it.
+/// Returns the labels that lie within the axis.
 pub(super) fn ticks(labels: &[f64], axis: &std::ops::Range<f64>) -> Vec<f64> {
     labels.iter().copied().filter(|label| axis.contains(label)).collect()
 }
 
-/// A point to be labelled.
+/// A point and its label.
 pub(super) struct Label<'a> {
     pub(super) name: &'a str,
-    /// Of the point, in pixels of the drawing.
+    /// Position of the point in pixels of the drawing.
     pub(super) at: (i32, i32),
-    /// It is one to choose from; the others stand back.
+    /// Whether the point is one of the best; the others are drawn less prominently.
     pub(super) front: bool,
 }
 
 impl Label<'_> {
-    /// Size and grey.
+    /// Returns the font size and the grey level.
     fn font(&self) -> (i32, u8) {
         if self.front { (13, 0x11) } else { (10, 0x88) }
     }
@@ -113,8 +113,9 @@ fn overlap(a: &Area, b: &Area) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
-/// Labels and the lower left corners where they go: beside their points, the choices' first, on no other label and on none of the
-/// `markers`. Where there is no room, a point that is no choice has none.
+/// Places the labels beside their points and returns their lower left corners. The best points come
+/// first; labels overlap neither each other nor the `markers`. If there is no room, a point that is
+/// not one of the best gets no label.
 fn placed<'l, 'a>(labels: &'l [Label<'a>], markers: &[(i32, i32)]) -> Vec<(&'l Label<'a>, (i32, i32))> {
     let mut taken: Vec<Area> = markers.iter().map(|&(x, y)| [x - 5, y - 5, x + 5, y + 5]).collect();
     let mut order: Vec<&Label<'a>> = labels.iter().collect();
@@ -123,9 +124,9 @@ fn placed<'l, 'a>(labels: &'l [Label<'a>], markers: &[(i32, i32)]) -> Vec<(&'l L
     for label in order {
         let (x, y) = label.at;
         let (size, _) = label.font();
-        // A letter of the font is about 0.6 of its size wide.
+        // A letter's width is about 0.6 of the font size.
         let width = 3 * size * label.name.len() as i32 / 5;
-        // To the right or the left, above or below, and then farther up and down.
+        // To the right or left, above or below, then farther up and down.
         let sides = [x + 7, x - 7 - width, x - width / 2];
         let mut corners: Vec<(i32, i32)> = Vec::new();
         for away in [0, 16, 32] {
@@ -147,7 +148,7 @@ fn placed<'l, 'a>(labels: &'l [Label<'a>], markers: &[(i32, i32)]) -> Vec<(&'l L
     found
 }
 
-/// Draws the labels. `markers` are the middles of all points.
+/// Draws the labels; `markers` are the centres of all points.
 pub(super) fn draw(root: &Root<'_>, labels: &[Label<'_>], markers: &[(i32, i32)]) -> Drawn {
     for (label, at) in placed(labels, markers) {
         let (size, shade) = label.font();
@@ -157,7 +158,8 @@ pub(super) fn draw(root: &Root<'_>, labels: &[Label<'_>], markers: &[(i32, i32)]
     Ok(())
 }
 
-/// The line below which nothing lies, through points of time and error to choose from: what is best with the time that there is.
+/// Returns the staircase line through the best points of time and error: the smallest error that
+/// each amount of time buys.
 pub(super) fn stairs(mut front: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut stairs = Vec::new();

@@ -1,4 +1,5 @@
-//! What each effect costs: time, SPIR-V instructions and bytes of resources, of frames with it alone, without any, and with all.
+//! What each effect costs in time, SPIR-V instructions and bytes of resources: frames with the
+//! effect alone, without any effect, and with all of them.
 
 mod tables;
 
@@ -15,12 +16,12 @@ use serde::{Deserialize, Serialize};
 /// The ladder's name.
 pub const TECHNIQUE: &str = "effects";
 
-/// How carefully it is measured.
+/// How thoroughly to measure.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Rounds of timing; 0 leaves times out.
+    /// Rounds of timing; 0 skips timing.
     pub rounds: u32,
-    /// Width and height of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
 }
 
@@ -33,56 +34,56 @@ impl Default for Options {
 /// A frame with some of a study's effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// `none`, `all`, or the effect that is on beside what it stands on.
+    /// `none`, `all`, or the one effect that is on (with its prerequisite, if it has one).
     pub effects: String,
-    /// Instructions of all pipelines.
+    /// SPIR-V instructions of all pipelines together.
     pub instructions: usize,
-    /// Pipelines.
+    /// Number of pipelines.
     pub pipelines: usize,
-    /// Draws and dispatches.
+    /// Number of draws and dispatches.
     pub steps: u32,
-    /// Bytes of all resources of a picture of the timed size.
+    /// Bytes of all resources for a picture of the timed size.
     pub bytes: u64,
-    /// None where times were not asked for.
+    /// The frame's times; `None` if timing was skipped.
     pub timing: Option<Timing>,
 }
 
-/// One scene by one rung, all of whose effects are switched.
+/// One scene drawn with one rung, whose effects are switched on and off.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Study {
-    /// What is drawn.
+    /// Name of the scene.
     pub scene: String,
-    /// How.
+    /// Name of the rung.
     pub rung: String,
-    /// Without any effect, each alone, and all.
+    /// The frames without any effect, with each effect alone, and with all.
     pub frames: Vec<Frame>,
 }
 
-/// Every study.
+/// The results of all studies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectsReport {
     /// The device and its driver.
     pub adapter: String,
-    /// The size of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
     /// Rounds of timing.
     pub rounds: u32,
-    /// In the order in which they were measured.
+    /// The studies in the order of measurement.
     pub studies: Vec<Study>,
 }
 
-/// A scene and settings in which every named effect is on.
+/// A scene and settings in which every listed effect is on.
 struct Case {
     name: &'static str,
     scene: Scene,
     settings: Settings,
-    /// Switched one by one.
+    /// The effects that are switched one by one.
     effects: &'static [Effect],
-    /// What an effect stands on, where it stands on another: without that it would be off itself.
+    /// Pairs of an effect and its prerequisite, without which it would be off itself.
     stands_on: &'static [(Effect, Effect)],
 }
 
-/// A small sky, whose size stands for no user's.
+/// Returns a small sky; its size is not meant to be typical.
 fn sky() -> Environment {
     let pixel = |index: u32| {
         let height = 1.0 - (index / 64) as f32 / 32.0;
@@ -91,13 +92,13 @@ fn sky() -> Environment {
     Environment::Map(EnvironmentMap { width: 64, height: 32, pixels: (0..64 * 32).map(pixel).collect() })
 }
 
-/// A scene's first object alone.
+/// Returns the scene with only its first object.
 fn one(name: &str) -> Result<Scene, CostError> {
     let scene = Scene::named(name).map_err(CostError::from)?;
     Ok(Scene { objects: scene.objects.into_iter().take(1).collect(), ..scene })
 }
 
-/// The same with a spot for each of its suns.
+/// Returns the scene with only its first object, and a spot in place of each sun.
 fn spotlit(name: &str) -> Result<Scene, CostError> {
     let scene = one(name)?;
     let bounds = scene.bounds();
@@ -213,7 +214,7 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
 }
 
 impl Case {
-    /// Names and settings of its frames.
+    /// Returns the names and settings of the frames.
     fn frames(&self) -> Vec<(String, Settings)> {
         let without = |kept: &[Effect]| {
             let gone = self.effects.iter().filter(|effect| !kept.contains(effect));
@@ -231,11 +232,11 @@ impl Case {
     }
 }
 
-/// Measures all of them. `progress` is told what is done, and how much of it.
+/// Measures all studies. `progress` receives the current step, the work done and the total.
 ///
 /// # Errors
 ///
-/// Where a scene cannot be made, or the device refuses.
+/// Returns an error if a scene cannot be made or if the device fails.
 pub fn run(
     gpu: &Gpu,
     options: &Options,
@@ -274,7 +275,8 @@ pub fn run(
 }
 
 impl Study {
-    /// The frame that another is compared with: that of what it stands on, else the one without effects.
+    /// Returns the frame to compare with: the one with only the prerequisite, or else the one
+    /// without effects.
     fn below(&self, frame: &Frame) -> Option<&Frame> {
         let under = frame.effects.split_once(", on ").map_or("none", |(_, under)| under);
         self.frames.iter().find(|other| other.effects == under)
@@ -282,7 +284,7 @@ impl Study {
 }
 
 impl EffectsReport {
-    /// A row for each frame of each study.
+    /// Returns one row per frame of each study.
     pub fn rows(&self) -> Vec<EffectRow> {
         let rows = self.studies.iter().flat_map(|study| {
             study.frames.iter().map(|frame| EffectRow {
@@ -306,27 +308,27 @@ impl EffectsReport {
         rows.collect()
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         tables::text(self)
     }
 }
 
-/// A frame as `--json` shows it.
+/// A frame as output by `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectRow {
-    /// What every ladder's rows have.
+    /// The fields that rows of all ladders share.
     #[serde(flatten)]
     pub row: Row,
-    /// [`Frame::effects`].
+    /// The same as [`Frame::effects`].
     pub effects: String,
-    /// [`Frame::instructions`].
+    /// The same as [`Frame::instructions`].
     pub instructions: usize,
-    /// [`Frame::pipelines`].
+    /// The same as [`Frame::pipelines`].
     pub pipelines: usize,
-    /// [`Frame::steps`].
+    /// The same as [`Frame::steps`].
     pub steps: u32,
-    /// [`Frame::bytes`].
+    /// The same as [`Frame::bytes`].
     pub bytes: u64,
 }
 

@@ -1,23 +1,24 @@
-//! How far a rung's picture is from the reference.
+//! Errors of a rung's picture against the reference.
 
 use crate::snapshot;
 use lapidary_render::Picture;
 use serde::{Deserialize, Serialize};
 
-/// The distance of a picture from its reference.
+/// Errors of a picture against its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Mean FLIP of the tone-mapped pictures, over the pixels that the stone covers, 0 to 1.
+    /// Mean FLIP of the tone-mapped pictures over the pixels that the stone covers, 0 to 1.
     pub flip: f64,
-    /// RMSE of linear radiance over the reference's root mean square.
+    /// RMSE of linear radiance, divided by the reference's root mean square.
     pub rmse: f64,
-    /// Mean radiance over the reference's, less 1: positive where the picture is too bright.
+    /// Mean radiance divided by the reference's, minus 1: positive if the picture is too bright.
     pub energy: f64,
 }
 
 impl Errors {
-    /// Of `picture` against `reference`, both of one size and both shown alike: of a committed reference there are means alone, so that its counterpart
-    /// is of [`render_means`](lapidary_render::render_means).
+    /// Compares `picture` with `reference`, which have the same size and tone mapping. A committed
+    /// reference holds only pixel means, so its counterpart has to come from
+    /// [`render_means`](lapidary_render::render_means).
     pub fn between(picture: &Picture, reference: &Picture) -> Self {
         let map = snapshot::flip(picture, reference);
         let covered = |index: usize| reference.linear[index][3] > 0.0;
@@ -39,7 +40,8 @@ impl Errors {
         Self { flip: flip / count, rmse: (error / power).sqrt(), energy: sum / reference_sum - 1.0 }
     }
 
-    /// The size of the error by the measure of that number in [`super::MEASURES`], of which it has the first three.
+    /// Returns the magnitude of one error, by index into [`super::MEASURES`]; only the first three
+    /// apply.
     pub fn of(&self, measure: usize) -> f64 {
         match measure {
             0 => self.flip,

@@ -11,9 +11,11 @@ use lapidary_render::shader::Shader;
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::Scene;
 
-/// The ladder from cheap to exact. Where a rung follows the paper's dispersion, it is measured at the best-fit strength too. The hierarchy and
-/// the loop over triangles give the planes' pictures, so a few rungs show what they take; a hierarchy's have colours, which cost it a twentieth. Hits
-/// double from rung to rung.
+/// The ladder from cheap to exact; the number of hits doubles from rung to rung.
+///
+/// A rung with the paper's dispersion is also measured at its best-fit strength. The hierarchy and
+/// the loop over triangles give the same pictures as the planes, so a few rungs are enough to show
+/// their cost; those of the hierarchy include colours, which make it a twentieth slower.
 pub const RUNGS: [&str; 44] = [
     "surface",
     "proxy-0",
@@ -61,20 +63,20 @@ pub const RUNGS: [&str; 44] = [
     "triangles-8+tracker",
 ];
 
-/// What is measured, and how carefully.
+/// What to measure, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Rounds of timing; none leaves times out.
+    /// Rounds of timing; 0 skips timing.
     pub rounds: u32,
-    /// Width and height of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
-    /// The views to compare in.
+    /// The views to compare all rungs in.
     pub views: Vec<View>,
-    /// Those that rungs for bodies of any shape are compared in as well.
+    /// Additional views for rungs that draw bodies of any shape.
     pub concave: Vec<View>,
-    /// Whether the proxy is measured at small sizes too, which takes a minute or two.
+    /// Whether the proxy is also measured at small sizes, which takes a minute or two.
     pub sizes: bool,
-    /// Names of rungs.
+    /// The rungs to measure.
     pub rungs: Vec<Rung>,
 }
 
@@ -92,7 +94,8 @@ impl Default for Options {
     }
 }
 
-/// A rung with its name in the report, its settings, and the strength of the paper's dispersion in each view; where it has none of its own, 1.
+/// A rung with its name in the report, its settings, and the strength of the paper's dispersion in
+/// each view (1 if not given).
 struct Entry {
     name: String,
     settings: Settings,
@@ -100,20 +103,20 @@ struct Entry {
 }
 
 impl Entry {
-    /// In the ladder's view of that number; none is another view.
+    /// Returns the settings for the ladder's view with that index; `None` is any other view.
     fn settings_in(&self, view: Option<usize>) -> Settings {
         let dispersion_strength = view.and_then(|view| self.strengths.get(view)).copied().unwrap_or(1.0);
         Settings { gem: GemOptions { dispersion_strength, ..self.settings.gem }, ..self.settings.clone() }
     }
 
-    /// Whether it draws bodies of any shape, in no more steps than lavapipe follows.
+    /// Whether the rung draws bodies of any shape, in few enough steps for lavapipe.
     fn draws_concave(&self) -> bool {
         let drawn = !matches!(self.settings.rung.geometry(), Geometry::Convex | Geometry::Triangles);
         drawn && !self.name.ends_with(FITTED)
     }
 }
 
-/// What the name of a rung ends with whose paper's dispersion is at the strength that serves it best in each view.
+/// Suffix of a rung whose strength of the paper's dispersion is the best fit in each view.
 const FITTED: &str = "-fitted";
 
 fn entries(options: &Options, colours: &[Vec<Colours>]) -> Vec<Entry> {
@@ -130,12 +133,12 @@ fn entries(options: &Options, colours: &[Vec<Colours>]) -> Vec<Entry> {
     entries
 }
 
-/// The rungs that follow the paper's dispersion.
+/// Returns the rungs with the paper's dispersion.
 fn papers(options: &Options) -> impl Iterator<Item = Rung> + '_ {
     options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper)
 }
 
-/// Measures the ladder. `progress` is told what is done, and how much of it.
+/// Measures the ladder. `progress` receives the current step, the work done and the total.
 pub fn run(
     gpu: &Gpu,
     options: &Options,
@@ -213,7 +216,7 @@ pub fn run(
     })
 }
 
-/// Every rung in a view, compared, and timed on the same picture.
+/// Compares every rung in a view, and times it on the same picture.
 fn see<'a>(
     gpu: &Gpu,
     options: &Options,
@@ -240,7 +243,7 @@ fn see<'a>(
     Ok(seen)
 }
 
-/// The rung's shaders for the brilliant, specialised to what it uses, counted in SPIR-V.
+/// Specialises the rung's shaders for the brilliant and counts their SPIR-V instructions.
 fn count(brilliant: &Scene, entry: &Entry) -> Result<RungReport, CostError> {
     let rung = entry.settings.rung;
     let source = lapidary_wgsl::recipe_source(rung.recipe());

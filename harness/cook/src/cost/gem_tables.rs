@@ -82,7 +82,7 @@ fn gem_quality(report: &Report) -> String {
     quality::table(report, &[Technique::Convex, Technique::Concave])
 }
 
-/// The views of bodies that are not convex, by every rung that draws them.
+/// Returns the results in the views of concave bodies, for every rung that draws them.
 fn concave(report: &Report) -> String {
     let mut columns = vec!["rung".to_owned()];
     columns.extend(report.concave.iter().map(|view| format!("{view}: ms, FLIP, RMSE, change")));
@@ -154,7 +154,7 @@ fn goals(report: &Report) -> String {
     );
     judge("proxy faster than the BVH", times("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
     for rung in ["proxy-1", "convex-8"] {
-        // The paper's is one shader at two strengths: the faster of them is its time.
+        // The paper's tracker is one shader at two strengths: its time is the lower one.
         let tracker = format!("{rung}+tracker");
         let twins = [format!("{rung}+paper"), format!("{rung}+paper-fitted")].map(|paper| times(&tracker, &paper));
         judge(
@@ -223,12 +223,12 @@ fn paper(report: &Report) -> String {
     table
 }
 
-/// How many times as close the exact tracker is as the paper's at its best.
+/// Returns how many times closer the exact tracker is than the paper's at its best strength.
 fn gain(colours: &Colours) -> f64 {
     colours.fitted_rms / colours.tracker_rms
 }
 
-/// `least to most` of a value.
+/// Formats the range of the values as `least to most`.
 fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> String {
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
     format!("{} to {}", show(least), show(most))

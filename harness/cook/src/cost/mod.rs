@@ -1,4 +1,5 @@
-//! What accuracy costs in time: every rung of a technique's ladder against its reference, and timed in one run.
+//! What accuracy costs in time: each rung of a technique's ladder is compared with its reference
+//! and timed, all in one run.
 
 pub mod cdrf;
 mod choices;
@@ -35,121 +36,126 @@ use lapidary_specialise::SpecialiseError;
 use lapidary_specialise::spirv_counts::SpirvCountsError;
 use serde::{Deserialize, Serialize};
 
-/// What is measured of a gem's rung in a view, as [`Seen::of`] numbers it.
+/// The measures of a gem rung in a view, numbered as in [`Seen::of`].
 pub const MEASURES: [&str; 4] = ["flip", "rmse", "energy", "change"];
 
-/// One rung, one view, one measure.
+/// The result for one rung, one view and one measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// The ladder's name.
     pub technique: &'static str,
     /// The rung's name.
     pub rung: String,
-    /// What was looked at; of gems see [`views::VIEWS`].
+    /// The view's name; for gems see [`views::VIEWS`].
     pub view: String,
-    /// The error, in the unit of its measure; none where the rung has none by this measure.
+    /// The error, in the unit of its measure; `None` if the measure does not apply to the rung.
     pub error: Option<f64>,
-    /// `flip`, `rmse`, `energy` or `change` of a gem; of a reflectance `largest` or `rms`, from the convolution, or `walks`, from random walks; of ways
-    /// through stone `nats`, `luminance` or `walks`.
+    /// Name of the measure. Gems: `flip`, `rmse`, `energy` or `change`. Reflectance: `largest` or
+    /// `rms` (from the convolution), or `walks` (from random walks). Optical paths: `nats`,
+    /// `luminance` or `walks`.
     pub error_measure: &'static str,
-    /// Milliseconds for a frame; none where times were not asked for.
+    /// Milliseconds per frame; `None` if timing was skipped.
     pub ms: Option<f64>,
-    /// Another rung is not slower and errs less, in this view and measure.
+    /// Whether another rung is at least as fast and has a smaller error in this view and measure.
     pub dominated: bool,
-    /// The device that was timed, and its driver.
+    /// The timed device and its driver.
     pub adapter: String,
 }
 
-/// All of one rung.
+/// All results of one rung.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RungReport {
     /// The rung's name.
     pub rung: String,
-    /// By view, in the order of [`Report::views`].
+    /// Results by view, in the order of [`Report::views`].
     pub views: Vec<Option<Seen>>,
-    /// By view, in the order of [`Report::concave`]; none where the rung draws convex bodies alone.
+    /// Results by view, in the order of [`Report::concave`]; `None` if the rung draws convex bodies
+    /// only.
     pub concave: Vec<Option<Seen>>,
-    /// The time of the paper's frame, which the stone fills.
+    /// The time of the paper's frame, which the stone fills; `None` if timing was skipped.
     pub timing: Option<Timing>,
-    /// Instructions of the specialised fragment shader in SPIR-V.
+    /// Number of SPIR-V instructions in the specialised fragment shader.
     pub fragment_instructions: u32,
-    /// Of the vertex shader.
+    /// Number of SPIR-V instructions in the specialised vertex shader.
     pub vertex_instructions: u32,
-    /// Bytes of constants and storage that its geometry needs for the timed stone, beside the mesh.
+    /// Bytes of constants and storage that the geometry of the timed stone needs besides the mesh.
     pub geometry_bytes: u64,
-    /// Another rung is faster and, in the mean over the views, errs no more by FLIP nor by RMSE.
+    /// Whether another rung is faster and, averaged over the views, has no larger error in either
+    /// FLIP or RMSE.
     pub dominated: bool,
 }
 
-/// A ladder, measured.
+/// The measured gem ladder.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// The device and its driver.
     pub adapter: String,
-    /// The names of the views of convex bodies.
+    /// Names of the views of convex bodies.
     pub views: Vec<String>,
-    /// Of those of other bodies.
+    /// Names of the views of concave bodies.
     pub concave: Vec<String>,
-    /// Pixels along a side of a view's picture, which is compared and timed.
+    /// Width and height in pixels of a view's picture, which is both compared and timed.
     pub side: u32,
-    /// Of each of its pixels, and of the paper's frame's.
+    /// Samples per pixel, both in the views and in the paper's frame.
     pub samples: u32,
-    /// The size of the paper's frame.
+    /// Width and height of the paper's frame in pixels.
     pub frame: [u32; 2],
-    /// From cheap to exact.
+    /// The rungs, from cheap to exact.
     pub rungs: Vec<RungReport>,
-    /// How far tracked colours are from those of separate wavelengths.
+    /// Distance of tracked colours from the colours of separate wavelengths.
     pub colours: Vec<Colours>,
-    /// What is done with the rest of a ray, and where it ends.
+    /// Ways to end a ray: what happens to its remainder, and where it ends.
     pub choices: Vec<Choice>,
-    /// What of the change from frame to frame is left with more samples.
+    /// The frame-to-frame change that remains with more samples.
     pub steadiness: Vec<Steadiness>,
-    /// The proxy at small sizes; none where only a part of the ladder was asked for.
+    /// The proxy at small sizes; empty if only a part of the ladder was requested.
     pub sizes: Vec<proxy_sizes::AtSize>,
-    /// Total internal reflection at the first hit, exact and by proxy.
+    /// Total internal reflection at the first hit, exact and with the proxy.
     pub reflections: Vec<Reflection>,
 }
 
 impl RungReport {
-    /// The time in milliseconds, with a star where not the whole frame was timed.
+    /// Returns the time in milliseconds, with a star if only part of the frame was timed.
     fn milliseconds(&self) -> String {
         let shown = |timing: Timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" });
         self.timing.map_or("-".to_owned(), shown)
     }
 
-    /// The mean over the views of the error by the measure of that number in [`MEASURES`].
+    /// Returns the mean error over the views, by index into [`MEASURES`].
     pub fn mean(&self, measure: usize) -> f64 {
         let errors: Vec<f64> = self.views.iter().flatten().map(|seen| seen.of(measure)).collect();
         errors.iter().sum::<f64>() / errors.len() as f64
     }
 
-    /// The largest of the same.
+    /// Returns the largest error over the views, by index into [`MEASURES`].
     pub fn worst(&self, measure: usize) -> f64 {
         self.views.iter().flatten().map(|seen| seen.of(measure)).fold(0.0, f64::max)
     }
 
-    /// Milliseconds for a view's picture, the mean over the views: the pictures whose errors [`Self::mean`] has.
+    /// Returns the mean time of a view's picture in milliseconds: the pictures whose errors
+    /// [`Self::mean`] averages.
     pub fn view_ms(&self) -> Option<f64> {
         let sum = self.views.iter().flatten().map(|seen| seen.ms).sum::<Option<f64>>()?;
         (sum > 0.0).then(|| sum / self.views.iter().flatten().count() as f64)
     }
 }
 
-/// By how much a rung may err more than a faster one and still be no worse: equal geometry gives equal pictures but for rounding.
+/// The factor by which a rung's error may exceed a faster one's and still count as equal: equal
+/// geometry gives equal pictures except for rounding.
 const ALIKE: f64 = 1.001;
 
 impl Report {
-    /// The rung of that name.
+    /// Returns the rung with that name.
     fn rung(&self, name: &str) -> Option<&RungReport> {
         self.rungs.iter().find(|rung| rung.rung == name)
     }
 
-    /// How many times as long `slow` takes as `fast`.
+    /// Returns the time of `slow` divided by the time of `fast`.
     fn ratio(&self, slow: &str, fast: &str) -> Option<f64> {
         Some(self.rung(slow)?.timing?.ms / self.rung(fast)?.timing?.ms)
     }
 
-    /// A row for each rung, measure and view.
+    /// Returns one row per rung, measure and view.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for rung in &self.rungs {
@@ -173,8 +179,8 @@ impl Report {
         rows
     }
 
-    /// Marks the rungs that another one beats: faster, and in the mean over the views no worse by FLIP nor by RMSE, as near as
-    /// rounding tells.
+    /// Marks every dominated rung: another one is faster and, averaged over the views, no worse in
+    /// either FLIP or RMSE, up to rounding.
     pub fn mark_dominated(&mut self) {
         let beats = |other: &RungReport, rung: &RungReport| {
             let faster = matches!((other.view_ms(), rung.view_ms()), (Some(other), Some(rung)) if other < rung);
@@ -183,7 +189,7 @@ impl Report {
         mark(&mut self.rungs, beats, |rung| &mut rung.dominated);
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         table::text(self)
     }
@@ -197,7 +203,8 @@ fn mark<T>(items: &mut [T], beats: impl Fn(&T, &T) -> bool, mark: impl Fn(&mut T
     }
 }
 
-/// Marks the rows than which another of the same view and measure is not slower and errs less, where the two errors are `comparable`.
+/// Marks each row for which another row of the same view and measure is at least as fast and has a
+/// smaller error, provided that the two errors are `comparable`.
 fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
     let beats = |other: &Row, row: &Row| {
         let alike = (&other.view, other.error_measure) == (&row.view, row.error_measure);
@@ -211,13 +218,13 @@ fn mark_rows(rows: &mut [Row], comparable: impl Fn(&Row, &Row) -> bool) {
 /// Why a ladder could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
-    /// A record of spheres that nothing can be compared with.
+    /// The record of spheres is missing or unusable, so there is nothing to compare with.
     #[error(
         "{}: {what}; restore it from version control, or remake it: ./cook cost sphere --out docs/measurements/random_walk",
         path.display()
     )]
     Record {
-        /// Where it should be.
+        /// Expected path of the record.
         path: std::path::PathBuf,
         /// What is wrong.
         what: String,
@@ -228,21 +235,21 @@ pub enum CostError {
     /// A view's scene could not be made.
     #[error(transparent)]
     Scene(#[from] lapidary_scene::SceneError),
-    /// No reference to compare with: it is never made by itself.
+    /// The reference to compare with is missing; references are never generated automatically.
     #[error("{}: missing; restore it from version control, or remake it: {command}", path.display())]
     NoReference {
-        /// Where it should be.
+        /// Expected path of the reference.
         path: std::path::PathBuf,
-        /// What makes it.
+        /// The command that makes the reference.
         command: String,
     },
     /// A committed reference is damaged.
     #[error(transparent)]
     Reference(#[from] crate::snapshot::SnapshotError),
-    /// The recipe could not be specialised for the count of its instructions.
+    /// The recipe could not be specialised for counting its instructions.
     #[error("counting instructions: {0}")]
     Specialise(#[from] SpecialiseError),
-    /// The specialised recipe could not be counted.
+    /// The instructions of the specialised recipe could not be counted.
     #[error("counting instructions: {0}")]
     Counts(#[from] SpirvCountsError),
     /// The plot could not be drawn.

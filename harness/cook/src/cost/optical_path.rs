@@ -1,5 +1,5 @@
-//! The ladder of light's ways through stone: solver, stencil and size of the grid, each rung's error against a closed form, the finest grid
-//! and random walks, and the time of the very pictures that these errors are of.
+//! The ladder of optical paths: solver, stencil and grid size. Each rung has errors against a
+//! closed form, the finest grid and random walks, and the times of the same pictures.
 
 pub mod frames;
 mod page;
@@ -20,7 +20,8 @@ use walks::Walks;
 
 /// The ladder's name.
 pub const TECHNIQUE: &str = "optical_path";
-/// The rungs: no way through the body, the paper's solver, stencils on rising grids by two solvers, the Eikonal equation, random walks.
+/// The rungs: no path through the body, the paper's solver, stencils on growing grids with two
+/// solvers, the Eikonal equation, and random walks.
 pub const RUNGS: [&str; 22] = [
     LAMBERT,
     LAMBERT_SHADOWED,
@@ -45,19 +46,20 @@ pub const RUNGS: [&str; 22] = [
     FINEST,
     REFERENCE,
 ];
-/// What knows no way through a body.
+/// The baseline without paths through the body.
 pub const LAMBERT: &str = "lambert";
-/// The same with cast shadows: what one would use who has no ways, and so what they are measured by.
+/// The same baseline with cast shadows: what one would use without optical paths, and therefore
+/// what they are compared with.
 pub const LAMBERT_SHADOWED: &str = "lambert-shadowed";
-/// The paper's own form: its solver, and nothing taken off the extinction.
+/// The paper's own form: its solver with the full extinction.
 pub const UNSCALED: &str = "paper-64-unscaled";
-/// What stands for the converged costs of a body without a closed form.
+/// The rung that serves as the converged costs of a body without a closed form.
 pub const FINEST: &str = "godunov-256";
 /// Random walks.
 pub const REFERENCE: &str = "reference";
-/// The rung that a scene has where none is asked for.
+/// The default rung of a scene.
 pub const USUAL: &str = "godunov-64";
-/// The solvers whose time is followed from the coarsest grid to the finest.
+/// The solvers whose time is measured from the coarsest grid to the finest.
 pub const GROWING: [&str; 3] = ["ping-pong-26", "tiled-26", "godunov"];
 /// Voxels along an edge of those grids.
 pub const CELLS: [u32; 5] = [16, 32, 64, 128, 256];
@@ -65,14 +67,14 @@ pub const CELLS: [u32; 5] = [16, 32, 64, 128, 256];
 /// The measures of a row.
 pub const MEASURES: [&str; 3] = ["nats", "luminance", "walks"];
 
-/// What is measured, and how carefully.
+/// What to measure, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Rounds of timing; none leaves times out.
+    /// Rounds of timing; 0 skips timing.
     pub rounds: u32,
-    /// Width and height of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
-    /// The rungs: Lambert's law, ways by voxels, and the reference.
+    /// The rungs to measure: Lambert's law, optical paths through voxels, and the reference.
     pub rungs: Vec<Rung>,
 }
 
@@ -82,42 +84,45 @@ impl Default for Options {
     }
 }
 
-/// All of one rung.
+/// All results of one rung.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RungReport {
     /// The rung's name.
     pub rung: String,
-    /// Its errors by view, in the order of [`VIEWS`].
+    /// Errors by view, in the order of [`VIEWS`].
     pub distances: Vec<Distance>,
-    /// The times of the pictures whose errors those are, in the order of [`VIEWS`].
+    /// Times of the same pictures by view, in the order of [`VIEWS`].
     pub times: Vec<ViewTimes>,
-    /// How far the solver of the grey bunny came; none where nothing is solved.
+    /// Final state of the solver for the grey bunny; `None` if nothing is solved.
     pub solved: Option<Solved>,
-    /// Bytes of the maps, voxels, costs and solver of the grey bunny.
+    /// Bytes of the maps, voxels, costs and solver for the grey bunny.
     pub bytes: u64,
-    /// Another rung is faster, and errs no more in any view.
+    /// Whether another rung is faster and has no larger error in any view.
     pub dominated: bool,
 }
 
 /// The times of a view's frames.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ViewTimes {
-    /// White and of one extinction for all channels: where it is compared with other costs.
+    /// The frame in white, with one extinction for all channels, whose costs are compared; `None`
+    /// if it was not timed.
     pub grey: Option<PathTiming>,
-    /// In its own colours, as `cook plan` has it: where it is compared with random walks.
+    /// The frame in its own colours, as `cook plan` has it, which is compared with random walks;
+    /// `None` if it was not timed.
     pub rgb: Option<PathTiming>,
 }
 
-/// What a row of the ladder is drawn by.
+/// The settings that a row of the ladder is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Measured {
     rung: Rung,
-    /// With the whole extinction for a cost.
+    /// Whether the cost is the full extinction.
     unscaled: bool,
 }
 
 impl Measured {
-    /// Each rung; after one by the paper's solver the same unscaled, which is the paper's own form.
+    /// Returns each rung; one with the paper's solver is followed by its unscaled version, which is
+    /// the paper's own form.
     fn all(rungs: &[Rung]) -> Vec<Self> {
         let is_papers = |rung: Rung| matches!(rung, Rung::OpticalPath(Paths { method: Method::Paper, .. }));
         let of = |&rung: &Rung| {
@@ -132,24 +137,24 @@ impl Measured {
     }
 }
 
-/// The ladder, measured.
+/// The measured ladder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpticalPathReport {
     /// The device and its driver.
     pub adapter: String,
-    /// The size of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
-    /// Rounds of timing, but of slow rungs.
+    /// Rounds of timing; slow rungs have fewer.
     pub rounds: u32,
-    /// From cheap to exact.
+    /// The rungs, from cheap to exact.
     pub rungs: Vec<RungReport>,
 }
 
-/// Measures the ladder. `progress` is told what is done, and how much of it.
+/// Measures the ladder. `progress` receives the current step, the work done and the total.
 ///
 /// # Errors
 ///
-/// Where a committed reference is damaged, or the device refuses.
+/// Returns an error if a committed reference is damaged or if the device fails.
 pub fn run(
     gpu: &Gpu,
     options: &Options,
@@ -189,7 +194,7 @@ impl RungReport {
         }
     }
 
-    /// The time of the grey bunny's frame in milliseconds.
+    /// Returns the time of the grey bunny's frame in milliseconds.
     pub fn ms(&self) -> Option<f64> {
         Some(self.grey("bunny")?.ms)
     }
@@ -198,23 +203,24 @@ impl RungReport {
         self.times.get(VIEWS.iter().position(|name| *name == view)?)
     }
 
-    /// The time of a view's frame of one extinction for all channels.
+    /// Returns the time of a view's frame with one extinction for all channels.
     pub fn grey(&self, view: &str) -> Option<&PathTiming> {
         self.times(view)?.grey.as_ref()
     }
 
-    /// The time of a view's frame in its own colours.
+    /// Returns the time of a view's frame in its own colours.
     pub fn rgb(&self, view: &str) -> Option<&PathTiming> {
         self.times(view)?.rgb.as_ref()
     }
 
-    /// Its errors in the view of that name.
+    /// Returns the errors in the view with that name.
     pub fn distance(&self, view: &str) -> Distance {
         let place = VIEWS.iter().position(|name| *name == view);
         place.and_then(|place| self.distances.get(place)).copied().unwrap_or_default()
     }
 
-    /// Whether this rung is faster than `other`, and errs no more wherever both have an error.
+    /// Whether this rung is faster than `other` and has no larger error wherever both have an
+    /// error.
     fn beats(&self, other: &Self) -> bool {
         let faster = matches!((self.ms(), other.ms()), (Some(mine), Some(others)) if mine < others);
         let both = self.distances.iter().zip(&other.distances).filter_map(|(mine, others)| mine.nats.zip(others.nats));
@@ -223,7 +229,7 @@ impl RungReport {
 }
 
 impl OpticalPathReport {
-    /// The rung of that name.
+    /// Returns the rung with that name.
     pub fn rung(&self, name: &str) -> Option<&RungReport> {
         self.rungs.iter().find(|rung| rung.rung == name)
     }
@@ -233,8 +239,9 @@ impl OpticalPathReport {
         mark(&mut self.rungs, RungReport::beats, |rung| &mut rung.dominated);
     }
 
-    /// A row for each rung, view and measure, with the time of the frame that the error is of: of costs and luminance the grey one, of the distance
-    /// from walks the one in the view's own colours.
+    /// Returns one row per rung, view and measure, with the time of the frame that the error
+    /// belongs to: the grey frame for costs and luminance, the frame in the view's own colours for
+    /// the distance from walks.
     pub fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for rung in &self.rungs {
@@ -258,7 +265,7 @@ impl OpticalPathReport {
         rows
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         table::text(self)
     }

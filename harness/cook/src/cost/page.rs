@@ -1,4 +1,5 @@
-//! A report's tables in the pages of `docs/`, between marks, so that no figure is copied by hand.
+//! Inserts a report's tables between marks in the pages of `docs/`, so that no figure is copied by
+//! hand.
 
 use super::Report;
 use super::cdrf::CdrfReport;
@@ -8,37 +9,37 @@ use super::restraint::RestraintReport;
 use super::sphere::SphereReport;
 use std::fmt::Write as _;
 
-/// What a page holds before a generated table, NAME being a table's name, ...
+/// The mark before a generated table, followed by the table's name.
 const BEGIN: &str = "<!-- generated: ";
-/// ... and after it.
+/// The mark after a generated table.
 const END: &str = "<!-- end -->";
 
-/// The name of the README's table of modules, which is no report's.
+/// Name of the README's table of modules, which belongs to no report.
 pub const MODULES: &str = "modules";
 
-/// The name of the table of built-in functions by device.
+/// Name of the table of built-in functions by device.
 pub const BUILTINS: &str = "builtins";
 
-/// The name of the table of functions whose bits differ between devices.
+/// Name of the table of functions whose bits differ between devices.
 pub const DIFFERENCES: &str = "differences";
 
-/// A table's name and what makes it of a report.
+/// A table's name, and the function that makes it from a report.
 pub type Table<R> = (&'static str, fn(&R) -> String);
 
-/// A report whose tables pages show.
+/// A report whose tables appear on pages.
 pub trait Tables: Sized + 'static {
-    /// The tables, whose names no other report's tables have.
+    /// The report's tables; their names are unique across all reports.
     const TABLES: &'static [Table<Self>];
 
-    /// Whether the report holds all that its tables show.
+    /// Checks that the report holds everything that its tables show.
     ///
     /// # Errors
     ///
-    /// What is missing: a page would have holes.
+    /// Returns a message that says what is missing: the page would have gaps.
     fn whole(&self) -> Result<(), String>;
 }
 
-/// The names of all tables.
+/// Returns the names of all tables.
 fn names() -> Vec<&'static str> {
     fn of<R: Tables>() -> impl Iterator<Item = &'static str> {
         R::TABLES.iter().map(|(name, _)| *name)
@@ -52,30 +53,31 @@ fn names() -> Vec<&'static str> {
         .collect()
 }
 
-/// Whether a page's marks are sound.
+/// Checks that a page's marks are well formed.
 ///
 /// # Errors
 ///
-/// A mark without an end, or with a name that no table has.
+/// Returns an error if a mark has no end, or if no table has its name.
 pub fn check(page: &str) -> Result<(), String> {
     with_tables(page, |_| None).map(|_| ())
 }
 
-/// `page` with each of its marked tables made anew from `report`; tables of other reports stay.
+/// Returns `page` with its marked tables regenerated from `report`; tables of other reports stay as
+/// they are.
 ///
 /// # Errors
 ///
-/// As [`check`]; or a report that is not [whole](Tables::whole).
+/// Returns an error as in [`check`], or if the report is not [whole](Tables::whole).
 pub fn fill<R: Tables>(page: &str, report: &R) -> Result<String, String> {
     report.whole()?;
     remake(page, report)
 }
 
-/// `page` with `table` in the place of the one that is called `name`.
+/// Returns `page` with the table called `name` replaced by `table`.
 ///
 /// # Errors
 ///
-/// As [`check`].
+/// Returns an error as in [`check`].
 pub fn with_table(page: &str, name: &str, table: &str) -> Result<String, String> {
     with_tables(page, |marked| (marked == name).then(|| format!("\n{table}")))
 }
@@ -87,7 +89,8 @@ fn remake<R: Tables>(page: &str, report: &R) -> Result<String, String> {
     })
 }
 
-/// `page` with what `make` gives for each name between its marks; what is there, where it gives nothing.
+/// Returns `page` with the text between each pair of marks replaced by what `make` returns for the
+/// table's name; `None` keeps the existing text.
 fn with_tables(page: &str, make: impl Fn(&str) -> Option<String>) -> Result<String, String> {
     let mut filled = String::new();
     let mut rest = page;
@@ -105,17 +108,17 @@ fn with_tables(page: &str, make: impl Fn(&str) -> Option<String>) -> Result<Stri
     Ok(filled)
 }
 
-/// A table's first two lines.
+/// Returns the first two lines of a table.
 pub(super) fn header(columns: &[&str]) -> String {
     format!("| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()))
 }
 
-/// Adds a line to a table.
+/// Appends a row to a table.
 pub(super) fn row(table: &mut String, cells: &[String]) {
     let _ = writeln!(table, "| {} |", cells.join(" | "));
 }
 
-/// A count of bytes.
+/// Formats a number of bytes.
 pub(super) fn bytes(count: u64) -> String {
     match count {
         0 => "0".to_owned(),
@@ -125,7 +128,7 @@ pub(super) fn bytes(count: u64) -> String {
     }
 }
 
-/// A goal's line.
+/// Appends a goal's row to a table.
 pub(super) fn judged(table: &mut String, goal: &str, measured: String, met: bool) {
     row(table, &[goal.to_owned(), measured, if met { "met" } else { "missed" }.to_owned()]);
 }

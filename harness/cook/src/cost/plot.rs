@@ -1,4 +1,4 @@
-//! The ladder as a picture: time against error, both logarithmic.
+//! The gem ladder as a plot of error against time, both logarithmic.
 
 use super::drawing::{
     self, COLORS, Drawn, GREY, LIGHT, Label, Root, captioned, disc, legend, line, span, stairs, written,
@@ -12,7 +12,7 @@ struct Point<'a> {
     rung: Option<Rung>,
     ms: f64,
     error: f64,
-    /// No other point is both faster and no worse, as in [`Report::mark_dominated`].
+    /// Whether no other point is both faster and no worse, as in [`Report::mark_dominated`].
     front: bool,
 }
 
@@ -42,7 +42,7 @@ fn color(rung: Option<Rung>) -> RGBColor {
     }
 }
 
-/// The ladder as SVG, by the measure of that name.
+/// Returns the plot as SVG, for the measure with that name.
 pub fn svg(report: &Report, measure: &str) -> Result<String, CostError> {
     let number = MEASURES.iter().position(|name| *name == measure).unwrap_or(0);
     let points = points(report, number);
@@ -70,7 +70,7 @@ fn draw(root: &Root<'_>, report: &Report, measure: &str, points: &[Point<'_>]) -
         .label_style(("sans-serif", 13))
         .draw()?;
 
-    // What to choose from: the rungs that nothing faster betters.
+    // The rungs worth choosing: no faster rung has a smaller error.
     let front = points.iter().filter(|point| point.front).map(|point| (point.ms, point.error)).collect();
     chart
         .draw_series(LineSeries::new(stairs(front), GREY.stroke_width(2)))?
@@ -92,8 +92,8 @@ fn draw(root: &Root<'_>, report: &Report, measure: &str, points: &[Point<'_>]) -
         let series: Vec<&Point<'_>> = points.iter().filter(of_series).collect();
         let Some(first) = series.first() else { continue };
         let color = color(first.rung);
-        // A disc where colours are not followed, a ring for the paper's tracker, a triangle for the exact one, a cross for separate
-        // wavelengths.
+        // A disc if colours are not tracked, a ring for the paper's tracker, a triangle for the
+        // exact tracker, and a cross for separate wavelengths.
         for point in &series {
             let at = (point.ms, point.error);
             let size = if point.front { 7 } else { 4 };

@@ -1,4 +1,4 @@
-//! Where a frame's time goes: frames of one stone from whose recipe one thing after another is taken away.
+//! Where a frame's time goes: frames of one stone, with one part after another cut from the recipe.
 
 use super::timing::{self, Timed};
 use super::{CostError, views};
@@ -8,7 +8,7 @@ use lapidary_render::Settings;
 use lapidary_scene::Scene;
 use std::fmt::Write as _;
 
-/// What is taken away: the text that goes, and what stands in its place.
+/// The cuts: description, source text to remove, and its replacement.
 const CUTS: [(&str, &str, &str); 3] = [
     ("all of it", "", ""),
     (
@@ -26,10 +26,11 @@ const CUTS: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// The rungs whose frames are cut.
+/// The rungs whose recipes are cut.
 const RUNGS: [&str; 3] = ["proxy-0", "proxy-1", "convex-1"];
 
-/// Times the frames, interleaved, the least of `rounds`, as a table for people. `progress` is told how many frames of how many are done.
+/// Times the frames in interleaved `rounds` and returns the minima as a text table. `progress`
+/// receives the number of frames done and the total.
 pub fn profile(
     gpu: &Gpu,
     rounds: u32,
@@ -42,7 +43,7 @@ pub fn profile(
         for (column, name) in RUNGS.iter().enumerate() {
             let Ok(rung) = name.parse::<Rung>() else { continue };
             let source = lapidary_wgsl::recipe_source(rung.recipe());
-            // The last cut is of what the proxy's vertices hand on.
+            // The last cut concerns the outputs of the proxy's vertex shader.
             if !source.contains(right) || (row == 2 && *name != "proxy-1") {
                 continue;
             }

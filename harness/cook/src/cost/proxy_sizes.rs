@@ -1,5 +1,5 @@
-//! How near the proxy comes to the stone at a small size, where it has been taken to be good enough: beside exact facets and a black stone, by
-//! size, cut and environment.
+//! Accuracy of the proxy at small sizes, where it has been considered good enough: compared with
+//! exact facets and a black stone, by size, cut and environment.
 
 use super::views::{self, View};
 use super::{CostError, Errors};
@@ -13,32 +13,33 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
 use serde::{Deserialize, Serialize};
 
-/// A stone of that size under one rung.
+/// The result for one stone at one size with one rung.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AtSize {
-    /// The built-in scene.
+    /// Name of the built-in scene.
     pub stone: String,
-    /// What lights it.
+    /// Name of the environment that lights it.
     pub environment: String,
-    /// Pixels along a side of the picture.
+    /// Width and height of the picture in pixels.
     pub size: u32,
-    /// The rung, or [`BLACK`].
+    /// The rung's name, or [`BLACK`].
     pub rung: String,
-    /// Mean radiance over the reference's.
+    /// Mean radiance divided by the reference's.
     pub mean: f64,
-    /// RMSE of linear radiance over the reference's root mean square.
+    /// RMSE of linear radiance, divided by the reference's root mean square.
     pub rmse: f64,
 }
 
-/// The baseline: a stone that shows nothing at all.
+/// The baseline: a completely black stone.
 pub const BLACK: &str = "black";
-/// The rungs beside it.
+/// The rungs that are compared with the baseline.
 pub const RUNGS: [&str; 3] = ["proxy-1+tracker", "convex-3+tracker", "convex-8+tracker"];
 const STONES: [&str; 4] = ["brilliant", "ruby", "step_cut", "quartz"];
-/// References of these sizes are followed on the spot, in seconds; larger ones are the committed ones, which are of the studio.
+/// Picture sizes whose references are traced on the spot, in seconds; larger references are the
+/// committed ones, which are lit by the studio.
 const SIZES: [u32; 2] = [16, 64];
 
-/// What a ray of each direction brings.
+/// Returns an environment map with the given radiance by direction.
 fn map(radiance: impl Fn(Vec3) -> Vec3) -> Environment {
     let (width, height) = (128, 64);
     let pixel = |index: u32| {
@@ -49,7 +50,8 @@ fn map(radiance: impl Fn(Vec3) -> Vec3) -> Environment {
     Environment::Map(EnvironmentMap { width, height, pixels: (0..width * height).map(pixel).collect() })
 }
 
-/// Blue sky, paler to the horizon, over brown ground; a sun of 5° at half height, with as much light as all of the sky.
+/// Blue sky, paler towards the horizon, over brown ground; a sun of 5° halfway up, which gives as
+/// much light as the whole sky.
 fn sun_and_sky() -> Environment {
     let sun = Vec3::new(0.5, 0.7, 0.5).normalize();
     map(|direction| {
@@ -78,10 +80,11 @@ fn two_lights() -> Environment {
     })
 }
 
-/// How many references are followed.
+/// Number of references that are traced.
 pub(super) const FOLLOWED: u64 = (STONES.len() * SIZES.len() * 3) as u64;
 
-/// Every stone, size and environment under every rung, by 16 samples a pixel. `progress` is told how many references are followed.
+/// Measures every stone, size and environment with every rung, at 16 samples per pixel. `progress`
+/// receives the number of references traced so far.
 pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<AtSize>, CostError> {
     let environments = [("studio", Environment::Studio), ("sun and sky", sun_and_sky()), ("two lights", two_lights())];
     let mut found = Vec::new();
@@ -127,7 +130,8 @@ pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<At
 mod tests {
     use super::*;
 
-    /// A hand-sized sum: what the sky and the sun bring to a level plane are alike, and nothing is negative or dark all around.
+    /// A rough sum: the sky and the sun contribute about equally to a horizontal plane, and nothing
+    /// is negative or dark all around.
     #[test]
     fn the_sun_brings_about_as_much_as_the_sky() {
         let Environment::Map(EnvironmentMap { width, height, pixels }) = sun_and_sky() else { panic!("a map") };

@@ -1,4 +1,4 @@
-//! What `--quality` stands for, as a ladder's page shows it.
+//! The rungs that `--quality` selects, as shown on a ladder's page.
 
 use super::page::{header, row};
 use lapidary_plan::ladder::{CUT, Ladder, SAME_TIME, Step};
@@ -7,7 +7,8 @@ use lapidary_plan::{Quality, Technique};
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// The rungs of the techniques' qualities with their errors and times in `report`, and what keeps each its place there.
+/// Returns a table of the rungs selected by each quality of `techniques`, with their errors and
+/// times in `report` and the reason why each was chosen.
 pub(super) fn table<R: Serialize>(report: &R, techniques: &[Technique]) -> String {
     let mut table = header(&[
         "technique",

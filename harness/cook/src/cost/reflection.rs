@@ -1,5 +1,5 @@
-//! Total internal reflection at the first hit inside: what the exact stone has, and what the proxy makes of it, by how normals were
-//! averaged and how the table was cut into triangles.
+//! Total internal reflection at the first hit inside the stone: exact and with the proxy, by how
+//! normals were averaged and how the table was triangulated.
 
 use super::CostError;
 use lapidary_plan::{Geometry, Rung, Spectrum};
@@ -10,21 +10,21 @@ use lapidary_scene::polyhedron::Triangulation;
 use lapidary_scene::{Averaging, Scene};
 use serde::{Deserialize, Serialize};
 
-/// Side of the grid of rays.
+/// Width and height of the grid of rays.
 const SIDE: u32 = 128;
 
-/// The share of rays through the stone that the first facet reflects totally.
+/// The fraction of rays that are totally reflected by the first facet they hit inside the stone.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reflection {
     /// `exact`, or how the proxy's mesh was made.
     pub mesh: String,
-    /// Of the rays that enter by the table.
+    /// Fraction of the rays that enter through the table, 0 to 1.
     pub table: f64,
-    /// Of those that enter by the crown's other facets.
+    /// Fraction of the rays that enter through the crown's other facets, 0 to 1.
     pub crown: f64,
 }
 
-/// The brilliant face-up.
+/// Measures the brilliant, seen face-up.
 pub(super) fn measure() -> Result<Vec<Reflection>, CostError> {
     let scene = Scene::named("brilliant")?.seen_from(0.0, 0.0);
     let mut found = vec![share(&scene, Geometry::Convex, "exact".to_owned())?];
@@ -54,7 +54,8 @@ fn share(scene: &Scene, geometry: Geometry, mesh: String) -> Result<Reflection, 
     let (viewer, shading) = (Viewer::new(scene, SIDE, SIDE), Shading::new(&object.material, &settings));
     let stone = Stone::new(object, &settings)?;
     let top = scene.bounds().max.y;
-    // Totally reflected and all, by the table and by the rest of the crown.
+    // Counts of totally reflected rays and of all rays, for the table and for the rest of the
+    // crown.
     let mut counts = [[0usize; 2]; 2];
     for (row, column) in (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column))) {
         let seen = viewer.see(&object.mesh, f64::from(column) + 0.5, f64::from(row) + 0.5);

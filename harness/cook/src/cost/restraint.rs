@@ -1,4 +1,5 @@
-//! What restraint saves: work that is left out because a pixel or a tile has no use for it, beside the same work done.
+//! What restraint saves: work that is skipped because a pixel or a tile does not need it, compared
+//! with doing all of it.
 
 mod limit;
 mod tables;
@@ -16,17 +17,18 @@ use serde::{Deserialize, Serialize};
 
 /// The ladder's name.
 pub const TECHNIQUE: &str = "restraint";
-/// The rungs whose rays are ended by what they carry: few hits and many, by each geometry.
+/// The rungs whose rays end once they carry too little light: few hits and many, with each
+/// geometry.
 pub const RUNGS: [&str; 6] = ["proxy-4", "proxy-8", "convex-8", "convex-16", "convex-64", "bvh-16"];
-/// The scenes: a stone that reflects totally, one that absorbs, and one with few facets.
+/// The scenes: a stone with total reflection, an absorbing one, and one with few facets.
 pub const SCENES: [&str; 3] = ["brilliant", "ruby", "prism"];
 
-/// What is measured, and how carefully.
+/// What to measure, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Rounds of timing, at least 1.
     pub rounds: u32,
-    /// Width and height of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
     /// Rungs for clear stones.
     pub rungs: Vec<Rung>,
@@ -39,28 +41,29 @@ impl Default for Options {
     }
 }
 
-/// Each restraint, measured.
+/// The results for each kind of restraint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RestraintReport {
     /// The device and its driver.
     pub adapter: String,
-    /// The size of the timed frame.
+    /// Width and height of the timed frame in pixels.
     pub frame: [u32; 2],
     /// Rounds of timing.
     pub rounds: u32,
-    /// Rays that end by what they carry, by scene and rung.
+    /// Rays that end once they carry too little light, by scene and rung.
     pub limited: Vec<Limited>,
-    /// Ways through a body by tiles, by grid.
+    /// Optical paths solved by tiles, by grid.
     pub tiles: Vec<Tiles>,
-    /// Stones of several materials, each by its own variant of the recipe.
+    /// Stones of several materials, each with its own variant of the recipe.
     pub variants: Variants,
 }
 
-/// Measures all of them. `progress` is told what is done, and how much of it.
+/// Measures all kinds of restraint. `progress` receives the current step, the work done and the
+/// total.
 ///
 /// # Errors
 ///
-/// Where a scene cannot be made, or the device refuses.
+/// Returns an error if a scene cannot be made or if the device fails.
 pub fn run(
     gpu: &Gpu,
     options: &Options,
@@ -76,7 +79,8 @@ pub fn run(
 }
 
 impl RestraintReport {
-    /// A row for each way of each restraint. The error is the largest difference from the work without it.
+    /// Returns one row per variant of each restraint. The error is the largest difference from the
+    /// result without restraint.
     pub fn rows(&self) -> Vec<Row> {
         let row = |rung: String, view: &str, error: f64, error_measure, ms| Row {
             technique: TECHNIQUE,
@@ -106,7 +110,7 @@ impl RestraintReport {
         rays.chain(tiles).chain(variants).collect()
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         tables::text(self)
     }

@@ -1,4 +1,4 @@
-//! A rung in one view: how far its picture is from the reference, how steady, and how long that very picture takes.
+//! Results of a rung in one view: the picture's errors, its temporal stability and its time.
 
 use super::views::{self, View};
 use super::{CostError, Errors, MEASURES};
@@ -8,28 +8,31 @@ use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// Samples along each side of a compared and timed pixel. A real-time frame has one; `cook render` takes 4.
+/// Samples along each side of a pixel in compared and timed pictures. A real-time frame has one;
+/// `cook render` takes 4.
 pub const SAMPLES: u32 = 1;
 
-/// A rung's picture of a view.
+/// Results for a rung's picture of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
-    /// Against the reference.
+    /// Errors against the reference.
     pub errors: Errors,
-    /// Frame-to-frame change: RMS of the difference in linear radiance when the camera has turned by 0.05°, over the reference's root mean square.
+    /// Frame-to-frame change: RMS of the difference in linear radiance after the camera has turned
+    /// by 0.05°, divided by the reference's root mean square.
     pub change: f64,
-    /// Milliseconds for the same picture, the least of the rounds; none where times were not asked for.
+    /// Milliseconds for the same picture, the minimum over the rounds; `None` if timing was
+    /// skipped.
     pub ms: Option<f64>,
 }
 
 impl Seen {
-    /// The size of the error by the measure of that number in [`MEASURES`].
+    /// Returns the magnitude of one error, by index into [`MEASURES`].
     pub fn of(&self, measure: usize) -> f64 {
         if measure + 1 < MEASURES.len() { self.errors.of(measure) } else { self.change }
     }
 }
 
-/// A view with its scene, in this frame and the next, and its reference.
+/// A view with its scene in this frame and the next, and its reference.
 pub(super) struct Watched {
     pub(super) view: View,
     pub(super) scene: Scene,
@@ -43,7 +46,7 @@ impl Watched {
         Ok(Self { view: *view, next: views::turned(&scene), reference: view.reference(gpu)?, scene })
     }
 
-    /// The rung's picture, untimed.
+    /// Renders the view with a rung and compares it; not timed.
     pub(super) fn see(&self, gpu: &Gpu, settings: &Settings) -> Result<Seen, CostError> {
         let now = render::render_means(gpu, &self.scene, settings)?;
         let next = render::render_means(gpu, &self.next, settings)?;
@@ -52,7 +55,7 @@ impl Watched {
     }
 }
 
-/// The root mean square of the difference of two frames, over that of the reference.
+/// Returns the RMS difference of two frames divided by the reference's root mean square.
 fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
     let channels = |picture: &Picture| -> Vec<f64> {
         picture.linear.iter().flat_map(|pixel| &pixel[..3]).map(|value| f64::from(*value)).collect()
@@ -62,20 +65,21 @@ fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
     (apart / power).sqrt()
 }
 
-/// How steady a rung is with more samples: what of its change from frame to frame is the stone's, and what is noise.
+/// Temporal stability of a rung with more samples. It separates the change that is the stone's own
+/// from noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steadiness {
     /// The rung.
     pub rung: String,
-    /// Of a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// As [`Seen::change`], the mean over the views.
+    /// Frame-to-frame change as in [`Seen::change`], averaged over the views.
     pub change: f64,
-    /// The same of the view `brilliant`; none where that was not asked for.
+    /// Frame-to-frame change in the view `brilliant`; `None` if that view was not requested.
     pub brilliant: Option<f64>,
 }
 
-/// Of the rung that shows the stone, with 1 to 64 samples a pixel.
+/// Measures the stability of the rung that shows the stone, with 1 to 64 samples per pixel.
 pub(super) fn steadiness(gpu: &Gpu, watched: &[Watched]) -> Result<Vec<Steadiness>, CostError> {
     let name = "convex-8+tracker";
     let Ok(rung) = name.parse() else { return Ok(Vec::new()) };

@@ -1,4 +1,5 @@
-//! The translucent sphere: how near the curvature-dependent reflectance comes to what random walks give, and with which width.
+//! The translucent sphere: how close the curvature-dependent reflectance comes to random walks, and
+//! with which width.
 
 mod fit;
 mod page;
@@ -12,95 +13,101 @@ pub use fit::{Fit, Form};
 use lapidary_reference::random_walk::{Profile, half_space, profile};
 use serde::{Deserialize, Serialize};
 
-/// Albedos of one scattering.
+/// Single-scattering albedos.
 pub const ALBEDOS: [f64; 4] = [0.8, 0.9, 0.99, 1.0];
 /// Radii in mean free paths.
 pub const RADII: [f64; 10] = [2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0];
-/// The forms, the plain cosine first.
+/// The reflectance functions, the plain cosine first.
 pub const FORMS: [Form; 3] = [Form::Lambert, Form::Circular, Form::Spherical];
 
-/// What a reflectance function is multiplied by.
+/// The factor of a reflectance function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScaleKind {
-    /// What brings it nearest: an exposure of its own for each sphere.
+    /// The best-fit factor: a separate exposure for each sphere.
     Free,
-    /// The half space's diffuse albedo, which is what one measures on a flat sample and what a large sphere comes to.
+    /// The diffuse albedo of the half space, which can be measured on a flat sample and is the
+    /// limit for large spheres.
     Fixed,
 }
 
 impl ScaleKind {
-    /// Both.
+    /// Both kinds.
     pub const ALL: [Self; 2] = [Self::Free, Self::Fixed];
 
-    /// The scale for an albedo of one scattering, where it is given.
+    /// Returns the fixed factor for a single-scattering albedo; `None` if the factor is free.
     pub(super) fn of(self, albedo: f64) -> Option<f64> {
         (self == Self::Fixed).then(|| half_space::diffuse_albedo(albedo))
     }
 }
 
-/// The best of a form beside a sphere.
+/// The best fit of a form to a sphere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Of one scattering.
+    /// Single-scattering albedo.
     pub albedo: f64,
-    /// In mean free paths.
+    /// Radius in mean free paths.
     pub radius: f64,
-    /// What is fitted.
+    /// The fitted reflectance function.
     pub form: Form,
     /// Whether the scale is fitted too.
     pub scale_kind: ScaleKind,
-    /// The best width, in radians.
+    /// Best-fit width in radians.
     pub sigma: f64,
-    /// Width times radius, in mean free paths: `sigma0`, were the paper's rule true.
+    /// Width times radius in mean free paths; it would equal `sigma0` if the paper's rule held.
     pub sigma_radius: f64,
-    /// Its standard error by the walks' statistics; none where they settle no width.
+    /// Standard error of `sigma_radius` from the statistics of the walks; `None` if they do not
+    /// determine a width.
     pub sigma_radius_error: Option<f64>,
-    /// What the function is multiplied by.
+    /// Factor of the reflectance function.
     pub scale: f64,
-    /// RMS of the difference over the sphere's surface, over the irradiance of a surface that faces the light.
+    /// RMS difference over the sphere's surface, divided by the irradiance of a surface that faces
+    /// the light.
     pub residual: f64,
 }
 
-/// An infinite radius, where nothing is left to blur: from the closed form, without walks.
+/// The limit of an infinite radius, where nothing is left to blur: from the closed form, without
+/// walks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
-    /// Of one scattering.
+    /// Single-scattering albedo.
     pub albedo: f64,
-    /// The half space's diffuse albedo.
+    /// Diffuse albedo of the half space.
     pub diffuse_albedo: f64,
-    /// The width that the circular form takes all the same, with a free scale.
+    /// Best-fit width of the circular form with a free scale, in radians; not 0, although nothing
+    /// is blurred.
     pub sigma: f64,
-    /// Its residual.
+    /// Residual of the circular form.
     pub residual: f64,
-    /// That of the clamped cosine: a half space does not reflect as Lambert has it.
+    /// Residual of the clamped cosine: a half space does not follow Lambert's law.
     pub lambert: f64,
 }
 
-/// Spheres, walked through and fitted.
+/// Spheres, simulated by random walks and fitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SphereReport {
-    /// Walks through each sphere.
+    /// Number of walks per sphere.
     pub walks: u64,
-    /// Their seed.
+    /// Seed of the walks.
     pub seed: u64,
-    /// What leaves each sphere.
+    /// Exitance profile of each sphere.
     pub profiles: Vec<Profile>,
-    /// The best of each form and kind of scale beside each: of the light that was scattered.
+    /// Best fit of each form and kind of scale to each sphere: scattered light only.
     pub rows: Vec<Row>,
-    /// The same of all light, that which went straight through with it.
+    /// Best fits to all light, including unscattered light.
     pub rows_with_unscattered: Vec<Row>,
-    /// Infinite radii.
+    /// The limits of an infinite radius.
     pub limits: Vec<Limit>,
-    /// How the width goes with the radius, of scattered light.
+    /// Laws for the width as a function of the radius: scattered light only.
     pub laws: Vec<Law>,
-    /// The same of all light.
+    /// Laws for all light, including unscattered light.
     pub laws_with_unscattered: Vec<Law>,
-    /// One width times radius for a whole range of radii.
+    /// Choices of one width times radius for a whole range of radii.
     pub choices: Vec<Choice>,
 }
 
-/// Walks through spheres of all [`RADII`] and [`ALBEDOS`] and fits. `progress` is told what is done, and how much of it.
+/// Simulates spheres of all [`RADII`] and [`ALBEDOS`] and fits them. `progress` receives the
+/// current step, the work done and the total.
 pub fn run(walks: u64, seed: u64, progress: &mut dyn FnMut(&'static str, u64, u64)) -> SphereReport {
     let total = (ALBEDOS.len() * RADII.len()) as u64;
     let mut profiles = Vec::new();
@@ -108,7 +115,7 @@ pub fn run(walks: u64, seed: u64, progress: &mut dyn FnMut(&'static str, u64, u6
         for radius in RADII {
             let number = profiles.len() as u64;
             progress("walking", number, total);
-            // Each sphere has walks of its own, so that their chances do not go together.
+            // Each sphere has its own seed, so that the noise of different spheres is independent.
             profiles.push(profile(radius, albedo, walks, seed.wrapping_add(number)));
         }
     }
@@ -117,7 +124,7 @@ pub fn run(walks: u64, seed: u64, progress: &mut dyn FnMut(&'static str, u64, u6
 }
 
 impl SphereReport {
-    /// Fits what walks gave.
+    /// Fits the profiles from random walks.
     pub fn of(walks: u64, seed: u64, profiles: Vec<Profile>) -> Self {
         let (mut rows, mut rows_with_unscattered) = (Vec::new(), Vec::new());
         let mut limits = Vec::new();
@@ -139,27 +146,28 @@ impl SphereReport {
         Self { walks, seed, profiles, rows, rows_with_unscattered, limits, laws, laws_with_unscattered, choices }
     }
 
-    /// The sphere of that albedo and radius.
+    /// Returns the sphere with that albedo and radius.
     pub fn profile(&self, albedo: f64, radius: f64) -> Option<&Profile> {
         self.profiles.iter().find(|profile| profile.albedo == albedo && profile.radius == radius)
     }
 
-    /// A form's best beside the sphere of that albedo and radius.
+    /// Returns a form's best fit to the sphere with that albedo and radius.
     pub fn row(&self, albedo: f64, radius: f64, form: Form, kind: ScaleKind) -> Option<&Row> {
         self.best(albedo, form, kind).find(|row| row.radius == radius)
     }
 
-    /// The same of all light.
+    /// Returns the best fits of a form and a kind of scale for an albedo, by radius, to all light.
     pub fn best_with_unscattered(&self, albedo: f64, form: Form, kind: ScaleKind) -> impl Iterator<Item = &Row> {
         rows_of(&self.rows_with_unscattered, albedo, form, kind)
     }
 
-    /// The rows of a form and a kind of scale for an albedo, by radius.
+    /// Returns the best fits of a form and a kind of scale for an albedo, by radius, to scattered
+    /// light.
     pub fn best(&self, albedo: f64, form: Form, kind: ScaleKind) -> impl Iterator<Item = &Row> {
         rows_of(&self.rows, albedo, form, kind)
     }
 
-    /// For people.
+    /// Returns the report as text.
     pub fn text(&self) -> String {
         table::text(self)
     }
@@ -216,7 +224,7 @@ mod tests {
                 assert_eq!(rows.iter().map(|row| row.radius).collect::<Vec<_>>(), [2.0, 5.0, 10.0, 20.0, 50.0]);
                 for row in rows {
                     assert_eq!(row.sigma_radius, row.sigma * row.radius);
-                    // Chandrasekhar's, for this albedo.
+                    // Chandrasekhar's diffuse albedo for this single-scattering albedo.
                     let fixed = (row.scale - 0.794564).abs() < 6e-7;
                     assert_eq!(fixed, kind == ScaleKind::Fixed, "{row:?}");
                 }
@@ -236,7 +244,7 @@ mod tests {
                 assert!(found.iter().zip(&lambert).all(|(found, lambert)| found <= lambert), "{form:?} {kind:?}");
             }
         }
-        // Where the sphere is small, it buys a lot.
+        // For a small sphere the width improves the fit a lot.
         let [found, lambert] = [Form::Circular, Form::Lambert].map(|form| residuals(form, ScaleKind::Free)[0]);
         assert!(5.0 * found < lambert, "{found} {lambert}");
     }
@@ -253,13 +261,14 @@ mod tests {
             assert_eq!(again.sigma_radius_error.is_some(), before.sigma_radius_error.is_some());
             assert!((again.sigma / before.sigma - 1.0).abs() < 1e-12 || again.sigma == before.sigma);
         }
-        // One interval too few.
+        // An interval is missing.
         let short = json.replacen("\"exitance\":[", "\"exitance\":[],\"gone\":[", 1);
         let error = serde_json::from_str::<SphereReport>(&short).expect_err("no interval at all").to_string();
         assert!(error.contains("a value for each interval"), "{error}");
     }
 
-    /// Of all light a small sphere wants a wider function, and a large one, through which nothing goes straight, the same.
+    /// With unscattered light a small sphere needs a wider function; a large one, through which no
+    /// light passes unscattered, does not.
     #[test]
     fn what_goes_straight_through_widens_small_spheres_alone() {
         let report = report();
@@ -271,12 +280,13 @@ mod tests {
         assert!(all[0] > 1.1 * scattered[0] && (all[4] / scattered[4] - 1.0).abs() < 0.02, "{scattered:?} {all:?}");
     }
 
-    /// Were sigma = sigma_0 / R true, sigma R were one number for a matter. It is not.
+    /// If sigma = sigma_0 / R held, sigma R would be the same for all radii of a material. It is
+    /// not.
     #[test]
     fn the_best_width_is_not_inverse_to_the_radius() {
         let report = report();
         let rows: Vec<&Row> = report.best(0.99, Form::Circular, ScaleKind::Free).collect();
-        // The smaller the sphere, the wider: so much is true.
+        // Smaller spheres are wider: that much is true.
         assert!(rows.windows(2).all(|pair| pair[0].sigma > pair[1].sigma), "{rows:?}");
         assert!(rows.windows(2).all(|pair| pair[0].sigma_radius < pair[1].sigma_radius), "{rows:?}");
         let drift = rows[4].sigma_radius / rows[0].sigma_radius;

@@ -1,10 +1,11 @@
-//! The ladder as text.
+//! The gem ladder as text.
 
 use super::proxy_sizes::AtSize;
 use super::{Choice, Colours, MEASURES, Reflection, Report, RungReport, Seen, Steadiness};
 use std::fmt::Write as _;
 
-/// The paper's own figures, for comparison: NVIDIA GeForce GTX 760, 1920×1080 filled by the stone, section 5 and Table 1.
+/// The paper's own figures for comparison: NVIDIA GeForce GTX 760, 1920×1080 filled by the stone,
+/// section 5 and Table 1.
 const PAPER: &str = "The paper's figures (GeForce GTX 760, 1920x1080 filled): proxy 3 ms, exact 15 ms (5 times); 20 us of CPU for both;\n\
     vertex/geometry/pixel shader 16/160/181 slots and 2304 bytes of constants (proxy), 16/160/152 slots and 15056 bytes (exact).";
 

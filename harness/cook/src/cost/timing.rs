@@ -1,4 +1,4 @@
-//! Times of frames in one run: interleaved, several rounds, the least of each.
+//! Frame times measured in one run: several interleaved rounds, with the minimum of each frame.
 
 use lapidary_gpu::Gpu;
 use lapidary_render::{FrameTimer, RenderError, Settings};
@@ -6,37 +6,37 @@ use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// A rung slower than this is timed on fewer pixels.
+/// A rung whose frame takes longer than this is timed on fewer pixels.
 const SLOW: Duration = Duration::from_secs(4);
-/// Each side of the frame is divided by this then.
+/// The factor by which each side of a slow frame is divided.
 const REDUCTION: u32 = 4;
 
-/// A rung's time.
+/// The times of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// The least of the rounds, in milliseconds for the whole frame.
+    /// Minimum over the rounds, in milliseconds for the whole frame.
     pub ms: f64,
-    /// The median of the rounds.
+    /// Median over the rounds, in milliseconds for the whole frame.
     pub median_ms: f64,
-    /// What share of the frame's pixels was drawn; the times are scaled up by it.
+    /// Fraction of the frame's pixels that was drawn; the times are divided by it.
     pub share: f64,
-    /// Microseconds of the host for recording and submitting a frame: the least of the rounds.
+    /// CPU time for recording and submitting a frame in microseconds, the minimum over the rounds.
     pub encode_us: f64,
-    /// Draw calls of a frame.
+    /// Number of draw calls per frame.
     pub draw_calls: usize,
 }
 
-/// What to time.
+/// A frame to time.
 pub struct Timed<'a> {
-    /// How.
+    /// How the frame is rendered.
     pub settings: Settings,
-    /// What.
+    /// The scene to render.
     pub scene: &'a Scene,
-    /// Another text of the recipe of the settings' rung.
+    /// Replacement source of the recipe of the settings' rung; `None` for the original.
     pub source: Option<String>,
-    /// With the display recipe on top.
+    /// Whether the display recipe is applied on top.
     pub displayed: bool,
-    /// Whether its time goes with its pixels, so that it may be timed on fewer of them.
+    /// Whether the time is proportional to the number of pixels, so that fewer may be timed.
     pub scales: bool,
 }
 
@@ -45,13 +45,13 @@ impl Timed<'_> {
         FrameTimer::new(gpu, self.scene, settings, self.source.as_deref(), self.displayed)
     }
 
-    /// The frame that is drawn, once drawn, and its share of the pixels.
+    /// Returns the frame to time, rendered once, and the fraction of the pixels that it covers.
     fn ready<'gpu>(&self, gpu: &'gpu Gpu) -> Result<(FrameTimer<'gpu>, f64), RenderError> {
         if self.scales {
             let Settings { width, height, .. } = self.settings;
             let reduced = Settings { width: width / REDUCTION, height: height / REDUCTION, ..self.settings.clone() };
             let small = self.frame(gpu, &reduced)?;
-            // The first frame compiles.
+            // The first frame includes compilation.
             small.run()?;
             let pixels = f64::from(width * height) / f64::from(reduced.width * reduced.height);
             if small.run()?.total.mul_f64(pixels) > SLOW {
@@ -64,7 +64,7 @@ impl Timed<'_> {
     }
 }
 
-/// Times all of them, round by round. `progress` is told how many frames of how many are done.
+/// Times all frames, round by round. `progress` receives the number of frames done and the total.
 pub fn time(
     gpu: &Gpu,
     timed: &[Timed<'_>],

@@ -1,4 +1,4 @@
-//! What the gem ladder is looked at with: several cuts, from several angles, each with its committed reference.
+//! The views of the gem ladder: several cuts from several angles, each with a committed reference.
 
 use super::CostError;
 use crate::snapshot;
@@ -8,31 +8,33 @@ use lapidary_render::{Picture, Settings};
 use lapidary_scene::{Camera, Scene, SceneError};
 use std::path::PathBuf;
 
-/// Side of a reference picture.
+/// Width and height of a reference picture in pixels.
 pub const SIDE: u32 = 256;
 
-/// A scene and where it is seen from.
+/// A scene and a viewpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Its name, and that of its reference's file.
+    /// The view's name, which is also the file name of its reference.
     pub name: &'static str,
-    /// The built-in scene.
+    /// Name of the built-in scene.
     pub scene: &'static str,
-    /// Degrees off the vertical, and from +z towards +x; the scene's own camera where there are none.
+    /// Camera angles in degrees: polar angle from the vertical, and azimuth from +z towards +x;
+    /// `None` for the scene's own camera.
     pub from: Option<(f32, f32)>,
-    /// Whether its reference has fewer samples and a looser bound, [`COARSE`].
+    /// Whether the reference has fewer samples and a looser energy bound, [`COARSE`].
     pub coarse: bool,
 }
 
-/// Samples a side and energy bound of a coarse reference.
+/// Samples along each side of a pixel and energy bound of a coarse reference.
 pub const COARSE: (u32, f64) = (2, 1e-3);
 
 const fn own(scene: &'static str) -> View {
     View { name: scene, scene, from: None, coarse: false }
 }
 
-/// The views that every rung is compared in. Face-up and tilted bracket how a brilliant is worn; the step cut has long
-/// parallel facets, the octahedron few, quartz a low index, and the sapphire a colour of its own.
+/// The views in which every rung is compared. Face-up and tilted bracket how a brilliant is worn;
+/// the step cut has long parallel facets, the octahedron few facets, quartz a low index, and the
+/// sapphire a colour of its own.
 pub const VIEWS: [View; 7] = [
     View { name: "brilliant_face_up", from: Some((0.0, 0.0)), ..own("brilliant") },
     own("brilliant"),
@@ -43,20 +45,22 @@ pub const VIEWS: [View; 7] = [
     own("sapphire"),
 ];
 
-/// The views that rungs for bodies of any shape are compared in as well: one dented, and several in one mesh.
+/// Additional views for rungs that draw bodies of any shape: one dented body, and several bodies in
+/// one mesh.
 pub const CONCAVE: [View; 2] = [own("bunny_stone"), own("prism_chain")];
 
-/// Views with a reference that the ladder leaves out: they show nothing that those above do not. A ray in the chandelier meets so many prisms
-/// that its picture would take eight hours of a core at the usual quality.
+/// Views that have a reference but are not part of the ladder, because they show nothing new. In
+/// the chandelier a ray meets so many prisms that a reference of the usual quality would take eight
+/// hours on one core.
 pub const SHOWN: [View; 3] = [own("prism"), own("ruby"), View { coarse: true, ..own("chandelier") }];
 
 impl View {
-    /// The view of that name.
+    /// Returns the view with that name.
     pub fn named(name: &str) -> Option<Self> {
         VIEWS.into_iter().chain(CONCAVE).chain(SHOWN).find(|view| view.name == name)
     }
 
-    /// The scene with this view's camera.
+    /// Returns the scene with this view's camera.
     pub fn open(&self) -> Result<Scene, SceneError> {
         let scene = Scene::named(self.scene)?;
         Ok(match self.from {
@@ -65,12 +69,12 @@ impl View {
         })
     }
 
-    /// Where its reference is kept.
+    /// Returns the path of the view's reference.
     pub fn reference_file(&self) -> PathBuf {
         snapshot::folder("gem").join("reference").join(format!("{}.exr", self.name))
     }
 
-    /// The command that remakes its reference.
+    /// Returns the command that remakes the reference.
     pub fn command(&self) -> String {
         let file = format!("snapshots/gem/reference/{}.exr", self.name);
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));
@@ -79,14 +83,14 @@ impl View {
         format!("./cook render {}{from} --rung reference --size {SIDE}x{SIDE}{quality} --out {file}", self.scene)
     }
 
-    /// How its reference is made.
+    /// Returns the settings that the reference is rendered with.
     pub fn reference_settings(&self) -> spectral::Settings<'static> {
         let usual = spectral::Settings::of_size(SIDE, SIDE);
         let (samples, energy_bound) = COARSE;
         if self.coarse { spectral::Settings { samples, energy_bound, ..usual } } else { usual }
     }
 
-    /// Its committed reference, linear and as it is seen.
+    /// Returns the committed reference, both linear and encoded for display.
     pub fn reference(&self, gpu: &lapidary_gpu::Gpu) -> Result<Picture, CostError> {
         if !self.reference_file().exists() {
             return Err(CostError::NoReference { path: self.reference_file(), command: self.command() });
@@ -96,19 +100,21 @@ impl View {
     }
 }
 
-/// By how much a camera is turned from one frame to the next: a slow turn of 3° a second at 60 frames.
+/// Camera rotation from one frame to the next in degrees: a slow turn of 3° per second at 60 frames
+/// per second.
 const TURN: f32 = 0.05;
 
-/// The scene in the next frame of a slow turn: the eye goes sideways about what it looks at.
+/// Returns the scene in the next frame of a slow turn: the eye rotates about its target.
 pub fn turned(scene: &Scene) -> Scene {
     let Camera { eye, target, up, .. } = scene.camera;
     let turn = glam::Quat::from_axis_angle(up, TURN.to_radians());
     Scene { camera: Camera { eye: target + turn * (eye - target), ..scene.camera }, ..scene.clone() }
 }
 
-/// How a frame is timed: so near that the stone fills it.
+/// Returns the scene as it is timed: so close that the stone fills the frame.
 pub fn filled(scene: &Scene) -> Scene {
-    // The largest 16:9 rectangle within the girdle, seen at a slant, with a margin: half its diagonal is 0.7 of the radius.
+    // The largest 16:9 rectangle that fits within the girdle, seen at an angle and with a margin:
+    // half its diagonal is 0.7 of the radius.
     let bounds = scene.bounds();
     let camera = scene.camera;
     let distance = camera.eye.distance(bounds.centre());

@@ -1,4 +1,5 @@
-//! A folder that is complete or absent: filled aside, then put in place of an older one, and only of one that it wrote.
+//! Writes a folder that is either complete or absent: it is filled elsewhere and then replaces an
+//! older one, but only one that it wrote itself.
 
 use super::GalleryError;
 use std::{
@@ -6,21 +7,21 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Lists the files of a folder that [`replace`] wrote, itself excluded, one path a line.
+/// Name of the file that lists the files written by [`replace`], except itself, one path per line.
 pub const MARKER: &str = ".lapidary-gallery";
 
-/// What file managers leave behind in a folder that was only looked at.
+/// Files that file managers create in a folder when it is merely viewed.
 const LITTER: [&str; 3] = [".DS_Store", "Thumbs.db", "desktop.ini"];
 
-/// Lets `fill` write into an empty folder and puts that in place of `out`, which may be absent, empty or an earlier
-/// result. Returns the folder's absolute path.
+/// Lets `fill` write into an empty folder, and moves that in place of `out`, which may be absent,
+/// empty or an earlier result. Returns the folder's absolute path.
 ///
 /// # Errors
-/// What `fill` returns; [`GalleryError::Foreign`] where `out` holds anything that an earlier call did not write; and
-/// what the file system refuses. In each case `out` is as it was.
+/// Returns the errors of `fill` and of the file system, and [`GalleryError::Foreign`] if `out`
+/// contains anything that an earlier call did not write. In each case `out` stays unchanged.
 pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>) -> Result<PathBuf, GalleryError> {
     let failed = |source: io::Error| GalleryError::Write { path: out.to_owned(), source };
-    // An existing folder by its own name, so that a link to it stays a link.
+    // An existing folder under its canonical name, so that a link to it stays a link.
     let out = match out.canonicalize() {
         Ok(existing) => existing,
         Err(_) => std::path::absolute(out).map_err(failed)?,
@@ -44,7 +45,7 @@ pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>)
     }
     if let Err(source) = fs::rename(&new, &out) {
         if exists && fs::rename(&old, &out).is_err() {
-            // The older gallery stays findable rather than being deleted with the temporary folder.
+            // Keeps the older gallery, which would otherwise be deleted with the temporary folder.
             let _kept = aside.keep();
         }
         return Err(failed(source));
@@ -52,7 +53,8 @@ pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), GalleryError>)
     Ok(out)
 }
 
-/// Fails where `out` is there and is neither empty nor made of files that [`replace`] wrote.
+/// Returns an error if `out` exists and is neither empty nor made up of files that [`replace`]
+/// wrote.
 fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
     let failed = |source: io::Error| GalleryError::Read { path: out.to_owned(), source };
     if fs::symlink_metadata(out).is_err() {
@@ -66,7 +68,7 @@ fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         Err(error) => return Err(failed(error)),
     };
-    // Without the marker one look at the top is enough: the folder may be somebody's home.
+    // Without the marker, checking the top level is enough: the folder may be somebody's home.
     let mut found = match &written {
         Some(_) => files(out).map_err(failed)?,
         None => entries(out).map_err(failed)?.into_iter().map(|(name, _)| name).collect(),
@@ -83,7 +85,8 @@ fn refuse_foreign(out: &Path) -> Result<(), GalleryError> {
     }
 }
 
-/// What lies in a folder: names, and whether each is a folder itself. A link is not, whatever it leads to.
+/// Returns the entries of a folder: names, and whether each is a folder itself. A link is not a
+/// folder, whatever its target.
 fn entries(folder: &Path) -> io::Result<Vec<(String, bool)>> {
     fs::read_dir(folder)?
         .map(|entry| {
@@ -93,7 +96,7 @@ fn entries(folder: &Path) -> io::Result<Vec<(String, bool)>> {
         .collect()
 }
 
-/// The files below a folder, by their paths from it with `/` between the parts.
+/// Returns the files below a folder as relative paths with `/` between the parts.
 fn files(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for (name, is_folder) in entries(folder)? {

@@ -1,5 +1,6 @@
-//! WGSL as HTML: escaped, with comments, keywords, types, numbers, attributes and declared names set apart by class.
-//! Nothing is added to the text: without its tags the HTML is the source again, which is what the copy button relies on.
+//! WGSL as HTML: escaped, with classes for comments, keywords, types, numbers, attributes and
+//! declared names. No text is added: without its tags the HTML is the original source, as the copy
+//! button requires.
 
 use super::text::escape;
 
@@ -32,12 +33,13 @@ const KEYWORDS: [&str; 26] = [
     "while",
 ];
 
-/// Built-in types; matrices and vectors are told by their first letters, structs by their capital.
+/// Built-in types; matrices and vectors are recognised by their first letters, structs by their
+/// capital.
 const TYPES: [&str; 10] =
     ["array", "atomic", "bool", "f16", "f32", "i32", "ptr", "sampler", "sampler_comparison", "u32"];
 
-/// The source as HTML, for a `<code>` element. Classes: `c` comment, `k` keyword, `t` type, `n` number,
-/// `a` attribute, `d` name of a declared function, struct or constant.
+/// Returns the source as HTML, for a `<code>` element. Classes: `c` comment, `k` keyword, `t` type,
+/// `n` number, `a` attribute, `d` name of a declared function, struct or constant.
 pub fn wgsl(source: &str) -> String {
     let mut html = String::with_capacity(source.len() * 2);
     let mut rest = source;
@@ -62,8 +64,8 @@ pub fn wgsl(source: &str) -> String {
     html
 }
 
-/// Length in bytes of the first token of a text that is not empty, at least 1, and its class; `i` stands for a word
-/// still to be classed.
+/// Returns the length in bytes of the first token of a non-empty text, at least 1, and its class;
+/// `i` marks a word that is still to be classified.
 fn token(text: &str) -> (usize, Option<char>) {
     let run = |accept: fn(char) -> bool| text.find(|c: char| !accept(c)).unwrap_or(text.len());
     let word = |c: char| c.is_alphanumeric() || c == '_';
@@ -82,7 +84,7 @@ fn token(text: &str) -> (usize, Option<char>) {
     }
 }
 
-/// Length of a block comment; WGSL nests them. One that is not closed runs to the end.
+/// Returns the length of a block comment; WGSL nests them. An unclosed one extends to the end.
 fn block_comment(text: &str) -> usize {
     let mut depth = 0_usize;
     let mut at = 0;
@@ -104,7 +106,7 @@ fn block_comment(text: &str) -> usize {
     text.len()
 }
 
-/// Length of a numeric literal with exponent and suffix: `0x1.8p-3f`, `1e-6f`, `12u`.
+/// Returns the length of a numeric literal with exponent and suffix: `0x1.8p-3f`, `1e-6f`, `12u`.
 fn number(text: &str) -> usize {
     let exponent: &[u8] = if text.starts_with("0x") || text.starts_with("0X") { b"pP" } else { b"eE" };
     let bytes = text.as_bytes();
@@ -123,7 +125,8 @@ fn word_class(word: &str) -> Option<char> {
     let shaped =
         |prefix: &str| word.strip_prefix(prefix).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
     let built_in = TYPES.contains(&word) || shaped("vec") || shaped("mat") || word.starts_with("texture_");
-    // A capital starts a struct's name, unless all are capitals: then it is a constant's.
+    // A name that starts with a capital is a struct's, unless it is all capitals: then it is a
+    // constant's.
     let structure = word.starts_with(char::is_uppercase) && word.contains(char::is_lowercase);
     if KEYWORDS.contains(&word) {
         Some('k')
@@ -138,7 +141,7 @@ fn word_class(word: &str) -> Option<char> {
 mod tests {
     use super::*;
 
-    /// The text of an HTML fragment, as a browser's `textContent` gives it.
+    /// Returns the text of an HTML fragment, like a browser's `textContent`.
     fn text_of(html: &str) -> String {
         let mut text = String::new();
         let mut rest = html;

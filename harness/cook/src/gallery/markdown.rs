@@ -1,4 +1,5 @@
-//! The doc pages as HTML: Markdown by pulldown-cmark, LaTeX as MathML by pulldown-latex, which browsers set themselves.
+//! The doc pages as HTML: Markdown by pulldown-cmark, and LaTeX as MathML by pulldown-latex, which
+//! browsers typeset themselves.
 
 use super::{
     highlight,
@@ -8,18 +9,18 @@ use pulldown_cmark::{CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser
 use pulldown_latex::config::{DisplayMode, RenderConfig};
 use std::convert::Infallible;
 
-/// A module's doc page in the parts that the gallery sets, each HTML. What the page does not have is empty.
+/// The parts of a module's doc page as HTML; parts that the page does not have are empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Page {
     /// The first paragraph, a `<p>`.
     pub lead: String,
     /// The first display equation.
     pub equation: String,
-    /// Everything else without the title, headings one level down.
+    /// Everything else except the title, with headings one level lower.
     pub rest: String,
 }
 
-/// LaTeX that could not be converted.
+/// An error for LaTeX that could not be converted.
 #[derive(Debug, thiserror::Error)]
 #[error("`{latex}` is not LaTeX that can be converted to MathML: {reason}")]
 pub struct MathError {
@@ -27,9 +28,11 @@ pub struct MathError {
     reason: String,
 }
 
-/// Renders the doc page of `module`. Links between pages lead to the modules' sections; other relative links and
-/// images, which would lead nowhere from the gallery, are left as text, and raw HTML is shown and not interpreted.
-/// LaTeX that cannot be converted is shown as it is written.
+/// Renders the doc page of `module`.
+///
+/// Links between pages lead to the modules' sections; other relative links and images, which would
+/// be broken in the gallery, become text, and raw HTML is shown as text. LaTeX that cannot be
+/// converted is shown as source.
 pub fn page(source: &str, module: &str) -> Page {
     let mut page = Page::default();
     let mut under_heading = false;
@@ -59,7 +62,7 @@ pub fn page(source: &str, module: &str) -> Page {
     page
 }
 
-/// LaTeX as a `<math>` element, with its source as an annotation.
+/// Converts LaTeX to a `<math>` element, with its source as an annotation.
 pub fn math(latex: &str, display_mode: DisplayMode) -> Result<String, MathError> {
     let error = |reason: String| MathError { latex: latex.trim().to_owned(), reason };
     let storage = pulldown_latex::Storage::new();
@@ -67,7 +70,7 @@ pub fn math(latex: &str, display_mode: DisplayMode) -> Result<String, MathError>
         .collect::<Result<Vec<_>, _>>()
         .map_err(|reason| error(reason.to_string()))?;
     let mut html = String::new();
-    // The writer copies an annotation as it is.
+    // The writer does not escape an annotation.
     let annotation = escape(latex.trim());
     let config = RenderConfig { display_mode, annotation: Some(&annotation), ..RenderConfig::default() };
     pulldown_latex::push_mathml(&mut html, events.into_iter().map(Ok::<_, Infallible>), config)
@@ -75,7 +78,7 @@ pub fn math(latex: &str, display_mode: DisplayMode) -> Result<String, MathError>
     Ok(html)
 }
 
-/// The page's events, a list for each block at its top level.
+/// Returns the page's events, one list per top-level block.
 fn blocks(source: &str) -> Vec<Vec<Event<'_>>> {
     let mut blocks = vec![Vec::new()];
     let mut depth = 0_usize;
@@ -96,7 +99,7 @@ fn blocks(source: &str) -> Vec<Vec<Event<'_>>> {
     blocks
 }
 
-/// Whether a block holds display mathematics and nothing else.
+/// Whether a block consists only of display mathematics.
 fn is_equation(block: &[Event<'_>]) -> bool {
     block.iter().any(|event| matches!(event, Event::DisplayMath(_)))
         && block.iter().all(|event| match event {
@@ -122,7 +125,7 @@ fn render(block: Vec<Event<'_>>, module: &str) -> String {
     let heading = heading_text(&block);
     let mut events: Vec<Event<'_>> = Vec::with_capacity(block.len());
     let mut code: Option<(String, String)> = None;
-    // For each open link, whether it is kept.
+    // Whether each open link is kept.
     let mut links = Vec::new();
     for event in block {
         if let (Some((_, text)), Event::Text(more)) = (&mut code, &event) {
@@ -188,7 +191,7 @@ fn raw(html: String) -> Event<'static> {
     Event::InlineHtml(CowStr::from(html))
 }
 
-/// The text of a block that is a heading.
+/// Returns the text of a heading block.
 fn heading_text(block: &[Event<'_>]) -> String {
     match block.first() {
         Some(Event::Start(Tag::Heading { .. })) => block
@@ -202,7 +205,7 @@ fn heading_text(block: &[Event<'_>]) -> String {
     }
 }
 
-/// Where a link of a doc page leads from the gallery.
+/// Returns the gallery's target for a link of a doc page; `None` if there is none.
 fn link(target: &str) -> Option<String> {
     if target.starts_with("https://") || target.starts_with("http://") {
         return Some(target.to_owned());

@@ -1,5 +1,6 @@
-//! The gallery: a static site that shows every picture, and every technique with its equation, its functions and what
-//! they promise, and its complete WGSL to copy. One page with its pictures beside it, read from disk without a network.
+//! The gallery: a static site with every picture, and with every technique's equation, functions
+//! with their promises, and complete WGSL to copy. It is a single page with its pictures in a
+//! folder, readable from disk without a network.
 
 mod folder;
 mod highlight;
@@ -17,89 +18,90 @@ use std::{
 /// One rendered picture of the gallery.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Its name; the picture of the brilliant, by this name, opens the page.
+    /// Title of the picture; the picture of the brilliant, recognised by its title, opens the page.
     pub title: String,
-    /// The PNG or SVG, which is copied into the gallery.
+    /// The PNG or SVG to copy into the gallery.
     pub file: PathBuf,
-    /// What it shows, in a paragraph of plain text with `` `code` ``.
+    /// Description in a paragraph of plain text with `` `code` ``.
     pub paragraph: String,
-    /// The command that renders it again.
+    /// The command that renders the picture again.
     pub command: String,
     /// Width and height in pixels.
     pub size: (u32, u32),
 }
 
-/// What the gallery shows, beside the cookbook itself.
+/// The contents of the gallery besides the cookbook itself.
 #[derive(Clone, Debug)]
 pub struct Site<'a> {
     /// The device that rendered the pictures, and its driver.
     pub adapter: String,
-    /// The scenes.
+    /// The pictures of the scenes.
     pub pictures: &'a [Picture],
-    /// Figures of single modules and recipes, each with that one's name; may be empty.
+    /// Figures of single modules and recipes, each with the module's or recipe's name; may be
+    /// empty.
     pub figures: &'a [(String, Picture)],
 }
 
-/// Why there is no gallery. Whatever was at its place is still there, untouched.
+/// Why the gallery was not written. Anything that existed at its path is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum GalleryError {
-    /// A picture is not where it was said to be.
+    /// A picture's file is missing.
     #[error("picture `{title}`: {} cannot be copied: {source}; render it again with `{command}`", file.display())]
     Picture {
         /// The picture's title.
         title: String,
-        /// Its file.
+        /// Expected path of its file.
         file: PathBuf,
         /// The command that renders it.
         command: String,
-        /// The file system's reason.
+        /// The underlying file system error.
         source: io::Error,
     },
     /// A figure's module or recipe does not exist.
     #[error("figure `{title}` belongs to module `{module}`, which the cookbook does not have")]
     UnknownModule {
-        /// The figure's title.
+        /// Title of the figure.
         title: String,
-        /// The module that it names.
+        /// Name of the unknown module.
         module: String,
     },
-    /// The folder holds something that is not of a gallery.
+    /// The folder contains something that does not belong to a gallery.
     #[error(
         "{} holds `{name}`, which `cook gallery` did not write and would have to delete; \
         name another folder with --out, or move `{name}` away",
         out.display()
     )]
     Foreign {
-        /// The folder.
+        /// Path of the folder.
         out: PathBuf,
-        /// The first such file, by its path from the folder.
+        /// The first such file, as a path relative to the folder.
         name: String,
     },
-    /// There is a file of that name.
+    /// A file with that name exists.
     #[error("{} is not a folder; name another one with --out", out.display())]
     NotAFolder {
-        /// The path.
+        /// Path of the file.
         out: PathBuf,
     },
     /// The folder cannot be read.
     #[error("{} cannot be read: {source}; name another folder with --out", path.display())]
     Read {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
-        /// The file system's reason.
+        /// The underlying file system error.
         source: io::Error,
     },
     /// The folder cannot be written or replaced.
     #[error("{} cannot be written: {source}; name another folder with --out, on a disk with room", path.display())]
     Write {
-        /// The folder or file.
+        /// Path of the folder or file.
         path: PathBuf,
-        /// The file system's reason.
+        /// The underlying file system error.
         source: io::Error,
     },
 }
 
-/// A picture with its place in the gallery, `images/NAME.png`.
+/// A picture and its file in the gallery, `images/NAME.png`.
 #[derive(Clone, Debug)]
 struct Placed<'a> {
     picture: &'a Picture,
@@ -107,12 +109,12 @@ struct Placed<'a> {
     place: String,
 }
 
-/// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is complete or as it
-/// was before; the same site gives the same bytes.
+/// Writes the gallery into the folder `out` and returns the path of its `index.html`. The folder is
+/// either complete or unchanged, and the same site gives the same bytes.
 ///
 /// # Errors
-/// Where a picture is missing, a figure's module is unknown, the file system refuses, or `out` holds anything that an
-/// earlier call did not write.
+/// Returns an error if a picture is missing, a figure's module is unknown, the file system fails,
+/// or `out` contains anything that an earlier call did not write.
 pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
     if let Some((module, figure)) = site.figures.iter().find(|(name, _)| !is_known(name)) {
         return Err(GalleryError::UnknownModule { title: figure.title.clone(), module: module.clone() });
@@ -138,12 +140,12 @@ pub fn write(out: &Path, site: &Site<'_>) -> Result<PathBuf, GalleryError> {
     Ok(folder.join("index.html"))
 }
 
-/// Whether the cookbook has a module or a recipe of that name.
+/// Whether the cookbook has a module or a recipe with that name.
 fn is_known(name: &str) -> bool {
     crate::cookbook::module(name).is_some() || lapidary_wgsl::recipe(name).is_some()
 }
 
-/// Gives each picture a file name of its own, after its title.
+/// Gives each picture a unique file name, derived from its title.
 fn place<'a>(pictures: impl Iterator<Item = (Option<&'a str>, &'a Picture)>) -> Vec<Placed<'a>> {
     let mut taken = HashSet::new();
     pictures

@@ -1,4 +1,4 @@
-//! The page's HTML: its frame, its contents, its pictures and its listings.
+//! The page's HTML: document frame, table of contents, pictures and listings.
 
 use super::{
     Placed, highlight, section,
@@ -8,10 +8,10 @@ use crate::cookbook::header::LICENCE;
 use crate::cookbook::{self, Module};
 use lapidary_wgsl::Recipe;
 
-/// A brilliant cut from the side, as line art; the page's mark and icon.
+/// A brilliant cut in side view, as line art; the page's logo and icon.
 const MARK: &str = "M5 11 10 5H22L27 11 16 27ZM5 11H27M10 5 12 11 16 27 20 11 22 5M12 11 16 5 20 11";
 
-/// The whole page.
+/// Returns the whole page.
 pub fn page(adapter: &str, placed: &[Placed<'_>]) -> String {
     let pictures: Vec<&Placed<'_>> = placed.iter().filter(|placed| placed.module.is_none()).collect();
     let hero = pictures.iter().position(|placed| placed.picture.title.to_lowercase().contains("brilliant"));
@@ -129,7 +129,7 @@ fn opening_picture(placed: &Placed<'_>) -> String {
     )
 }
 
-/// A picture with a heading of that level.
+/// Returns a picture with a heading of that level.
 pub fn figure(placed: &Placed<'_>, level: u32) -> String {
     let title = escape(&placed.picture.title);
     format!(
@@ -139,7 +139,7 @@ pub fn figure(placed: &Placed<'_>, level: u32) -> String {
     )
 }
 
-/// A command line to copy.
+/// Returns a command line with a copy button.
 pub fn command(line: &str) -> String {
     let line = escape(line);
     format!(
@@ -148,7 +148,7 @@ pub fn command(line: &str) -> String {
     )
 }
 
-/// A folded shader text to copy.
+/// Returns a collapsed shader listing with a copy button.
 pub fn listing(file: &str, source: &str) -> String {
     let (file, lines, code) = (escape(file), source.lines().count(), highlight::wgsl(source));
     format!(

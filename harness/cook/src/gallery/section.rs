@@ -1,4 +1,4 @@
-//! The part of the page that belongs to one module or one recipe.
+//! The section of the page for one module or one recipe.
 
 use super::{
     Placed, highlight, markdown,
@@ -10,7 +10,8 @@ use crate::cookbook::header::{FunctionDoc, parse_header};
 use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use lapidary_wgsl::Recipe;
 
-/// The section of a module: what it is, its WGSL, its functions and the rest of its doc page.
+/// Returns the section of a module: its purpose, its WGSL, its functions and the rest of its doc
+/// page.
 pub fn module(module: &Module, placed: &[Placed<'_>]) -> String {
     let name = module.name;
     let page = markdown::page(module.page, name);
@@ -67,7 +68,8 @@ fn row(module: &Module, function: &FunctionDoc) -> String {
     )
 }
 
-/// The function's signature, from its `fn` line up to the brace, each argument kept on one line.
+/// Returns the function's signature, from its `fn` line up to the brace, with each argument on one
+/// line.
 fn signature(source: &str, function: &FunctionDoc) -> String {
     let lines: Vec<&str> = source.lines().skip(function.line.saturating_sub(1)).collect();
     let text = lines.join(" ");
@@ -109,7 +111,7 @@ fn accuracy(accuracy: &Accuracy) -> String {
     format!("<dl class=\"bounds\">\n{}{}{order}</dl>", device("lavapipe", lavapipe), device("portable", portable))
 }
 
-/// In the accuracy line's grammar, small numbers by powers of ten.
+/// Returns a bound in the accuracy line's grammar, with small numbers as powers of ten.
 fn bound(bound: &FieldBound) -> String {
     let words: Vec<String> = bound
         .to_string()
@@ -126,7 +128,7 @@ fn bound(bound: &FieldBound) -> String {
     words.join(" ")
 }
 
-/// The figures of the module or recipe `name`.
+/// Returns the figures of the module or recipe `name`.
 fn figures(name: &str, placed: &[Placed<'_>]) -> String {
     let own = placed.iter().filter(|placed| placed.module == Some(name));
     framed(
@@ -136,7 +138,7 @@ fn figures(name: &str, placed: &[Placed<'_>]) -> String {
     )
 }
 
-/// The article of a recipe, with the modules that it requires pasted in.
+/// Returns the article of a recipe, with the required modules included in the source.
 pub fn recipe(recipe: &Recipe, placed: &[Placed<'_>]) -> String {
     let name = recipe.name;
     let figures = figures(name, placed);
@@ -166,12 +168,12 @@ pub fn recipe(recipe: &Recipe, placed: &[Placed<'_>]) -> String {
     )
 }
 
-/// The `override`s of a recipe, each with the comment above it.
+/// Returns the `override`s of a recipe, each with the comment above it.
 fn overrides(source: &str) -> Vec<(&str, String)> {
     let mut comment = Vec::new();
     let mut found = Vec::new();
     for line in source.lines() {
-        // A mark, of the lines that are there for an effect, explains nothing.
+        // A mark for lines that belong to an effect is not an explanation.
         if line.starts_with("//+") {
             continue;
         }

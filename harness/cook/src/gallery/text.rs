@@ -1,6 +1,6 @@
 //! Plain text as HTML.
 
-/// Plain text as HTML, for elements and attributes alike.
+/// Escapes plain text for HTML elements and attributes alike.
 pub fn escape(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     for character in text.chars() {
@@ -16,7 +16,8 @@ pub fn escape(text: &str) -> String {
     html
 }
 
-/// Plain text in which only `` `code` `` is markup, as in comments of the WGSL: their `*`, `_` and `$` are mathematics.
+/// Converts plain text in which only `` `code` `` is markup, as in WGSL comments: their `*`, `_`
+/// and `$` are mathematics.
 pub fn prose(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
     let mut html = String::new();
@@ -31,14 +32,14 @@ pub fn prose(text: &str) -> String {
     html
 }
 
-/// Text as the part of an anchor's name: lower-case letters, digits and single hyphens.
+/// Converts text to a part of an anchor's name: lower-case letters, digits and single hyphens.
 pub fn slug(text: &str) -> String {
     let words: Vec<String> =
         text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
     words.join("-")
 }
 
-/// HTML between its opening and its closing; nothing where there is nothing to hold.
+/// Wraps HTML in its opening and closing tags; returns an empty string if there is nothing to wrap.
 pub fn framed(opening: &str, html: &str, closing: &str) -> String {
     if html.is_empty() { String::new() } else { format!("{opening}{html}{closing}") }
 }

@@ -1,4 +1,4 @@
-//! Translucent stone beside the random walks through it, and the difference.
+//! Translucent stone compared with random walks, and the difference.
 
 use super::frames::{halved, side_by_side};
 use super::shots::LIGHTS_ALONE;
@@ -10,22 +10,22 @@ use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
 use lapidary_scene::Scene;
 
-/// Its file's name.
+/// Name of the picture's files.
 pub const NAME: &str = "beside_walks";
-/// What the gallery calls it.
+/// Title in the gallery.
 pub const TITLE: &str = "Translucent stone beside random walks";
-/// What it shows.
+/// Description in the gallery.
 pub const PARAGRAPH: &str = "Lambert's law with the shadows that bodies cast, light along the cheapest ways, random walks, and what is between these two: the absolute difference of the linear radiance, shown \
     as bright as the pictures. Both sides of a comparison have the one exposure that brings them nearest. Thin parts glow, thick ones are dark.";
-/// The rungs that are shown before the walks, the last one's difference after them.
+/// The rungs shown before the walks; the difference of the last one is shown after them.
 pub const RUNGS: [&str; 2] = ["lambert-shadowed", "godunov-128"];
-/// Pictures in a row.
+/// Number of pictures in a row.
 pub const COLUMNS: u32 = 4;
 
-/// A row for each scene: as it is seen, and at half that size for its linear radiance.
+/// Renders a row for each scene: encoded, and at half that size for its linear radiance.
 ///
 /// # Errors
-/// Where a reference or a scene does not load, or the device refuses.
+/// Returns an error if a reference or a scene does not load or if the device fails.
 pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
     let mut frames = Vec::new();
     for reference in WalkedReference::of("optical_path") {
@@ -43,10 +43,10 @@ pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
     Ok([seen, half])
 }
 
-/// How a rung is rendered: what walks know of, and no more.
+/// Returns the settings of a rung, limited to the effects that the walks account for.
 ///
 /// # Panics
-/// Where `rung` is none: the names are compiled in.
+/// If no rung has the name `rung`; the names are compiled in.
 #[must_use]
 pub fn settings(rung: &str) -> Settings {
     Settings {
@@ -57,7 +57,7 @@ pub fn settings(rung: &str) -> Settings {
     }
 }
 
-/// The picture times the exposure that brings it nearest to `truth`.
+/// Renders the picture and multiplies it by the exposure that brings it closest to `truth`.
 fn exposed(gpu: &Gpu, scene: &Scene, settings: &Settings, truth: &Picture) -> Result<Picture, SnapshotError> {
     let mut picture = render::render(gpu, scene, settings)?;
     let exposure = best_exposure(&picture.linear, &truth.linear) as f32;

@@ -1,51 +1,59 @@
-//! How near a new picture is to its reference.
+//! Comparison of a new picture with its reference.
 
 use super::{SnapshotError, read};
 use lapidary_render::{Picture, file};
 use std::path::Path;
 
-// Between what another driver may do and what a planted error does, two or more times the first. Another driver's samples lie 1/256 of their distance beside
-// ours: of the bunny of glass, whose facets are small, that is a mean FLIP of 0.0015, 0.055 for a thousandth of the pixels and an RMSE of 0.014; of cut stones at
-// most 0.0012, 0.040 and 0.004. A turn of 1 degree is 0.10, 0.9 and 0.33 at least, two channels swapped 0.13, 0.3 and 0.087. A black square of 32 by 32
-// pixels is 0.001 to 0.005 in the mean and 0.46 or more for the thousandth.
+// The limits lie between the effect of another driver and that of a deliberate error, with a factor
+// of two or more above the first. Another driver's sample positions differ by 1/256 of their
+// distance: for the glass bunny, whose facets are small, this gives a mean FLIP of 0.0015, 0.055
+// for a thousandth of the pixels and an RMSE of 0.014; for cut stones at most 0.0012, 0.040 and
+// 0.004. A rotation of 1 degree gives at least 0.10, 0.9 and 0.33, two swapped channels 0.13, 0.3
+// and 0.087. A black square of 32 by 32 pixels gives a mean of 0.001 to 0.005 and at least 0.46 for
+// the thousandth.
 
-/// Largest mean FLIP of all pixels.
+/// Largest allowed mean FLIP of all pixels.
 pub const MOST_FLIP: f32 = 0.005;
-/// Largest FLIP of all but a thousandth of the pixels.
+/// Largest allowed FLIP of all pixels but a thousandth.
 pub const MOST_HIGH_FLIP: f32 = 0.15;
-/// Largest RMSE in linear radiance, relative to the reference's root mean square.
+/// Largest allowed RMSE in linear radiance, relative to the reference's root mean square.
 pub const MOST_RMSE: f32 = 0.03;
 
-/// Of every thousand pixels this many may differ by more than [`MOST_HIGH_FLIP`].
+/// Number of pixels in a thousand that may differ by more than [`MOST_HIGH_FLIP`].
 const PER_MILLE: usize = 1;
-/// The largest half float: what an EXR can hold.
+/// The largest half float, which is the limit of an EXR.
 const LARGEST_HALF: f32 = 65504.0;
 
-/// How far a picture is from its reference.
+/// Differences of a picture from its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// Mean FLIP of the PNGs, 0 to 1.
     pub flip: f32,
-    /// The FLIP that a thousandth of the pixels exceed. The mean forgets a part of the picture that is wholly wrong. The largest is that of one pixel,
-    /// whose samples may all lie on an edge, and another driver puts them on the other side.
+    /// The FLIP that a thousandth of the pixels exceed.
+    ///
+    /// The mean hides a small region that is completely wrong. The maximum is that of a single
+    /// pixel, whose samples may all lie on an edge and fall on its other side with another driver.
     pub high_flip: f32,
-    /// RMSE of linear RGB over the reference's root mean square. Coverage is no light and does not count.
+    /// RMSE of linear RGB, divided by the reference's root mean square. Coverage is not light and
+    /// does not count.
     pub rmse: f32,
 }
 
 impl Comparison {
-    /// Whether the pictures count as the same.
+    /// Whether the pictures count as equal.
     pub fn holds(&self) -> bool {
-        // A NaN does not hold.
+        // A NaN fails.
         self.flip <= MOST_FLIP && self.high_flip <= MOST_HIGH_FLIP && self.rmse <= MOST_RMSE
     }
 }
 
-/// Compares new pictures with the references called `name` in `folder`. Where they differ too much, the new PNG and a picture of the
-/// difference are left beside the reference, as `<name>.new.png` and `<name>.difference.png`.
+/// Compares new pictures with the references called `name` in `folder`. If they differ too much,
+/// the new PNG and a picture of the difference are written beside the reference, as
+/// `<name>.new.png` and `<name>.difference.png`.
 ///
 /// # Errors
-/// Where a reference is missing, unreadable or of another size, or a pixel of either is not finite.
+/// Returns an error if a reference is missing, unreadable or of another size, or if a pixel of
+/// either is not finite.
 pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Result<Comparison, SnapshotError> {
     let png = folder.join(format!("{name}.png"));
     let reference = read(&png, (seen.width, seen.height))?.into_rgb8();
@@ -56,7 +64,7 @@ pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Resu
     let comparison = Comparison { flip: nv_flip::FlipPool::from_image(&map).mean(), high_flip: high(&mut each), rmse };
     let beside = ["new", "difference"].map(|kind| folder.join(format!("{name}.{kind}.png")));
     if comparison.holds() {
-        // What an earlier failure left is out of date.
+        // Files from an earlier failure are out of date.
         for path in beside {
             let _ = std::fs::remove_file(path);
         }
@@ -71,11 +79,12 @@ pub fn compare(name: &str, [seen, linear]: &[Picture; 2], folder: &Path) -> Resu
     Ok(comparison)
 }
 
-/// The RMSE of linear RGB over the root mean square of the reference called `name` in `folder`. Where it is above [`MOST_RMSE`], the new
-/// picture is left beside the reference, as `<name>.new.png`.
+/// Returns the RMSE of linear RGB, divided by the root mean square of the reference called `name`
+/// in `folder`. If it is above [`MOST_RMSE`], the new picture is written beside the reference, as
+/// `<name>.new.png`.
 ///
 /// # Errors
-/// As [`compare`].
+/// Returns an error as in [`compare`].
 pub fn compare_linear(name: &str, linear: &Picture, folder: &Path) -> Result<f32, SnapshotError> {
     let rmse = linear_rmse(name, linear, folder)?;
     if rmse > MOST_RMSE || rmse.is_nan() {
@@ -93,7 +102,7 @@ fn linear_rmse(name: &str, linear: &Picture, folder: &Path) -> Result<f32, Snaps
     Ok(relative_rmse(&linear.linear, &reference))
 }
 
-/// Refuses a picture with a pixel that is no number, or that an EXR cannot hold.
+/// Rejects a picture with a pixel that is NaN, or that an EXR cannot store.
 pub(super) fn require_finite(what: &str, width: u32, pixels: &[[f32; 4]]) -> Result<(), SnapshotError> {
     let is_finite = |pixel: &[f32; 4]| pixel.iter().all(|value| value.abs() <= LARGEST_HALF);
     match (0..).zip(pixels).find(|(_, pixel)| !is_finite(pixel)) {
@@ -107,7 +116,7 @@ pub(super) fn require_finite(what: &str, width: u32, pixels: &[[f32; 4]]) -> Res
     }
 }
 
-/// FLIP of what is seen, against `reference`, RGB of the same size.
+/// Returns the FLIP map of the encoded picture against `reference`, RGB of the same size.
 fn flip_map(seen: &Picture, reference: &[u8]) -> nv_flip::FlipImageFloat {
     let image = |data: &[u8]| nv_flip::FlipImageRgb8::with_data(seen.width, seen.height, data);
     nv_flip::flip(image(reference), image(&rgb(seen)), nv_flip::DEFAULT_PIXELS_PER_DEGREE)
@@ -117,12 +126,12 @@ fn rgb(picture: &Picture) -> Vec<u8> {
     picture.encoded.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
 }
 
-/// FLIP of each pixel of two pictures of one size, row by row.
+/// Returns the FLIP of each pixel of two pictures of the same size, row by row.
 pub(crate) fn flip(picture: &Picture, reference: &Picture) -> Vec<f32> {
     flip_map(picture, &rgb(reference)).to_vec()
 }
 
-/// What a thousandth of the values exceed.
+/// Returns the value that a thousandth of the values exceed.
 fn high(values: &mut [f32]) -> f32 {
     let place = (values.len() - 1).saturating_sub(values.len() * PER_MILLE / 1000);
     *values.select_nth_unstable_by(place, f32::total_cmp).1
@@ -143,13 +152,13 @@ fn relative_rmse(new: &[[f32; 4]], reference: &[[f32; 4]]) -> f32 {
 mod tests {
     use super::*;
 
-    /// A body of radiance 0.1 that is a half too bright is 50 % wrong, whatever it covers.
+    /// A body of radiance 0.1 that is half again too bright is 50 % wrong, whatever its coverage.
     #[test]
     fn coverage_is_no_light() {
         let reference = [[0.1, 0.1, 0.1, 1.0]; 16];
         let found = [[0.15, 0.15, 0.15, 1.0]; 16];
         assert!((relative_rmse(&found, &reference) - 0.5).abs() < 1e-6);
-        // And so is a channel in another's place.
+        // A channel in another's place also counts.
         let red = [[0.1, 0.0, 0.0, 1.0]; 16];
         let blue = [[0.0, 0.0, 0.1, 1.0]; 16];
         assert!(relative_rmse(&blue, &red) > 1.4);

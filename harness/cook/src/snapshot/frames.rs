@@ -1,8 +1,8 @@
-//! Pictures of one size side by side.
+//! Pictures of the same size side by side.
 
 use lapidary_render::Picture;
 
-/// In rows of so many.
+/// Arranges the pictures in rows of `columns` each.
 pub(super) fn side_by_side(frames: &[Picture], columns: u32) -> Picture {
     let (wide, high) = frames.first().map_or((0, 0), |frame| (frame.width, frame.height));
     let [width, height] = [columns * wide, frames.len() as u32 / columns * high];
@@ -22,7 +22,7 @@ pub(super) fn side_by_side(frames: &[Picture], columns: u32) -> Picture {
     }
 }
 
-/// The mean of each two by two pixels, linear alone.
+/// Averages each block of two by two pixels; linear radiance only.
 #[must_use]
 pub fn halved(picture: &Picture) -> Picture {
     let [width, height] = [picture.width / 2, picture.height / 2];

@@ -1,4 +1,4 @@
-//! Pictures of one scene each, and the commands that render them.
+//! Pictures of a single scene each, and the commands that render them.
 
 use super::folder;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
@@ -6,42 +6,43 @@ use lapidary_render::{Curvature, DiffuseOptions, GemOptions, MOST_SAMPLES, Setti
 use lapidary_scene::{SAMPLES, Scene, SceneError};
 use std::path::PathBuf;
 
-/// A picture of a recipe.
+/// A picture made by a recipe.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
-    /// Its file's name.
+    /// Name of its files.
     pub name: &'static str,
-    /// What the gallery calls it.
+    /// Title in the gallery.
     pub title: &'static str,
-    /// The built-in scene.
+    /// Name of the built-in scene.
     pub scene: &'static str,
-    /// The rung, by its name.
+    /// Name of the rung.
     pub rung: &'static str,
-    /// Where it is seen from, in degrees off the vertical and from +z towards +x; the scene's own camera where there is none.
+    /// Camera angles in degrees: polar angle from the vertical, and azimuth from +z towards +x;
+    /// `None` for the scene's own camera.
     pub from: Option<(f32, f32)>,
-    /// The proxy's centre by the paper's eq. (4).
+    /// Whether the proxy's centre is that of the paper's eq. (4).
     pub paper_centre: bool,
-    /// What scatters light is lit by the scene's lights alone.
+    /// Whether scattering materials are lit by the scene's lights alone.
     pub lights_alone: bool,
-    /// And its surface reflects nothing, as in the reference.
+    /// Whether their surface also reflects nothing, as in the reference.
     pub matte: bool,
-    /// Radiance is multiplied by this before the tone curve.
+    /// Factor of radiance before the tone curve.
     pub exposure: f32,
-    /// Which curvature spreads its light.
+    /// The curvature that spreads the light.
     pub curvature: Curvature,
-    /// Along each side of a pixel.
+    /// Samples along each side of a pixel.
     pub samples: u32,
-    /// What it shows; where empty, the scene's own description.
+    /// Description in the gallery; if empty, the scene's own description.
     pub paragraph: &'static str,
 }
 
-/// The exposure of pictures by a scene's lights alone.
+/// Exposure of pictures lit by a scene's lights alone.
 pub(super) const LIGHTS_ALONE: f32 = 1.5;
 
-/// Each body by its material and shape, as a command without `--rung` draws it.
+/// The rung that draws each body by its material and shape, like a command without `--rung`.
 const BY_MATERIAL: &str = "by-material";
 
-/// Every committed picture.
+/// All committed pictures of a single scene.
 pub const SHOTS: [Shot; 40] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
@@ -164,22 +165,24 @@ const fn shot(name: &'static str, title: &'static str, scene: &'static str, rung
     }
 }
 
-/// With the most samples: what is looked at first, or is all edges.
+/// Returns the shot with the most samples: for pictures that are seen first or consist of edges.
 const fn fine(shot: Shot) -> Shot {
     Shot { samples: MOST_SAMPLES, ..shot }
 }
 
-/// Under the scene's lights and the studio's, which is made for stones: half of that is enough.
+/// Returns a shot lit by the scene's lights and the studio, at half the exposure: the studio is
+/// made for stones.
 const fn bright(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
     Shot { exposure: 0.45, ..shot(name, title, scene, rung) }
 }
 
-/// By the scene's lights alone, on a surface that reflects nothing: what the references by random walks know.
+/// Returns a shot lit by the scene's lights alone, on a surface that reflects nothing: what the
+/// references by random walks account for.
 const fn by_lights(name: &'static str, title: &'static str, scene: &'static str, rung: &'static str) -> Shot {
     Shot { lights_alone: true, matte: true, exposure: LIGHTS_ALONE, ..shot(name, title, scene, rung) }
 }
 
-/// Light through the body, along the cheapest ways.
+/// Returns a shot of light through the body, along optical paths.
 const fn stone(name: &'static str, title: &'static str) -> Shot {
     Shot { lights_alone: true, exposure: LIGHTS_ALONE, ..shot(name, title, name, "godunov-128") }
 }
@@ -189,16 +192,16 @@ const fn face_up(name: &'static str, title: &'static str, scene: &'static str, r
 }
 
 impl Shot {
-    /// Its scene, with its camera.
+    /// Returns its scene with its camera.
     pub fn open(&self) -> Result<Scene, SceneError> {
         let scene = Scene::named(self.scene)?;
         Ok(self.from.map_or_else(|| scene.clone(), |(polar, azimuth)| scene.seen_from(polar, azimuth)))
     }
 
-    /// How to render it at `side` pixels.
+    /// Returns the settings for a picture with `side` pixels along each side.
     ///
     /// # Panics
-    /// Where its rung's name is none: the names are compiled in.
+    /// If no rung has its rung's name; the names are compiled in.
     pub fn settings(&self, side: u32) -> Settings {
         let rung = self.rung.parse().unwrap_or_else(|error| panic!("{}: {error}", self.name));
         Settings {
@@ -212,13 +215,13 @@ impl Shot {
         }
     }
 
-    /// What is left out where the scene calls for it.
+    /// Returns the effects to leave out even if the scene needs them.
     fn without(&self) -> Effects {
         let environment = if self.lights_alone { Effects::of(&[Effect::Environment]) } else { Effects::NONE };
         environment.and(if self.matte { Effects::SHEEN } else { Effects::NONE })
     }
 
-    /// The names of the effects that are left out, each of which the scene calls for.
+    /// Returns the names of the effects that the scene needs and the shot leaves out.
     fn left_out(&self) -> Vec<&'static str> {
         let Ok(scene) = self.open() else { return Vec::new() };
         let settings = Settings { without: Effects::NONE, ..self.settings(1) };
@@ -228,7 +231,7 @@ impl Shot {
         Effect::ALL.into_iter().filter(is_called).map(Effect::name).collect()
     }
 
-    /// Where its pictures are.
+    /// Returns the folder of its files.
     pub fn folder(&self) -> PathBuf {
         folder(match self.settings(1).rung {
             Rung::Diffuse(_) => "cdrf",
@@ -237,12 +240,12 @@ impl Shot {
         })
     }
 
-    /// The composed recipe that draws it.
+    /// Returns the source of the composed recipe that draws it.
     pub fn source(&self) -> String {
         lapidary_wgsl::recipe_source(self.settings(1).rung.recipe())
     }
 
-    /// The command that renders it.
+    /// Returns the command that renders it.
     pub fn command(&self) -> String {
         let centre = if self.paper_centre { " --centre paper" } else { "" };
         let from = self.from.map_or(String::new(), |(polar, azimuth)| format!(" --from {polar},{azimuth}"));

@@ -1,4 +1,5 @@
-//! Translucent stone in motion: frames side by side, each with voxels, maps, seeds and costs of its own. Nothing is kept from one to the next.
+//! Translucent stone in motion: frames side by side, each with its own voxels, maps, seeds and
+//! costs. Nothing is kept from one frame to the next.
 
 use super::SnapshotError;
 use super::frames::{halved, side_by_side};
@@ -12,23 +13,23 @@ use lapidary_scene::solver::{Method, Paths};
 use lapidary_scene::{Bounds, Light, Object, Scene, SceneError};
 use std::f32::consts::PI;
 
-/// Its file's name.
+/// Name of the picture's files.
 pub const NAME: &str = "strip";
-/// What the gallery calls it.
+/// Title in the gallery.
 pub const TITLE: &str = "Marble in motion";
-/// What it shows.
+/// Description in the gallery.
 pub const PARAGRAPH: &str = "Four rows of marble, each frame computed from nothing. The light goes round the bunny, and comes through its ears from behind; the \
     camera goes round the figure; the figure twists by a quarter of a turn to either side; two drops meet, and light goes through \
     the bridge between them.";
-/// Frames beside one another, and rows of them.
+/// Number of frames in a row, and number of rows.
 pub const FRAMES: [u32; 2] = [5, 4];
-/// Side of a frame in pixels.
+/// Width and height of a frame in pixels.
 pub const SIDE: u32 = 128;
 
-/// The scenes, row by row.
+/// Returns the scenes, row by row.
 ///
 /// # Errors
-/// Where a built-in scene does not load.
+/// Returns an error if a built-in scene does not load.
 pub fn scenes() -> Result<Vec<Scene>, SceneError> {
     let (bunny, figure) = (Scene::named("bunny")?, Scene::named("figure")?);
     let mut scenes = Vec::new();
@@ -55,13 +56,13 @@ pub fn scenes() -> Result<Vec<Scene>, SceneError> {
     Ok(scenes)
 }
 
-/// From `azimuth` degrees off +z towards +x, so high above the horizon.
+/// Returns a sun at `azimuth` degrees from +z towards +x and at `height` above the horizon.
 fn sun(azimuth: f32, height: f32) -> Light {
     let (x, z) = azimuth.to_radians().sin_cos();
     Light::Directional { toward: Vec3::new(x, height, z).normalize(), irradiance: Vec3::splat(1.4 * PI) }
 }
 
-/// How each frame is rendered.
+/// Returns the settings of each frame.
 #[must_use]
 pub fn settings() -> Settings {
     Settings {
@@ -72,10 +73,10 @@ pub fn settings() -> Settings {
     }
 }
 
-/// Renders it: as it is seen, and at half that size for its linear radiance.
+/// Renders the strip: encoded, and at half that size for its linear radiance.
 ///
 /// # Errors
-/// Where a scene does not load, or the device refuses.
+/// Returns an error if a scene does not load or if the device fails.
 pub fn render(gpu: &Gpu) -> Result<[Picture; 2], SnapshotError> {
     let settings = settings();
     let frames = scenes()?.iter().map(|scene| render::render(gpu, scene, &settings)).collect::<Result<Vec<_>, _>>()?;

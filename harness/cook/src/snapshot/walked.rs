@@ -7,22 +7,22 @@ use lapidary_reference::random_walk::mesh::Origin;
 use lapidary_render::{Picture, Settings};
 use std::path::PathBuf;
 
-/// A committed reference by random walks, of a scene by its lights alone.
+/// A committed reference by random walks, of a scene lit by its own lights alone.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkedReference {
-    /// Of the scene, and its file's name.
+    /// Name of the scene and of its file.
     pub scene: &'static str,
-    /// What the gallery calls it.
+    /// Title in the gallery.
     pub title: &'static str,
-    /// Whose recipes it is a reference of.
+    /// The technique whose recipes it is a reference for.
     pub technique: &'static str,
-    /// Walks for each pixel.
+    /// Walks per pixel.
     pub walks: u32,
-    /// Where they set out.
+    /// Starting point of the walks.
     pub origin: Origin,
 }
 
-/// Every one.
+/// All references by random walks.
 pub const WALKED: [WalkedReference; 7] = [
     skin("skin", "Skin: spheres by random walks", 1024),
     skin("skin_bunny", "Skin: the bunny by random walks", 1024),
@@ -42,22 +42,22 @@ const fn stone(scene: &'static str, title: &'static str, walks: u32) -> WalkedRe
 }
 
 impl WalkedReference {
-    /// Those of a technique's recipes.
+    /// Returns the references of a technique's recipes.
     pub fn of(technique: &str) -> impl Iterator<Item = &'static Self> {
         WALKED.iter().filter(move |reference| reference.technique == technique)
     }
 
-    /// That of a scene.
+    /// Returns the reference of a scene; `None` if it has none.
     pub fn of_scene(scene: &str) -> Option<&'static Self> {
         WALKED.iter().find(|reference| reference.scene == scene)
     }
 
-    /// Where it is kept.
+    /// Returns the path of its file.
     pub fn file(&self) -> PathBuf {
         folder(self.technique).join("reference").join(format!("{}.exr", self.scene))
     }
 
-    /// The command that makes it again.
+    /// Returns the command that remakes it.
     pub fn command(&self) -> String {
         let Self { scene, technique, walks, origin, .. } = self;
         let origin = match origin {
@@ -70,7 +70,7 @@ impl WalkedReference {
         )
     }
 
-    /// As it was followed, and as it is seen.
+    /// Reads the picture, both linear and encoded for display.
     pub fn picture(&self, gpu: &Gpu) -> Result<Picture, SnapshotError> {
         let settings = Settings { exposure: LIGHTS_ALONE, ..Settings::of_size(EXR_SIDE, EXR_SIDE) };
         reference_picture(gpu, &self.file(), &settings)

@@ -211,6 +211,11 @@ const CHECK: &[Row] = &[
 ];
 
 const OTHERS: &[Row] = &[
+    ("frame brilliant", Usage, &["--out"]),
+    ("frame brilliant --samples 9 --out {}/frame", Usage, &["expected a whole number from 1 to 8"]),
+    ("frame brilliant --rung reference --out {}/frame", One, &["has no frame"]),
+    ("frame brilliant --out {}", One, &["is there and not empty", "name a new folder"]),
+    ("frame brilliant --out {}/text.glb/frame", One, &["text.glb"]),
     ("cost skin", Usage, &["unrecognized subcommand 'skin'"]),
     ("cost gem --from {}/none.json", One, &["none.json: ", "cannot be read"]),
     ("cost gem --from {}/text.glb", One, &["text.glb: ", "not a gem.json"]),

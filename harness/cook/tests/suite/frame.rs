@@ -5,6 +5,7 @@ mod executor;
 use crate::gpu;
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Rung;
+use lapidary_render::frame::Executor;
 use lapidary_render::{GemOptions, Settings, frame, render};
 use lapidary_scene::Scene;
 use serde_json::Value;
@@ -107,4 +108,6 @@ fn a_frame_is_whole() {
     let refused = seen.write(&elsewhere).expect_err("left out").to_string();
     assert!(refused.contains("was left out: the frame was made without a device"), "{refused}");
     assert!(!elsewhere.exists());
+    let refused = Executor::new(gpu(), seen).expect_err("left out").to_string();
+    assert!(refused.contains("its contents were left out: the frame was made without a device"), "{refused}");
 }

@@ -16,7 +16,7 @@ fn named(name: &str) -> Scene {
     Scene::named(name).expect("built in")
 }
 
-/// The built-in `name` with its first object changed.
+/// Returns the built-in scene `name` with its first object changed.
 fn changed(name: &str, change: impl FnOnce(&mut Object)) -> Scene {
     let mut scene = named(name);
     change(&mut scene.objects[0]);
@@ -28,7 +28,7 @@ fn said(scene: &Scene, request: &Request<'_>) -> Vec<String> {
     of(scene, request, &decisions.iter().collect::<Vec<_>>()).iter().map(Note::to_string).collect()
 }
 
-/// The only note, which holds `part`.
+/// Asserts that there is exactly one note, and that it contains `part`.
 fn one(scene: &Scene, request: &Request<'_>, part: &str) {
     let said = said(scene, request);
     assert!(matches!(&said[..], [note] if note.contains(part)), "`{part}` is not all that is said: {said:?}");
@@ -65,7 +65,7 @@ fn meshes_that_are_no_solids_are_named_where_a_rung_needs_one() {
     assert!(said(&flat, &by("bvh-4"))[0].contains("all corners lie in one plane"));
     let degenerate = changed("ruby", |object| object.mesh.indices.extend([0, 1, 1]));
     one(&degenerate, &by("bvh-4"), "but 1 triangle has no area;");
-    // Ways through a body are sought inside of it too; a surface alone may be open.
+    // Paths through a body need its inside too; a body drawn by its surface alone may be open.
     let open = changed("bunny", |object| object.mesh.indices.truncate(object.mesh.indices.len() - 3));
     one(&open, &by("godunov-64"), "3 edges are open");
     assert_eq!(said(&open, &by("accurate")), [""; 0]);
@@ -100,7 +100,7 @@ fn thin_walls_and_black_insides_are_named() {
             Material { thickness: 0.0, ior: 1.5, dispersion: Dispersion::None, ..object.material.clone() };
     });
     one(&thin, &usual(), "without refraction; if it is solid");
-    // Millimetres in a scene of metres.
+    // Millimetres in a scene in metres.
     let black = changed("ruby", |object| object.material.attenuation_distance *= 1e-3);
     one(&black, &usual(), "drawn black");
     one(&changed("brilliant", |object| object.material.base_color = Vec3::ZERO), &usual(), "drawn black");
@@ -109,7 +109,7 @@ fn thin_walls_and_black_insides_are_named() {
 #[test]
 fn light_that_no_picture_can_show_is_named() {
     let mut scene = named("bunny");
-    // Lux for watts.
+    // Lux instead of watts.
     scene.lights = vec![Light::Directional { toward: Vec3::Y, irradiance: Vec3::splat(100_000.0) }];
     one(&scene, &by("lambert"), "is shown as plain white");
     assert_eq!(said(&scene, &Request { exposure: 1e-5, ..by("lambert") }), [""; 0]);
@@ -127,7 +127,7 @@ fn a_camera_that_sees_nothing_is_named() {
     let Camera { eye, target, .. } = scene.camera;
     scene.camera.target = eye + (eye - target);
     one(&scene, &usual(), "nothing is in view");
-    // Beside the picture, not behind the eye.
+    // To the side of the picture, not behind the eye.
     scene.camera.target = eye + (target - eye).cross(Vec3::Y) + 0.2 * (target - eye);
     one(&scene, &usual(), "nothing is in view");
 }

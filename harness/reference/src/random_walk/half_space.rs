@@ -1,22 +1,26 @@
-//! Half spaces in closed form (Chandrasekhar, "Radiative Transfer", 1950): what a sphere comes to where it is large.
+//! Half spaces in closed form (Chandrasekhar, "Radiative Transfer", 1950): the limit of a large
+//! sphere.
 
 use super::{BINS, Profile};
 use lapidary_fresnel::oracle::dielectric;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Nodes of the quadrature to each side of its middle, and the way between two.
+/// Quadrature nodes on each side of the middle, and the step between two nodes.
 const NODES: i32 = 80;
 const STEP: f64 = 0.04;
 
-/// Chandrasekhar's H of isotropic scattering: exp(-μ/π ∫ ln(1 - ω φ cot φ) / (cos² φ + μ² sin² φ) dφ) over a quarter turn, μ a `cosine` above 0
-/// and ω the `albedo` of one scattering.
+/// Chandrasekhar's H function of isotropic scattering.
+///
+/// H = exp(-μ/π ∫ ln(1 - ω φ cot φ) / (cos² φ + μ² sin² φ) dφ) over a quarter turn, where μ is a
+/// `cosine` above 0 and ω the `albedo` of one scattering.
 pub fn h(cosine: f64, albedo: f64) -> f64 {
-    // Tanh-sinh quadrature, since both ends are logarithmic: at 0 where nothing is absorbed, at the other for a small cosine.
+    // Tanh-sinh quadrature, since both ends are logarithmic: φ = 0 if nothing is absorbed, the
+    // other end for a small cosine.
     let sum: f64 = (-NODES..=NODES)
         .map(|node| {
             let t = STEP * f64::from(node);
             let odds = (PI * t.sinh()).exp();
-            // Each end's distance by itself, so that neither loses its digits.
+            // The distance from each end is computed separately, so that neither loses digits.
             let (angle, rest) = (FRAC_PI_2 * odds / (1.0 + odds), FRAC_PI_2 / (1.0 + odds));
             let weight = PI * t.cosh() * angle * rest / FRAC_PI_2;
             let square = angle * angle;
@@ -32,33 +36,39 @@ pub fn h(cosine: f64, albedo: f64) -> f64 {
     (-cosine / PI * STEP * sum).exp()
 }
 
-/// The share of light that a half space gives back, where it falls on it at an angle of that `cosine`, above 0.
+/// Reflectance of a half space for light whose angle of incidence has this `cosine`, above 0.
 pub fn reflectance(cosine: f64, albedo: f64) -> f64 {
     1.0 - h(cosine, albedo) * (1.0 - albedo).max(0.0).sqrt()
 }
 
-/// What a sphere of infinite radius would show: flat matter everywhere, lit at all angles.
+/// Profile of a sphere of infinite radius: flat everywhere and lit at all angles.
 pub fn profile(albedo: f64) -> Profile {
     let lit = |cosine: f64| if cosine > 0.0 { cosine * reflectance(cosine, albedo) } else { 0.0 };
     let exitance = std::array::from_fn(|bin| Profile::mean(bin, lit));
     Profile { radius: f64::INFINITY, albedo, exitance, standard_error: [0.0; BINS] }
 }
 
-/// The share that a half space gives back of diffuse light. A large sphere gives back the same share of parallel light: its disc holds all angles
-/// by their cosines, as diffuse light does.
+/// Reflectance of a half space for diffuse light.
+///
+/// A large sphere reflects the same share of parallel light: its disc holds all angles in
+/// proportion to their cosines, as diffuse light does.
 pub fn diffuse_albedo(albedo: f64) -> f64 {
     profile(albedo).whole()
 }
 
-/// What a half space behind a smooth dielectric boundary of a relative `index` above 1 reflects, the boundary's own share with it:
-/// Chandrasekhar's reflection function closed by Fresnel's reflectance from inside, summed over the reflections.
+/// Reflectance of a half space behind a smooth dielectric boundary of a relative `index` above 1,
+/// including the boundary's own reflection.
+///
+/// Chandrasekhar's reflection function is closed by Fresnel's reflectance from inside and summed
+/// over the reflections.
 pub fn reflectance_behind(cosine: f64, albedo: f64, index: f64) -> f64 {
-    // 1 - reflectance of the boundary, by the angle inside.
+    // 1 - reflectance of the boundary, by the cosine inside.
     let open = |inside: f64| {
         let sine = index * (1.0 - inside * inside).sqrt();
         if sine >= 1.0 { 0.0 } else { 1.0 - dielectric(inside, index.recip()) }
     };
-    // Middles of steps on either side of the critical angle, finer towards it, where the boundary opens like a root.
+    // Midpoints of steps on either side of the critical angle, finer towards it, where the boundary
+    // opens like a square root.
     let critical = (1.0 - index.powi(-2)).sqrt();
     let count = 200;
     let nodes: Vec<(f64, f64)> = [(0.0, critical), (critical, 1.0)]
@@ -72,13 +82,15 @@ pub fn reflectance_behind(cosine: f64, albedo: f64, index: f64) -> f64 {
         })
         .collect();
     let values: Vec<f64> = nodes.iter().map(|(mu, _)| h(*mu, albedo)).collect();
-    // Radiance upwards for light of irradiance 1, square to it, downwards under `from`.
+    // Upward radiance for downward light at the cosine `from` of irradiance 1, measured
+    // perpendicular to the light.
     let scattered =
         |to: usize, from: f64, h_from: f64| albedo / 4.0 * from / (nodes[to].0 + from) * values[to] * h_from / PI;
     let entry = (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();
     let enters = 1.0 - dielectric(cosine, index);
     let h_entry = h(entry, albedo);
-    // Power per area that enters is `enters`; the irradiance square to the refracted light is that over its cosine.
+    // `enters` is the power per area that enters; divided by the cosine of the refracted light, it
+    // is the irradiance perpendicular to that light.
     let source: Vec<f64> = (0..nodes.len()).map(|to| enters / entry * scattered(to, entry, h_entry)).collect();
     let mut upwards = source.clone();
     for _ in 0..2000 {
@@ -120,7 +132,8 @@ mod tests {
         assert!((diffuse_albedo(1.0) - 1.0).abs() < 1e-12);
     }
 
-    /// H is the solution of 1/H(μ) = √(1 - ω) + ω/2 ∫ μ' H(μ') / (μ + μ') dμ', another formula than it is calculated by.
+    /// H solves 1/H(μ) = √(1 - ω) + ω/2 ∫ μ' H(μ') / (μ + μ') dμ', a different formula from the one
+    /// that computes it.
     #[test]
     fn h_solves_its_equation() {
         for albedo in [0.5, 0.99, 1.0] {
@@ -142,7 +155,8 @@ mod tests {
             let found = reflectance_behind(cosine, albedo, 1.000_000_1);
             assert!((found - reflectance(cosine, albedo)).abs() < 1e-4, "{cosine} {albedo}: {found}");
         }
-        // Nothing is lost where nothing is absorbed, however often the boundary sends light back; and black matter leaves the boundary's own.
+        // If nothing is absorbed, nothing is lost, however often the boundary sends light back; a
+        // black medium leaves only the boundary's own reflection.
         assert!((reflectance_behind(0.7, 1.0, 1.5) - 1.0).abs() < 2e-3);
         assert!((reflectance_behind(1.0, 0.0, 1.5) - 0.04).abs() < 1e-12);
     }

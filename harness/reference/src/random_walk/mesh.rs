@@ -1,13 +1,16 @@
-//! What translucent bodies show, path-traced: the picture that the translucent techniques are compared with.
+//! Path tracing of translucent bodies: the reference image for the translucent techniques.
 //!
-//! Bodies are closed triangle meshes that do not overlap, each of one [`Medium`](lapidary_scene::Medium). Unless asked for, their surfaces do not bend
-//! or reflect light, so that a ray from the eye goes straight in. At each scattering every light is asked for what arrives from it through
-//! all matter on the way, also through other bodies, or the same again; light from the environment comes along the walk's last direction. What
-//! shows through without being scattered is the background's and is left out.
+//! Bodies are closed triangle meshes that do not overlap, each of one
+//! [`Medium`](lapidary_scene::Medium). By default their surfaces neither refract nor reflect light,
+//! so that a ray from the eye goes straight in. At each scattering, the light arriving from every
+//! light source is attenuated by all media on its way, including other bodies and the same one
+//! again. Environment light arrives along the walk's last direction. Light that shows through
+//! without being scattered belongs to the background and is left out.
 //!
-//! Walks set out from the eye, or from the lights: the same picture in the mean.
+//! Walks start from the eye or from the lights; both give the same image in the mean.
 //!
-//! The eye and the lights stand outside of the bodies; a point light inside gives the right mean with an error that has no bound.
+//! The eye and the lights must lie outside the bodies; a point light inside gives the right mean,
+//! but its error has no bound.
 
 mod from_lights;
 mod walk;
@@ -23,45 +26,47 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use walk::{Matter, Ray};
 
-/// The most samples of a pixel.
+/// Largest number of samples per pixel.
 pub const MOST_SAMPLES: u32 = 1 << 20;
 
-/// What to render.
+/// Settings of a random-walk rendering.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'environment> {
-    /// In pixels, 1 to [`LARGEST_SIDE`].
+    /// Width in pixels, 1 to [`LARGEST_SIDE`].
     pub width: u32,
-    /// In pixels, 1 to [`LARGEST_SIDE`].
+    /// Height in pixels, 1 to [`LARGEST_SIDE`].
     pub height: u32,
-    /// Walks for each pixel, 2 to [`MOST_SAMPLES`]. From the eye, the largest square number of them start from the cells of a grid over the pixel,
-    /// one each, the rest anywhere in it; from the lights, all pixels' walks together start so from a disc or a cone about all bodies.
+    /// Number of walks for each pixel, 2 to [`MOST_SAMPLES`]. From the eye, the largest square
+    /// number of them start from the cells of a grid over the pixel, one each, and the rest
+    /// anywhere in it. From the lights, all pixels' walks together start in the same way from a
+    /// disc or a cone around all bodies.
     pub samples_per_pixel: u32,
-    /// Where walks set out.
+    /// Starting point of walks: the eye or the lights.
     pub origin: Origin,
-    /// The same seed gives the same picture on any number of threads.
+    /// Random seed; the same seed gives the same image on any number of threads.
     pub seed: u64,
-    /// The light around the scene beside its own lights, if any.
+    /// Environment light besides the scene's own lights; `None` if there is none.
     pub environment: Option<&'environment Environment>,
-    /// What surfaces do to light.
+    /// How surfaces act on light.
     pub boundary: Boundary,
 }
 
-/// Where walks set out.
+/// Starting point of walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
-    /// From the eye, a number from each pixel.
+    /// From the eye, with a number of walks for each pixel.
     #[default]
     Eye,
-    /// From the lights: less noise for the same time, the less the brighter a pixel is. For the scene's own lights alone, and where surfaces do
-    /// nothing to light.
+    /// From the lights: less noise for the same time, least in the brightest pixels. Only for the
+    /// scene's own lights, and only with matched boundaries.
     Lights,
 }
 
 impl Origin {
-    /// Every one.
+    /// All origins.
     pub const ALL: [Self; 2] = [Self::Eye, Self::Lights];
 
-    /// The field's usual name.
+    /// Returns the usual name in the field.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -71,94 +76,103 @@ impl Origin {
     }
 }
 
-/// What a body's surface does to light that meets it.
+/// How a body's surface acts on light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// Nothing.
+    /// Light passes unchanged.
     #[default]
     Matched,
-    /// It bends light by the material's refractive index and reflects Fresnel's share, from outside and from inside, as a polished surface does. What it
-    /// mirrors of the surroundings was not scattered and is left out. Light then comes from walks that leave alone: from the environment, and from
-    /// directional lights as discs of 0.1 rad about their direction, which takes very many walks. There may be no point light and no spot.
+    /// Light is refracted by the material's refractive index and reflected by the Fresnel
+    /// reflectance, from outside and from inside, as at a polished surface. Mirror reflections of
+    /// the surroundings were not scattered and are left out.
+    ///
+    /// Light is then found only by walks that leave the bodies: from the environment, and from
+    /// directional lights as discs of radius 0.1 rad around their direction, which takes very many
+    /// walks. Point lights and spots are not allowed.
     Dielectric,
 }
 
-/// A picture.
+/// A rendered image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering {
-    /// Linear radiance and coverage, row by row from the top: means over a pixel, so that what it does not cover is black.
+    /// Linear radiance and coverage, row by row from the top: means over a pixel, so that its
+    /// uncovered part counts as black.
     pub linear: Vec<[f32; 4]>,
-    /// The standard error of each pixel's red, green and blue. From the eye, as of samples that know nothing of one another: since they are spread
-    /// evenly over the pixel, the error is no greater, and less where a pixel is not of one brightness. From the lights, by the spread of 64 batches.
+    /// Standard error of each pixel's red, green and blue.
+    ///
+    /// From the eye, it is computed as for independent samples. Since they are spread evenly over
+    /// the pixel, the true error is no greater, and less where the pixel's brightness varies. From
+    /// the lights, it is computed from the spread of 64 batches.
     pub standard_error: Vec<[f32; 3]>,
-    /// Walks that met a body.
+    /// Number of walks that met a body.
     pub walks: u64,
-    /// Of all walks together.
+    /// Number of scatterings of all walks together.
     pub scatterings: u64,
-    /// Walks that slipped through a surface by rounding, and were followed no further.
+    /// Number of walks that slipped through a surface by rounding and were followed no further.
     pub lost: u64,
 }
 
-/// Why there is no picture.
+/// Why an image cannot be rendered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WalkError {
     /// Width or height out of range.
     #[error("size {width}x{height} is out of range; each side must be 1 to {LARGEST_SIDE} pixels")]
     Size {
-        /// What was asked for.
+        /// Requested width in pixels.
         width: u32,
-        /// What was asked for.
+        /// Requested height in pixels.
         height: u32,
     },
-    /// Too few to know their error, or too many.
+    /// Too few samples to estimate their error, or too many.
     #[error("{0} samples a pixel are out of range; take 2 to {MOST_SAMPLES}")]
     Samples(u32),
-    /// A light that no walk would meet.
+    /// A point light or spot, which no walk through a dielectric boundary would meet.
     #[error(
         "light {light} has no size, so that no walk through a dielectric boundary meets it; take it out or match the boundary"
     )]
     Point {
-        /// Its place among the scene's lights, from 0.
+        /// Index among the scene's lights, from 0.
         light: usize,
     },
-    /// Light that walks from the lights do not bring.
+    /// An environment, which walks from the lights do not include.
     #[error(
         "walks from the lights follow the scene's own lights alone; leave the environment out or walk from the eye"
     )]
     Environment,
-    /// A surface that walks from the lights do not know.
+    /// A dielectric boundary, behind which walks from the lights find no eye.
     #[error("walks from the lights find no eye behind a dielectric boundary; match the boundary or walk from the eye")]
     Dielectric,
-    /// A body of unknown matter.
+    /// A body without a medium.
     #[error(
         "{object:?} has no scattering and absorption coefficients, so that no light can be followed through it; give its material a medium"
     )]
     NoMedium {
-        /// Its name.
+        /// Name of the object.
         object: String,
     },
     /// A body with holes.
     #[error("{object:?} is not closed: {edges} of its edges have a triangle on one side only; close its mesh")]
     Open {
-        /// Its name.
+        /// Name of the object.
         object: String,
-        /// How many.
+        /// Number of edges with a triangle on one side only.
         edges: usize,
     },
-    /// A body whose triangles face inwards, or that is flat.
+    /// A flat body, or one whose triangles face inwards.
     #[error(
         "{object:?} encloses nothing: its triangles must run counter-clockwise as seen from outside; turn them over"
     )]
     InsideOut {
-        /// Its name.
+        /// Name of the object.
         object: String,
     },
 }
 
-/// Renders `scene` on all cores, and says after each part how many of how many are done.
+/// Renders `scene` on all cores; after each part, calls `progress` with the numbers of finished
+/// parts and of all parts.
 ///
 /// # Errors
-/// [`WalkError`], where a setting is out of range or a body is none that light can be followed through.
+/// Returns a [`WalkError`] if a setting is out of range or light cannot be followed through a body.
 pub fn render(
     scene: &Scene,
     settings: &Settings<'_>,
@@ -208,7 +222,7 @@ pub fn render(
     })
 }
 
-/// The bodies of a scene that are sound.
+/// Prepares the bodies of a scene for walks; returns an error if a body or light is unsuitable.
 fn matter<'scene>(
     scene: &Scene,
     boundary: Boundary,
@@ -231,7 +245,8 @@ fn matter<'scene>(
         .map_err(|object| WalkError::NoMedium { object: scene.objects[object].name.clone() })
 }
 
-/// A point of the unit square for one of so many samples: the largest square number of them have a cell of a grid each, the rest lie anywhere.
+/// Samples a point of the unit square for one of `samples` samples: the largest square number of
+/// them get one cell of a grid each, the rest lie anywhere.
 fn stratum(sample: u64, samples: u64, random: &mut Xoshiro256PlusPlus) -> DVec2 {
     let place = DVec2::new(random.random(), random.random());
     let side = samples.isqrt();
@@ -252,7 +267,7 @@ struct Pixel {
 }
 
 impl Pixel {
-    /// `stream` names the pixel's generator by the picture's seed and the pixel's number.
+    /// `stream` selects the pixel's generator: the image's seed and the pixel's number.
     fn new(matter: &Matter<'_>, view: &View, (x, y): (u32, u32), samples: u32, stream: (u64, u64)) -> Self {
         let mut random = generator(stream.0, stream.1);
         let mut pixel = Self::default();
@@ -279,7 +294,7 @@ impl Pixel {
     fn standard_error(&self, samples: u32) -> [f32; 3] {
         let count = f64::from(samples);
         let mean = self.radiance / count;
-        // Rounding may leave a little less than nothing.
+        // Rounding may make the difference slightly negative.
         let variance = (self.squares / count - mean * mean).max(DVec3::ZERO) / (count - 1.0);
         variance.map(f64::sqrt).as_vec3().to_array()
     }

@@ -1,8 +1,10 @@
-//! Random walks of light through scattering matter, on the CPU: what the translucent techniques are compared with.
+//! Random walks of light through scattering media, on the CPU: the reference for the translucent
+//! techniques.
 //!
-//! Matter here is homogeneous and scatters to all sides alike, and its surface does not bend light. Lengths are in mean free paths.
-//! A walk is analogue: at each scattering it ends with the probability that light is absorbed, so that counts of walks are
-//! shares of light and their statistics are those of coin tosses. A seed gives the same walks on any number of threads.
+//! Media here are homogeneous and scatter isotropically, and their surfaces do not refract light.
+//! Lengths are in mean free paths. A walk is analogue: at each scattering it ends with the
+//! probability of absorption, so that counts of walks are shares of light with the statistics of
+//! coin tosses. A seed gives the same walks on any number of threads.
 
 pub mod half_space;
 pub mod mesh;
@@ -16,16 +18,17 @@ use rand::{RngExt as _, SeedableRng as _};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Walks that share a generator.
+/// Number of walks that share a generator.
 const BATCH: u64 = 1 << 14;
 
-/// A convex body of scattering matter.
+/// A convex body of a scattering medium.
 pub trait Body: Sync {
-    /// The way along a unit direction from a point inside, or on the surface, to the surface; infinite where there is none.
+    /// Distance to the surface along a unit direction, from a point inside or on the surface;
+    /// infinite if the surface is not met.
     fn exit(&self, position: DVec3, direction: DVec3) -> f64;
 }
 
-/// Everything below the plane z = 0.
+/// The half space below the plane z = 0.
 pub struct HalfSpace;
 
 impl Body for HalfSpace {
@@ -34,41 +37,42 @@ impl Body for HalfSpace {
     }
 }
 
-/// A ball about the origin.
+/// A ball centred at the origin.
 pub struct Ball {
-    /// Its radius.
+    /// Radius in mean free paths.
     pub radius: f64,
 }
 
 impl Body for Ball {
     fn exit(&self, position: DVec3, direction: DVec3) -> f64 {
         let along = position.dot(direction);
-        // Distance of the chord from the middle, by the cross product: radius^2 - |position|^2 alone would lose the digits at the surface.
+        // Distance of the chord from the centre, by the cross product: radius^2 - |position|^2
+        // alone would lose digits at the surface.
         let beside = position.cross(direction).length_squared();
         ((self.radius * self.radius - beside).max(0.0).sqrt() - along).max(0.0)
     }
 }
 
-/// How a walk left.
+/// State of a walk that leaves a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Exit {
-    /// On the surface.
+    /// Position on the surface.
     pub position: DVec3,
-    /// Unit.
+    /// Unit direction.
     pub direction: DVec3,
-    /// How often it was scattered; 0 for light that went straight through.
+    /// Number of scatterings; 0 for light that went straight through.
     pub scatterings: u32,
-    /// The length of its whole way.
+    /// Length of the whole path.
     pub travelled: f64,
 }
 
-/// A generator of a batch.
+/// Returns the generator of a batch.
 fn generator(seed: u64, batch: u64) -> Xoshiro256PlusPlus {
-    // Neighbouring seeds give unlike states: the state is a hash of the seed.
+    // Neighbouring seeds give dissimilar states: the state is a hash of the seed.
     Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ batch)
 }
 
-/// A direction from all alike.
+/// Samples all directions uniformly.
 fn isotropic(random: &mut Xoshiro256PlusPlus) -> DVec3 {
     let z = 2.0 * random.random::<f64>() - 1.0;
     let (sine, cosine) = (TAU * random.random::<f64>()).sin_cos();
@@ -76,7 +80,8 @@ fn isotropic(random: &mut Xoshiro256PlusPlus) -> DVec3 {
     DVec3::new(radius * cosine, radius * sine, z)
 }
 
-/// Walks from `position`, on the surface or inside, along `direction`; nothing where the walk is absorbed.
+/// Walks from `position`, on the surface or inside, along `direction`; returns `None` if the walk
+/// is absorbed.
 fn walk(
     body: &impl Body,
     mut position: DVec3,
@@ -103,18 +108,19 @@ fn walk(
     }
 }
 
-/// How many walks, through what, and which.
+/// Number, albedo and seed of walks.
 #[derive(Clone, Copy, Debug)]
 pub struct Walks {
-    /// The share of light that a scattering leaves, 0 to 1.
+    /// Share of light left after one scattering, 0 to 1.
     pub albedo: f64,
-    /// How many.
+    /// Number of walks.
     pub count: u64,
-    /// The same seed gives the same walks.
+    /// Random seed; the same seed gives the same walks.
     pub seed: u64,
 }
 
-/// Folds walks through `body`: `enter` gives where and how each starts, `add` takes how each ended, nothing where it was absorbed.
+/// Folds walks through `body`: `enter` returns the position and direction where a walk starts, and
+/// `add` receives its exit, `None` if it was absorbed.
 pub fn fold<T: Send>(
     body: &impl Body,
     Walks { albedo, count, seed }: Walks,
@@ -124,7 +130,7 @@ pub fn fold<T: Send>(
     join: impl Fn(T, T) -> T,
 ) -> T {
     let batches = count.div_ceil(BATCH);
-    // Batches are joined in their order, so that sums of floats are the same on any number of threads.
+    // Batches are joined in order, so that sums of floats are the same on any number of threads.
     let parts: Vec<T> = (0..batches)
         .into_par_iter()
         .map(|batch| {
@@ -140,7 +146,8 @@ pub fn fold<T: Send>(
     parts.into_iter().reduce(join).unwrap_or_else(new)
 }
 
-/// A point of the unit disc, all alike: where a parallel beam falls on a sphere, and, lifted to the hemisphere, a direction of diffuse light.
+/// Samples the unit disc uniformly: the points where a parallel beam falls on a sphere or, lifted
+/// to the hemisphere, the directions of diffuse light.
 fn in_disc(random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
     let radius = random.random::<f64>().sqrt();
     let (sine, cosine) = (TAU * random.random::<f64>()).sin_cos();
@@ -152,7 +159,7 @@ mod tests {
     use super::*;
     use lapidary_scene::Scene;
 
-    /// The share of walks that leave a half space, and its standard error.
+    /// Share of walks that leave a half space, and its standard error.
     fn reflectance(albedo: f64, count: u64, enter: impl Fn(&mut Xoshiro256PlusPlus) -> DVec3 + Sync) -> (f64, f64) {
         let out = fold(
             &HalfSpace,
@@ -166,13 +173,14 @@ mod tests {
         (share, (share * (1.0 - share) / count as f64).sqrt())
     }
 
-    /// A direction of diffuse light from above.
+    /// Samples a direction of diffuse light from above.
     fn diffuse_down(random: &mut Xoshiro256PlusPlus) -> DVec3 {
         let (x, y) = in_disc(random);
         DVec3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
     }
 
-    /// The base colour of a built-in scene's translucent material is what a half space of its medium reflects of diffuse light.
+    /// The base colour of a built-in scene's translucent material is the reflectance of a half
+    /// space of its medium for diffuse light.
     #[test]
     fn base_colors_are_the_reflectances_of_their_media() {
         for name in ["skin", "wax", "jade"] {
@@ -185,7 +193,7 @@ mod tests {
                 let (found, error) = reflectance(albedo, 400_000, diffuse_down);
                 let stated = f64::from(material.base_color[channel]);
                 println!("{name}, channel {channel}: albedo {albedo:.4}, {found:.4} ± {error:.4}, stated {stated:.3}");
-                // And half of the last of three decimals.
+                // Plus half a unit of the last of three decimals.
                 assert!(
                     (found - stated).abs() <= 4.0 * error + 0.0005,
                     "{name} {channel}: {found} ± {error}, stated {stated}"
@@ -194,7 +202,8 @@ mod tests {
         }
     }
 
-    /// Chandrasekhar, "Radiative Transfer": 1 - H(1) sqrt(1 - albedo) for light at normal incidence, and its mean over diffuse light.
+    /// Chandrasekhar, "Radiative Transfer": 1 - H(1) sqrt(1 - albedo) for light at normal
+    /// incidence, and the corresponding mean over diffuse light.
     #[test]
     fn half_spaces_reflect_as_chandrasekhar_has_it() {
         for (albedo, normal, diffuse) in
@@ -213,8 +222,9 @@ mod tests {
         }
     }
 
-    /// In a body that absorbs nothing and is lit diffusely from all sides the mean way is 4 V / S, however much it scatters
-    /// (Blanco and Fournier, "An invariance property of diffusive random walks", 2003): 4/3 of a ball's radius.
+    /// In a body that absorbs nothing and is lit diffusely from all sides, the mean path length is
+    /// 4 V / S, however much it scatters (Blanco and Fournier, "An invariance property of diffusive
+    /// random walks", 2003): 4/3 of the radius for a ball.
     #[test]
     fn the_mean_way_through_a_ball_does_not_depend_on_scattering() {
         for radius in [0.5, 2.0, 10.0] {

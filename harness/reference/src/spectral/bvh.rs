@@ -10,13 +10,13 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// The smallest box about `points`; with none, one that no ray meets.
+    /// The smallest box around `points`; without points, one that no ray meets.
     pub(super) fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
         let nothing = Self { least: DVec3::INFINITY, greatest: DVec3::NEG_INFINITY };
         points.into_iter().fold(nothing, |extent, point| extent.with(&Self { least: point, greatest: point }))
     }
 
-    /// The smallest box about all of them.
+    /// The smallest box around all `extents`.
     pub(super) fn union<'a>(extents: impl IntoIterator<Item = &'a Self>) -> Self {
         extents.into_iter().fold(Self::of([]), |all, extent| all.with(extent))
     }
@@ -25,12 +25,12 @@ impl Extent {
         Self { least: self.least.min(other.least), greatest: self.greatest.max(other.greatest) }
     }
 
-    /// The box with `margin` more on every side.
+    /// The box enlarged by `margin` on every side.
     pub(super) fn padded(&self, margin: f64) -> Self {
         Self { least: self.least - margin, greatest: self.greatest + margin }
     }
 
-    /// The largest distance of a coordinate from 0; of an empty box 0.
+    /// Largest absolute value of a coordinate; 0 for an empty box.
     pub(super) fn largest_coordinate(&self) -> f64 {
         if self.least.x > self.greatest.x {
             return 0.0;
@@ -38,8 +38,8 @@ impl Extent {
         self.least.abs().max(self.greatest.abs()).max_element()
     }
 
-    /// Where along the line origin + t / inverse the box begins, if its inside is met at a t from `from` to `to`. A
-    /// line within one of its sides may count as a miss.
+    /// Finds the t at which the line origin + t / inverse enters the box, if its interior is met at
+    /// a t from `from` to `to`. A line within one of the box's sides may count as a miss.
     pub(super) fn entry(&self, origin: DVec3, inverse: DVec3, from: f64, to: f64) -> Option<f64> {
         let (a, b) = ((self.least - origin) * inverse, (self.greatest - origin) * inverse);
         let near = a.min(b).max_element().max(from);
@@ -48,7 +48,7 @@ impl Extent {
     }
 }
 
-/// Items at most in a leaf.
+/// Largest number of items in a leaf.
 const LEAF: usize = 4;
 
 struct Node {
@@ -57,13 +57,13 @@ struct Node {
 }
 
 enum Content {
-    /// Where its items lie in the order.
+    /// Range of the leaf's items in the order.
     Leaf { first: usize, end: usize },
-    /// The second child's place; the first comes right after the node.
+    /// Index of the second child; the first comes right after the node.
     Inner { second: usize },
 }
 
-/// The tree.
+/// A bounding volume hierarchy.
 pub(super) struct Bvh {
     nodes: Vec<Node>,
     /// Item numbers, leaf by leaf.
@@ -71,7 +71,8 @@ pub(super) struct Bvh {
 }
 
 impl Bvh {
-    /// Over the items with these boxes, numbered by their places. A box must hold its item in its inside.
+    /// Builds the tree over items with these boxes, numbered by index. A box must contain its item
+    /// in its interior.
     pub(super) fn new(extents: &[Extent]) -> Self {
         let mut tree = Self { nodes: Vec::with_capacity(2 * extents.len()), order: (0..extents.len()).collect() };
         tree.split(extents, 0, extents.len());
@@ -91,15 +92,15 @@ impl Bvh {
         let spread = Extent::of(items.iter().map(|&item| centre(item)));
         let axis = (spread.greatest - spread.least).max_position();
         let middle = items.len() / 2;
-        // By number where the centres are equal, so that every machine builds the same tree.
+        // Equal centres are ordered by number, so that every machine builds the same tree.
         items.select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
         self.split(extents, first, first + middle);
         self.nodes[place].content = Content::Inner { second: self.nodes.len() };
         self.split(extents, first + middle, end);
     }
 
-    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly from near to far.
-    /// `visit` gives back the t from which on nothing matters any more.
+    /// Calls `visit` with the items whose boxes a ray meets at a t from `from` to `to`, roughly
+    /// from near to far. `visit` returns the t beyond which nothing matters any more.
     pub(super) fn visit(
         &self,
         origin: DVec3,
@@ -107,7 +108,7 @@ impl Bvh {
         (from, mut to): (f64, f64),
         mut visit: impl FnMut(usize, f64) -> f64,
     ) {
-        // A component of 0 would make 0 · ∞ = NaN of an origin on a box's side.
+        // A component of 0 would give 0 · ∞ = NaN for an origin on a side of the box.
         let inverse = direction.to_array().map(|part| if part.abs() < 1e-300 { 1e300 } else { 1.0 / part });
         let inverse = DVec3::from_array(inverse);
         let entry = |node: usize, to: f64| self.nodes[node].extent.entry(origin, inverse, from, to);
@@ -125,7 +126,7 @@ impl Bvh {
                 }
                 Content::Inner { second } => {
                     let (left, right) = (entry(place + 1, to), entry(second, to));
-                    // The nearer one on top.
+                    // The nearer child goes on top.
                     if left.unwrap_or(f64::INFINITY) < right.unwrap_or(f64::INFINITY) {
                         waiting.push(second, right);
                         waiting.push(place + 1, left);
@@ -139,9 +140,9 @@ impl Bvh {
     }
 }
 
-/// Nodes that a ray meets and where, still to be looked at.
+/// Stack of nodes still to be visited, with the t at which the ray enters each.
 struct Waiting {
-    /// One a level of the tree, and each level halves the items.
+    /// One entry for each level of the tree; each level halves the items.
     nodes: [(usize, f64); 64],
     count: usize,
 }

@@ -1,27 +1,29 @@
-//! A grid of cubes that list the items in them, for short rays: where a tree is gone through from its root, a ray looks at few cubes.
+//! A grid of cubic cells that list the items in them, for short rays: a tree is traversed from its
+//! root, while a short ray visits only a few cells.
 
 use super::bvh::Extent;
 use glam::{DVec3, IVec3, USizeVec3};
 
-/// The most cells along an axis.
+/// Largest number of cells along an axis.
 const MOST_CELLS: f64 = 192.0;
-/// The longest ray, in cells. A longer one is the tree's.
+/// Longest ray in cells; longer rays use the tree.
 const LONGEST: f64 = 16.0;
-/// An item is listed this far outside of its box too, in cells: the walk from cell to cell is rounded.
+/// Margin around an item's box, in cells: steps from cell to cell are subject to rounding.
 const MARGIN: f64 = 1e-6;
 
-/// The grid.
+/// A uniform grid of items.
 pub(super) struct Cells {
     least: DVec3,
     per_length: f64,
     size: USizeVec3,
-    /// Where each cell's items begin, x fastest; after the last, where they end.
+    /// Start of each cell's items, x fastest; the last entry is the end of the last cell's.
     begin: Vec<u32>,
     items: Vec<u32>,
 }
 
 impl Cells {
-    /// Over the items with these boxes, numbered by their places; a cell is not narrower than `width`.
+    /// Builds the grid over items with these boxes, numbered by index; no cell is narrower than
+    /// `width`.
     pub(super) fn new(extents: &[Extent], width: f64) -> Self {
         let all = Extent::union(extents);
         let lengths = (all.greatest - all.least).max(DVec3::ZERO);
@@ -40,7 +42,7 @@ impl Cells {
         let per_length = width.recip();
         let size = ((lengths + 2.0 * margin) * per_length).floor().as_usizevec3() + 1;
         let mut grid = Self { least, per_length, size, begin: vec![0; size.element_product() + 1], items: Vec::new() };
-        // Counted, summed, listed.
+        // Count, accumulate, list.
         for extent in extents {
             grid.for_cells(&extent.padded(margin), |grid, cell| grid.begin[cell + 1] += 1);
         }
@@ -71,9 +73,11 @@ impl Cells {
         }
     }
 
-    /// Calls `visit` with the items listed along a ray of unit `direction` up to `to`, some of them more than once, cell by cell from near to
-    /// far; `visit` gives back the distance from which on nothing matters any more. False, and nothing is visited, where the ray is too
-    /// long or sets out elsewhere.
+    /// Calls `visit` with the items listed along a ray of unit `direction` up to the distance `to`,
+    /// cell by cell from near to far, some of them more than once.
+    ///
+    /// `visit` returns the distance beyond which nothing matters any more. The result is false, and
+    /// nothing is visited, if the ray is too long or starts outside the grid.
     pub(super) fn visit(
         &self,
         origin: DVec3,
@@ -88,7 +92,8 @@ impl Cells {
         }
         let step = direction.map(f64::signum);
         let cell = place.floor();
-        // Distances at which the ray leaves the cell across each axis, and from one such to the next. A direction of 0 never does.
+        // Distances at which the ray leaves the cell across each axis, and from one crossing to the
+        // next. A component of 0 never crosses.
         let apart = direction.abs().max(DVec3::splat(1e-300)).recip() / self.per_length;
         let mut next = (step * (cell - place) + 0.5 * (step + 1.0)) * apart;
         let (step, size) = (step.as_ivec3(), self.size.as_ivec3());
@@ -125,7 +130,7 @@ mod tests {
         DVec3::from_array([(); 3].map(|()| random.random()))
     }
 
-    /// Small boxes, thickly strewn.
+    /// Small boxes, densely scattered.
     fn boxes() -> Vec<Extent> {
         let mut random = generator(3);
         let box_at = |_| {
@@ -157,7 +162,7 @@ mod tests {
                     met += 1;
                 }
             }
-            // After a hit at once, no more than its own cell's.
+            // After an immediate hit, no items beyond those of the first cell.
             let mut few = Vec::new();
             cells.visit(origin, direction, to, |item, _| {
                 few.push(item);

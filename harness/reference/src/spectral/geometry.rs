@@ -1,4 +1,4 @@
-//! Bodies, and where rays enter and leave them, in f64.
+//! Bodies and their intersections with rays, in f64.
 
 use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
@@ -8,34 +8,34 @@ use lapidary_scene::polyhedron::{MAX_PLANES, Plane};
 use lapidary_scene::{Mesh, Object};
 use std::sync::OnceLock;
 
-/// How bodies are met.
+/// Representation of bodies for ray intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Geometry {
-    /// A convex body by its facets' planes, another by its triangles.
+    /// Convex bodies by the planes of their facets, all others by their triangles.
     Planes,
-    /// Every body by its triangles.
+    /// All bodies by their triangles.
     Triangles,
 }
 
-/// Where a ray meets a body.
+/// Intersection of a ray with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hit {
-    /// In units of the direction, at least 0 up to rounding.
+    /// Distance in units of the direction, at least 0 up to rounding.
     pub(crate) distance: f64,
-    /// Unit normal, out of the body.
+    /// Unit normal, pointing out of the body.
     pub(crate) normal: DVec3,
-    /// Where.
+    /// Body and face of the hit.
     pub(crate) place: Place,
 }
 
-/// A facet or triangle of a body: a ray that sets out from it does not meet it again.
+/// A facet or triangle of a body. A ray that starts from it does not meet it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) body: usize,
     pub(crate) face: usize,
 }
 
-/// All bodies of a scene. They are closed and do not overlap.
+/// All bodies of a scene, closed and without overlap.
 pub(crate) struct Bodies {
     bodies: Vec<Body>,
     tree: Bvh,
@@ -52,7 +52,7 @@ impl Bodies {
             .iter()
             .map(|object| {
                 let extent = Extent::of(object.mesh.triangles().flatten().map(|corner| corner.as_dvec3()));
-                // A facet's plane may lie that far outside of its vertices.
+                // A facet's plane may lie that far outside its vertices.
                 extent.padded(TOLERANCE * extent.largest_coordinate())
             })
             .collect();
@@ -67,9 +67,9 @@ impl Bodies {
         Self { bodies, tree: Bvh::new(&extents) }
     }
 
-    /// Where a ray outside enters a body first, `left` being the face that it comes from.
+    /// Finds where a ray from outside first enters a body; `left` is the face that it comes from.
     pub(crate) fn enter(&self, origin: DVec3, direction: DVec3, left: Option<Place>) -> Option<Hit> {
-        // What leaves a convex body goes past it.
+        // A ray that leaves a convex body does not meet it again.
         if let (Some(place), [Body::Convex(_)]) = (left, &self.bodies[..]) {
             debug_assert_eq!(place.body, 0);
             return None;
@@ -90,13 +90,14 @@ impl Bodies {
         first
     }
 
-    /// Where a ray inside the body of `left`, which it comes from, leaves it. `None` where it finds no way out: the
-    /// surface is not closed there.
+    /// Finds where a ray inside the body of `left`, from which it starts, leaves that body. Returns
+    /// `None` if there is no way out: the surface is not closed there.
     pub(super) fn leave(&self, origin: DVec3, direction: DVec3, left: Place) -> Option<Hit> {
         self.leave_body(origin, direction, left.body, Some(left.face), f64::INFINITY)
     }
 
-    /// Where a ray that sets out inside `body`, or from its face `left`, leaves it before `limit`.
+    /// Finds where a ray that starts inside `body`, or on its face `left`, leaves it before
+    /// `limit`.
     pub(crate) fn leave_body(
         &self,
         origin: DVec3,
@@ -123,12 +124,13 @@ struct Planes {
 }
 
 impl Planes {
-    /// `extent` holds the body.
+    /// `extent` must contain the body.
     fn new(planes: Vec<Plane>, extent: &Extent) -> Self {
         Self { sieve: Sieve::new(&planes, extent), planes }
     }
 
-    /// The nearest plane that the ray runs towards, leaving out the face just left: no epsilon is needed.
+    /// Finds the nearest plane that the ray runs towards, except the face just left: no epsilon is
+    /// needed.
     fn leave(&self, origin: DVec3, direction: DVec3, left: Option<usize>) -> Option<Found> {
         let mut nearest: Option<Found> = None;
         self.sieve.candidates(origin, direction, |face| {
@@ -139,11 +141,12 @@ impl Planes {
                 nearest = Some((distance, face, plane.normal));
             }
         });
-        // An edge, and rounding, may put the origin a hair outside of the next plane.
+        // At an edge, rounding may put the origin slightly outside the next plane.
         nearest.map(|(distance, face, normal)| (distance.max(0.0), face, normal))
     }
 
-    /// The last plane that the ray crosses inwards, if it comes before the first that it crosses outwards.
+    /// Finds the last plane that the ray crosses inwards, if it comes before the first that it
+    /// crosses outwards.
     fn enter(&self, origin: DVec3, direction: DVec3) -> Option<Found> {
         let mut entry: Option<Found> = None;
         let mut exit = f64::INFINITY;
@@ -165,15 +168,15 @@ impl Planes {
     }
 }
 
-/// Leaves of all planes of a convex body the one or two that a ray may leave through, by f32 with its errors counted
-/// in. Most of a picture's time goes into this search.
+/// Selects, from all planes of a convex body, the one or two through which a ray may leave. Works
+/// in f32 and allows for its errors. Most of an image's render time goes into this search.
 struct Sieve {
-    /// x, y and z of the normal, and the distance from the centre, of four planes.
+    /// Four planes per row: x, y and z of the normal, and the distance from the centre.
     rows: Vec<[Vec4; 4]>,
     centre: DVec3,
-    /// Bounds of the errors of n · direction and of a depth below a plane: a vector is rounded from f64 by 2^-24 of it,
-    /// a product of two by 5 · 2^-24, and a depth is the difference of two numbers of the body's size. The bounds are
-    /// twice as large.
+    /// Bounds of the errors of n · direction and of a depth below a plane. Rounding a vector from
+    /// f64 costs 2^-24 of it, a product of two vectors 5 · 2^-24, and a depth is the difference of
+    /// two numbers of the body's size. The bounds are twice as large.
     slope_error: f32,
     depth_error: f32,
 }
@@ -182,7 +185,7 @@ impl Sieve {
     fn new(planes: &[Plane], extent: &Extent) -> Self {
         let centre = 0.5 * (extent.least + extent.greatest);
         let parts = |plane: &Plane| plane.normal.extend(-plane.height(centre)).as_vec4();
-        // What the last row lacks has no direction and lies far away.
+        // Planes missing from the last row have no direction and lie far away.
         let lane = |planes: &[Plane], lane: usize| planes.get(lane).map_or(Vec4::W * 1e30, parts);
         let row =
             |planes: &[Plane]| Mat4::from_cols(lane(planes, 0), lane(planes, 1), lane(planes, 2), lane(planes, 3));
@@ -194,14 +197,14 @@ impl Sieve {
         Self { rows: rows.collect(), centre, slope_error: 5.0 * f32::EPSILON, depth_error: 8.0 * f32::EPSILON * radius }
     }
 
-    /// Calls `visit` with each plane that may be the nearest that a ray runs towards.
+    /// Calls `visit` with each plane that may be the nearest one ahead of a ray.
     fn candidates(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(usize)) {
         let from = (origin - self.centre).as_vec3();
         let towards = direction.as_vec3();
         let (slope_error, depth_error) = (Vec4::splat(self.slope_error), Vec4::splat(self.depth_error));
-        // The distance of each plane is at least this.
+        // Lower bound of the distance to each plane.
         let mut least = [Vec4::INFINITY; MAX_PLANES.div_ceil(4)];
-        // And that of the nearest at most this.
+        // Upper bound of the distance to the nearest plane.
         let mut most = Vec4::INFINITY;
         for ([x, y, z, distance], least) in self.rows.iter().zip(&mut least) {
             let slope = *x * towards.x + *y * towards.y + *z * towards.z;
@@ -212,7 +215,7 @@ impl Sieve {
             let possible = greatest_slope.cmpgt(Vec4::ZERO);
             *least = Vec4::select(possible, (depth - depth_error) / greatest_slope, Vec4::INFINITY);
         }
-        // The quotients are rounded too.
+        // The quotients are rounded as well.
         let most = Vec4::splat(most.min_element() * (1.0 + 4.0 * f32::EPSILON)).min(Vec4::MAX);
         for (row, least) in least[..self.rows.len()].iter().enumerate() {
             let mut lanes = least.cmple(most).bitmask();
@@ -224,7 +227,7 @@ impl Sieve {
     }
 }
 
-/// Which side of a triangle a ray comes from.
+/// Side of a triangle from which a ray comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Front,
@@ -236,16 +239,17 @@ struct Triangles {
     corners: Vec<[DVec3; 3]>,
     normals: Vec<DVec3>,
     tree: Bvh,
-    /// For short rays that set out inside. The first of them makes it: most pictures have none.
+    /// Grid for short rays that start inside, built by the first of them: most images have none.
     cells: OnceLock<Cells>,
-    /// How far before its origin a ray may still meet a triangle: a ray that sets out beside an edge may lie, by
-    /// rounding, outside of the triangle on the edge's other side. 2^12 roundings of the largest coordinate.
+    /// How far before its origin a ray may still meet a triangle: 2^12 roundings of the largest
+    /// coordinate. A ray that starts beside an edge may, by rounding, lie outside the triangle on
+    /// the edge's other side.
     reach_back: f64,
 }
 
 impl Triangles {
     fn new(mesh: &Mesh) -> Self {
-        // A ray would go from one side of a fold to the other and back for ever.
+        // A ray would go back and forth between the two sides of a fold for ever.
         let mesh = mesh.without_folds();
         let corners: Vec<[DVec3; 3]> =
             mesh.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
@@ -257,14 +261,15 @@ impl Triangles {
         Self { tree: Bvh::new(&padded), cells: OnceLock::new(), corners, normals, reach_back }
     }
 
-    /// Cells as wide as a triangle of the mean area.
+    /// Builds a grid with cells as wide as a triangle of the mean area.
     fn cells(&self) -> Cells {
         let extents = self.corners.iter().map(|corners| Extent::of(*corners).padded(self.reach_back));
         let area: f64 = self.corners.iter().map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum();
         Cells::new(&extents.collect::<Vec<_>>(), (area / self.corners.len() as f64).sqrt())
     }
 
-    /// The first triangle before `limit` that a ray meets from `side`, leaving out the one just left.
+    /// Finds the first triangle before `limit` that a ray meets from `side`, except the one just
+    /// left.
     fn first(&self, origin: DVec3, direction: DVec3, left: Option<usize>, limit: f64, side: Side) -> Option<Found> {
         let shear = Shear::new(direction);
         let mut found: Option<Found> = None;
@@ -284,9 +289,11 @@ impl Triangles {
     }
 }
 
-/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared so that the ray
-/// runs along an axis; two triangles then compute the same number for the edge that they share, with opposite signs, so
-/// that nothing slips through.
+/// Watertight intersection (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT
+/// 2(1), 2013).
+///
+/// Corners are sheared so that the ray runs along an axis. Two triangles then compute the same
+/// number, with opposite signs, for the edge that they share, so that nothing slips through.
 struct Shear {
     axes: [usize; 3],
     shear: DVec3,
@@ -296,7 +303,7 @@ impl Shear {
     fn new(direction: DVec3) -> Self {
         let along = direction.abs().max_position();
         let (mut first, mut second) = ((along + 1) % 3, (along + 2) % 3);
-        // Keeps the winding.
+        // Preserves the winding.
         if direction[along] < 0.0 {
             std::mem::swap(&mut first, &mut second);
         }
@@ -304,7 +311,7 @@ impl Shear {
         Self { axes: [first, second, along], shear }
     }
 
-    /// The t at which the line meets the triangle from `side`.
+    /// Returns the t at which the line meets the triangle from `side`; `None` if it misses.
     fn meet(&self, origin: DVec3, corners: &[DVec3; 3], side: Side) -> Option<f64> {
         let [a, b, c] = corners.map(|corner| {
             let offset = corner - origin;
@@ -312,7 +319,7 @@ impl Shear {
             DVec3::new(first - self.shear.x * along, second - self.shear.y * along, self.shear.z * along)
         });
         let edges = DVec3::new(c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x);
-        // Counter-clockwise from outside: the edges count positive from the front.
+        // Counter-clockwise from outside: the edges are positive from the front.
         let edges = if side == Side::Front { edges } else { -edges };
         let sum = edges.element_sum();
         if edges.min_element() < 0.0 || sum == 0.0 {

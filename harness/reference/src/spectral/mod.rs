@@ -1,14 +1,14 @@
-//! The spectral reference: what a stone shows when light is followed wherever it goes.
+//! The spectral reference: renders clear stones by following light along all its paths.
 //!
-//! Every ray that meets a surface is split into its reflection and its refraction, by the oracles of `fresnel` and
-//! `refraction`, at every wavelength separately, in f64, until the energy that is left is under a bound. What is not
-//! followed is dropped: a picture is too dark, never too bright, and [`Lost`] says by how much at most. There is no
-//! chance in it, so two runs give the same picture.
+//! Every ray that meets a surface is split into its reflection and its refraction by the oracles of
+//! `fresnel` and `refraction`, separately at each wavelength, in f64, until the remaining energy is
+//! below a bound. The rest is dropped: an image is too dark, never too bright, and [`Lost`] says by
+//! how much at most. Nothing is random, so two runs give the same image.
 //!
-//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not overlap; a ray that
-//! leaves one may enter another or the same one again. Surfaces are flat: shared normals play no part. Light that
-//! enters is multiplied by the base colour, and absorbed by the attenuation colour, channel by channel as glTF and the gem
-//! recipes have them.
+//! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not
+//! overlap; a ray that leaves one may enter another, or the same one again. Surfaces are flat:
+//! shared normals are ignored. Light is multiplied by the base colour on entry and absorbed by the
+//! attenuation colour inside, channel by channel, as in glTF and the gem recipes.
 
 mod bvh;
 mod cells;
@@ -27,38 +27,39 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use trace::{Optics, Surroundings};
 
-/// Wavelengths where nothing else is asked for.
+/// Default number of wavelengths.
 pub const WAVELENGTHS: usize = 31;
-/// The energy bound where nothing else is asked for.
+/// Default energy bound.
 pub const ENERGY_BOUND: f64 = 1e-4;
-/// The most wavelengths of a spectrum.
+/// Largest number of wavelengths in a spectrum.
 pub const MOST_WAVELENGTHS: usize = 301;
-/// The most samples along each side of a pixel.
+/// Largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 64;
 
-/// What to render.
+/// Settings of a spectral rendering.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'environment> {
-    /// The whole picture's, in pixels, 1 to [`LARGEST_SIDE`].
+    /// Width of the whole image in pixels, 1 to [`LARGEST_SIDE`].
     pub width: u32,
-    /// The whole picture's, in pixels, 1 to [`LARGEST_SIDE`].
+    /// Height of the whole image in pixels, 1 to [`LARGEST_SIDE`].
     pub height: u32,
-    /// The part that is rendered; all of the picture without one.
+    /// Window to render; `None` renders the whole image.
     pub window: Option<Window>,
-    /// How many wavelengths from 400 to 700 nm, [`spectrum::FEWEST`] to [`MOST_WAVELENGTHS`].
+    /// Number of wavelengths from 400 to 700 nm, [`spectrum::FEWEST`] to [`MOST_WAVELENGTHS`].
     pub wavelengths: usize,
-    /// Along each side of a pixel, 1 to [`MOST_SAMPLES`].
+    /// Samples along each side of a pixel, 1 to [`MOST_SAMPLES`].
     pub samples: u32,
-    /// The share of a camera ray's energy that need not be followed, above 0 and below 1.
+    /// Share of a camera ray's energy that may be dropped, above 0 and below 1.
     pub energy_bound: f64,
-    /// The light around the scene.
+    /// Environment that lights the scene.
     pub environment: &'environment Environment,
-    /// How bodies are met.
+    /// Representation of bodies for ray intersection.
     pub geometry: Geometry,
 }
 
 impl Settings<'static> {
-    /// The whole picture in the studio, with 31 wavelengths, the renderer's 4 × 4 samples and a bound of 1e-4.
+    /// The whole image in the studio, with 31 wavelengths, the renderer's 4 × 4 samples and an
+    /// energy bound of 1e-4.
     #[must_use]
     pub fn of_size(width: u32, height: u32) -> Self {
         Self {
@@ -74,62 +75,64 @@ impl Settings<'static> {
     }
 }
 
-/// A rectangle of a picture in pixels.
+/// A rectangle of an image, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
-    /// Pixels to the left of it.
+    /// Columns to the left of the window.
     pub left: u32,
-    /// Pixels above it.
+    /// Rows above the window.
     pub top: u32,
-    /// At least 1.
+    /// Width in pixels, at least 1.
     pub width: u32,
-    /// At least 1.
+    /// Height in pixels, at least 1.
     pub height: u32,
 }
 
-/// A picture, or a window of one.
+/// A rendered image, or a window of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering {
-    /// The window's, in pixels.
+    /// Width of the window in pixels.
     pub width: u32,
-    /// The window's, in pixels.
+    /// Height of the window in pixels.
     pub height: u32,
-    /// Linear radiance and coverage, row by row from the top; transparent black where there is no body.
+    /// Linear radiance and coverage, row by row from the top; transparent black where there is no
+    /// body.
     pub linear: Vec<[f32; 4]>,
-    /// What was dropped.
+    /// Energy that was dropped.
     pub lost: Lost,
 }
 
-/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` may have cost a radiance of
-/// x times the environment's greatest.
+/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` lowers
+/// the radiance by at most x times the environment's greatest radiance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
-    /// Of any sample that meets a body, at any wavelength. Above the energy bound only where a ray was caught by total
-    /// reflection for 20,000 hits, or a surface is not closed.
+    /// Largest share of any sample that meets a body, at any wavelength. It exceeds the energy
+    /// bound only if a ray was trapped by total reflection for 20,000 hits or a surface is not
+    /// closed.
     pub max: f64,
-    /// Over all of them.
+    /// Mean share over all these samples and wavelengths.
     pub mean: f64,
 }
 
-/// Why there is no picture.
+/// Why an image cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReferenceError {
     /// Width or height out of range.
     #[error("size {width}x{height} is out of range; each side must be 1 to {LARGEST_SIDE} pixels")]
     Size {
-        /// What was asked for.
+        /// Requested width in pixels.
         width: u32,
-        /// What was asked for.
+        /// Requested height in pixels.
         height: u32,
     },
-    /// A part that is none.
+    /// A window that is empty or does not lie within the image.
     #[error("the window {window:?} does not lie within the picture's {width}x{height} pixels")]
     Window {
-        /// What was asked for.
+        /// Requested window.
         window: Window,
-        /// The picture's.
+        /// Width of the image in pixels.
         width: u32,
-        /// The picture's.
+        /// Height of the image in pixels.
         height: u32,
     },
     /// Too few or too many wavelengths.
@@ -138,13 +141,13 @@ pub enum ReferenceError {
     /// Too few or too many samples.
     #[error("{0} samples a side are out of range; take 1 to {MOST_SAMPLES}")]
     Samples(u32),
-    /// A bound that ends nothing or everything.
+    /// An energy bound that is not above 0 and below 1.
     #[error("an energy bound of {0} is out of range; it must be above 0 and below 1")]
     EnergyBound(f64),
 }
 
 impl Settings<'_> {
-    /// The window, once all is in range.
+    /// Returns the window to render, or an error if a setting is out of range.
     fn checked(&self) -> Result<Window, ReferenceError> {
         let &Self { width, height, .. } = self;
         if !(1..=LARGEST_SIDE).contains(&width) || !(1..=LARGEST_SIDE).contains(&height) {
@@ -161,7 +164,7 @@ impl Settings<'_> {
         if !(1..=MOST_SAMPLES).contains(&self.samples) {
             return Err(ReferenceError::Samples(self.samples));
         }
-        // Written so that NaN fails it too.
+        // Written so that NaN fails too.
         if !(self.energy_bound > 0.0 && self.energy_bound < 1.0) {
             return Err(ReferenceError::EnergyBound(self.energy_bound));
         }
@@ -169,10 +172,11 @@ impl Settings<'_> {
     }
 }
 
-/// Renders `scene` on all cores, and says after each row how many of how many are done.
+/// Renders `scene` on all cores; after each row, calls `progress` with the numbers of finished rows
+/// and of all rows.
 ///
 /// # Errors
-/// [`ReferenceError`], where a setting is out of range.
+/// Returns a [`ReferenceError`] if a setting is out of range.
 pub fn render(
     scene: &Scene,
     settings: &Settings<'_>,
@@ -187,10 +191,10 @@ pub fn render(
     Ok(Rendering::of(window, settings, &pixels))
 }
 
-/// The same, and the samples themselves, row by row: linear radiance and coverage.
+/// Renders like [`render`] and also returns the samples, row by row: linear radiance and coverage.
 ///
 /// # Errors
-/// [`ReferenceError`], where a setting is out of range.
+/// Returns a [`ReferenceError`] if a setting is out of range.
 pub fn render_samples(
     scene: &Scene,
     settings: &Settings<'_>,
@@ -213,7 +217,7 @@ pub fn render_samples(
     Ok((Rendering::of(window, settings, &pixels), samples))
 }
 
-/// What `of_pixel` makes of each column and row of the window, row by row.
+/// Calls `of_pixel` for each column and row of the window and returns the results, row by row.
 fn rows<'scene, Found: Send>(
     scene: &'scene Scene,
     settings: &Settings<'scene>,
@@ -232,7 +236,7 @@ fn rows<'scene, Found: Send>(
 }
 
 impl Rendering {
-    /// The means of sums over the pixels' samples.
+    /// Turns sums over the pixels' samples into means.
     fn of(window: Window, settings: &Settings<'_>, pixels: &[Pixel]) -> Self {
         let covered: u64 = pixels.iter().map(|pixel| u64::from(pixel.covered)).sum();
         let lost_sum: f64 = pixels.iter().map(|pixel| pixel.lost_sum).sum();
@@ -250,17 +254,17 @@ impl Rendering {
 #[derive(Clone, Copy, Default)]
 struct Pixel {
     radiance: DVec3,
-    /// Samples that meet a body.
+    /// Number of samples that meet a body.
     covered: u32,
     lost_sum: f64,
     lost_max: f64,
 }
 
-/// All that pixels share.
+/// Data shared by all pixels.
 struct Job<'scene> {
     view: View,
     surroundings: Surroundings<'scene>,
-    /// Each wavelength with every body's optics at it.
+    /// Each wavelength with the optics of every body at that wavelength.
     spectrum: Vec<(Wavelength, Vec<Optics>)>,
     samples: u32,
 }
@@ -283,7 +287,7 @@ impl<'scene> Job<'scene> {
         }
     }
 
-    /// Each sample of a pixel, row by row.
+    /// Yields each sample of a pixel, row by row.
     fn samples(&self, (x, y): (u32, u32)) -> impl Iterator<Item = Pixel> {
         let place =
             move |index: u32, sample: u32| f64::from(index) + (f64::from(sample) + 0.5) / f64::from(self.samples);
@@ -315,14 +319,14 @@ impl Pixel {
         self.lost_max = self.lost_max.max(sample.lost_max);
     }
 
-    /// Linear radiance and coverage times `share`, one over the number of samples.
+    /// Linear radiance and coverage times `share`, which is one over the number of samples.
     fn mean(&self, share: f64) -> [f32; 4] {
         let [red, green, blue] = (self.radiance * share).as_vec3().to_array();
         [red, green, blue, (f64::from(self.covered) * share) as f32]
     }
 }
 
-/// A body's optics at one wavelength.
+/// Returns the optical properties of a body at one wavelength.
 fn optics(object: &Object, wavelength: &Wavelength) -> Optics {
     let material = &object.material;
     Optics {

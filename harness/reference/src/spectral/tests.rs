@@ -18,7 +18,7 @@ fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
     render(scene, settings, &|_, _| {}).unwrap()
 }
 
-/// Root mean square and largest difference over the channels of covered pixels.
+/// RMS and largest difference over the channels of covered pixels.
 fn difference(a: &Rendering, b: &Rendering) -> (f64, f64) {
     let pairs = a.linear.iter().zip(&b.linear).filter(|(a, _)| a[3] > 0.0);
     let parts = pairs.flat_map(|(a, b)| [0, 1, 2].map(|k| f64::from((a[k] - b[k]).abs())));
@@ -27,14 +27,14 @@ fn difference(a: &Rendering, b: &Rendering) -> (f64, f64) {
     ((squares / parts.len() as f64).sqrt(), parts.iter().copied().fold(0.0, larger))
 }
 
-/// A factor from what is dropped at each wavelength to what a channel may lack of it.
+/// Factor from the energy dropped at each wavelength to the greatest deficit of a channel.
 fn gain(wavelengths: usize) -> f64 {
     let rows = spectrum::weights(wavelengths).into_iter().map(|wavelength| (wavelength.weights * DVec3::ONE).abs());
     rows.sum::<DVec3>().max_element()
 }
 
-/// Surrounded by radiance 1 a clear stone shows 1 less what was dropped: at each wavelength of each ray to f64's
-/// digits, and in the picture within the bound.
+/// Surrounded by radiance 1, a clear stone shows 1 minus the dropped energy: to f64's digits at
+/// each wavelength of each ray, and within the bound in the image.
 #[test]
 fn white_furnace() {
     let environment = ones();
@@ -79,7 +79,7 @@ fn white_furnace() {
     }
 }
 
-/// So it does with the settings that `cook render` has: 31 wavelengths and a bound of 1e-4.
+/// The same with the settings of `cook render`: 31 wavelengths and a bound of 1e-4.
 #[test]
 fn white_furnace_as_rendered() {
     let environment = ones();
@@ -98,7 +98,8 @@ fn white_furnace_as_rendered() {
     }
 }
 
-/// Two stones, one in front of the other: what leaves one and enters the other is followed too.
+/// Two stones, one in front of the other: light that leaves one and enters the other is followed
+/// too.
 #[test]
 fn white_furnace_of_several_bodies() {
     let mut scene = Scene::named("octahedron").unwrap();
@@ -113,7 +114,7 @@ fn white_furnace_of_several_bodies() {
     assert!(both.lost.max < settings.energy_bound);
     let near = |pixel: &[f32; 4]| (0..3).all(|k| f64::from(pixel[k] - pixel[3]).abs() <= gain(3) * 1e-4);
     assert!(both.linear.iter().all(near));
-    // The one behind is seen through the other: in the studio it makes a difference.
+    // The stone behind is seen through the one in front: in the studio, this makes a difference.
     let settings = Settings { environment: &Environment::Studio, ..settings };
     let with = rendered(&scene, &settings);
     scene.objects.pop();
@@ -130,7 +131,7 @@ fn twice_as_many_wavelengths_change_little() {
     let (rms, largest) = difference(&coarse, &fine);
     let mean = fine.linear.iter().flat_map(|pixel| &pixel[..3]).sum::<f32>() / (3 * fine.linear.len()) as f32;
     println!("31 against 61 wavelengths: rms {rms:.4}, largest {largest:.4}, of a mean of {mean:.3}");
-    // Against nine, to see that the number matters at all.
+    // Compared with nine wavelengths, to show that the number matters at all.
     let few = difference(&rendered(&scene, &Settings { wavelengths: 9, ..settings }), &fine).0;
     println!("9 against 61 wavelengths: rms {few:.4}");
     assert!(rms < 0.02 && 2.0 * rms < few);
@@ -145,7 +146,8 @@ fn without_dispersion_the_spectrum_plays_no_part() {
     let few = rendered(&scene, &settings);
     let all = rendered(&scene, &Settings { wavelengths: 31, ..settings });
     assert!(difference(&few, &all).1 < 20.0 * gain * settings.energy_bound);
-    // The base colour goes by channel: a stone that lets blue in alone shows more than its surface in blue alone.
+    // The base colour acts by channel: a stone that admits only blue shows more than its surface
+    // only in blue.
     scene.objects[0].material.base_color = glam::Vec3::Z;
     let blue = rendered(&scene, &settings);
     scene.objects[0].material.base_color = glam::Vec3::ZERO;
@@ -161,7 +163,8 @@ fn absorption_takes_the_other_colors() {
     let environment = ones();
     let settings = Settings { environment: &environment, samples: 1, ..Settings::of_size(16, 16) };
     let material = &mut scene.objects[0].material;
-    // With it, wavelengths travel differently far, and a channel's colour is no longer one coefficient's.
+    // With dispersion, path lengths differ between wavelengths, and a channel's colour no longer
+    // follows a single coefficient.
     material.dispersion = Dispersion::None;
     material.attenuation_color = glam::Vec3::new(0.9, 0.2, 0.3);
     material.attenuation_distance = 2.0;
@@ -191,8 +194,8 @@ fn a_window_is_a_crop_and_every_run_the_same() {
     assert!(whole.linear.contains(&[0.0; 4]) && whole.linear.iter().any(|pixel| pixel[3] == 1.0));
 }
 
-/// A stone's facets as planes and as triangles differ by f32's roundings of the corners, 6e-8: light that passes near
-/// an edge may then go another way.
+/// A stone's facets as planes and as triangles differ by the f32 rounding of the corners, 6e-8:
+/// light that passes near an edge may then take another path.
 #[test]
 fn planes_and_triangles_show_the_same_stone() {
     let scene = diamond();

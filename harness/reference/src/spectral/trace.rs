@@ -1,4 +1,4 @@
-//! A ray of one wavelength, split at every surface that it meets.
+//! Tracing of rays of one wavelength, split at every surface that they meet.
 
 use super::geometry::{Bodies, Hit, Place};
 use glam::DVec3;
@@ -8,66 +8,68 @@ use lapidary_scene::Environment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Surfaces that the rays of one sample and wavelength meet at most, all together. Total reflection takes no energy, so
-/// a ray may be caught for long; what is caught for longer counts as lost.
+/// Largest number of surface hits for one sample and wavelength, over all its rays. Total
+/// reflection takes no energy, so a ray may be trapped for a long time; its energy then counts as
+/// lost.
 const MOST_HITS: u32 = 20_000;
 
-/// A body at one wavelength.
+/// Optical properties of a body at one wavelength.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Optics {
     /// Refractive index relative to the air outside.
     pub(super) index: f64,
-    /// The coefficient of Beer and Lambert's law, per unit of distance, for each channel of linear RGB.
+    /// Absorption coefficient of the Beer-Lambert law per unit of distance, for each channel of
+    /// linear RGB.
     pub(super) absorption: DVec3,
-    /// What light is multiplied by where it enters, linear RGB.
+    /// Factor applied to light on entry, linear RGB.
     pub(super) base_color: DVec3,
 }
 
-/// What light meets, whatever its wavelength.
+/// The surroundings of a ray, whatever its wavelength.
 pub(super) struct Surroundings<'scene> {
     pub(super) bodies: Bodies,
     pub(super) environment: &'scene Environment,
-    /// What may be left unfollowed of the energy of a ray from the camera.
+    /// Share of a camera ray's energy that may be dropped.
     pub(super) energy_bound: f64,
 }
 
-/// What a ray from the camera brings at one wavelength.
+/// Result of a camera ray at one wavelength.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outcome {
-    /// Linear RGB: each channel as if its light alone were of this wavelength.
+    /// Linear RGB radiance; each channel is computed as if all its light were of this wavelength.
     pub(super) radiance: DVec3,
-    /// The share of the ray's energy that was not followed to its end.
+    /// Share of the ray's energy that was not followed to its end.
     pub(super) lost: f64,
 }
 
-/// A ray from the camera up to its first surface: what does not depend on the wavelength.
+/// A camera ray up to its first surface, which does not depend on the wavelength.
 pub(super) struct Primary {
     arrival: Arrival,
-    /// The surface's reflection.
+    /// Direction of the reflection at the surface.
     reflected: DVec3,
-    /// What it shows where it meets nothing.
+    /// Environment radiance along the reflection; `None` if it meets a body.
     reflected_radiance: Option<DVec3>,
 }
 
-/// A ray at a surface.
+/// A ray that arrives at a surface.
 #[derive(Clone, Copy)]
 struct Arrival {
     point: DVec3,
     direction: DVec3,
-    /// Unit normal that faces the ray.
+    /// Unit normal, facing the ray.
     normal: DVec3,
     place: Place,
     inside: bool,
     throughput: DVec3,
 }
 
-/// A ray that sets out from a surface.
+/// A ray that leaves a surface.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
     left: Place,
     inside: bool,
-    /// What its radiance is multiplied by to be the camera's.
+    /// Factor from the ray's radiance to its contribution to the camera ray.
     throughput: DVec3,
 }
 
@@ -77,7 +79,7 @@ impl Ray {
     }
 }
 
-// By energy: the heap gives the strongest ray first.
+// Ordered by energy, so that the heap yields the strongest ray first.
 impl Ord for Ray {
     fn cmp(&self, other: &Self) -> Ordering {
         self.energy().total_cmp(&other.energy())
@@ -99,7 +101,7 @@ impl PartialEq for Ray {
 impl Eq for Ray {}
 
 impl Surroundings<'_> {
-    /// The first surface that a ray from the camera meets.
+    /// Finds the first surface that a camera ray meets; `None` if it meets no body.
     pub(super) fn primary(&self, eye: DVec3, direction: DVec3) -> Option<Primary> {
         let hit = self.bodies.enter(eye, direction, None)?;
         let arrival = Arrival::new(eye, direction, hit, false, DVec3::ONE);
@@ -109,8 +111,9 @@ impl Surroundings<'_> {
         Some(Primary { arrival, reflected, reflected_radiance })
     }
 
-    /// Follows `primary` at one wavelength, at which the bodies have these `optics`: the strongest ray first, until all
-    /// that are left have less energy together than the bound.
+    /// Follows `primary` at one wavelength with the bodies' `optics` at that wavelength. The
+    /// strongest ray comes first, until all remaining rays together have less energy than the
+    /// bound.
     pub(super) fn follow(&self, primary: &Primary, optics: &[Optics]) -> Outcome {
         let mut outcome = Outcome::default();
         let mut waiting = BinaryHeap::with_capacity(16);
@@ -121,7 +124,7 @@ impl Surroundings<'_> {
         }
         waiting.extend(transmitted);
         let mut pending: f64 = waiting.iter().map(Ray::energy).sum();
-        // The strongest, where it is known without asking the heap: most often a ray under total reflection.
+        // The strongest ray, if known without asking the heap: usually one under total reflection.
         let mut strongest: Option<Ray> = None;
         let mut hits = 1;
         while pending >= self.energy_bound
@@ -150,8 +153,8 @@ impl Surroundings<'_> {
         outcome
     }
 
-    /// The next surface on the ray's way. Without one, outside, the environment is added to `outcome`; inside, the
-    /// surface has a gap, and the ray is lost.
+    /// Finds the next surface along the ray. If there is none outside, the environment is added to
+    /// `outcome`; if there is none inside, the surface has a gap and the ray is lost.
     fn travel(&self, ray: &Ray, optics: &[Optics], outcome: &mut Outcome) -> Option<Arrival> {
         if ray.inside {
             let Some(hit) = self.bodies.leave(ray.origin, ray.direction, ray.left) else {
@@ -179,12 +182,12 @@ impl Arrival {
         Ray { origin: self.point, direction, left: self.place, inside, throughput }
     }
 
-    /// The surface's reflectance, and the ray that it lets through, if any.
+    /// Returns the surface's reflectance and the transmitted ray; `None` under total reflection.
     fn split(&self, optics: &[Optics]) -> (f64, Option<Ray>) {
         let Optics { index, base_color, .. } = optics[self.place.body];
         let (relative_index, color) = if self.inside { (1.0 / index, DVec3::ONE) } else { (index, base_color) };
         let cosine = -self.normal.dot(self.direction);
-        // Spares the oracle what is far beyond the critical angle; it decides near it.
+        // Skips the oracle well beyond the critical angle; near it, the oracle decides.
         let squared_sine = (1.0 - cosine) * (1.0 + cosine);
         if squared_sine > 1.000_001 * relative_index * relative_index {
             return (1.0, None);
@@ -199,8 +202,9 @@ impl Arrival {
     }
 }
 
-/// The law of reflection by vectors. The oracle's form by angles gives the same to the last digits, and would take a
-/// quarter of the time that a picture takes: most hits are reflections.
+/// Reflects by the vector form of the law of reflection. The oracle's angle form gives the same
+/// result to the last digits, but would take a quarter of an image's render time: most hits are
+/// reflections.
 fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
     incident - 2.0 * normal.dot(incident) * normal
 }

@@ -1,3 +1,4 @@
-//! The curvature-dependent reflectance's lookup table: baked on the GPU, kept in a texture's format, looked up.
+//! The lookup table of the curvature-dependent reflectance: baked on the GPU, stored in a texture's
+//! format, looked up.
 
 pub mod table;

@@ -1,4 +1,5 @@
-//! The recipe `cdrf_table`: run, rounded to the formats that a texture may have, and looked up as a sampler does.
+//! The recipe `cdrf_table`: its run, the rounding to the formats that a texture may have, and the
+//! lookup as a sampler does it.
 
 use crate::compute::{self, Binding, RecipeRun};
 use crate::record::Record;
@@ -11,7 +12,7 @@ use lapidary_scene::solver::Format;
 /// Side of the recipe's workgroups.
 const WORKGROUP: u32 = 8;
 
-/// The nearest value that the format holds.
+/// Returns the nearest value that the format holds.
 pub fn round(format: Format, value: f32) -> f32 {
     match format {
         Format::Rgba8 => (value * 255.0).round() / 255.0,
@@ -20,7 +21,7 @@ pub fn round(format: Format, value: f32) -> f32 {
     }
 }
 
-/// The texture's format.
+/// Returns the texture's format.
 pub fn format(format: Format) -> wgpu::TextureFormat {
     match format {
         Format::Rgba8 => wgpu::TextureFormat::Rgba8Unorm,
@@ -29,7 +30,7 @@ pub fn format(format: Format) -> wgpu::TextureFormat {
     }
 }
 
-/// The bytes of `texels` in the texture's format; alpha, where there is one, is 1.
+/// Returns the bytes of `texels` in the texture's format; alpha, if the format has one, is 1.
 pub fn texels(format: Format, texels: &[Vec3]) -> Vec<u8> {
     let colors = || texels.iter().flat_map(|texel| texel.extend(1.0).to_array());
     match format {
@@ -45,7 +46,7 @@ pub fn texels(format: Format, texels: &[Vec3]) -> Vec<u8> {
 /// Bakes a table of `size` on the GPU, row by row.
 ///
 /// # Errors
-/// Where the device refuses the recipe or the memory.
+/// If the device refuses the recipe or the memory.
 pub fn bake(gpu: &Gpu, size: UVec2, tint: Vec3) -> Result<Vec<Vec3>, ShaderError> {
     let bake = Record::new("CdrfTableBake").with("size", size).with("tint", tint).bytes();
     let bytes = u64::from(size.x) * u64::from(size.y) * 16;
@@ -69,17 +70,18 @@ pub struct Table {
 }
 
 impl Table {
-    /// The texels, row by row, as the format keeps them.
+    /// Stores the texels, row by row, rounded to the format.
     ///
     /// # Panics
-    /// Where there are not as many as `size` says.
+    /// If the number of texels does not match `size`.
     pub fn new(size: UVec2, format: Format, texels: &[Vec3]) -> Table {
         assert_eq!(texels.len(), (size.x * size.y) as usize, "a table of {size}");
         let kept = |texel: &Vec3| Vec3::new(round(format, texel.x), round(format, texel.y), round(format, texel.z));
         Table { size, texels: texels.iter().map(kept).collect() }
     }
 
-    /// The bilinear lookup at a place of the table, 0 and 1 being the middles of its first and last texel.
+    /// Returns the bilinear lookup at a point of the table, where 0 and 1 are the centres of its
+    /// first and last texel.
     fn at(&self, coordinates: Vec2) -> Vec3 {
         let around = mirror::texels(coordinates, self.size);
         let texel = |column: u32, row: u32| self.texels[(row * self.size.x + column) as usize];
@@ -92,23 +94,24 @@ impl Table {
         )
     }
 
-    /// What a linear sampler that clamps to the edge returns at fractions of the texture.
+    /// Returns the value of a linear sampler that clamps to the edge, at `texture`, fractions of
+    /// the texture's size.
     fn sample(&self, texture: Vec2) -> Vec3 {
         let size = self.size.as_vec2();
         self.at((texture * size - 0.5) / (size - 1.0))
     }
 
-    /// The reflectance by hand: texels and weights.
+    /// Returns the reflectance looked up by hand: texels and weights.
     pub fn lookup(&self, cosine: f32, sigma: f32) -> Vec3 {
         self.at(mirror::table_coordinates(cosine, sigma))
     }
 
-    /// The reflectance through a sampler.
+    /// Returns the reflectance looked up through a sampler.
     pub fn sampled(&self, cosine: f32, sigma: f32) -> Vec3 {
         self.sample(mirror::texture_coordinates(mirror::table_coordinates(cosine, sigma), self.size))
     }
 
-    /// The same with the half texel left out.
+    /// Like [`Table::sampled`], with the half texel left out.
     pub fn sampled_naive(&self, cosine: f32, sigma: f32) -> Vec3 {
         self.sample(mirror::texture_coordinates_naive(mirror::table_coordinates(cosine, sigma)))
     }

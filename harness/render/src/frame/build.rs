@@ -1,4 +1,4 @@
-//! Making a frame: each resource, pipeline and pass is put into it as the techniques call for them.
+//! Builds a frame: techniques add resources, pipelines and passes as they need them.
 
 use super::*;
 use crate::RenderError;
@@ -6,34 +6,34 @@ use crate::record::Record;
 use crate::shader::ShaderError;
 use lapidary_gpu::Gpu;
 
-/// What a graphics pipeline is compiled from.
+/// Source of a graphics pipeline.
 #[derive(Clone, Copy, Debug)]
 pub struct PipelineSource<'a> {
-    /// The recipe's name, for messages.
+    /// Name of the recipe, for messages.
     pub recipe: &'a str,
-    /// Its composed text.
+    /// Composed text of the recipe.
     pub source: &'a str,
-    /// Its vertex and fragment entry points.
+    /// Vertex and fragment entry points.
     pub entries: [&'a str; 2],
-    /// Values of its overrides, bools as 0 or 1; those that the text does not declare are left out.
+    /// Values of overrides, bools as 0 or 1; names that the text does not declare are left out.
     pub constants: &'a [(&'a str, f64)],
-    /// Formats of its colour targets.
+    /// Formats of the colour targets.
     pub formats: &'a [wgpu::TextureFormat],
-    /// The depth buffer's format, for solids.
+    /// Format of the depth buffer, for solids; `None` if there is none.
     pub depth: Option<wgpu::TextureFormat>,
 }
 
-/// A frame that is being made.
+/// A frame under construction.
 #[derive(Debug, Default)]
 pub struct Builder<'gpu> {
     frame: Frame,
-    /// The text of each pipeline, composed.
+    /// Composed text of each pipeline.
     sources: Vec<String>,
     object: String,
     gpu: Option<&'gpu Gpu>,
 }
 
-/// A texture whose parts are brought back to the host.
+/// A texture whose parts are read back to the host.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Readback {
     picture: &'static str,
@@ -42,37 +42,40 @@ pub(crate) struct Readback {
 }
 
 impl<'gpu> Builder<'gpu> {
-    /// An empty frame. Contents that a device computes, which are tables of the curvature-dependent reflectance, come
-    /// from `gpu`; without one they are left out, for frames that are looked at and not run.
+    /// Creates an empty frame.
+    ///
+    /// `gpu` computes the contents that need a device, which are tables of the curvature-dependent
+    /// reflectance. Without it they are left out, for frames that are inspected and not run.
     #[must_use]
     pub fn new(gpu: Option<&'gpu Gpu>) -> Self {
         Self { gpu, ..Self::default() }
     }
 
-    /// The device that it is made for.
+    /// Returns the device that the frame is made for; `None` if there is none.
     pub(crate) fn gpu(&self) -> Option<&'gpu Gpu> {
         self.gpu
     }
 
-    /// What every device allows, and no more is asked of any.
+    /// Returns the limits that every device meets; no device is asked for more.
     #[must_use]
     pub fn limits(&self) -> wgpu::Limits {
         wgpu::Limits::default()
     }
 
-    /// The frame so far.
+    /// Returns the frame so far.
     #[must_use]
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// The frame.
+    /// Returns the finished frame.
     #[must_use]
     pub fn finish(self) -> Frame {
         self.frame
     }
 
-    /// What is made and run by `make` is the named object's; that of all objects, where the name is empty.
+    /// Runs `make`; everything that it adds belongs to the object `name`, or to all objects if
+    /// `name` is empty.
     pub fn of_object<T>(&mut self, name: &str, make: impl FnOnce(&mut Self) -> T) -> T {
         let outer = std::mem::replace(&mut self.object, name.to_owned());
         let made = make(self);
@@ -87,12 +90,12 @@ impl<'gpu> Builder<'gpu> {
         self.frame.resources.len() - 1
     }
 
-    /// A buffer of `size` bytes, zeros.
+    /// Adds a buffer of `size` bytes, all zero.
     pub fn buffer(&mut self, what: &str, size: u64, usage: wgpu::BufferUsages) -> Buffer {
         Buffer(self.resource(what, ResourceKind::Buffer { size, usage, contents: Contents::Zeros, layout: None }))
     }
 
-    /// A buffer with contents.
+    /// Adds a buffer with contents.
     pub fn filled(&mut self, what: &str, contents: Vec<u8>, usage: wgpu::BufferUsages) -> Buffer {
         let size = contents.len() as u64;
         Buffer(
@@ -103,22 +106,22 @@ impl<'gpu> Builder<'gpu> {
         )
     }
 
-    /// A storage buffer with contents.
+    /// Adds a storage buffer with contents.
     pub fn storage(&mut self, what: &str, contents: &[u8]) -> Buffer {
         self.filled(what, contents.to_vec(), wgpu::BufferUsages::STORAGE)
     }
 
-    /// A uniform buffer of one struct.
+    /// Adds a uniform buffer that holds one struct.
     pub(crate) fn uniform(&mut self, what: &str, record: Record) -> Buffer {
         self.records(what, vec![record], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// A storage buffer of one struct.
+    /// Adds a storage buffer that holds one struct.
     pub(crate) fn record(&mut self, what: &str, record: Record) -> Buffer {
         self.records(what, vec![record], wgpu::BufferUsages::STORAGE)
     }
 
-    /// A buffer of structs of one kind, of which there is at least one.
+    /// Adds a buffer of structs of one type; there must be at least one.
     pub(crate) fn records(&mut self, what: &str, records: Vec<Record>, usage: wgpu::BufferUsages) -> Buffer {
         let layout = records.first().map(Record::layout);
         let contents: Vec<u8> = records.into_iter().flat_map(Record::bytes).collect();
@@ -127,7 +130,8 @@ impl<'gpu> Builder<'gpu> {
         Buffer(self.resource(what, kind))
     }
 
-    /// A texture to be sampled or loaded: width, height, and depth or number of layers.
+    /// Adds a texture to be sampled or loaded. `size` is width, height, and depth or number of
+    /// layers.
     pub fn texture(
         &mut self,
         what: &str,
@@ -139,7 +143,8 @@ impl<'gpu> Builder<'gpu> {
         Texture(self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents }))
     }
 
-    /// A texture that can be drawn to, and what else `usage` says: width, height, and number of layers.
+    /// Adds a texture that can be drawn to, with `usage` in addition. `size` is width, height, and
+    /// number of layers.
     pub fn target(
         &mut self,
         what: &str,
@@ -154,23 +159,24 @@ impl<'gpu> Builder<'gpu> {
         )
     }
 
-    /// A linear sampler.
+    /// Adds a linear sampler.
     pub fn sampler(&mut self, what: &str, address: [wgpu::AddressMode; 2]) -> Sampler {
         Sampler(self.resource(what, ResourceKind::Sampler { filter: wgpu::FilterMode::Linear, address }))
     }
 
-    /// A graphics pipeline. A closed body shows its front; a full-screen triangle has no back to speak of.
+    /// Adds a graphics pipeline. It culls back faces if it has a depth buffer: a closed body shows
+    /// its front, and a full-screen triangle has no back to cull.
     ///
     /// # Errors
-    /// Where the text is not valid.
+    /// If the text is not valid.
     pub fn render_pipeline(&mut self, from: &PipelineSource<'_>) -> Result<PipelineId, ShaderError> {
         self.render_pipeline_culling(from, from.depth.map(|_| wgpu::Face::Back))
     }
 
-    /// The same with the faces that are not drawn, if any.
+    /// Adds a graphics pipeline that culls these faces, if any.
     ///
     /// # Errors
-    /// Where the text is not valid.
+    /// If the text is not valid.
     pub fn render_pipeline_culling(
         &mut self,
         from: &PipelineSource<'_>,
@@ -181,11 +187,13 @@ impl<'gpu> Builder<'gpu> {
         Ok(self.pipeline(from.recipe, from.source, shader, kind))
     }
 
-    /// A compute pipeline: `entry` of `source`, the composed text of `recipe`, with these overrides: bools as 0 or 1;
-    /// those that the text does not declare are left out.
+    /// Adds a compute pipeline for `entry` of `source`, the composed text of `recipe`.
+    ///
+    /// `constants` are the values of overrides, bools as 0 or 1; names that the text does not
+    /// declare are left out.
     ///
     /// # Errors
-    /// Where the text is not valid.
+    /// If the text is not valid.
     pub fn compute_pipeline(
         &mut self,
         recipe: &str,
@@ -197,7 +205,7 @@ impl<'gpu> Builder<'gpu> {
         Ok(self.pipeline(entry, source, shader, PipelineKind::Compute))
     }
 
-    /// The one that there is already, where it is the same.
+    /// Returns the existing pipeline if an identical one was added before.
     fn pipeline(&mut self, name: &str, source: &str, shader: Shader, kind: PipelineKind) -> PipelineId {
         let pipelines = &mut self.frame.pipelines;
         let is_same = |known: &Pipeline| known.kind == kind && known.shader.is_specialised_as(&shader);
@@ -214,14 +222,14 @@ impl<'gpu> Builder<'gpu> {
         PipelineId(pipelines.len() - 1)
     }
 
-    /// Whether a pipeline reads or writes this binding.
+    /// Returns whether a pipeline reads or writes this binding.
     #[must_use]
     pub fn binds(&self, pipeline: PipelineId, group: u32, binding: u32) -> bool {
         self.frame.pipeline(pipeline).shader.binds(group, binding)
     }
 
-    /// The bind group of those of `resources`, by number, that the pipeline reads or writes. None where it has none in
-    /// this group.
+    /// Adds a bind group of those `resources`, by binding number, that the pipeline reads or
+    /// writes. Returns `None` if the pipeline has no bindings in this group.
     pub fn bind(&mut self, pipeline: PipelineId, group: u32, resources: &[(u32, Bound)]) -> Option<BindGroupId> {
         let used = resources.iter().filter(|(binding, _)| self.binds(pipeline, group, *binding));
         let entries: Vec<(u32, Bound)> = used.copied().collect();
@@ -233,49 +241,51 @@ impl<'gpu> Builder<'gpu> {
         Some(BindGroupId(bind_groups.len() - 1))
     }
 
-    /// A draw for the present object.
+    /// Returns a draw for the current object.
     #[must_use]
     pub fn draw(&self, pipeline: PipelineId, groups: Vec<Option<BindGroupId>>, vertices: u32) -> Draw {
         Draw { object: self.object.clone(), pipeline, groups, vertices, scissor: None }
     }
 
-    /// A dispatch for the present object.
+    /// Returns a dispatch for the current object.
     #[must_use]
     pub fn dispatch(&self, pipeline: PipelineId, groups: Vec<Option<BindGroupId>>, workgroups: Workgroups) -> Dispatch {
         Dispatch { object: self.object.clone(), pipeline, groups, workgroups }
     }
 
-    /// What is run next.
+    /// Appends a pass.
     pub fn pass(&mut self, pass: Pass) {
         self.frame.passes.push(pass);
     }
 
-    /// Dispatches that are run next.
+    /// Appends a pass of dispatches.
     pub fn compute(&mut self, name: &str, dispatches: Vec<Dispatch>, repeat: u32) {
         self.pass(Pass::Compute(ComputePass { name: name.to_owned(), dispatches, repeat }));
     }
 
-    /// Sets a buffer to 0 next.
+    /// Appends a pass that sets a buffer to 0.
     pub fn clear(&mut self, buffer: Buffer) {
         let bytes = self.frame.buffer(buffer).bytes();
         self.pass(Pass::Clear { buffer, bytes });
     }
 
-    /// Brings `texture` back to the host as the named picture, in parts of this size at most.
+    /// Prepares reading `texture` back to the host as the named picture, in parts of at most this
+    /// size.
     pub(crate) fn readback(&mut self, picture: &'static str, texture: Texture, [width, height]: [u32; 2]) -> Readback {
         let size = u64::from(self.bytes_per_row(texture, width)) * u64::from(height);
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         Readback { picture, texture, buffer: self.buffer(&format!("{picture} to read"), size, usage) }
     }
 
-    /// Brings the upper left part of a texture back next, to this place of its picture.
+    /// Appends a pass that reads the upper left part of a texture back, to this position in its
+    /// picture.
     pub(crate) fn read(&mut self, readback: Readback, size: [u32; 2], at: [u32; 2]) {
         let Readback { picture, texture, buffer } = readback;
         let bytes_per_row = self.bytes_per_row(texture, size[0]);
         self.pass(Pass::Read(Read { picture, texture, size, at, buffer, bytes_per_row }));
     }
 
-    /// Brings a whole texture back next, as the named picture.
+    /// Appends a pass that reads a whole texture back, as the named picture.
     pub fn read_whole(&mut self, picture: &'static str, texture: Texture) {
         if let ResourceKind::Texture { size: [width, height, _], .. } = self.frame.texture(texture).kind {
             let readback = self.readback(picture, texture, [width, height]);
@@ -288,10 +298,11 @@ impl<'gpu> Builder<'gpu> {
         (width * texel_bytes(format)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
     }
 
-    /// How many vertices draw a mesh of these `indices`, whose parts are to be storage buffers.
+    /// Returns the number of vertices that draw a mesh with these `indices`; `parts` are to be
+    /// storage buffers.
     ///
     /// # Errors
-    /// Where a device may not hold one of the parts.
+    /// If a part exceeds the limits that every device meets.
     pub(crate) fn mesh_vertices<'a>(
         &self,
         object: &lapidary_scene::Object,

@@ -1,5 +1,5 @@
-//! A frame in files, for another host: `frame.json`, a WGSL file for each pipeline, a binary file for what each resource
-//! holds. docs/frame.md says what each field means.
+//! A frame as files for another host: `frame.json`, a WGSL file for each pipeline, and a binary
+//! file for the contents of each resource. docs/frame.md defines each field.
 
 use super::*;
 use crate::shader::Shader;
@@ -7,43 +7,43 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a reader of other versions should refuse.
+/// Version of the format; readers of other versions should refuse it.
 const VERSION: u32 = 1;
 
-/// Why a frame could not be written.
+/// Reason why a frame could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// A folder in which something is.
+    /// A folder that is not empty.
     #[error("{path}: is there and not empty; name a new folder")]
     Taken {
-        /// Which.
+        /// The folder.
         path: PathBuf,
     },
-    /// The system's word.
+    /// An error of the file system.
     #[error("{path}: cannot be written: {error}")]
     File {
-        /// Which.
+        /// The file or folder.
         path: PathBuf,
-        /// What went wrong.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// naga's word.
+    /// An error of naga.
     #[error("recipe {recipe} cannot be written as WGSL: {error}")]
     Wgsl {
-        /// Which.
+        /// Name of the recipe.
         recipe: String,
-        /// What went wrong.
+        /// naga's error.
         error: naga::back::wgsl::Error,
     },
-    /// A frame for looking at.
+    /// A frame made only for inspection.
     #[error("`{resource}` was left out: the frame was made without a device")]
     LeftOut {
-        /// Which resource.
+        /// Name of the resource.
         resource: String,
     },
 }
 
-/// `frame.json`. Resources, pipelines and bind groups are referred to by their places.
+/// `frame.json`. Refers to resources, pipelines and bind groups by index.
 #[derive(Serialize)]
 pub struct Document {
     version: u32,
@@ -197,12 +197,13 @@ enum WorkgroupsRow {
     Indirect(usize),
 }
 
-/// A format's name in WebGPU, of those without blocks: `rgba32float`.
+/// Returns a format's name in WebGPU, such as `rgba32float`; for formats without blocks.
 fn format_name(format: wgpu::TextureFormat) -> String {
     format!("{format:?}").to_lowercase()
 }
 
-/// What a file is called: the place, which no other has, and the name as far as file systems like it.
+/// Returns the name of a file: the index, which makes it unique, and the name, restricted to
+/// characters that file systems accept.
 fn file_name(folder: &str, place: usize, name: &str, extension: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '_' { letter } else { '-' };
     let name: String = name.chars().map(plain).take(40).collect();
@@ -253,7 +254,7 @@ fn resource_row((place, resource): (usize, &Resource)) -> ResourceRow {
             let address = address.map(|address| match address {
                 wgpu::AddressMode::Repeat => "repeat",
                 wgpu::AddressMode::MirrorRepeat => "mirror-repeat",
-                // WebGPU knows no border.
+                // WebGPU has no border mode.
                 wgpu::AddressMode::ClampToEdge | wgpu::AddressMode::ClampToBorder => "clamp-to-edge",
             });
             (ResourceFields::Sampler { filter, address }, Vec::new(), &Contents::Zeros)
@@ -353,7 +354,7 @@ fn pass_row(pass: &Pass) -> PassRow {
 }
 
 impl Frame {
-    /// The pictures that are read back, by their names.
+    /// Returns the pictures that are read back, by name.
     fn pictures(&self) -> Vec<PictureRow> {
         let mut pictures: Vec<PictureRow> = Vec::new();
         for pass in &self.passes {
@@ -370,7 +371,7 @@ impl Frame {
         pictures
     }
 
-    /// What `frame.json` says.
+    /// Returns the contents of `frame.json`.
     #[must_use]
     pub fn document(&self) -> Document {
         Document {
@@ -383,10 +384,10 @@ impl Frame {
         }
     }
 
-    /// Writes the frame to a new or empty folder. It is complete or absent.
+    /// Writes the frame to a new or empty folder, completely or not at all.
     ///
     /// # Errors
-    /// Where something is in the folder, or it cannot be written.
+    /// If the folder is not empty or cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -401,14 +402,14 @@ impl Frame {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
             Err(error) => return Err(failed(folder)(error)),
         }
-        // Made beside its place, and moved there whole.
+        // Created next to its final location, then moved there as a whole.
         let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         std::fs::create_dir_all(parent).map_err(failed(parent))?;
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
-            // As far as the process's umask lets others.
+            // Access for other users is limited only by the process's umask.
             builder.permissions(std::fs::Permissions::from_mode(0o777));
         }
         let aside = builder.prefix(".frame-").tempdir_in(parent).map_err(failed(folder))?;
@@ -438,7 +439,7 @@ impl Frame {
         let json = serde_json::to_string_pretty(&self.document());
         let json = json.map_err(std::io::Error::from).map_err(failed(&folder.join("frame.json")))?;
         write("frame.json", format!("{json}\n").as_bytes())?;
-        // An empty folder gives way.
+        // An empty folder is replaced.
         let _ = std::fs::remove_dir(folder);
         std::fs::rename(aside.path(), folder).map_err(failed(folder))
     }

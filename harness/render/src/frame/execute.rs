@@ -1,4 +1,4 @@
-//! A frame on a device of wgpu's: everything made once, then run as often as one likes.
+//! A frame on a wgpu device: everything is created once, then run any number of times.
 
 use super::*;
 use lapidary_gpu::{Gpu, GpuError};
@@ -38,12 +38,19 @@ impl Compiled {
 }
 
 impl<'gpu> Executor<'gpu> {
-    /// Makes all that the frame holds.
+    /// Creates everything that the frame contains.
     ///
     /// # Errors
-    /// Where the device refuses a shader or the memory.
+    /// If the device rejects a shader or runs out of memory.
     pub fn new(gpu: &'gpu Gpu, frame: Frame) -> Result<Self, GpuError> {
-        let resource = |of: &Resource| gpu.guarded(&format!("making `{}`", of.name), |_| made(gpu, of));
+        let resource = |of: &Resource| {
+            let what = format!("making `{}`", of.name);
+            if of.is_left_out() {
+                let reason = "its contents were left out: the frame was made without a device".to_owned();
+                return Err(GpuError::Device { what, reason });
+            }
+            gpu.guarded(&what, |_| made(gpu, of))
+        };
         let resources = frame.resources.iter().map(resource).collect::<Result<_, _>>()?;
         let pipeline = |of: &Pipeline| {
             gpu.guarded(&format!("compiling `{}` of recipe `{}`", of.name, of.shader.recipe()), |device| {
@@ -58,7 +65,7 @@ impl<'gpu> Executor<'gpu> {
         Ok(executor)
     }
 
-    /// What it runs.
+    /// Returns the frame that it runs.
     #[must_use]
     pub fn frame(&self) -> &Frame {
         &self.frame
@@ -110,7 +117,7 @@ impl<'gpu> Executor<'gpu> {
         sampler
     }
 
-    /// Fills the upper left part of a texture that may be copied to, row by row.
+    /// Fills the upper left part of a texture, row by row. The texture must allow copies to it.
     pub fn write_texture(&self, texture: Texture, [width, height]: [u32; 2], texels: &[u8]) {
         let texture = self.texture(texture);
         let bytes_per_row = Some(width * texel_bytes(texture.format()));
@@ -119,35 +126,36 @@ impl<'gpu> Executor<'gpu> {
         self.gpu.queue.write_texture(texture.as_image_copy(), texels, layout, size);
     }
 
-    /// Fills a buffer that may be copied to, from its start.
+    /// Fills a buffer from its start. The buffer must allow copies to it.
     pub fn write_buffer(&self, buffer: Buffer, contents: &[u8]) {
         self.gpu.queue.write_buffer(self.buffer(buffer), 0, contents);
     }
 
-    /// The words of a whole buffer that may be copied from. Waits for everything submitted.
+    /// Returns the words of a whole buffer, which must allow copies from it. Waits for everything
+    /// submitted.
     ///
     /// # Errors
-    /// Where the device is lost.
+    /// If the device is lost.
     pub fn words(&self, buffer: Buffer) -> Result<Vec<u32>, GpuError> {
         self.gpu.words(self.buffer(buffer))
     }
 
-    /// Runs all passes. `read` is handed each [`Read`] with its rows, one after the other without gaps.
+    /// Runs all passes. `read` receives each [`Read`] with its rows, in order and without gaps.
     ///
     /// # Errors
-    /// Where the device refuses a pass or is lost.
+    /// If the device rejects a pass or is lost.
     pub fn run(&self, read: impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
         self.run_passes(0..self.frame.passes.len(), read)
     }
 
-    /// The same of some passes, by their places.
+    /// Runs the passes in a range of indices, like [`Executor::run`].
     ///
     /// # Errors
-    /// Where the device refuses a pass or is lost.
+    /// If the device rejects a pass or is lost.
     pub fn run_passes(&self, passes: Range<usize>, mut read: impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
         let mut rest = &self.frame.passes[passes];
         while !rest.is_empty() {
-            // Up to and with what is read next.
+            // Up to and including the next reads.
             let is_read = |pass: &Pass| matches!(pass, Pass::Read(_));
             let start = rest.iter().position(is_read).unwrap_or(rest.len());
             let count = rest[start..].iter().take_while(|pass| is_read(pass)).count();
@@ -163,7 +171,7 @@ impl<'gpu> Executor<'gpu> {
         Ok(())
     }
 
-    /// Encodes and submits passes, and waits for nothing.
+    /// Encodes and submits passes without waiting.
     pub(crate) fn submit(&self, passes: &[Pass]) -> Result<(), GpuError> {
         self.gpu.guarded("drawing a frame", |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -174,7 +182,7 @@ impl<'gpu> Executor<'gpu> {
         })
     }
 
-    /// The same of all passes at some places.
+    /// Encodes and submits the passes in a range of indices without waiting.
     pub(crate) fn submit_passes(&self, passes: Range<usize>) -> Result<(), GpuError> {
         self.submit(&self.frame.passes[passes])
     }
@@ -264,7 +272,7 @@ impl<'gpu> Executor<'gpu> {
         }
     }
 
-    /// Waits for what was copied to a buffer, and hands its rows on.
+    /// Waits for the data copied to a buffer, and passes its rows on.
     fn bring_back(&self, of: &Read, read: &mut impl FnMut(&Read, &[u8])) -> Result<(), GpuError> {
         let Read { texture, size: [width, height], buffer, bytes_per_row, .. } = of;
         let used = (width * texel_bytes(self.texture(*texture).format())) as usize;

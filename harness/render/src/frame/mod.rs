@@ -1,6 +1,7 @@
-//! A frame as data: resources with their contents, pipelines, bind groups, and passes in order. [`Builder`] makes one,
-//! [`Executor`] runs it on wgpu, [`Frame::write`] writes it for another host. Whoever runs it needs to know nothing of
-//! techniques.
+//! A frame as data: resources with their contents, pipelines, bind groups, and passes in order.
+//!
+//! [`Builder`] makes a frame, [`Executor`] runs it on wgpu, [`Frame::write`] writes it for another
+//! host. Running a frame requires no knowledge of techniques.
 
 mod build;
 mod document;
@@ -14,99 +15,110 @@ pub use execute::Executor;
 use crate::shader::Shader;
 use lapidary_specialise::layout::StructLayout;
 
-/// A buffer of a frame: its place among [`Frame::resources`].
+/// A buffer of a frame: its index in [`Frame::resources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Buffer(usize);
 
-/// A texture of a frame: its place among [`Frame::resources`].
+/// A texture of a frame: its index in [`Frame::resources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Texture(usize);
 
-/// A sampler of a frame: its place among [`Frame::resources`].
+/// A sampler of a frame: its index in [`Frame::resources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sampler(usize);
 
-/// A pipeline of a frame: its place among [`Frame::pipelines`].
+/// A pipeline of a frame: its index in [`Frame::pipelines`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PipelineId(usize);
 
-/// A bind group of a frame: its place among [`Frame::bind_groups`].
+/// A bind group of a frame: its index in [`Frame::bind_groups`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BindGroupId(usize);
 
-/// All that is made and run for a picture.
+/// Everything created and run for a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Buffers, textures and samplers.
     pub resources: Vec<Resource>,
     /// Pipelines, each once.
     pub pipelines: Vec<Pipeline>,
-    /// What the pipelines read and write.
+    /// Resources that the pipelines read and write.
     pub bind_groups: Vec<BindGroup>,
-    /// What is run, in order.
+    /// Passes, in the order in which they run.
     pub passes: Vec<Pass>,
 }
 
 /// A buffer, texture or sampler.
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// `object/what`; `what` alone where all objects share it. Not unique: each tile has a `view`.
+    /// Name: `object/what`, or `what` alone if all objects share it. Not unique: each tile has a
+    /// `view`.
     pub name: String,
-    /// The object that it is made for; empty where all share it.
+    /// The object that it is made for; empty if all objects share it.
     pub object: String,
-    /// What it is.
+    /// Kind of the resource, with its properties.
     pub kind: ResourceKind,
 }
 
-/// What a resource is.
+/// Kind of a resource.
 #[derive(Clone, Debug)]
 pub enum ResourceKind {
     /// A buffer.
     Buffer {
-        /// In bytes.
+        /// Size in bytes.
         size: u64,
-        /// What it is used for.
+        /// Allowed usages.
         usage: wgpu::BufferUsages,
-        /// Its bytes at the start.
+        /// Initial contents.
         contents: Contents,
-        /// The struct that it holds, or an array of it, by name and layout; none of plain arrays.
+        /// Name and layout of the struct that it holds, once or as an array; `None` for plain
+        /// arrays.
         layout: Option<(&'static str, &'static StructLayout)>,
     },
-    /// A texture of one mip level and one sample a texel.
+    /// A texture with one mip level and one sample per texel.
     Texture {
         /// Width, height, and depth or number of layers, in texels.
         size: [u32; 3],
         /// One, two or three dimensions.
         dimension: wgpu::TextureDimension,
-        /// Of a texel.
+        /// Format of a texel.
         format: wgpu::TextureFormat,
-        /// What it is used for.
+        /// Allowed usages.
         usage: wgpu::TextureUsages,
-        /// Its texels at the start, row by row without gaps, layer by layer.
+        /// Initial contents, row by row without gaps, layer by layer.
         contents: Contents,
     },
     /// A sampler.
     Sampler {
-        /// Of magnification and minification.
+        /// Filter for magnification and minification.
         filter: wgpu::FilterMode,
-        /// Along u and v.
+        /// Address modes along u and v.
         address: [wgpu::AddressMode; 2],
     },
 }
 
-/// What a resource holds at the start.
+/// Initial contents of a resource.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// Zeros.
     Zeros,
     /// These bytes.
     Bytes(Vec<u8>),
-    /// What a device computes, for a frame that was made without one and cannot be run.
+    /// Contents that a device computes, left out because the frame was made without one. Such a
+    /// frame cannot be run.
     LeftOut,
 }
 
 impl Resource {
-    /// The bytes of its contents, without what a driver adds; none of a sampler.
+    /// Whether its contents are [`Contents::LeftOut`].
+    pub(crate) fn is_left_out(&self) -> bool {
+        let (ResourceKind::Buffer { contents, .. } | ResourceKind::Texture { contents, .. }) = &self.kind else {
+            return false;
+        };
+        *contents == Contents::LeftOut
+    }
+
+    /// Returns the size of its contents in bytes, driver overhead excluded; 0 for a sampler.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         match &self.kind {
@@ -119,57 +131,59 @@ impl Resource {
     }
 }
 
-/// Bytes of a texel. Only formats without blocks of several texels are used; depth has 32 bits.
+/// Returns the bytes of a texel. Only formats without blocks of several texels are used; depth has
+/// 32 bits.
 pub(crate) fn texel_bytes(format: wgpu::TextureFormat) -> u32 {
     format.block_copy_size(None).unwrap_or_default()
 }
 
-/// A pipeline, without a layout of its own: bind groups take the layout that follows from its shader.
+/// A pipeline without an explicit layout: bind groups use the layout derived from its shader.
 #[derive(Clone, Debug)]
 pub struct Pipeline {
-    /// Of a graphics pipeline the recipe's name, of a compute pipeline its entry point's; where several would have one
-    /// name, with `#2`, `#3` and so on.
+    /// Name: the recipe's for a graphics pipeline, the entry point's for a compute pipeline. If
+    /// several would have the same name, `#2`, `#3` and so on are appended.
     pub name: String,
-    /// What it runs, specialised.
+    /// The shader, specialised.
     pub shader: Shader,
-    /// What it runs as.
+    /// Graphics or compute.
     pub kind: PipelineKind,
 }
 
-/// What a pipeline runs as.
+/// Kind of a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PipelineKind {
-    /// Triangles without vertex buffers, counter-clockwise fronts; the shader's first entry point is of vertices, its
-    /// second of fragments.
+    /// Triangles without vertex buffers, with counter-clockwise front faces. The shader's first
+    /// entry point is the vertex stage, its second the fragment stage.
     Render {
         /// Formats of its colour targets.
         targets: Vec<wgpu::TextureFormat>,
-        /// Format of its depth buffer, where there is one: less passes, and is written.
+        /// Format of its depth buffer; `None` if it has none. The depth test is `less`, and depth
+        /// is written.
         depth: Option<wgpu::TextureFormat>,
-        /// The faces that are not drawn.
+        /// Faces that are culled; `None` if all are drawn.
         cull: Option<wgpu::Face>,
     },
-    /// The shader's one entry point.
+    /// The shader's only entry point.
     Compute,
 }
 
-/// What a pipeline reads and writes in one group.
+/// Resources that a pipeline reads and writes in one group.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct BindGroup {
-    /// Whose layout it has.
+    /// Pipeline whose layout the group has.
     pub pipeline: PipelineId,
     /// Number of the group.
     pub group: u32,
-    /// By number of the binding: all that the pipeline has in this group.
+    /// Resources by binding number: all that the pipeline uses in this group.
     pub entries: Vec<(u32, Bound)>,
 }
 
-/// What stands at a binding.
+/// Resource at a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bound {
     /// A whole buffer.
     Buffer(Buffer),
-    /// All of a texture.
+    /// A whole texture.
     Texture(Texture, wgpu::TextureViewDimension),
     /// A sampler.
     Sampler(Sampler),
@@ -188,13 +202,13 @@ impl From<Sampler> for Bound {
 }
 
 impl From<Texture> for Bound {
-    /// As a texture of two dimensions.
+    /// Binds the texture with two dimensions.
     fn from(texture: Texture) -> Self {
         Self::Texture(texture, wgpu::TextureViewDimension::D2)
     }
 }
 
-/// One thing that is run.
+/// One step of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pass {
     /// Draws to targets.
@@ -203,52 +217,53 @@ pub enum Pass {
     Compute(ComputePass),
     /// Sets the first bytes of a buffer to 0.
     Clear {
-        /// Which.
+        /// The buffer.
         buffer: Buffer,
-        /// How many, a multiple of 4.
+        /// Number of bytes, a multiple of 4.
         bytes: u64,
     },
     /// Copies the first bytes of one buffer to another.
     Copy {
-        /// From where.
+        /// Source.
         from: Buffer,
-        /// To where.
+        /// Destination.
         to: Buffer,
-        /// How many, a multiple of 4.
+        /// Number of bytes, a multiple of 4.
         bytes: u64,
     },
-    /// Copies the upper left part of a texture to a buffer, and brings it back to the host.
+    /// Copies the upper left part of a texture to a buffer, and reads it back to the host.
     Read(Read),
 }
 
 /// A pass of draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPass {
-    /// Its name.
+    /// Name of the pass.
     pub name: String,
-    /// What is drawn to, one for each of the pipelines' targets.
+    /// Colour targets, one for each target of the pipelines.
     pub targets: Vec<Target>,
-    /// The depth buffer, which starts at 1, and whether it is kept for later passes.
+    /// The depth buffer, cleared to 1, and whether it is kept for later passes; `None` if there is
+    /// none.
     pub depth: Option<(Texture, bool)>,
-    /// Left, top, width and height in texels; all of the target where there is none.
+    /// Left, top, width and height in texels; `None` for the whole target.
     pub viewport: Option<[u32; 4]>,
-    /// In order.
+    /// Draws, in order.
     pub draws: Vec<Draw>,
 }
 
 /// A colour target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// What is drawn to.
+    /// The texture that is drawn to.
     pub texture: Texture,
-    /// Which of its layers.
+    /// Layer of the texture.
     pub layer: u32,
-    /// What it starts with: red, green, blue, alpha.
+    /// Clear value: red, green, blue, alpha.
     pub clear: [f64; 4],
 }
 
 impl From<Texture> for Target {
-    /// Its first layer, from nothing.
+    /// Takes the first layer, cleared to 0.
     fn from(texture: Texture) -> Self {
         Self { texture, layer: 0, clear: [0.0; 4] }
     }
@@ -257,70 +272,71 @@ impl From<Texture> for Target {
 /// A draw of one instance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// The object that it is for; empty where it is for all.
+    /// The object that it is for; empty if it is for all objects.
     pub object: String,
-    /// By what.
+    /// Pipeline of the draw.
     pub pipeline: PipelineId,
-    /// By number of the group; none where the pipeline has none.
+    /// Bind groups by group number; `None` if the pipeline has no such group.
     pub groups: Vec<Option<BindGroupId>>,
-    /// How many.
+    /// Number of vertices.
     pub vertices: u32,
-    /// The part of the targets that may change, left, top, width and height in texels; all where there is none.
+    /// The part of the targets that may change: left, top, width and height in texels; `None` for
+    /// all.
     pub scissor: Option<[u32; 4]>,
 }
 
 /// A pass of dispatches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComputePass {
-    /// Its name.
+    /// Name of the pass.
     pub name: String,
-    /// In order.
+    /// Dispatches, in order.
     pub dispatches: Vec<Dispatch>,
-    /// How often all of them are run, one time after the other.
+    /// How many times all of them are run, one after the other.
     pub repeat: u32,
 }
 
 /// A dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dispatch {
-    /// The object that it is for; empty where it is for all.
+    /// The object that it is for; empty if it is for all objects.
     pub object: String,
-    /// By what.
+    /// Pipeline of the dispatch.
     pub pipeline: PipelineId,
-    /// By number of the group; none where the pipeline has none.
+    /// Bind groups by group number; `None` if the pipeline has no such group.
     pub groups: Vec<Option<BindGroupId>>,
-    /// How many workgroups.
+    /// Number of workgroups.
     pub workgroups: Workgroups,
 }
 
-/// How many workgroups a dispatch has.
+/// Number of workgroups of a dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Workgroups {
-    /// Along each axis.
+    /// Number along each axis.
     Count([u32; 3]),
-    /// As the first three words of a buffer say.
+    /// The first three words of a buffer.
     Indirect(Buffer),
 }
 
-/// A part of a texture on its way to the host.
+/// A part of a texture that is read back to the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Read {
-    /// The picture that it is a part of.
+    /// Name of the picture that it belongs to.
     pub picture: &'static str,
-    /// From where: its upper left part.
+    /// Source texture; its upper left part is read.
     pub texture: Texture,
-    /// Width and height, in texels.
+    /// Width and height in texels.
     pub size: [u32; 2],
-    /// Where in the picture: left and top.
+    /// Position in the picture: left and top.
     pub at: [u32; 2],
-    /// By way of this buffer.
+    /// Staging buffer.
     pub buffer: Buffer,
     /// Bytes from one row to the next in the buffer.
     pub bytes_per_row: u32,
 }
 
 impl Frame {
-    /// What a handle stands for.
+    /// Returns the resource of a handle.
     ///
     /// # Panics
     /// For a buffer of another frame.
@@ -329,7 +345,7 @@ impl Frame {
         &self.resources[buffer.0]
     }
 
-    /// What a handle stands for.
+    /// Returns the resource of a handle.
     ///
     /// # Panics
     /// For a texture of another frame.
@@ -338,7 +354,7 @@ impl Frame {
         &self.resources[texture.0]
     }
 
-    /// What a handle stands for.
+    /// Returns the pipeline of a handle.
     ///
     /// # Panics
     /// For a pipeline of another frame.
@@ -347,7 +363,7 @@ impl Frame {
         &self.pipelines[pipeline.0]
     }
 
-    /// What a handle stands for.
+    /// Returns the bind group of a handle.
     ///
     /// # Panics
     /// For a bind group of another frame.
@@ -356,14 +372,14 @@ impl Frame {
         &self.bind_groups[group.0]
     }
 
-    /// The resource at a binding.
+    /// Returns the resource at a binding.
     #[must_use]
     pub fn bound(&self, bound: Bound) -> &Resource {
         let (Bound::Buffer(Buffer(place)) | Bound::Texture(Texture(place), _) | Bound::Sampler(Sampler(place))) = bound;
         &self.resources[place]
     }
 
-    /// How many draw calls it takes.
+    /// Returns the number of draw calls in the frame.
     #[must_use]
     pub fn draw_calls(&self) -> usize {
         let draws = |pass: &Pass| if let Pass::Render(pass) = pass { pass.draws.len() } else { 0 };

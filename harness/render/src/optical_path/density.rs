@@ -1,4 +1,4 @@
-//! The recipe `optical_path_density`: how dense a body is, voxel by voxel.
+//! The recipe `optical_path_density`: the density of a body at each voxel.
 
 use super::super::RenderError;
 use crate::frame::{Bound, Buffer, Builder, Contents, Dispatch, Frame, Texture, Workgroups};
@@ -9,15 +9,15 @@ use lapidary_veins::VeinsPattern;
 
 const RECIPE: &str = "optical_path_density";
 
-/// A body's densities, made anew each frame.
+/// A body's densities, recomputed each frame.
 pub(super) struct Densities {
     dispatch: Dispatch,
-    /// An f32 for each voxel.
+    /// One f32 per voxel.
     pub(super) buffer: Buffer,
 }
 
 impl Densities {
-    /// Nothing where the density is the same everywhere.
+    /// Returns `None` if the density is the same everywhere.
     pub(super) fn new(
         builder: &mut Builder<'_>,
         grid: VoxelGrid,
@@ -51,18 +51,18 @@ impl Densities {
         Ok(Some(Self { dispatch: builder.dispatch(kernel, vec![group], workgroups), buffer }))
     }
 
-    /// Finds them next, once the voxels are known.
+    /// Computes the densities, once the voxels are known.
     pub(super) fn encode(&self, builder: &mut Builder<'_>) {
         builder.compute("densities", vec![self.dispatch.clone()], 1);
     }
 
-    /// Bytes of its buffer.
+    /// Size of the buffer in bytes.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         frame.buffer(self.buffer).bytes()
     }
 }
 
-/// `VeinsPattern` of the recipe.
+/// Fills `VeinsPattern` of the recipe.
 fn record_of(pattern: VeinsPattern) -> Record {
     let VeinsPattern { frequency, width, least, greatest, octaves, seed } = pattern;
     let record = Record::new("VeinsPattern").with("frequency", frequency).with("width", width);

@@ -1,4 +1,5 @@
-//! The recipe `optical_path_seed`: costs are cleared, and those of the voxels about each lit texel of the lights' maps set.
+//! The recipe `optical_path_seed`: clears the costs, then sets those of the voxels around each lit
+//! texel of the lights' maps.
 
 use crate::frame::{Bound, Buffer, Builder, Dispatch, PipelineId, Workgroups};
 use crate::record::Record;
@@ -9,37 +10,37 @@ const RECIPE: &str = "optical_path_seed";
 /// Invocations of a workgroup along each side of a map.
 const GROUP: u32 = 8;
 
-/// Its two entry points.
+/// The recipe's two pipelines, one per entry point.
 #[derive(Clone, Copy)]
 pub(super) struct Seeds {
     clear: PipelineId,
     seed: PipelineId,
 }
 
-/// What is looked up of the lights.
+/// Data of the lights that the seeding looks up.
 #[derive(Clone, Copy)]
 pub(super) struct Lit {
     pub(super) lights: Buffer,
     pub(super) views: Buffer,
-    /// All layers.
+    /// The texture with all layers.
     pub(super) maps: Bound,
     /// Width, height and number of layers.
     pub(super) size: [u32; 3],
 }
 
-/// What is seeded.
+/// The body and channel to seed.
 #[derive(Clone, Copy)]
 pub(super) struct Seeded {
     pub(super) grid: VoxelGrid,
     pub(super) matter: Buffer,
-    /// Where it differs from voxel to voxel.
+    /// Density of each voxel; `None` if it is uniform.
     pub(super) density: Option<Buffer>,
     pub(super) costs: Buffer,
-    /// Per unit of length where the density is 1.
+    /// Extinction per unit of length where the density is 1.
     pub(super) extinction: f32,
-    /// The irradiance whose cost is 0.
+    /// Irradiance whose cost is 0.
     pub(super) largest: f32,
-    /// 0 red, 1 green, 2 blue.
+    /// Colour channel: 0 red, 1 green, 2 blue.
     pub(super) channel: u32,
 }
 
@@ -50,7 +51,7 @@ impl Seeds {
         Ok(Self { clear: kernel("optical_path_clear")?, seed: kernel("optical_path_seed_texel")? })
     }
 
-    /// Clearing, then seeding.
+    /// Returns the dispatches that clear the costs, then seed them.
     pub(super) fn dispatches(&self, builder: &mut Builder<'_>, lit: &Lit, seeded: &Seeded) -> Vec<Dispatch> {
         let what = ["seeding of red", "seeding of green", "seeding of blue"][seeded.channel as usize];
         let uniform = builder.uniform(what, seeded.record());
@@ -68,11 +69,11 @@ impl Seeds {
 }
 
 impl Seeded {
-    /// `OpticalPathSeeding` of the recipe.
+    /// Fills `OpticalPathSeeding` of the recipe.
     fn record(&self) -> Record {
         let Self { grid, extinction, largest, channel, .. } = *self;
         let record = Record::new("OpticalPathSeeding").within("grid", |record| grid.fill(record));
-        // No light has a share of nothing.
+        // Shares are relative to the largest irradiance, which must not be 0.
         let largest = largest.max(f32::MIN_POSITIVE);
         record.with("extinction", extinction).with("largest", largest).with("channel", channel)
     }

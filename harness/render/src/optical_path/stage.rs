@@ -1,25 +1,25 @@
-//! The parts of a frame, in their order.
+//! The stages of a frame, in order.
 
-/// A part of a frame that follows light's ways through bodies.
+/// A stage of a frame that follows light's paths through bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Bodies are made voxels, and their densities found where they differ.
+    /// Voxelizes the bodies and computes their densities where these vary.
     Voxels,
-    /// Reflective shadow maps are drawn.
+    /// Draws the reflective shadow maps.
     Maps,
-    /// Costs are cleared, and seeded from the maps.
+    /// Clears the costs and seeds them from the maps.
     Seeds,
-    /// The solver's passes.
+    /// Runs the solver's passes.
     Solve,
-    /// The bodies are drawn.
+    /// Draws the bodies.
     Shade,
 }
 
 impl Stage {
-    /// All of them, in their order.
+    /// All stages, in order.
     pub const ALL: [Self; 5] = [Self::Voxels, Self::Maps, Self::Seeds, Self::Solve, Self::Shade];
 
-    /// In tables.
+    /// Name of the stage in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -3,7 +3,8 @@
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_srgb as srgb;
 
-/// A dark seamless paper behind the scene, at a place of a picture of that size in pixels. Linear RGB.
+/// Linear RGB of the dark seamless paper behind the scene, at `pixel` of a picture of `size`, both
+/// in pixels.
 pub fn backdrop(pixel: Vec2, size: Vec2) -> Vec3 {
     let from_light = (pixel - Vec2::new(0.5, 0.55) * size) / size.min_element();
     let falloff = (-3.0 * from_light.dot(from_light)).exp();
@@ -11,7 +12,8 @@ pub fn backdrop(pixel: Vec2, size: Vec2) -> Vec3 {
     edge * (1.0 - falloff) + middle * falloff
 }
 
-/// What a pixel shows of its samples, linear radiance and coverage each, before `behind`: code values from 0 to 1.
+/// Returns the code values, from 0 to 1, of a pixel with these samples, each linear radiance and
+/// coverage, in front of `behind`.
 pub fn shown(samples: &[Vec4], exposure: f32, behind: Vec3) -> Vec3 {
     let light = |sample: &Vec4| srgb::tone_curve(exposure * sample.truncate() + (1.0 - sample.w) * behind);
     srgb::encode_color(samples.iter().map(light).sum::<Vec3>() / samples.len() as f32)

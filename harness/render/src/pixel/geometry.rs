@@ -1,4 +1,5 @@
-//! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the mirrors.
+//! The recipes' geometries in Rust: `gem_vertex`, `gem_enter` and `gem_hit` of each, from the
+//! mirrors.
 
 use super::SurfacePoint;
 use crate::{RenderError, Settings};
@@ -12,10 +13,10 @@ use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
 use std::borrow::Cow;
 
-/// An object with what its rung's geometry needs.
+/// An object with the data that its rung's geometry needs.
 pub struct Stone<'a> {
     mesh: &'a Mesh,
-    /// For the proxy, one for each position.
+    /// One normal per position, for the proxy.
     normals: Cow<'a, [Vec3]>,
     paper_centre: bool,
     data: Data,
@@ -28,7 +29,7 @@ enum Data {
     Bvh(Leaves),
 }
 
-/// A hierarchy, and where it holds each of the mesh's triangles.
+/// A hierarchy, and the place in it of each of the mesh's triangles.
 struct Leaves {
     bvh: Bvh,
     place: Vec<u32>,
@@ -45,14 +46,14 @@ impl Leaves {
     }
 }
 
-/// A triangle as the vertex shader hands it on, and where a ray enters it.
+/// A triangle as the vertex shader passes it on, and where a ray enters it.
 pub(super) struct Entry<'a> {
     pub(super) position: Vec3,
     pub(super) face_normal: Vec3,
     start: Place<'a>,
 }
 
-/// A ray inside: what decides its next facet.
+/// State of a ray inside that determines its next facet.
 #[derive(Clone)]
 pub(super) enum Place<'a> {
     Proxy { plane: ProxyGeometryPlane, centre: Vec3, normal: Vec3 },
@@ -66,7 +67,7 @@ pub(super) struct Hit {
     pub(super) point: Vec3,
     pub(super) normal: Vec3,
     pub(super) distance: f32,
-    /// A number of it; `None` on a miss.
+    /// Number that identifies the facet; `None` on a miss.
     pub(super) facet: Option<u64>,
 }
 
@@ -77,7 +78,7 @@ impl Hit {
 }
 
 impl<'a> Stone<'a> {
-    /// `object` for the geometry of the settings' rung.
+    /// Prepares `object` for the geometry of the settings' rung.
     pub fn new(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
         let mesh = &object.mesh;
         let not_convex =
@@ -159,7 +160,7 @@ impl Place<'_> {
                     direction,
                 );
                 *plane = proxy_geometry::next_plane(*centre, facet);
-                // Steps are far below 2^31 wherever a stone is sane; the sign is kept by the offset.
+                // Steps are far below 2^31 for any sane stone; the sign is kept by the offset.
                 let [x, y] = cell.steps.to_array().map(|step| u64::from(step.cast_unsigned()));
                 let facet = x << 33 | (y & 0xffff_ffff) << 1 | u64::from(cell.turned);
                 Hit { point: hit.point, normal, distance: hit.distance, facet: Some(facet) }
@@ -198,7 +199,7 @@ impl Place<'_> {
     }
 }
 
-/// The end of `gem_hit` of both recipes that meet triangles.
+/// The end of `gem_hit` in both recipes that intersect triangles.
 fn triangle_hit(
     mesh: &Mesh,
     indices: &[u32],

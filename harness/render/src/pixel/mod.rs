@@ -1,7 +1,9 @@
-//! The gem recipes' whole path of one pixel in Rust, from the mirrors: `wgsl/recipes/parts/gem_shading.wgsl` line by line.
+//! The gem recipes' whole computation of one pixel in Rust, from the mirrors:
+//! `wgsl/recipes/parts/gem_shading.wgsl` line by line.
 //!
-//! A picture of the GPU is compared with it pixel by pixel (`harness/cook/tests/suite/parity`); which facets a ray met is returned besides, for a
-//! difference is allowed only where rays part at a facet's edge.
+//! A GPU picture is compared with it pixel by pixel (`harness/cook/tests/suite/parity`). The facets
+//! that each ray met are also returned, because a difference is allowed only where rays part at a
+//! facet's edge.
 
 pub mod display;
 mod geometry;
@@ -22,21 +24,21 @@ use lapidary_plan::{Effect, Rung, Spectrum};
 use lapidary_refraction as refraction;
 use lapidary_scene::{Environment, Material};
 
-/// What happened to a ray at one facet, as far as it is discrete: which facet, and which channels left.
+/// The discrete part of what happened to a ray at one facet: which facet, and which channels left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// A number of the facet; `None` where the ray met none.
+    /// Number that identifies the facet; `None` if the ray met none.
     pub facet: Option<u64>,
-    /// A bit for each channel that is totally reflected.
+    /// One bit per channel, set if it is totally reflected.
     pub total: u8,
 }
 
-/// A pixel's radiance and what its rays met, wavelength by wavelength.
+/// A pixel's radiance and the events of its rays, wavelength by wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pixel {
     /// Linear radiance.
     pub radiance: Vec3,
-    /// One list for each ray: one ray, or one for each separate wavelength.
+    /// One list per ray: one ray, or one for each separate wavelength.
     pub rays: Vec<Vec<Event>>,
 }
 
@@ -49,7 +51,7 @@ pub struct Shading<'a> {
     limits_throughput: bool,
 }
 
-/// `GemRay` of the recipe, and what it met.
+/// `GemRay` of the recipe, and the events that the ray met.
 struct Ray {
     position: Vec3,
     direction: Vec3,
@@ -76,7 +78,7 @@ impl Ray {
     }
 }
 
-/// Where a ray goes that leaves through a facet, and what share of it does.
+/// Direction of a ray that leaves through a facet, and the share of light that does.
 struct Exit {
     direction: Vec3,
     share: f32,
@@ -91,7 +93,7 @@ fn exit(inside: Vec3, normal: Vec3, index: f32) -> Exit {
 }
 
 impl<'a> Shading<'a> {
-    /// The shading of `material` under `settings`.
+    /// Prepares the shading of `material` under `settings`.
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
         Self {
             material: GemMaterial::of(material, settings.rung, settings),
@@ -102,7 +104,7 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// Radiance that arrives from a direction.
+    /// Returns the radiance that arrives from a direction.
     pub fn environment(&self, direction: Vec3) -> Vec3 {
         let Environment::Map(map) = &self.settings.environment else {
             return environment::studio(direction);
@@ -126,7 +128,8 @@ impl<'a> Shading<'a> {
         self.settings.gem.distance_limit.is_some() && travelled > self.material.distance_limit
     }
 
-    /// Follows a ray to its next facet. Its callers stop where it ends; the recipe's loops go on, and change nothing more of such a ray.
+    /// Follows a ray to its next facet. The callers stop where it ends; the recipe's loops
+    /// continue, but no longer change such a ray.
     fn next(&self, ray: &mut Ray, place: &mut Place<'_>) -> Hit {
         let hit = place.hit(ray.position, ray.direction);
         ray.travelled += hit.distance;
@@ -253,7 +256,7 @@ impl<'a> Shading<'a> {
         Vec3::from_array(self.material.channel_indices.to_array().map(|index| fresnel::dielectric(cosine, index)))
     }
 
-    /// The radiance of a pixel whose middle shows `point` of `stone` to an eye at `eye`.
+    /// Returns the radiance of a pixel whose centre shows `point` of `stone` to an eye at `eye`.
     pub fn pixel(&self, stone: &Stone<'_>, point: SurfacePoint, eye: Vec3) -> Pixel {
         let entry = stone.entry(point);
         let transmits = self.settings.rung != Rung::Surface;

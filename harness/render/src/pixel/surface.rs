@@ -1,4 +1,4 @@
-//! Which point of a mesh a pixel shows.
+//! The point of a mesh that a pixel shows.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use lapidary_scene::{Mesh, Scene, clip_from_world};
@@ -6,13 +6,13 @@ use lapidary_scene::{Mesh, Scene, clip_from_world};
 /// A point of a mesh's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// Where.
+    /// Position of the point.
     pub position: Vec3,
-    /// On which triangle, by the mesh's own numbers.
+    /// Number of its triangle, in the mesh's own order.
     pub triangle: u32,
 }
 
-/// The eye of a picture: from its coordinates in pixels to rays.
+/// The eye of a picture: maps coordinates in pixels to rays.
 pub struct Viewer {
     clip_from_world: DMat4,
     world_from_clip: DMat4,
@@ -22,7 +22,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// The viewer of a picture of `scene`.
+    /// Creates the viewer of a picture of `scene`.
     pub fn new(scene: &Scene, width: u32, height: u32) -> Self {
         let matrix = clip_from_world(scene, width, height).as_dmat4();
         Self {
@@ -34,20 +34,23 @@ impl Viewer {
         }
     }
 
-    /// The direction from the eye through a point of the picture, in pixels from its upper left corner.
+    /// Returns the direction from the eye through a point of the picture, in pixels from its upper
+    /// left corner.
     fn direction(&self, x: f64, y: f64) -> DVec3 {
         let clip = DVec4::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 0.5, 1.0);
         let world = self.world_from_clip * clip;
         (world.truncate() / world.w - self.eye).normalize()
     }
 
-    /// Where a point of the world before the eye shows, in pixels from the picture's upper left corner.
+    /// Returns where a world point in front of the eye appears, in pixels from the picture's upper
+    /// left corner.
     pub fn place(&self, position: Vec3) -> DVec2 {
         let clip = self.clip_from_world.project_point3(position.as_dvec3());
         0.5 * DVec2::new((clip.x + 1.0) * self.width, (1.0 - clip.y) * self.height)
     }
 
-    /// The length in pixels of all edges of the fronts of `mesh`, those that another front hides included. A shared edge counts twice.
+    /// Returns the length in pixels of all edges of the front faces of `mesh`, including those
+    /// hidden by other front faces. A shared edge counts twice.
     pub fn edge_length(&self, mesh: &Mesh) -> f64 {
         let of_front = |corners: [Vec3; 3]| {
             let [a, b, c] = corners.map(|corner| corner.as_dvec3() - self.eye);
@@ -59,13 +62,15 @@ impl Viewer {
         mesh.triangles().map(of_front).sum()
     }
 
-    /// The front of `mesh` that is seen at a point of the picture, if any.
+    /// Returns the point of a front face of `mesh` that is seen at a point of the picture, or
+    /// `None`.
     pub fn see(&self, mesh: &Mesh, x: f64, y: f64) -> Option<SurfacePoint> {
         let direction = self.direction(x, y);
         let mut nearest: Option<(f64, u32)> = None;
         for (number, corners) in (0..).zip(mesh.triangles()) {
             let [a, b, c] = corners.map(|corner| corner.as_dvec3() - self.eye);
-            // Volumes of the tetrahedra that the ray spans with the edges: all of one sign inside the triangle, seen from its front.
+            // Volumes of the tetrahedra that the ray spans with the edges: all of one sign inside
+            // the triangle, seen from its front.
             let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| direction.dot(from.cross(to)));
             let volume: f64 = edges.iter().sum();
             if volume >= 0.0 || edges.iter().any(|&edge| edge > 0.0) {

@@ -1,9 +1,10 @@
-//! A frame summed up by names, for people and for tests that what a scene does not call for does not exist.
+//! A frame summarised by name, for people and for tests that nothing exists that a scene does not
+//! need.
 
 use crate::frame::{Bound, Draw, Frame, Pass, PipelineId, ResourceKind};
 use std::collections::HashMap;
 
-/// What a resource is.
+/// Kind of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// A buffer.
@@ -14,16 +15,16 @@ pub enum Kind {
     Sampler,
 }
 
-/// Resources of one name.
+/// The resources of one name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Resource {
-    /// Of an object `object/what`; what all share has no object before it.
+    /// Name: `object/what` for an object's resource, `what` alone for a shared one.
     pub name: String,
-    /// The object that it is made for; empty for what all share.
+    /// The object that it is made for; empty if all objects share it.
     pub object: String,
-    /// What it is.
+    /// Kind of the resource.
     pub kind: Kind,
-    /// The largest one's bytes, without what the driver adds.
+    /// Size of the largest one in bytes, driver overhead excluded.
     pub bytes: u64,
 }
 
@@ -32,47 +33,47 @@ pub struct Resource {
 pub struct Pipeline {
     /// See [`crate::frame::Pipeline::name`].
     pub name: String,
-    /// The recipe.
+    /// Name of the recipe.
     pub recipe: String,
-    /// Its entry points.
+    /// Entry points.
     pub entries: Vec<String>,
-    /// The values of its overrides.
+    /// Names and values of the overrides.
     pub overrides: Vec<(String, f64)>,
-    /// Group and number of what it reads and writes.
+    /// Group and binding numbers of the resources that it reads and writes.
     pub bindings: Vec<(u32, u32)>,
-    /// Instructions of its SPIR-V.
+    /// Number of SPIR-V instructions.
     pub instructions: usize,
 }
 
-/// Draws or dispatches of one pipeline with the same resources in one pass. What comes again, in a solver's turns or drawn in
-/// another tile, is counted where it came first.
+/// Draws or dispatches of one pipeline with the same resources in one pass. Repetitions, in a
+/// solver's iterations or in another tile, are counted at the first occurrence.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
-    /// The pass.
+    /// Name of the pass.
     pub pass: String,
-    /// The object that it is for, or nothing where it is for all.
+    /// The object that it is for; empty if it is for all objects.
     pub object: String,
-    /// [`Pipeline::name`].
+    /// The [`Pipeline::name`].
     pub pipeline: String,
-    /// [`Resource::name`]s of what is bound and drawn to.
+    /// The [`Resource::name`]s of the bound resources and the targets.
     pub resources: Vec<String>,
-    /// How often.
+    /// Number of repetitions.
     pub times: u32,
 }
 
-/// All of it, in order.
+/// The whole listing, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Listing {
-    /// Each name once.
+    /// The resources, each name once.
     pub resources: Vec<Resource>,
-    /// Each different one once.
+    /// The pipelines, each different one once.
     pub pipelines: Vec<Pipeline>,
-    /// What is run.
+    /// The draws and dispatches.
     pub steps: Vec<Step>,
 }
 
 impl Listing {
-    /// Of a frame.
+    /// Summarises a frame.
     #[must_use]
     pub fn of(frame: &Frame) -> Self {
         let pipelines = frame.pipelines.iter().map(|pipeline| Pipeline {
@@ -86,13 +87,13 @@ impl Listing {
         Self { resources: resources(frame), pipelines: pipelines.collect(), steps: steps(frame) }
     }
 
-    /// The resource of this name.
+    /// Returns the resource with this name.
     #[must_use]
     pub fn resource(&self, name: &str) -> Option<&Resource> {
         self.resources.iter().find(|resource| resource.name == name)
     }
 
-    /// The bytes of all resources.
+    /// Returns the size of all resources in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.resources.iter().map(|resource| resource.bytes).sum()
@@ -125,7 +126,7 @@ fn steps(frame: &Frame) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     let mut places: HashMap<Step, usize> = HashMap::new();
     let mut add = |step: Step, times: u32, is_drawn: bool| {
-        // A solver takes turns between two; what is drawn is drawn again in another tile.
+        // A solver alternates between two steps; a draw is repeated in another tile.
         let known = places.get(&step).copied().filter(|known| is_drawn || known + 2 >= steps.len());
         if let Some(known) = known {
             steps[known].times += times;

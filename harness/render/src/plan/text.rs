@@ -1,4 +1,4 @@
-//! A plan to be read.
+//! A plan as text.
 
 use super::{Kind, Pipeline, Plan, PlannedObject, Resource, Step};
 use lapidary_plan::{Decision, Decisions, Rung};
@@ -35,15 +35,15 @@ impl fmt::Display for Plan {
     }
 }
 
-/// `1 object`, `2 objects`.
+/// Formats a number with its noun: `1 object`, `2 objects`.
 fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
-/// Objects of one material that are drawn alike, together.
+/// Groups objects of one material that are drawn alike.
 fn alike(objects: &[PlannedObject]) -> Vec<Vec<&PlannedObject>> {
     let mut groups: Vec<Vec<&PlannedObject>> = Vec::new();
-    // Few are drawn otherwise than another, however many there are.
+    // There are few groups, however many objects there are.
     for object in objects {
         let same = |group: &&mut Vec<&PlannedObject>| {
             let Decisions { rung, effects, .. } = &group[0].decisions;
@@ -144,7 +144,8 @@ impl Plan {
             return Ok(());
         }
         writeln!(f, "\nresources: {}", bytes(self.listing.bytes()))?;
-        // What one object alone reads is its own, though it was made for all that might.
+        // A resource that only one object reads is listed under that object, even if it was made
+        // for all objects that might read it.
         let mut users: HashMap<&str, Option<&str>> = HashMap::new();
         for step in &self.listing.steps {
             for name in &step.resources {
@@ -181,7 +182,8 @@ impl Plan {
     }
 }
 
-/// Names with commas, in lines that begin alike; nothing where there are none.
+/// Writes names separated by commas, in lines with the same indentation; writes nothing if there
+/// are no names.
 fn list(f: &mut fmt::Formatter<'_>, lead: &str, names: impl Iterator<Item = String>) -> fmt::Result {
     let mut line = String::new();
     let mut start = lead.to_owned();
@@ -199,7 +201,7 @@ fn list(f: &mut fmt::Formatter<'_>, lead: &str, names: impl Iterator<Item = Stri
     if line.is_empty() { Ok(()) } else { writeln!(f, "{start}{line}") }
 }
 
-/// With the largest unit of which there is one: B, KiB, MiB.
+/// Formats a size in the largest unit that it reaches: B, KiB, MiB.
 fn bytes(bytes: u64) -> String {
     let [kibi, mebi] = [1024.0, 1024.0 * 1024.0];
     let value = bytes as f64;

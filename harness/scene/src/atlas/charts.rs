@@ -1,9 +1,10 @@
-//! Charts: connected triangles that lie side by side when seen along one axis.
+//! Charts: connected triangles that do not overlap when seen along one axis.
 //!
-//! They grow from seeds, all at once, with the triangle that faces its chart's axis best coming first, as in variational
-//! shape approximation (Cohen-Steiner, Alliez and Desbrun 2004). Between two growths each chart takes the mean normal of
-//! its triangles as its axis; where triangles are left over, a further chart starts. A chart takes no triangle that leans
-//! too far away and, in the last growths, none that would be drawn over another, so that it needs no mending later.
+//! Charts grow from seeds, all at once, in order of how well a triangle faces its chart's axis, as
+//! in variational shape approximation (Cohen-Steiner, Alliez and Desbrun 2004). Between two
+//! growths, each chart takes the mean normal of its triangles as its axis; if triangles are left
+//! over, another chart starts. A chart takes no triangle that leans too far away and, in the last
+//! growths, none that would overlap another, so no repair is needed later.
 
 use glam::{DVec2, DVec3};
 use std::cmp::Reverse;
@@ -14,20 +15,22 @@ use super::super::{Bounds, Mesh};
 
 mod halos;
 
-/// The least cosine between a triangle's normal and its chart's axis: that of 85°. What leans further is drawn so thin that
-/// texels say nothing of it, and at 90° turns over.
+/// Smallest cosine between a triangle's normal and its chart's axis: that of 85°. A triangle that
+/// leans further is drawn too thin for texels to represent, and at 90° it turns over.
 pub(super) const LEAST_COSINE: f64 = 0.087_155_742_747_658_17;
 
-/// Growths between two rounds of new charts; after more the axes hardly move.
+/// Number of growths between two rounds of new charts; with more the axes hardly move.
 const GROWTHS: usize = 4;
 
-/// Rounds in which charts start and all axes move; where more are needed, the axes stay.
+/// Number of rounds in which charts start and all axes move; in any further rounds the axes stay
+/// fixed.
 const ROUNDS: usize = 32;
 
-/// The most squares along a body's diagonal in which triangles are looked up: a bound on how many one triangle touches.
+/// Largest number of squares along a body's diagonal in which triangles are looked up: a bound on
+/// how many one triangle touches.
 const MOST_SQUARES: f64 = 512.0;
 
-/// A direction of view.
+/// A viewing direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
     toward_eye: DVec3,
@@ -41,23 +44,23 @@ impl Axis {
         Self { toward_eye, right, down: -up }
     }
 
-    /// Where a point is seen, to the right and down.
+    /// Projects a point to its place to the right and down.
     pub(super) fn draw(&self, point: DVec3) -> DVec2 {
         DVec2::new(point.dot(self.right), point.dot(self.down))
     }
 }
 
-/// Triangles of a mesh, by number, and the axis along which they are drawn.
+/// Triangles of a mesh, by number, and the axis along which they are projected.
 #[derive(Debug)]
 pub(super) struct Chart {
     pub(super) axis: Axis,
     pub(super) triangles: Vec<u32>,
-    /// Triangles of other charts that are drawn about it.
+    /// Triangles of other charts that are drawn around this one.
     pub(super) halo: Vec<u32>,
 }
 
 impl Chart {
-    /// Its triangles and those of its halo as they are drawn.
+    /// Returns the chart's triangles and those of its halo, as drawn.
     pub(super) fn drawn(&self, mesh: &Mesh) -> Vec<[DVec2; 3]> {
         let corner = |index: usize| self.axis.draw(mesh.positions[mesh.indices[index] as usize].as_dvec3());
         let triangle = |&number: &u32| [0, 1, 2].map(|k| corner(3 * number as usize + k));
@@ -65,23 +68,23 @@ impl Chart {
     }
 }
 
-/// Where a chart starts to grow: a triangle, and the axis along which the chart is drawn.
+/// Start of a chart: a triangle, and the axis along which the chart is projected.
 type Seed = (u32, DVec3);
 
-/// What growing needs to know of a mesh.
+/// Mesh data for growing charts.
 #[derive(Debug)]
 struct Surface {
-    /// Of each triangle, from the middle of the mesh.
+    /// Corners of each triangle, relative to the middle of the mesh.
     corners: Vec<[DVec3; 3]>,
-    /// Unit; zero for a triangle without area.
+    /// Unit normal of each triangle; zero for a triangle without area.
     normals: Vec<DVec3>,
     areas: Vec<f64>,
-    /// The vertices of each triangle, those at one position being one.
+    /// Vertices of each triangle; vertices at the same position count as one.
     vertices: Vec<[usize; 3]>,
     neighbours: Vec<Vec<u32>>,
-    /// For each triangle the connected body that it belongs to.
+    /// Number of the connected body that each triangle belongs to.
     bodies: Vec<u32>,
-    /// The side of the squares in which triangles are looked up.
+    /// Side of the squares in which triangles are looked up.
     square: f64,
 }
 
@@ -105,7 +108,7 @@ impl Surface {
         Self { corners, normals, areas, vertices, neighbours, bodies, square }
     }
 
-    /// Where to grow these triangles from once more: from the one that faces their mean normal best.
+    /// Returns a seed for growing these triangles again: the one that best faces their mean normal.
     fn seed(&self, triangles: &[u32]) -> Seed {
         let axis = self.mean_normal(triangles);
         let cosine = |triangle: u32| self.normals[triangle as usize].dot(axis);
@@ -119,14 +122,14 @@ impl Surface {
         weighted.sum::<DVec3>().normalize_or(DVec3::Y)
     }
 
-    /// Whether a triangle leans away from the axis no further than it may.
+    /// Whether a triangle leans away from the axis by no more than the limit.
     fn faces(&self, triangle: u32, axis: DVec3) -> bool {
         let normal = self.normals[triangle as usize];
         normal == DVec3::ZERO || normal.dot(axis) >= LEAST_COSINE
     }
 }
 
-/// For each triangle, by its vertices, those that share an edge with it.
+/// Returns, for each triangle given by its vertices, the triangles that share an edge with it.
 fn neighbours(triangles: &[[usize; 3]]) -> Vec<Vec<u32>> {
     let mut edges: Vec<([usize; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     for (corners, number) in triangles.iter().zip(0..) {
@@ -148,7 +151,8 @@ fn neighbours(triangles: &[[usize; 3]]) -> Vec<Vec<u32>> {
     neighbours
 }
 
-/// For each triangle that is `wanted` the number of the connected patch of such triangles; `u32::MAX` for the others.
+/// Returns, for each `wanted` triangle, the number of its connected patch of such triangles;
+/// `u32::MAX` for the others.
 fn patches(neighbours: &[Vec<u32>], wanted: impl Fn(u32) -> bool) -> Vec<u32> {
     let mut patch_of = vec![u32::MAX; neighbours.len()];
     let mut count = 0;
@@ -167,13 +171,13 @@ fn patches(neighbours: &[Vec<u32>], wanted: impl Fn(u32) -> bool) -> Vec<u32> {
     patch_of
 }
 
-/// A chart that takes no triangle which would be drawn over another.
+/// A chart that takes no triangle that would overlap another.
 #[derive(Debug)]
 struct Sheet {
     axis: Axis,
     triangles: Vec<u32>,
     drawn: Vec<[DVec2; 3]>,
-    /// The places in `drawn` of what touches each square.
+    /// Indices into `drawn` of the triangles that touch each square.
     squares: HashMap<[i32; 2], Vec<u32>>,
 }
 
@@ -182,7 +186,7 @@ impl Sheet {
         Self { axis: Axis::new(toward_eye), triangles: Vec::new(), drawn: Vec::new(), squares: HashMap::new() }
     }
 
-    /// Takes a triangle, unless it leans too far away or would be drawn over another.
+    /// Takes a triangle, unless it leans too far away or would overlap another.
     fn take(&mut self, surface: &Surface, triangle: u32) -> bool {
         if !surface.faces(triangle, self.axis.toward_eye) {
             return false;
@@ -204,8 +208,8 @@ impl Sheet {
     }
 }
 
-/// Whether the insides of two triangles have a point in common. Both are drawn clockwise with the second axis down. What
-/// touches an edge, but for the rounding of f64, is outside.
+/// Whether the interiors of two triangles have a point in common. Both are drawn clockwise with the
+/// second axis down. A triangle that only touches an edge, up to f64 rounding, does not overlap.
 fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
     let apart = |a: &[DVec2; 3], b: &[DVec2; 3]| {
         [(0, 1), (1, 2), (2, 0)].into_iter().any(|(k, l)| {
@@ -219,12 +223,13 @@ fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
     !apart(a, b) && !apart(b, a)
 }
 
-/// Cuts a mesh into charts; every triangle is in one, and in the halos of others up to `reach` away along the surface.
+/// Cuts a mesh into charts; every triangle is in one, and in the halos of others up to `reach` away
+/// along the surface.
 pub(super) fn charts(mesh: &Mesh, reach: f64) -> Vec<Chart> {
     let surface = Surface::of(mesh);
     let mut seeds: Vec<Seed> = Vec::new();
     let mut left_over = vec![true; surface.areas.len()];
-    // By angle alone, which is cheap, to know where the axes should be.
+    // By angle alone, which is cheap, to find the axes.
     for _ in 0..ROUNDS {
         if !left_over.contains(&true) {
             break;
@@ -236,7 +241,8 @@ pub(super) fn charts(mesh: &Mesh, reach: f64) -> Vec<Chart> {
             seeds = grown.iter().map(|triangles| surface.seed(triangles)).collect();
         }
     }
-    // This ends: the axes stay, and each round gives a chart of its own to a triangle that was left over.
+    // This terminates: the axes stay fixed, and each round gives its own chart to a triangle left
+    // over.
     loop {
         let mut sheets: Vec<Sheet> = seeds.iter().map(|&(_, axis)| Sheet::new(axis)).collect();
         let grown = grow(&surface, &seeds, |chart, triangle| sheets[chart].take(&surface, triangle));
@@ -248,7 +254,7 @@ pub(super) fn charts(mesh: &Mesh, reach: f64) -> Vec<Chart> {
     }
 }
 
-/// For each of `count` triangles whether it is in none of the charts.
+/// Returns, for each of `count` triangles, whether it is in none of the charts.
 fn in_none(charts: &[Vec<u32>], count: usize) -> Vec<bool> {
     let mut left_over = vec![true; count];
     charts.iter().flatten().for_each(|&triangle| left_over[triangle as usize] = false);
@@ -262,7 +268,8 @@ struct Patch {
     largest: u32,
 }
 
-/// The largest triangle of each patch that is at least half as large as its body's largest, with its own axis.
+/// Returns the largest triangle, with its own axis, of each patch that is at least half as large as
+/// its body's largest patch.
 fn further_seeds(surface: &Surface, left_over: &[bool]) -> Vec<Seed> {
     let patch_of = patches(&surface.neighbours, |triangle| left_over[triangle as usize]);
     let mut patches: BTreeMap<u32, Patch> = BTreeMap::new();
@@ -283,11 +290,11 @@ fn further_seeds(surface: &Surface, left_over: &[bool]) -> Vec<Seed> {
     large.map(|patch| surface.seed(&[patch.largest])).collect()
 }
 
-/// Grows a chart from each seed until none `takes` a further triangle.
+/// Grows a chart from each seed until none `takes` another triangle.
 fn grow(surface: &Surface, seeds: &[Seed], mut takes: impl FnMut(usize, u32) -> bool) -> Vec<Vec<u32>> {
     let mut charts = vec![Vec::new(); seeds.len()];
     let mut taken = vec![false; surface.areas.len()];
-    // Among equals the first. Numbers that are not negative are ordered as their bits are.
+    // Ties go to the first. Non-negative floats order like their bits.
     let lean = |triangle: u32, chart: usize| {
         let cosine = surface.normals[triangle as usize].dot(seeds[chart].1);
         (1.0 - cosine).max(0.0).to_bits()
@@ -309,7 +316,8 @@ fn grow(surface: &Surface, seeds: &[Seed], mut takes: impl FnMut(usize, u32) -> 
     charts
 }
 
-/// Joins charts with their neighbours, the smallest first, wherever both can be drawn along one axis.
+/// Joins charts with their neighbours, the smallest first, wherever both can be projected along one
+/// axis.
 fn joined(surface: &Surface, mut sheets: Vec<Sheet>) -> Vec<Sheet> {
     let mut chart_of = vec![0; surface.areas.len()];
     for (number, sheet) in sheets.iter().enumerate() {
@@ -337,11 +345,11 @@ fn joined(surface: &Surface, mut sheets: Vec<Sheet>) -> Vec<Sheet> {
     sheets
 }
 
-/// Both charts as one, if they can be.
+/// Returns both charts as one, or `None` if they cannot be joined.
 fn join(surface: &Surface, small: &Sheet, large: &Sheet) -> Option<Sheet> {
     let triangles: Vec<u32> = large.triangles.iter().chain(&small.triangles).copied().collect();
     let axis = surface.mean_normal(&triangles);
-    // Most fail by angle, which is sooner seen.
+    // Most fail by angle, which is quicker to check.
     let face = triangles.iter().all(|&triangle| surface.faces(triangle, axis));
     let mut sheet = Sheet::new(axis);
     (face && triangles.iter().all(|&triangle| sheet.take(surface, triangle))).then_some(sheet)

@@ -1,30 +1,34 @@
-//! Packs drawings' boxes into the unit square: each where it fits lowest, the largest first.
+//! Packs the boxes of drawings into the unit square, the largest first, each at the lowest free
+//! place.
 
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
 
-/// Cells along a side of the square, of which half a one stays empty at each border. A row of them is a `u128`.
+/// Number of cells along a side of the square, with half a cell left empty at each border. A row of
+/// cells is a `u128`.
 const CELLS: usize = 127;
 
-/// The least distance between two drawings, also where the texture repeats, as a share of the square's side: that of two
-/// cells with one between them, 8 texels of 1024.
+/// Smallest distance between two drawings, also across the borders if the texture repeats, as a
+/// fraction of the square's side: that between two cells with one between them, 8 texels of 1024.
 pub(super) const GUTTER: f64 = 1.0 / (CELLS + 1) as f64;
 
-/// The turns within a quarter that are tried for the smallest box.
+/// Number of rotations within a quarter turn that are tried for the smallest box.
 const TURNS: u32 = 24;
 
-/// The share of the square to fill at which the search for the scale starts: more than is ever reached.
+/// Filled fraction of the square at which the search for the scale starts: more than is ever
+/// reached.
 const FIRST_SHARE: f64 = 0.8;
-/// The scale's factor from one attempt to the next, until one succeeds; then this step is halved so often.
+/// Factor of the scale from one attempt to the next until one succeeds, and how often this step is
+/// then halved.
 const STEP: f64 = 0.92;
 const HALVINGS: usize = 3;
 
 /// Triangles in a plane.
 #[derive(Debug)]
 pub(super) struct Drawing {
-    /// At the turn at which their box is smallest.
+    /// Triangles, rotated so that their box is smallest.
     triangles: Vec<[DVec2; 3]>,
-    /// Cosine and sine of that turn.
+    /// Cosine and sine of that rotation.
     turn: DVec2,
     size: DVec2,
     area: f64,
@@ -45,28 +49,29 @@ impl Drawing {
     }
 }
 
-/// The corners of the box about turned triangles.
+/// Returns the lower and upper corner of the box around the rotated triangles.
 fn extent(triangles: &[[DVec2; 3]], turn: DVec2) -> (DVec2, DVec2) {
     let points = triangles.iter().flatten().map(|point| turn.rotate(*point));
     points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lower, upper), point| (lower.min(point), upper.max(point)))
 }
 
-/// Where a drawing goes.
+/// Where a drawing is placed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
-    /// The scale times cosine and sine of the turn.
+    /// The scale times the cosine and sine of the rotation.
     turn: DVec2,
     offset: DVec2,
 }
 
 impl Placement {
-    /// The texture coordinates of a point of the drawing.
+    /// Returns the texture coordinates of a point of the drawing.
     pub(super) fn apply(&self, point: DVec2) -> DVec2 {
         self.turn.rotate(point) + self.offset
     }
 }
 
-/// A place for each drawing, all at one scale; nothing if there are so many that they do not fit as single cells.
+/// Returns a place for each drawing, all at one scale, or `None` if there are so many that they do
+/// not fit even as single cells.
 pub(super) fn pack(drawings: &[Drawing]) -> Option<Vec<Placement>> {
     let area: f64 = drawings.iter().map(|drawing| drawing.area).sum();
     let longest = drawings.iter().map(|drawing| drawing.size.max_element()).fold(0.0, f64::max);
@@ -90,7 +95,7 @@ pub(super) fn pack(drawings: &[Drawing]) -> Option<Vec<Placement>> {
     packed
 }
 
-/// Places at this scale, in cells per unit of length.
+/// Returns placements at this scale, in cells per unit of length, or `None` if they do not fit.
 fn attempt(drawings: &[Drawing], order: &[usize], scale: f64) -> Option<Vec<Placement>> {
     let mut square = [0; CELLS];
     let mut placements = vec![Placement { turn: DVec2::X, offset: DVec2::ZERO }; drawings.len()];
@@ -111,7 +116,8 @@ fn attempt(drawings: &[Drawing], order: &[usize], scale: f64) -> Option<Vec<Plac
     Some(placements)
 }
 
-/// The cells of a drawing's box. Whole boxes are kept apart, not outlines alone: who blurs a chart knows it by its box.
+/// The cells of a drawing's box. Whole boxes are kept apart, not just outlines, because a blur
+/// knows a chart only by its box.
 #[derive(Clone, Copy, Debug)]
 struct Cells {
     width: usize,
@@ -119,13 +125,13 @@ struct Cells {
 }
 
 impl Cells {
-    /// Nothing if the box is larger than the square.
+    /// Returns `None` if the box is larger than the square.
     fn of(size: DVec2) -> Option<Self> {
         let cells = size.floor() + 1.0;
         (cells.max_element() <= CELLS as f64).then_some(Self { width: cells.x as usize, height: cells.y as usize })
     }
 
-    /// The lowest place, and of these the leftmost, that is free in the square.
+    /// Returns the lowest free place in the square, the leftmost if there are several.
     fn lowest(self, square: &[u128; CELLS]) -> Option<(usize, usize)> {
         (0..=CELLS - self.height).find_map(|y| {
             let taken = square[y..y + self.height].iter().fold(0, |all, row| all | row);
@@ -134,7 +140,7 @@ impl Cells {
         })
     }
 
-    /// Takes the cells at this place, and those about them.
+    /// Marks the cells at this place, and those around them, as taken.
     fn take(self, square: &mut [u128; CELLS], x: usize, y: usize) {
         let cells = ones(self.width) << x;
         let grown = cells | cells << 1 | cells >> 1;
@@ -143,7 +149,7 @@ impl Cells {
     }
 }
 
-/// The lowest `count` bits, at least one and at most all.
+/// Returns the lowest `count` bits, at least one and at most all.
 fn ones(count: usize) -> u128 {
     u128::MAX >> (128 - count)
 }

@@ -5,14 +5,15 @@ use glam::{DVec2, Vec2, Vec3};
 use super::*;
 use crate::{Averaging, Scene};
 
-/// Texels along a side of the square in which drawings are compared.
+/// Number of texels along a side of the square in which drawings are compared.
 const SIDE: usize = 1024;
 
 fn mesh_of(scene: &str) -> Mesh {
     Scene::named(scene).unwrap().objects.remove(0).mesh
 }
 
-/// A spiral staircase without steps, three turns of it: all of it faces up, and hides what is below.
+/// Builds three turns of a spiral staircase without steps: all of it faces up, and hides the turns
+/// below.
 fn spiral() -> Mesh {
     let mut positions = Vec::new();
     let mut indices = Vec::new();
@@ -29,7 +30,8 @@ fn spiral() -> Mesh {
     Mesh::with_shared_normals(positions, indices, Averaging::Angle)
 }
 
-/// The number of each triangle's chart: triangles with a point of the drawing in common are in one.
+/// Returns the number of each triangle's chart: triangles that share a point of the drawing are in
+/// one.
 fn chart_numbers(mesh: &Mesh) -> Vec<usize> {
     let mut first_at = HashMap::new();
     let points: Vec<usize> = mesh
@@ -57,7 +59,8 @@ fn corners_of<T: Copy>(list: &[T], triangle: &[u32]) -> [T; 3] {
     [0, 1, 2].map(|k| list[triangle[k] as usize])
 }
 
-/// For each texel the charts of the triangles that hold its middle. A middle on an edge is one side's alone.
+/// Returns, for each texel, the charts of the triangles that contain its centre. A centre on an
+/// edge belongs to one side only.
 fn drawn(mesh: &Mesh) -> Vec<Vec<usize>> {
     let mut texels = vec![Vec::new(); SIDE * SIDE];
     for (triangle, chart) in mesh.indices.chunks_exact(3).zip(chart_numbers(mesh)) {
@@ -83,7 +86,8 @@ fn drawn(mesh: &Mesh) -> Vec<Vec<usize>> {
     texels
 }
 
-/// Asserts all that [`unwrap`] promises, and gives the share of the square that is used, halos included.
+/// Asserts all guarantees of [`unwrap`], and returns the used fraction of the square, halos
+/// included.
 fn check(name: &str, mesh: &Mesh, halo: f32) -> f64 {
     let unwrapped = unwrap(mesh, halo);
     assert_eq!(unwrapped.triangle_count(), mesh.triangle_count());
@@ -103,12 +107,13 @@ fn check(name: &str, mesh: &Mesh, halo: f32) -> f64 {
     texels.iter().filter(|charts| !charts.is_empty()).count() as f64 / (SIDE * SIDE) as f64
 }
 
-/// With the halo's triangles as its own, after all others.
+/// Returns the mesh with the halo's triangles as its own, after all others.
 fn with_halo_drawn(mesh: &Mesh) -> Mesh {
     Mesh { indices: [&mesh.indices[..], &mesh.halo].concat(), halo: Vec::new(), ..mesh.clone() }
 }
 
-/// A triangle of a halo is a second copy of one in another chart, and no farther from the chart that it surrounds than it may be.
+/// Asserts that each triangle of a halo is a second copy of one in another chart, and no farther
+/// from the chart that it surrounds than allowed.
 fn check_halo(name: &str, mesh: &Mesh, halo: f32) {
     let numbers = chart_numbers(&with_halo_drawn(mesh));
     let (own, about) = numbers.split_at(mesh.triangle_count());
@@ -124,15 +129,16 @@ fn check_halo(name: &str, mesh: &Mesh, halo: f32) {
     }
     for (triangle, &chart) in mesh.halo.chunks_exact(3).zip(about) {
         assert!(charts_of[&parts(triangle)].iter().any(|&other| other != chart), "{name}: {triangle:?}");
-        // Along edges it is as far or farther; sums are rounded.
+        // The distance along edges is at least as large; sums are rounded.
         let nearest =
             |position: Vec3| corners[&chart].iter().map(|&p| p.distance(position)).fold(f32::INFINITY, f32::min);
         assert!(corners_of(&mesh.positions, triangle).into_iter().all(|p| nearest(p) <= halo * 1.00001), "{name}");
     }
 }
 
-/// Seen along an axis, a triangle keeps its length along one direction and loses some along the other: of its map into the
-/// square the larger singular value is the scale, and the smaller the scale times a cosine.
+/// Seen along an axis, a triangle keeps its length in one direction and is shortened in the other:
+/// the larger singular value of its map into the square is the scale, and the smaller one the scale
+/// times a cosine.
 fn check_scale(mesh: &Mesh) {
     let maps = mesh.indices.chunks_exact(3).map(|triangle| {
         let [a, b, c] = corners_of(&mesh.positions, triangle).map(Vec3::as_dvec3);
@@ -155,8 +161,8 @@ fn check_scale(mesh: &Mesh) {
     }
 }
 
-/// Any two texels less than 8 apart lie in a square of 8 by 8: none of these has two charts in it, not even across the
-/// borders of the texture.
+/// Any two texels less than 8 apart lie in a square of 8 by 8; none of these contains two charts,
+/// not even across the borders of the texture.
 fn check_gutters(name: &str, texels: &[Vec<usize>]) {
     const GAP: usize = 8;
     let numbers: Vec<Option<usize>> = texels.iter().map(|charts| charts.first().copied()).collect();
@@ -211,10 +217,10 @@ fn a_cube_has_a_chart_for_each_side_that_one_view_hides() {
     let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
     let cube = Mesh::with_shared_normals((0..8).map(corner).collect(), indices, Averaging::Angle);
-    // Along a diagonal three sides are seen at once.
+    // A view along a diagonal shows three sides at once.
     assert_eq!(charts::charts(&cube, 0.0).len(), 2);
     check("cube", &cube, 0.0);
-    // As a soup of triangles too: a position is one vertex.
+    // As a soup of triangles too: equal positions count as one vertex.
     let positions: Vec<Vec3> = cube.triangles().flatten().collect();
     let soup = Mesh::with_shared_normals(positions, (0..36).collect(), Averaging::Angle);
     assert_eq!(charts::charts(&soup, 0.0).len(), 2);
@@ -224,13 +230,13 @@ fn a_cube_has_a_chart_for_each_side_that_one_view_hides() {
 #[test]
 fn what_hides_itself_is_split() {
     let spiral = spiral();
-    // Three turns over one another, and no triangle that leans.
+    // Three turns on top of one another, and no triangle that leans.
     assert!(charts::charts(&spiral, 0.0).len() >= 3);
     check("spiral", &spiral, 0.0);
     check("spiral", &spiral, 0.5);
 }
 
-/// The share of a mesh's area that halos draw once more.
+/// Returns the fraction of a mesh's area that halos draw again.
 fn share_in_halos(mesh: &Mesh) -> f64 {
     let area = |mesh: &Mesh| mesh.volume_and_area().1;
     area(&with_halo_drawn(mesh)) / area(mesh) - 1.0
@@ -246,7 +252,7 @@ fn halos_grow_with_their_reach_and_cost_little_scale() {
     for part in [0.02, 0.05, 0.1, 0.2] {
         let used = check("bunny", &mesh, part * length);
         let with_halos = unwrap(&mesh, part * length);
-        // What is shown is the same, and stands first.
+        // The visible part is the same, and comes first.
         assert_eq!(with_halos.positions[..none.positions.len()], none.positions);
         assert_eq!((&with_halos.indices, with_halos.without_halo().positions), (&none.indices, none.positions.clone()));
         let scale = |mesh: &Mesh| {

@@ -1,14 +1,15 @@
 //! The materials of the built-in scenes.
 //!
-//! Where a crystal is uniaxial (corundum, quartz, beryl) its ordinary ray stands for both. Colours are chosen
-//! by eye, as what is left of white light after two girdle radii of stone: about one way down to the pavilion
-//! and up again.
+//! For a uniaxial crystal (corundum, quartz, beryl) the ordinary ray stands for both. Colours are
+//! chosen by eye, as the transmitted colour of white light after two girdle radii of stone: about
+//! one path down to the pavilion and up again.
 
 use glam::Vec3;
 
 use crate::{Dispersion, Material, Mineral};
 
-/// The way inside after which a coloured stone shows its colour, in girdle radii (half lengths of the step cut).
+/// Path length inside after which a coloured stone shows its colour, in girdle radii (half lengths
+/// of the step cut).
 const COLOR_DEPTH: f32 = 2.0;
 
 /// A vivid royal blue, linear RGB.
@@ -18,13 +19,15 @@ const PIGEON_BLOOD: Vec3 = Vec3::new(0.72, 0.018, 0.06);
 /// A vivid bluish green.
 const EMERALD_GREEN: Vec3 = Vec3::new(0.16, 0.72, 0.42);
 
-/// Refractive index of beryl's ordinary ray, in the middle of what emeralds have.
+/// Refractive index of beryl's ordinary ray, in the middle of the range for emeralds.
 const BERYL: f32 = 1.577;
-/// Abbe number of beryl. Schumann (Gemstones of the World, 2009) gives a dispersion of 0.009 to 0.013 between
-/// the C and F lines, and so 44 to 64 with the index above; this stands for 0.0101.
+/// Abbe number of beryl. Schumann (Gemstones of the World, 2009) gives a dispersion of 0.009 to
+/// 0.013 between the C and F lines, and so 44 to 64 with the index above; this corresponds to
+/// 0.0101.
 const BERYL_ABBE: f32 = 57.0;
 
-/// Refractive index of Schott's flint glass F2, the lead glass of chandeliers and of prisms for spectra.
+/// Refractive index of Schott's flint glass F2, the lead glass of chandeliers and of prisms for
+/// spectra.
 const FLINT_GLASS: f32 = 1.62004;
 /// Abbe number of F2.
 const FLINT_GLASS_ABBE: f32 = 36.37;
@@ -57,7 +60,7 @@ pub(super) fn flint_glass() -> Material {
     by_abbe("flint glass", FLINT_GLASS, FLINT_GLASS_ABBE)
 }
 
-/// Crown glass as though it bent all colours alike.
+/// Crown glass without dispersion.
 pub(super) fn clear_glass() -> Material {
     Material { name: "clear glass".to_owned(), dispersion: Dispersion::None, ..crown_glass() }
 }
@@ -68,7 +71,7 @@ pub(super) fn slate() -> Material {
     Material { name: "slate".to_owned(), base_color, roughness: 0.35, ..Material::standard() }
 }
 
-/// The same material in a stone whose girdle has this radius.
+/// Scales a material to a stone with this girdle radius.
 pub(super) fn sized(material: Material, radius: f32) -> Material {
     let [attenuation_distance, thickness] = [material.attenuation_distance, material.thickness].map(|l| radius * l);
     Material { attenuation_distance, thickness, ..material }
@@ -85,7 +88,7 @@ fn by_abbe(name: &str, ior: f32, abbe_number: f32) -> Material {
 }
 
 fn polished() -> Material {
-    // A girdle's radius: about as thick as the stone is, and all that matters is that it is no thin wall.
+    // One girdle radius: about as thick as the stone, and enough not to be a thin wall.
     Material { roughness: 0.0, transmission: 1.0, thickness: 1.0, ..Material::standard() }
 }
 

@@ -1,4 +1,5 @@
-//! Translucent stone with light from behind or from the side: the bunny, the dragon and the figure. Lengths are in millimetres.
+//! Translucent stone lit from behind or from the side: the bunny, the dragon and the figure.
+//! Lengths are in millimetres.
 
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -11,10 +12,11 @@ use lapidary_veins::VeinsPattern;
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
 
-/// What [`crate::figure::mesh`] makes, in a second or two.
+/// Stored output of [`crate::figure::mesh`], which takes a second or two.
 const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 
-/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): marble.
+/// Marble, from Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light
+/// Transport" (2001).
 pub(super) fn marble() -> Material {
     scattering(
         "marble",
@@ -28,16 +30,16 @@ pub(super) fn marble() -> Material {
 const VEINS: VeinsPattern =
     VeinsPattern { frequency: 0.1, width: 0.08, least: 0.5, greatest: 4.0, octaves: 3, seed: 7 };
 
-/// The Stanford bunny, 60 mm high, with parallel light from the left.
+/// Builds the Stanford bunny, 60 mm high, with parallel light from the left.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     let mesh = sized(stored(BUNNY)?, 60.0);
     Ok(stone(name, mesh, marble(), sun(Vec3::new(-1.0, 0.3, 0.0), 1.0), (80.0, 10.0)))
 }
 
-/// The Stanford dragon, 50 mm high and 71 mm long, with parallel light from behind.
+/// Builds the Stanford dragon, 50 mm high and 71 mm long, with parallel light from behind.
 pub(super) fn dragon(name: &str) -> Result<Scene, SceneError> {
     let unfolded = stored(DRAGON)?.without_folds();
-    // The folds' triangles had a part in the file's normals.
+    // The removed triangles contributed to the file's normals.
     let mesh = Mesh::with_shared_normals(unfolded.positions, unfolded.indices, Averaging::Angle);
     let mesh = sized(mesh, 50.0);
     let jade = jade();
@@ -46,12 +48,12 @@ pub(super) fn dragon(name: &str) -> Result<Scene, SceneError> {
     Ok(stone(name, mesh, jade, sun(Vec3::new(0.3, 0.5, -1.0), 2.0), (80.0, 15.0)))
 }
 
-/// The winged figure, 117 mm high, with parallel light from behind at the left.
+/// Builds the winged figure, 117 mm high, with parallel light from behind on the left.
 pub(super) fn figure(name: &str) -> Result<Scene, SceneError> {
     Ok(figure_of(name, stored(FIGURE)?))
 }
 
-/// The same with its mesh made anew.
+/// Builds the same scene with its mesh generated anew.
 pub(super) fn made_figure(name: &str) -> Scene {
     figure_of(name, crate::figure::mesh())
 }
@@ -60,20 +62,21 @@ fn figure_of(name: &str, mesh: Mesh) -> Scene {
     stone(name, mesh, marble(), sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), (82.0, 12.0))
 }
 
-/// One body in one light, seen from `polar` degrees off the vertical and `azimuth` degrees from +z towards +x.
+/// Builds a scene of one body and one light, seen from `polar` degrees off the vertical and
+/// `azimuth` degrees from +z towards +x.
 fn stone(name: &str, mesh: Mesh, material: Material, light: Light, (polar, azimuth): (f32, f32)) -> Scene {
     let object = Object { name: name.to_owned(), mesh, material };
     Scene { lights: vec![light], ..framed(name, vec![object], direction(polar, azimuth)) }
 }
 
-/// The bodies of a stored file as one mesh.
+/// Returns the bodies of a stored file as one mesh.
 fn stored(file: &[u8]) -> Result<Mesh, SceneError> {
     let mut all = Mesh::default();
     gltf::parse(file, None)?.objects.iter().for_each(|object| all.append(&object.mesh));
     Ok(all)
 }
 
-/// A directional light under which a white, facing surface has this radiance.
+/// Returns a directional light under which a white surface facing it has this radiance.
 pub(super) fn sun(toward: Vec3, radiance: f32) -> Light {
     Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(radiance * PI) }
 }

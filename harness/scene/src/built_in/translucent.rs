@@ -1,4 +1,5 @@
-//! Skin, wax and jade: spheres of falling radius, a torus and the bunny. Lengths are in millimetres.
+//! Skin, wax and jade: spheres of decreasing radius, a torus and the bunny. Lengths are in
+//! millimetres.
 
 use glam::{DQuat, DVec3, Vec3};
 use std::f32::consts::PI;
@@ -7,7 +8,8 @@ use super::{BUNNY, direction, framed};
 use crate::surfaces::{sphere, torus};
 use crate::{Bounds, Light, Material, Medium, Mesh, Object, Scene, SceneError, atlas, gltf};
 
-/// Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light Transport" (2001): skin1.
+/// Skin: skin1 of Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light
+/// Transport" (2001).
 fn skin() -> Material {
     scattering(
         "skin",
@@ -37,17 +39,18 @@ pub(super) fn jade() -> Material {
     )
 }
 
-/// `base_color` is what a half space of the medium reflects of diffuse light.
+/// Builds a scattering material; `base_color` is the diffuse reflectance of a half space of the
+/// medium.
 pub(super) fn scattering(name: &str, medium: Medium, base_color: Vec3, (ior, roughness): (f32, f32)) -> Material {
     Material { name: name.to_owned(), base_color, ior, roughness, medium: Some(medium), ..Material::standard() }
 }
 
-/// The radii of the spheres, and the gap between two.
+/// Radii of the spheres, and the gap between two.
 const RADII: [f64; 5] = [40.0, 24.0, 14.0, 8.0, 5.0];
 const GAP: f64 = 3.0;
 
-/// The material that a scene's name begins with. Its `sigma0` is the width that random walks through spheres of ten mean free paths
-/// give: docs/cdrf.md.
+/// Returns the material that a scene's name begins with. Its `sigma0` is the width that random
+/// walks through spheres of ten mean free paths give: docs/cdrf.md.
 pub(super) fn material(name: &str) -> Material {
     let (material, sigma0) = match name.split('_').next() {
         Some("skin") => (skin(), Vec3::new(5.8, 3.8, 2.3)),
@@ -57,9 +60,10 @@ pub(super) fn material(name: &str) -> Material {
     Material { sigma0: Some(sigma0), ..material }
 }
 
-/// The paper's picture: spheres of falling radius in a falling row, lit from the upper left.
+/// Builds the paper's picture: spheres of decreasing radius in a descending row, lit from the upper
+/// left.
 pub(super) fn spheres(name: &str) -> Scene {
-    // Along a line square to the light, so that none stands in another's shadow.
+    // Along a line perpendicular to the light, so that none shadows another.
     let line = DVec3::new(1.0, 1.0, 0.0).normalize();
     let mut along = 0.0;
     let objects = RADII.map(|radius| {
@@ -70,7 +74,7 @@ pub(super) fn spheres(name: &str) -> Scene {
     Scene { lights: vec![sun(Vec3::new(-1.0, 1.0, 0.35))], ..framed(name, objects.into(), direction(90.0, 0.0)) }
 }
 
-/// A ring, with a sun, a warm lamp near its inner side and a cool one behind.
+/// Builds a ring with a sun, a warm lamp near its inner side and a cool one behind.
 pub(super) fn ring(name: &str) -> Scene {
     let lights = vec![
         sun(Vec3::new(-0.7, 0.6, 0.2)),
@@ -81,11 +85,12 @@ pub(super) fn ring(name: &str) -> Scene {
     Scene { lights, ..framed(name, vec![object("ring", mesh, name)], direction(48.0, 0.0)) }
 }
 
-/// How far the halos of the bunny's charts reach, in standard deviations of its widest channel: hardly less than the taps do. Wider
-/// halos cost texels, but few: of 2 and of 3 standard deviations, 42 texels of skin's, which without halos has 51.
+/// Reach of the halos around the bunny's charts, in standard deviations of its widest channel:
+/// hardly less than that of the taps. Wider halos cost few texels: with halos of 2 and of 3
+/// standard deviations, skin's standard deviation spans 42 texels, against 51 without halos.
 const HALO: f32 = 3.0;
 
-/// The Stanford bunny, 60 mm high, in one light.
+/// Builds the Stanford bunny, 60 mm high, with one light.
 pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     let parsed = gltf::parse(BUNNY, None)?;
     let reach = HALO * material(name).sigma0.unwrap_or_default().max_element();
@@ -94,7 +99,7 @@ pub(super) fn bunny(name: &str) -> Result<Scene, SceneError> {
     Ok(Scene { lights: vec![sun(Vec3::new(-0.85, 0.45, 0.1))], ..framed(name, objects, direction(80.0, 10.0)) })
 }
 
-/// A directional light under which a white, facing surface has radiance 0.6.
+/// Returns a directional light under which a white surface facing it has radiance 0.6.
 fn sun(toward: Vec3) -> Light {
     Light::Directional { toward: toward.normalize(), irradiance: Vec3::splat(0.6 * PI) }
 }
@@ -103,7 +108,7 @@ fn object(name: &str, mesh: Mesh, scene: &str) -> Object {
     Object { name: name.to_owned(), mesh, material: material(scene) }
 }
 
-/// The mesh scaled to this height.
+/// Scales the mesh to this height.
 pub(super) fn sized(mut mesh: Mesh, height: f32) -> Mesh {
     let bounds = Bounds::of(mesh.positions.iter().copied());
     let scale = height / (bounds.max.y - bounds.min.y);

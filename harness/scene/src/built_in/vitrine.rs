@@ -1,4 +1,5 @@
-//! One scene with a body for each technique. Lengths are in millimetres; the top of the table is at 0.
+//! One scene with a body for each technique. Lengths are in millimetres; the top of the table is at
+//! 0.
 
 use glam::{DQuat, DVec3, Vec3};
 
@@ -9,24 +10,24 @@ use crate::{
     Averaging, Bounds, Camera, Dispersion, Light, Material, Mesh, Object, Scene, SceneError, candle, figure, gltf,
 };
 
-/// What [`made`] makes, in a second or two.
+/// Stored output of [`made`], which takes a second or two.
 const VITRINE: &[u8] = include_bytes!("../../../assets/vitrine.glb");
 
-/// Radii of the stones' girdles.
+/// Girdle radii of the stones.
 const DIAMOND: f32 = 17.0;
 const RUBY: f32 = 13.5;
-/// How many times as large as the built-in chain the chain is: a link is 18 mm wide.
+/// Scale of the chain relative to the built-in one: a link is 18 mm wide.
 const CHAIN: f32 = 18.0;
-/// Between the table and what stands on it, so that no two surfaces are one.
+/// Gap between the table and the bodies on it, so that no two surfaces coincide.
 const GAP: f64 = 0.02;
 
-/// With the meshes of the stored file.
+/// Builds the scene with the meshes of the stored file.
 pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
     let objects = gltf::parse(VITRINE, None)?.objects;
     Ok(scene(name, objects.into_iter().map(|object| object.mesh)))
 }
 
-/// With all meshes made anew.
+/// Builds the scene with all meshes generated anew.
 pub(super) fn made(name: &str) -> Result<Scene, SceneError> {
     Ok(scene(name, meshes()?))
 }
@@ -37,10 +38,10 @@ fn scene(name: &str, meshes: impl IntoIterator<Item = Mesh>) -> Scene {
     Scene { name: name.to_owned(), objects, lights: lights(), camera: camera(), lacking: Vec::new() }
 }
 
-/// Names and materials, in the order of [`meshes`].
+/// Returns names and materials, in the order of [`meshes`].
 fn bodies() -> [(&'static str, Material); 6] {
     let ruby = Material { dispersion: Dispersion::None, ..materials::ruby() };
-    // All but its rim is as thick as this.
+    // All but its rim is this thick.
     let wax = Material { thickness: 2.0 * candle::RADIUS as f32, ..translucent::material("wax") };
     [
         ("table", materials::slate()),
@@ -63,24 +64,25 @@ fn meshes() -> Result<[Mesh; 6], CutError> {
         standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
         standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
         standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
-        // Its uppermost link passes the picture's edge.
+        // Its uppermost link extends past the picture's edge.
         chain.placed(DQuat::IDENTITY, DVec3::new(62.0, 131.0, 6.0)),
     ])
 }
 
-/// About the vertical, in degrees from +z towards +x.
+/// Rotation about the vertical, in degrees from +z towards +x.
 fn turned(azimuth: f64) -> DQuat {
     DQuat::from_rotation_y(azimuth.to_radians())
 }
 
-/// A brilliant on one of its pavilion's main facets, as a loose stone lies, its table towards this azimuth.
+/// Rotation of a brilliant that rests on one of its pavilion's main facets, as a loose stone does,
+/// with its table facing this azimuth.
 fn lying(azimuth: f64) -> DQuat {
     // The first of these facets is the one towards +x.
     let leaning = DQuat::from_rotation_z(-BrilliantParameters::TOLKOWSKY.pavilion_degrees.to_radians());
     turned(azimuth - 90.0) * leaning
 }
 
-/// The mesh turned, and moved to this x and z with its lowest point just above the table.
+/// Returns the mesh rotated, and moved to this x and z with its lowest point just above the table.
 fn standing(mesh: &Mesh, rotation: DQuat, [x, z]: [f64; 2]) -> Mesh {
     let lowest = Bounds::of(mesh.placed(rotation, DVec3::ZERO).positions).min.y;
     mesh.placed(rotation, DVec3::new(x, GAP - f64::from(lowest), z))
@@ -91,7 +93,7 @@ fn lights() -> Vec<Light> {
     vec![stone::sun(Vec3::new(-0.8, 0.35, -0.7), 3.0), lamp]
 }
 
-/// For pictures of 4:3, and square ones.
+/// A camera that suits pictures of 4:3 and square ones.
 fn camera() -> Camera {
     Camera::upright(Vec3::new(15.3, 126.2, 349.5), Vec3::new(3.0, 49.5, 0.0), VERTICAL_FOV)
 }

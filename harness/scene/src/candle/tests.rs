@@ -20,12 +20,13 @@ fn the_candle_is_closed_smooth_and_right_side_out() {
         let [a, b, c]: [Vec2; 3] = [0, 1, 2].map(|k| mesh.uvs[triangle[k] as usize]);
         assert!((b - a).perp_dot(c - a) < 0.0);
     }
-    // A triangle's normal is off by about its half width over the radius of curvature.
+    // A triangle's normal is off by about its half width divided by the radius of curvature.
     println!("normals at most {:.1}° off their triangles", widest.to_degrees());
     assert!(widest.to_degrees() < 30.0);
 }
 
-/// By Pappus: 2π times the integral of r²/2 over the height, without runs and sag, which take and give.
+/// By Pappus: 2π times the integral of r²/2 over the height, without runs and sag, which add and
+/// remove wax.
 #[test]
 fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
     let mesh = mesh();
@@ -41,7 +42,7 @@ fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
     // Runs of some 25 by 5 by 1 mm add up to a few hundredths.
     assert!((1.0..1.05).contains(&(volume / expected)), "{volume}, {expected}");
     let bounds = Bounds::of(mesh.positions.iter().copied());
-    // What is left at the foot of the rim's sag: 1 mm by exp(-45 / 2.5).
+    // Remainder of the rim's sag at the foot: 1 mm by exp(-45 / 2.5).
     assert!(bounds.min.y.abs() < 2e-8 && (59.0..62.0).contains(&bounds.max.y), "{bounds:?}");
     assert!(bounds.max.with_y(0.0).max_element() < 17.5 && bounds.max.x > 15.0);
 }
@@ -50,8 +51,8 @@ fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
 fn the_outline_ends_on_the_axis_and_bends_evenly() {
     assert_eq!((outline(0.0).x, outline(1.0).x), (0.0, 0.0));
     assert_eq!(outline(1.0).y, 0.0);
-    // From both sides of each control point second derivatives, by the number of points, are the same, to third ones, of at most 8 times
-    // the way between two points, times 2h.
+    // On both sides of each control point the second derivatives with respect to the point number
+    // agree, up to third derivatives, of at most 8 times the distance between two points, times 2h.
     let (h, spans) = (1e-3, (OUTLINE.len() - 1) as f64);
     for k in 1..OUTLINE.len() - 1 {
         let at = |offset: f64| outline((k as f64 + offset * h) / spans);
@@ -69,10 +70,10 @@ fn wax_has_run_over_the_rim_and_gathered_in_drops() {
         assert!((1.25..1.35).contains(&middle) && drop > 1.4 * middle, "{middle} {drop}");
         assert!(out(run.end - 8.0) < 0.01);
         assert!(run.depth(run.azimuth + PI, run.end + 2.5) < 1e-12);
-        // All around there is one surface.
+        // The surface is continuous all around.
         assert!((run.depth(run.azimuth - 0.1, 40.0) - run.depth(run.azimuth - 0.1 + TAU, 40.0)).abs() < 1e-12);
     }
-    // The bowl is deeper than its rim on all sides.
+    // The bowl lies below its rim on all sides.
     for k in 0..32 {
         assert!(point(dvec2(f64::from(k) / 32.0, RIM)).y > point(dvec2(0.0, 0.0)).y + 6.0);
     }

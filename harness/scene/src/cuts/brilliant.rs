@@ -14,9 +14,11 @@ pub struct BrilliantParameters {
     pub crown_degrees: f64,
     /// Slope of the pavilion mains in degrees, above 0 and below 90.
     pub pavilion_degrees: f64,
-    /// How far a star facet reaches from the table towards the girdle, above 0 and below 1.
+    /// How far a star facet reaches from the table towards the girdle, as a fraction above 0 and
+    /// below 1.
     pub star: f64,
-    /// How far a lower half reaches from the girdle towards the culet, above 0 and below 1.
+    /// How far a lower half reaches from the girdle towards the culet, as a fraction above 0 and
+    /// below 1.
     pub lower_halves: f64,
     /// Half the girdle's thickness, above 0 and below 1.
     pub girdle: f64,
@@ -28,12 +30,12 @@ impl BrilliantParameters {
         Self { table: 0.53, crown_degrees: 34.5, pavilion_degrees: 40.75, star: 0.5, lower_halves: 0.77, girdle: 0.02 };
 }
 
-/// A round brilliant with a pointed culet: table, 8 stars, 8 bezels, 16 upper halves, 16 girdle
-/// facets, 16 lower halves, 8 pavilion mains; 73 facets in this order.
+/// Returns a round brilliant with a pointed culet: table, 8 stars, 8 bezels, 16 upper halves, 16
+/// girdle facets, 16 lower halves, 8 pavilion mains; 73 facets in this order.
 ///
 /// # Errors
-/// [`CutError::Parameter`] for a parameter outside its range; [`CutError::Facets`] where the
-/// parameters together make facets vanish.
+/// Returns [`CutError::Parameter`] for a parameter outside its range, and [`CutError::Facets`] if
+/// the parameters together make facets vanish.
 pub fn round_brilliant(parameters: &BrilliantParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("round brilliant");
     let &BrilliantParameters { table, crown_degrees, pavilion_degrees, star, lower_halves, girdle } = parameters;
@@ -44,14 +46,14 @@ pub fn round_brilliant(parameters: &BrilliantParameters) -> Result<Polyhedron, C
     check.fraction("lower_halves", lower_halves)?;
     check.fraction("girdle", girdle)?;
 
-    // Sixteen corners on the girdle, half of them above mains: the step between two is A.
+    // Sixteen corners on the girdle, half of them above mains; the step between two is A.
     let a = std::f64::consts::PI / 8.0;
     let point = |radius: f64, azimuth: f64, z: f64| (outward(azimuth) * radius).extend(z);
     let crown = crown_degrees.to_radians().tan();
     let pavilion = pavilion_degrees.to_radians().tan();
     let table_height = girdle + (1.0 - table) * crown;
     let star_radius = table * a.cos() + star * (1.0 - table * a.cos());
-    // Star and lower tips lie on the two bezels and the two mains beside them.
+    // The tips of stars and lower halves lie on the two adjacent bezels and mains.
     let star_height = girdle + (1.0 - star_radius * a.cos()) * crown;
     let lower_radius = 1.0 - lower_halves;
     let lower_height = -girdle - (1.0 - lower_radius * a.cos()) * pavilion;
@@ -95,7 +97,7 @@ pub fn round_brilliant(parameters: &BrilliantParameters) -> Result<Polyhedron, C
     check.solid(&planes, 73)
 }
 
-/// The plane through three points, facing away from the stone's centre at the origin.
+/// Returns the plane through three points, facing away from the stone's centre at the origin.
 fn facing_out(p: DVec3, q: DVec3, r: DVec3) -> Plane {
     let normal = (q - p).cross(r - p);
     let towards = if normal.dot(p) < 0.0 { -normal } else { normal };

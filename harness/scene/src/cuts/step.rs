@@ -10,22 +10,23 @@ use crate::polyhedron::{Plane, Polyhedron};
 /// One step: a ring of eight facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Slope of the four straight sides' facets against the girdle's plane, in degrees, above 0 and
+    /// Slope of the four straight sides' facets against the girdle plane, in degrees, above 0 and
     /// below 90.
     pub degrees: f64,
-    /// Its share of the way from the girdle inwards, above 0; the shares of a crown or a pavilion
-    /// are scaled to add up to the whole way.
+    /// Relative share of the inward distance from the girdle, above 0; the shares of a crown or a
+    /// pavilion are scaled to add up to the whole distance.
     pub share: f64,
 }
 
 /// The proportions of an emerald cut of half-length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepCutParameters {
-    /// Width of the outline over its length, above 0 and below 1.
+    /// Width of the outline divided by its length, above 0 and below 1.
     pub width: f64,
-    /// What the cut corner takes from each side, over half the width, above 0 and below 1.
+    /// Length that the cut corner removes from each side, divided by half the width, above 0 and
+    /// below 1.
     pub corner: f64,
-    /// Width of the table over the width of the outline, above 0 and below 1.
+    /// Width of the table divided by the width of the outline, above 0 and below 1.
     pub table: f64,
     /// Half the girdle's thickness, above 0 and below 1.
     pub girdle: f64,
@@ -36,8 +37,9 @@ pub struct StepCutParameters {
 }
 
 impl StepCutParameters {
-    /// An emerald of length to width 1.4, table 62 %, depth 67 % of the width. The last pavilion step
-    /// is steeper than beryl's critical angle of 39.4°, so light through the table returns.
+    /// An emerald with a length-to-width ratio of 1.4, table 62 %, depth 67 % of the width. The
+    /// last pavilion step is steeper than beryl's critical angle of 39.4°, so light through the
+    /// table returns.
     pub const EMERALD: Self = Self {
         width: 1.0 / 1.4,
         corner: 0.3,
@@ -53,16 +55,16 @@ const fn steps(steps: [(f64, f64); 3]) -> [Step; 3] {
     [Step { degrees: a, share: b }, Step { degrees: c, share: d }, Step { degrees: e, share: f }]
 }
 
-/// An emerald cut, its length along x: table, 24 crown facets from the girdle up, 8 girdle facets,
-/// 24 pavilion facets from the girdle down to a keel; 57 facets in this order.
+/// Returns an emerald cut with its length along x: table, 24 crown facets from the girdle up, 8
+/// girdle facets, 24 pavilion facets from the girdle down to a keel; 57 facets in this order.
 ///
 /// All facets of a step lie between two level octagons with parallel sides. The corner facets move
 /// inwards a little faster than the sides, so that they narrow to a point exactly at the ends of
 /// the keel.
 ///
 /// # Errors
-/// [`CutError::Parameter`] for a parameter outside its range, with steps counted from the girdle;
-/// [`CutError::Facets`] where the parameters together make facets vanish.
+/// Returns [`CutError::Parameter`] for a parameter outside its range, with steps counted from the
+/// girdle, and [`CutError::Facets`] if the parameters together make facets vanish.
 pub fn step_cut(parameters: &StepCutParameters) -> Result<Polyhedron, CutError> {
     let check = Checked("step cut");
     let &StepCutParameters { width, corner, table, girdle, crown, pavilion } = parameters;
@@ -100,7 +102,7 @@ fn check_steps(check: Checked, part: &'static str, steps: &[Step; 3]) -> Result<
 struct Side {
     outward: DVec2,
     distance: f64,
-    /// How far this side moves inwards while a straight side moves by 1.
+    /// Distance that this side moves inwards while a straight side moves by 1.
     pace: f64,
 }
 
@@ -126,8 +128,8 @@ impl Outline {
         Self { sides }
     }
 
-    /// The facets of a crown (`up` = 1) or pavilion (`up` = -1) that moves inwards by `depth` in all,
-    /// and the height at which it ends.
+    /// Returns the facets of a crown (`up` = 1) or pavilion (`up` = -1) that moves inwards by
+    /// `depth` in all, and the height at which it ends.
     fn ring(&self, steps: &[Step; 3], depth: f64, girdle: f64, up: f64) -> (Vec<Plane>, f64) {
         let shares: f64 = steps.iter().map(|step| step.share).sum();
         let (mut inset, mut height) = (0.0, girdle);

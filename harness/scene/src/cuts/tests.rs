@@ -4,7 +4,7 @@ fn counts(solid: &Polyhedron) -> (usize, usize, usize) {
     (solid.faces().len(), solid.vertices().len(), solid.edge_count())
 }
 
-/// The slope of a facet against the horizontal, in degrees.
+/// Returns the slope of a facet against the horizontal, in degrees.
 fn slope(plane: &Plane) -> f64 {
     plane.normal.z.abs().acos().to_degrees()
 }

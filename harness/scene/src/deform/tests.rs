@@ -5,7 +5,7 @@ use crate::surfaces::torus;
 use glam::{DQuat, dvec2};
 use lapidary_assay::extremum::larger;
 
-/// A ring that stands aslant, off the axis.
+/// Returns a tilted ring, off the axis.
 fn ring() -> Mesh {
     torus(20.0, 7.0, 160, 64).placed(DQuat::from_rotation_x(1.1), dvec3(6.0, 3.0, -4.0))
 }
@@ -21,7 +21,7 @@ fn a_twist_keeps_the_volume_and_turns_by_height() {
     let place = |point: glam::Vec3| dvec2(point.x.into(), point.z.into()) - axis;
     for (old, new) in ring.positions.iter().zip(&twisted.positions) {
         assert_eq!(old.y, new.y);
-        // From +z towards +x, as rotations about y turn.
+        // From +z towards +x, like rotations about y.
         let turned = DVec2::from_angle(-rate * (f64::from(old.y) - base)).rotate(place(*old));
         assert!(turned.distance(place(*new)) < 1e-5, "{turned} {}", place(*new));
     }
@@ -41,7 +41,7 @@ fn normals_of_a_twisted_body_are_its_own() {
         .collect();
     println!("by the inverse transpose off by {}, turned alone by {}", off(&twisted.normals), off(&turned));
     assert!(twisted.normals.iter().all(|normal| normal.is_normalized()));
-    // What the shared normals of facets 1.2 wide on a tube of radius 7 are off by.
+    // The error of shared normals of facets 1.2 wide on a tube of radius 7.
     assert!(off(&twisted.normals) < 0.03 && off(&turned) > 0.3);
 }
 
@@ -53,7 +53,7 @@ fn a_twist_comes_and_goes() {
         |a: &Mesh, b: &Mesh| a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
     assert!(apart(&at(0.0), &ring) < 1e-5 && apart(&at(0.5), &ring) < 1e-4 && apart(&at(1.0), &ring) < 1e-4);
     assert!(apart(&at(0.25), &ring) > 10.0 && apart(&at(0.25), &at(0.75)) > 10.0);
-    // A quarter at the top.
+    // A quarter turn at the top.
     let mut top =
         Mesh { positions: vec![glam::Vec3::new(3.0, 20.0, 0.0)], normals: vec![glam::Vec3::X], ..Mesh::default() };
     top = twisting(&top, dvec2(0.0, 0.0), [-20.0, 20.0], 0.25);

@@ -2,7 +2,7 @@ use image::{ImageBuffer, Rgb, Rgba};
 
 use super::*;
 
-/// A map with a different colour in each pixel.
+/// Returns a map with a different colour in each pixel.
 fn coloured(width: u32, height: u32) -> DynamicImage {
     DynamicImage::ImageRgb32F(ImageBuffer::from_fn(width, height, |x, y| Rgb([x as f32, y as f32, 0.5])))
 }
@@ -76,7 +76,7 @@ fn negative_parts_count_as_nothing_and_are_counted() {
     assert_eq!(EnvironmentMap::decode(&bytes, Path::new("sky.exr")).unwrap().1, Clamped::default());
 }
 
-/// A Radiance picture of 8 x 2 pixels of (1, .5, .25), under header lines of its own.
+/// Returns a Radiance picture of 8 x 2 pixels of (1, .5, .25), with the given header lines.
 fn radiance_picture(first: &str, lines: &str) -> Vec<u8> {
     let mut bytes = format!("{first}\n{lines}FORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n").into_bytes();
     // Without run lengths: mantissas over 256, times 2^(129 - 128).
@@ -130,7 +130,7 @@ fn truncated_and_changed_files_are_errors_or_images() {
             for value in [0, 0xff, good[place].wrapping_add(1)] {
                 let mut bytes = good.clone();
                 bytes[place] = value;
-                // What matters is that it returns.
+                // The test is only that it returns.
                 let _ = decode(&bytes);
             }
         }

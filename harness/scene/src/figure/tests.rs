@@ -12,11 +12,12 @@ fn the_figure_is_one_closed_body_without_slivers() {
     assert!((10_000..15_000).contains(&mesh.triangle_count()));
 }
 
-/// Each a place within the part and one in the open air beside it.
+/// Tests points within each part and in the open air beside it.
 #[test]
 fn arms_wings_and_wreath_are_free_of_the_body() {
     let inside = |x: f64, y: f64, z: f64| field(dvec3(x, y, z)) < 0.0;
-    // Between the arm on the hip and the waist, through the wreath, between two feathers, between raised arm and head.
+    // Between the arm on the hip and the waist, through the wreath, between two feathers, between
+    // the raised arm and the head.
     for (x, y, z) in [(12.0, 70.0, 0.0), (-15.0, 110.5, 6.4), (-13.0, 97.0, 5.0)] {
         assert!(!inside(x, y, z), "{x} {y} {z}");
     }
@@ -27,7 +28,7 @@ fn arms_wings_and_wreath_are_free_of_the_body() {
     }
 }
 
-/// The length of the way inside along z.
+/// The path length inside along z.
 #[test]
 fn wings_are_thin_and_the_robe_is_not() {
     let depth = |x: f64, y: f64| {

@@ -5,17 +5,18 @@ use serde_json::{Value, json};
 
 use crate::Light;
 
-/// The extension's name.
+/// Name of the extension.
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";
 
-/// The light, still without its place.
+/// JSON of a light, without its position.
 pub(super) fn light(light: &Light) -> Value {
     let (kind, radiometric) = match *light {
         Light::Directional { irradiance, .. } => ("directional", irradiance),
         Light::Point { intensity, .. } => ("point", intensity),
         Light::Spot { intensity, .. } => ("spot", intensity),
     };
-    // glTF's colours lie from 0 to 1. In f64, so that the product of the two is the f32 that it was.
+    // glTF's colours lie between 0 and 1. Computed in f64, so that the product of colour and
+    // intensity gives back the original f32.
     let radiometric = radiometric.as_dvec3();
     let intensity = radiometric.max_element();
     let color = if intensity > 0.0 { radiometric / intensity } else { DVec3::ONE };
@@ -26,7 +27,7 @@ pub(super) fn light(light: &Light) -> Value {
     json
 }
 
-/// The node that places light `number`.
+/// JSON of the node that places light `number`.
 pub(super) fn node(light: &Light, number: usize) -> Value {
     let mut node = json!({"name": format!("light {number}"), "extensions": {EXTENSION: {"light": number}}});
     match *light {
@@ -37,8 +38,8 @@ pub(super) fn node(light: &Light, number: usize) -> Value {
     node
 }
 
-/// The matrix of a node at a place that shines along its -z, away from `backward`. It holds that direction to the last bit, which a rotation
-/// would not.
+/// Matrix of a node at `place` whose -z axis points away from `backward`. Unlike a rotation, it
+/// keeps that direction to the last bit.
 fn matrix(backward: Vec3, place: Vec3) -> Value {
     let right = backward.any_orthonormal_vector();
     let columns = [right, backward.cross(right), backward, place];

@@ -1,4 +1,4 @@
-//! A material as glTF.
+//! Materials as glTF.
 
 use glam::Vec3;
 use lapidary_veins::VeinsPattern;
@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::{Density, Dispersion, Material};
 
-/// The material, with the extensions that it needs.
+/// JSON of a material, with the extensions that it needs.
 pub(super) fn material(material: &Material) -> Value {
     let mut extensions = json!({"KHR_materials_ior": {"ior": material.ior}});
     if material.transmission > 0.0 {
@@ -19,7 +19,7 @@ pub(super) fn material(material: &Material) -> Value {
             "diffuseTransmissionColorFactor": color.to_array(),
         });
     }
-    // JSON has no infinity: what is left out is glTF's default, which is that for the distance.
+    // JSON has no infinity, so an infinite distance is omitted: that is glTF's default.
     let mut volume = Map::new();
     if material.thickness > 0.0 {
         volume.insert("thicknessFactor".to_owned(), json!(material.thickness));

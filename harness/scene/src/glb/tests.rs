@@ -49,7 +49,7 @@ fn the_container_is_aligned_and_complete() {
     assert!(binary.len() - length < 4);
 }
 
-/// The JSON of a scene as it is written.
+/// JSON of a scene as written.
 fn json_of(scene: &Scene) -> Value {
     serde_json::from_slice(chunk(&write(scene).unwrap(), 12).1).unwrap()
 }
@@ -208,7 +208,7 @@ fn every_kind_of_light_survives_writing_and_loading() {
     assert_eq!(again.lights, scene.lights);
     assert_eq!(again.objects, scene.objects);
 
-    // Other readers take colours from 0 to 1, and a rotation from the matrix.
+    // Other readers expect colours from 0 to 1, and derive a rotation from the matrix.
     let json = json_of(&scene);
     for light in json["extensions"]["KHR_lights_punctual"]["lights"].as_array().unwrap() {
         let color = light["color"].as_array().unwrap().iter().map(|part| part.as_f64().unwrap());

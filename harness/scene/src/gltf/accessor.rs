@@ -1,4 +1,4 @@
-//! Checked reading of accessors.
+//! Bounds-checked reading of accessors.
 
 use ::gltf::json::Root;
 use ::gltf::json::accessor::{ComponentType, Type};
@@ -8,7 +8,7 @@ use super::buffers::Buffers;
 use super::error::{GltfError, item};
 use super::requirement::{DRACO, MESHOPT, QUANTIZATION};
 
-/// The elements of an accessor, known to lie within their buffer.
+/// Elements of an accessor, verified to lie within their buffer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Elements<'a> {
     bytes: &'a [u8],
@@ -18,7 +18,7 @@ pub(super) struct Elements<'a> {
     component: ComponentType,
 }
 
-/// What an accessor must hold.
+/// Types that an accessor may have for one use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     type_: Type,
@@ -30,14 +30,14 @@ pub(super) struct Kind {
 pub(super) const VECTORS: Kind =
     Kind { type_: Type::Vec3, components: &[ComponentType::F32], description: "VEC3 of float" };
 
-/// Texture coordinates. Of whole numbers, the largest stands for 1.
+/// Texture coordinates. Integers are normalised: the largest represents 1.
 pub(super) const TEXTURE_COORDINATES: Kind = Kind {
     type_: Type::Vec2,
     components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
     description: "VEC2 of float, or of normalised unsigned byte or short,",
 };
 
-/// Rotations of instances. Of whole numbers, the largest stands for 1.
+/// Rotations of instances. Integers are normalised: the largest represents 1.
 pub(super) const ROTATIONS: Kind = Kind {
     type_: Type::Vec4,
     components: &[ComponentType::F32, ComponentType::I8, ComponentType::I16],
@@ -52,8 +52,8 @@ pub(super) const INDICES: Kind = Kind {
 };
 
 impl<'a> Elements<'a> {
-    /// The elements of accessor `index`, which `user` refers to. All lengths and offsets are compared
-    /// in 64 bits, and no memory is taken.
+    /// Returns the elements of accessor `index`, which `user` refers to. All lengths and offsets
+    /// are compared in 64 bits, and no memory is allocated.
     pub(super) fn of(
         root: &Root,
         buffers: &'a Buffers<'_>,
@@ -71,7 +71,7 @@ impl<'a> Elements<'a> {
                 return Err(wrong("its componentType is not one of glTF's".to_owned()));
             }
         };
-        // What stands for a fraction must say so.
+        // Integers that represent fractions must be marked as normalised.
         let stands_for_fraction = kind.type_ != Type::Scalar && component != ComponentType::F32;
         let is_kind = accessor.type_ == Checked::Valid(kind.type_) && kind.components.contains(&component);
         if !is_kind || (stands_for_fraction && !accessor.normalized) {
@@ -126,7 +126,7 @@ impl<'a> Elements<'a> {
         }
         let count = accessor.count.0;
         let start = accessor.byte_offset.map_or(0, |offset| offset.0);
-        // The last element need not be followed by the rest of its stride.
+        // The last element may end before its full stride.
         let length = count.checked_sub(1).and_then(|steps| steps.checked_mul(stride as u64)?.checked_add(size as u64));
         let bytes = length.and_then(|length| range(view_bytes, start, length));
         let (Some(bytes), Ok(count)) = (bytes, usize::try_from(count)) else {
@@ -139,12 +139,12 @@ impl<'a> Elements<'a> {
         Ok(Self { bytes, stride, size, count, component })
     }
 
-    /// The number of elements, at least one.
+    /// Number of elements, at least one.
     pub(super) fn count(&self) -> usize {
         self.count
     }
 
-    /// The elements as vectors. Meant for [`VECTORS`].
+    /// Iterates over the elements as vectors. Intended for [`VECTORS`].
     pub(super) fn vectors(self) -> impl Iterator<Item = [f32; 3]> + 'a {
         self.elements().map(|bytes| {
             let mut components = bytes.chunks_exact(4).map(little_endian).map(f32::from_bits);
@@ -152,7 +152,7 @@ impl<'a> Elements<'a> {
         })
     }
 
-    /// The elements as pairs. Meant for [`TEXTURE_COORDINATES`].
+    /// Iterates over the elements as pairs. Intended for [`TEXTURE_COORDINATES`].
     pub(super) fn pairs(self) -> impl Iterator<Item = [f32; 2]> + 'a {
         let component = self.component;
         let number = move |bytes: &[u8]| match component {
@@ -166,10 +166,10 @@ impl<'a> Elements<'a> {
         })
     }
 
-    /// The elements as quaternions, not yet of unit length. Meant for [`ROTATIONS`].
+    /// Iterates over the elements as quaternions, not yet normalised. Intended for [`ROTATIONS`].
     pub(super) fn quaternions(self) -> impl Iterator<Item = [f32; 4]> + 'a {
         let component = self.component;
-        // glTF lets the number below -1 stand for -1.
+        // In glTF the lowest integer, which would map below -1, represents -1.
         let number = move |bytes: &[u8]| match component {
             ComponentType::I8 => (f32::from(little_endian(bytes) as i8) / 127.0).max(-1.0),
             ComponentType::I16 => (f32::from(little_endian(bytes) as i16) / 32767.0).max(-1.0),
@@ -181,7 +181,7 @@ impl<'a> Elements<'a> {
         })
     }
 
-    /// The elements as unsigned numbers. Meant for [`INDICES`].
+    /// Iterates over the elements as unsigned integers. Intended for [`INDICES`].
     pub(super) fn indices(self) -> impl Iterator<Item = u32> + 'a {
         self.elements().map(little_endian)
     }
@@ -192,12 +192,12 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// A number of up to four bytes, which need not be aligned.
+/// Decodes an integer of up to four bytes, which need not be aligned.
 fn little_endian(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
-/// `length` bytes from `start`, if there are so many.
+/// Returns `length` bytes from `start`, or `None` if there are fewer.
 fn range(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = usize::try_from(start.checked_add(length)?).ok()?;
     bytes.get(usize::try_from(start).ok()?..end)

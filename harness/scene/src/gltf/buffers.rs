@@ -1,4 +1,4 @@
-//! The bytes of a file's buffers: its binary chunk, base64 in its JSON, or files beside it.
+//! Contents of a file's buffers: the binary chunk, base64 in the JSON, or external files.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -12,13 +12,13 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use super::MAX_FILE_BYTES;
 use super::error::{GltfError, excerpt};
 
-/// The bytes of all buffers, each exactly as long as the file says.
+/// Contents of all buffers, each exactly as long as the file states.
 #[derive(Debug)]
 pub(super) struct Buffers<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
 }
 
-/// Writers differ in whether they pad base64, and either way it is unambiguous.
+/// Some writers pad base64 and some do not; both forms are unambiguous.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
@@ -46,7 +46,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// The bytes of one buffer.
+/// Returns the contents of one buffer.
 fn bytes_of<'a>(
     index: usize,
     buffer: &Buffer,
@@ -54,7 +54,7 @@ fn bytes_of<'a>(
     base: Option<&Path>,
 ) -> Result<Cow<'a, [u8]>, GltfError> {
     let wrong = |problem: String| GltfError::part(format!("buffer {index}"), problem);
-    // The bytes that `load` has bounded; on a 32-bit machine a GiB still fits.
+    // `load` has bounded the length; a GiB fits in a usize even on a 32-bit machine.
     let length = buffer.byte_length.0 as usize;
     let mut bytes = match (&buffer.uri, binary) {
         (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
@@ -81,7 +81,7 @@ fn bytes_of<'a>(
     Ok(bytes)
 }
 
-/// The data of a `data:` URI after its scheme.
+/// Decodes a `data:` URI, given the part after its scheme.
 fn decode(data: &str) -> Result<Vec<u8>, String> {
     let (kind, text) = data.split_once(',').ok_or("its data: URI has no comma; export it again")?;
     if !kind.ends_with(";base64") {
@@ -91,13 +91,13 @@ fn decode(data: &str) -> Result<Vec<u8>, String> {
     decoded.map_err(|error| format!("its base64 is damaged: {error}; export it again"))
 }
 
-/// The file that a relative URI names.
+/// Path of the file that a relative URI refers to.
 fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
     let shown = excerpt(uri);
     let name = percent_decoded(uri).ok_or_else(|| format!("its uri {shown:?} is not valid; rename the file"))?;
     let scheme = name.split_once(':').map_or("", |(scheme, _)| scheme);
     let absolute = name.starts_with(['/', '\\']) || Path::new(&name).is_absolute();
-    // A colon in a later part of a path is part of a file's name.
+    // A colon in a later path segment is part of a file name.
     if absolute || (!scheme.is_empty() && !scheme.contains('/')) {
         return Err(format!("its uri {shown:?} is not a relative path; put the file beside the .gltf"));
     }
@@ -109,16 +109,16 @@ fn resolve(uri: &str, base: Option<&Path>) -> Result<PathBuf, String> {
     Ok(base.join(name))
 }
 
-/// Whether a file that exists lies in the folder, also when links are followed.
+/// Checks that a file, if it exists, lies in the folder, with symbolic links resolved.
 fn inside(file: &Path, base: Option<&Path>) -> Result<(), String> {
-    // The parent of a bare name.
+    // The parent of a bare file name is empty.
     let base = base.filter(|base| !base.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (file.canonicalize(), base.canonicalize()) {
         (Ok(file), Ok(base)) if !file.starts_with(&base) => {
             let shown = excerpt(&file.display().to_string());
             Err(format!("its uri leads by a link to {shown:?}, out of the file's folder; put the file itself there"))
         }
-        // What does not exist cannot be read, which is said where it is tried.
+        // A missing file is reported when it is opened.
         _ => Ok(()),
     }
 }
@@ -139,7 +139,7 @@ fn percent_decoded(uri: &str) -> Option<String> {
     String::from_utf8(bytes).ok().filter(|name| !name.contains('\0'))
 }
 
-/// All bytes of the glTF file at `path`.
+/// Reads all bytes of the glTF file at `path`.
 pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, GltfError> {
     let too_large = |bytes| GltfError::TooLarge { what: "the file".to_owned(), bytes, limit };
     let bytes = read_up_to(path, "the file".to_owned(), limit.saturating_add(1))?;
@@ -147,16 +147,16 @@ pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, GltfError> {
     if length > limit { Err(too_large(length)) } else { Ok(bytes) }
 }
 
-/// At most `length` bytes of a buffer's file.
+/// Reads at most `length` bytes of a buffer's file.
 fn read_named(path: &Path, buffer: &str, length: u64) -> Result<Vec<u8>, GltfError> {
     let what = format!("{buffer}'s file {:?}", path.display().to_string());
     read_up_to(path, what, length)
 }
 
-/// Devices and pipes, which may never end, are refused.
+/// Refuses devices and pipes, which may never end.
 fn read_up_to(path: &Path, what: String, limit: u64) -> Result<Vec<u8>, GltfError> {
     let unreadable = |reason: String| GltfError::Unreadable { what: what.clone(), reason };
-    // Asked before the file is opened, because opening a pipe waits for its other end.
+    // Checked before the file is opened, because opening a pipe waits for the other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
         return Err(unreadable("it is not a regular file".to_owned()));

@@ -1,4 +1,4 @@
-//! The camera that a file brings.
+//! Camera of a file.
 
 use ::gltf::json::Root;
 use glam::{DMat4, DVec3};
@@ -8,7 +8,7 @@ use super::nodes::ShownNode;
 use super::{MAX_COORDINATE, vertices};
 use crate::{Bounds, Camera, Object};
 
-/// The first perspective camera among the shown nodes, if there is one.
+/// Returns the first perspective camera among the visible nodes, or `None`.
 pub(super) fn first_perspective(
     root: &Root,
     nodes: &[ShownNode<'_>],
@@ -41,7 +41,7 @@ pub(super) fn first_perspective(
     Ok(None)
 }
 
-/// A glTF camera looks along its node's -z with +y up; a scale of its node says nothing.
+/// A glTF camera looks along its node's -z with +y up; the scale of its node has no effect.
 fn place(world: DMat4, vertical_fov: f32, bounds: &Bounds) -> Option<Camera> {
     let eye = world.w_axis.truncate();
     let forward = (-world.z_axis.truncate()).try_normalize()?;
@@ -51,8 +51,9 @@ fn place(world: DMat4, vertical_fov: f32, bounds: &Bounds) -> Option<Camera> {
     if !eye.to_array().into_iter().all(in_reach) {
         return None;
     }
-    // glTF has no target: the point of the line of sight beside the scene's middle is one to turn
-    // about. Behind the camera, or too near to keep the direction in f32, the scene's size serves.
+    // glTF has no target: the point on the line of sight closest to the scene's centre is a
+    // suitable pivot. If that point is behind the camera, or too close to keep the direction in
+    // f32, the scene's size is used as the distance.
     let radius = f64::from(bounds.radius());
     let ahead = (bounds.centre().as_dvec3() - eye).dot(forward);
     let floor = (0.01 * radius).max(1e-3 * eye.length()).max(1e-6);

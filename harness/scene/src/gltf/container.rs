@@ -2,21 +2,21 @@
 
 use super::GltfError;
 
-/// The parts of a file.
+/// Parts of a file.
 #[derive(Debug)]
 pub(super) struct Container<'a> {
     pub(super) json: &'a [u8],
-    /// The binary chunk of a .glb, if it has one.
+    /// Binary chunk; `None` for a .gltf or a .glb without one.
     pub(super) binary: Option<&'a [u8]>,
 }
 
-/// Splits a .glb, or takes all of a .gltf as JSON.
+/// Splits a .glb into its chunks; a .gltf is JSON as a whole.
 ///
-/// Written out here because the gltf crate subtracts the header's size from the stated length before
-/// it compares them, which overflows on lengths below 12.
+/// Implemented here because the gltf crate subtracts the header's size from the stated length
+/// before it compares them, which overflows for lengths below 12.
 pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
     if !bytes.starts_with(b"glTF") {
-        // A byte-order mark, which editors on Windows put before UTF-8.
+        // Byte-order mark, which editors on Windows put before UTF-8.
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
         return match first {
@@ -38,14 +38,14 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, GltfError> {
     if rest == bytes.len() {
         return Ok(Container { json, binary: None });
     }
-    // A first chunk of an unknown kind after the JSON is skipped by rule, and with it the binary one,
-    // which must come second.
+    // If the first chunk after the JSON is of an unknown kind, the specification says to skip it.
+    // The file then has no binary chunk, since that must come second.
     let (kind, data, _) = chunk(bytes, rest)?;
     let binary = (kind == b"BIN\0").then_some(data);
     Ok(Container { json, binary })
 }
 
-/// The kind and the data of the chunk at `at`, and where the next one starts.
+/// Returns the kind and the data of the chunk at `at`, and the start of the next one.
 fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), GltfError> {
     let length = word(bytes, at, "a chunk")? as usize;
     let start = at + 8;

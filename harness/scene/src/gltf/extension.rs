@@ -1,24 +1,24 @@
-//! Extensions that the gltf crate leaves as JSON, read with messages that name the member.
+//! Extensions that the gltf crate leaves as JSON, read with error messages that name the member.
 
 use glam::Vec3;
 use serde_json::{Map, Value};
 
-/// The members of an object.
+/// Members of a JSON object.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extension<'a> {
-    /// Nothing where the file does not have the extension.
+    /// `None` if the file does not have the extension.
     members: Option<&'a Map<String, Value>>,
 }
 
 impl<'a> Extension<'a> {
-    /// Extension `name` among `all` of a part of the file.
+    /// Extension `name` from `all` extensions of a part of the file.
     pub(super) fn of(all: Option<&'a Map<String, Value>>, name: &str) -> Result<Self, String> {
         let value = all.and_then(|all| all.get(name));
         let members = value.map(|value| value.as_object().ok_or_else(|| wrong_kind(name, value, "an object")));
         Ok(Self { members: members.transpose()? })
     }
 
-    /// An object inside an extension; any other value has no members.
+    /// Members of an object inside an extension; any other value has no members.
     pub(super) fn inside(value: &'a Value) -> Self {
         Self { members: value.as_object() }
     }
@@ -47,7 +47,7 @@ impl<'a> Extension<'a> {
         Ok(Some(numbers))
     }
 
-    /// A share, 0 to 1.
+    /// A share, from 0 to 1; `None` if the member is absent.
     pub(super) fn share(&self, key: &str) -> Result<Option<f32>, String> {
         match self.number(key)? {
             Some(share) if !(0.0..=1.0).contains(&share) => {
@@ -57,7 +57,7 @@ impl<'a> Extension<'a> {
         }
     }
 
-    /// Linear RGB, each 0 to 1.
+    /// Linear RGB, each from 0 to 1; `None` if the member is absent.
     pub(super) fn color(&self, key: &str) -> Result<Option<Vec3>, String> {
         let Some(color) = self.three_numbers(key)? else {
             return Ok(None);
@@ -68,7 +68,7 @@ impl<'a> Extension<'a> {
         Ok(Some(Vec3::from_array(color.map(|part| part as f32))))
     }
 
-    /// The values of a list; none where it is not there.
+    /// Values of a list; empty if the member is absent.
     pub(super) fn list(&self, key: &str) -> Result<&'a [Value], String> {
         let list = self.member(key).map(|value| value.as_array().ok_or_else(|| wrong_kind(key, value, "an array")));
         Ok(list.transpose()?.map(Vec::as_slice).unwrap_or_default())

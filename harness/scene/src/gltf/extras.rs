@@ -1,9 +1,11 @@
-//! `extras.lapidary` of a material: what glTF has no words for.
+//! `extras.lapidary` of a material: properties that glTF cannot express.
 //!
-//! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`]. It gives the refractive index and the dispersion, with which the
-//! file's own, if it has some, must agree. `sigma0` is [`Material::sigma0`]; `scattering` and `absorption`, which come together,
-//! and with them `anisotropy` and `veins`, are [`Material::medium`]; `solver` is [`Material::solver`]. Lengths are those of the world: as
-//! with `attenuationDistance`, the scale of a node does not change them.
+//! `sellmeier` names a measured Sellmeier equation, one of [`Mineral::ALL`]. It gives the
+//! refractive index and the dispersion; if the file states these as well, they must agree. `sigma0`
+//! is [`Material::sigma0`]. `scattering` and `absorption`, which require each other, and the
+//! optional `anisotropy` and `veins` are [`Material::medium`]. `solver` is [`Material::solver`].
+//! Lengths are in world units: as with `attenuationDistance`, the scale of a node does not change
+//! them.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -17,20 +19,22 @@ use super::error::excerpt;
 use super::medium::medium;
 use crate::{Dispersion, Material, Mineral, Solver};
 
-/// How far a file's index may lie from its Sellmeier equation's: tables give two decimals.
+/// Maximum distance of a file's index from that of its Sellmeier equation: tables give two
+/// decimals.
 const INDEX_AGREES: f64 = 0.005;
-/// How far, as a share, a file's dispersion may lie from its Sellmeier equation's: measured Abbe numbers of one mineral differ by
-/// some percent.
+/// Maximum relative difference between a file's dispersion and that of its Sellmeier equation:
+/// measured Abbe numbers of one mineral differ by a few percent.
 const DISPERSION_AGREES: f64 = 0.05;
 
-/// What `extras` hold for this program. Kept as text, so that the extras of others cost nothing.
+/// The part of `extras` for this program. Kept as text, so that the extras of other programs cost
+/// nothing.
 #[derive(Deserialize)]
 struct Extras<'a> {
     #[serde(borrow)]
     lapidary: Option<&'a RawValue>,
 }
 
-/// `extras.lapidary`, of which a newer program may know more: [`unknown`].
+/// `extras.lapidary`. A newer program may write further members: see [`unknown`].
 #[derive(Deserialize)]
 pub(super) struct Lapidary<'a> {
     #[serde(borrow, default, deserialize_with = "present")]
@@ -49,16 +53,17 @@ pub(super) struct Lapidary<'a> {
     pub(super) veins: Option<&'a RawValue>,
 }
 
-/// The members of [`Lapidary`].
+/// Names of the members of [`Lapidary`].
 const MEMBERS: [&str; 7] = ["sellmeier", "sigma0", "solver", "scattering", "absorption", "anisotropy", "veins"];
 
-/// A member that is there, even where it is null: a writer that has no number for a NaN writes that.
+/// Deserialises a member that is present, even if it is null, which some writers put in place of a
+/// NaN.
 fn present<'de, D: Deserializer<'de>>(member: D) -> Result<Option<&'de RawValue>, D::Error> {
     <&RawValue>::deserialize(member).map(Some)
 }
 
 impl Lapidary<'_> {
-    /// Adds what they say to `material`, whose extensions say `ior` and `dispersion`.
+    /// Applies the extras to `material`, whose extensions state `ior` and `dispersion`.
     pub(super) fn apply(
         &self,
         material: &mut Material,
@@ -87,7 +92,7 @@ impl Lapidary<'_> {
     }
 }
 
-/// Whether the file's own numbers are those of the mineral, as far as it has some.
+/// Checks that the file's own values, if present, agree with those of the mineral.
 fn agree(mineral: Mineral, ior: Option<f64>, dispersion: Option<f64>) -> Result<(), String> {
     let (name, index) = (mineral.name(), mineral.index());
     if let Some(ior) = ior.filter(|ior| (ior - f64::from(index)).abs() > INDEX_AGREES) {
@@ -105,9 +110,9 @@ fn agree(mineral: Mineral, ior: Option<f64>, dispersion: Option<f64>) -> Result<
     Ok(())
 }
 
-/// The text of the material's `extras.lapidary`, if it has them.
+/// Text of the material's `extras.lapidary`, or `None` if absent.
 fn text(json: &JsonMaterial) -> Result<Option<&RawValue>, String> {
-    // glTF lets extras be anything; what is not an object is someone else's.
+    // glTF allows any value for extras; a value that is not an object belongs to another program.
     let Some(extras) = json.extras.as_deref().filter(|extras| is_object(extras)) else {
         return Ok(None);
     };
@@ -120,13 +125,13 @@ fn text(json: &JsonMaterial) -> Result<Option<&RawValue>, String> {
     }
 }
 
-/// The material's `extras.lapidary`, if it has them.
+/// The material's `extras.lapidary`, or `None` if absent.
 pub(super) fn lapidary(json: &JsonMaterial) -> Result<Option<Lapidary<'_>>, String> {
     let lapidary = text(json)?.map(|text| serde_json::from_str(text.get()));
     lapidary.transpose().map_err(|error| unreadable("extras.lapidary", &error))
 }
 
-/// The members of the material's `extras.lapidary` that are none of [`Lapidary`]'s, sorted.
+/// Members of the material's `extras.lapidary` that are not in [`Lapidary`], sorted.
 pub(super) fn unknown(json: &JsonMaterial) -> Vec<String> {
     let members = text(json).ok().flatten().and_then(|text| {
         let members: Option<BTreeMap<Cow<'_, str>, &RawValue>> = serde_json::from_str(text.get()).ok();
@@ -140,7 +145,7 @@ fn unreadable(what: &str, error: &serde_json::Error) -> String {
     format!("its {what} cannot be read: {}", excerpt(&error.to_string()))
 }
 
-/// The mineral that `sellmeier` names.
+/// Mineral named by `sellmeier`.
 fn mineral(json: &RawValue) -> Result<Mineral, String> {
     let mineral = serde_json::from_str::<String>(json.get()).ok().and_then(|name| Mineral::named(&name));
     mineral.ok_or_else(|| {
@@ -152,7 +157,7 @@ fn mineral(json: &RawValue) -> Result<Mineral, String> {
     })
 }
 
-/// What `solver` names.
+/// Solver named by `solver`.
 fn solver(json: &RawValue) -> Result<Solver, String> {
     let solver = serde_json::from_str::<String>(json.get()).ok().and_then(|name| name.parse().ok());
     solver.ok_or_else(|| {
@@ -164,7 +169,7 @@ fn solver(json: &RawValue) -> Result<Solver, String> {
     })
 }
 
-/// The member `name`: numbers for red, green and blue that have a length unit.
+/// Red, green and blue values of the member `name`, which have a unit of length.
 pub(super) fn lengths(name: &str, json: &RawValue) -> Result<Vec3, String> {
     let numbers = serde_json::from_str::<[f64; 3]>(json.get()).ok();
     let single = numbers.map(|numbers| Vec3::from_array(numbers.map(|number| number as f32)));

@@ -1,4 +1,5 @@
-//! The version of a file, read before all else: glTF 1.0 has other members, of which nothing but the version makes a message.
+//! Version of a file, read first: glTF 1.0 has other members, and only its version makes a clear
+//! message.
 
 use std::fmt;
 
@@ -8,7 +9,7 @@ use serde_json::Value;
 
 use super::error::{GltfError, excerpt};
 
-/// What every version has, and what tells the first one where it leaves its version out.
+/// Members that every version has, and those that identify the first version if it is not stated.
 #[derive(Deserialize)]
 struct Head {
     asset: Option<Asset>,
@@ -23,7 +24,8 @@ struct Asset {
     min_version: Option<Value>,
 }
 
-/// A list since glTF 2.0, an object by name before. Its contents are passed over, so that they take no memory.
+/// A list since glTF 2.0, previously an object keyed by name. Its contents are skipped, so that
+/// they take no memory.
 enum Items {
     Listed,
     Named,
@@ -57,11 +59,11 @@ impl<'de> Deserialize<'de> for Items {
     }
 }
 
-/// Refuses a version that is not read. JSON that is none is left to who reads all of it.
+/// Refuses unsupported versions. Malformed JSON is left to the full parser.
 pub(super) fn check(json: &[u8]) -> Result<(), GltfError> {
     let Ok(head) = serde_json::from_slice::<Head>(json) else { return Ok(()) };
     let asset = head.asset.unwrap_or(Asset { version: None, min_version: None });
-    // 1.0 files also have it as a number, or leave it out.
+    // 1.0 files may also store it as a number, or omit it.
     let text = |version: Value| match version {
         Value::String(text) => text,
         other => other.to_string(),

@@ -1,4 +1,4 @@
-//! Where a node shows its mesh: at one place, or by `EXT_mesh_gpu_instancing` at many.
+//! Placement of a node's mesh: once, or many times by `EXT_mesh_gpu_instancing`.
 
 use ::gltf::json::Root;
 use glam::{DMat3, DMat4};
@@ -10,21 +10,21 @@ use super::error::{GltfError, excerpt};
 use super::extension::Extension;
 use super::nodes::{ShownNode, composed};
 
-/// The extension's name.
+/// Name of the extension.
 pub(super) const NAME: &str = "EXT_mesh_gpu_instancing";
-/// The attributes that place an instance.
+/// Attributes that place an instance.
 pub(super) const PLACING: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
 
-/// The places at which a node shows its mesh.
+/// Places at which a node shows its mesh.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Instances<'a> {
-    /// From the node's space to the world's.
+    /// Transform from the node's space to world space.
     world: DMat4,
-    /// From an instance's space to the node's; nothing where the node shows its mesh once.
+    /// Transforms from an instance's space to the node's; `None` if the node shows its mesh once.
     list: Option<List<'a>>,
 }
 
-/// Attributes of the instances, each as long as `count` or missing.
+/// Attributes of the instances; each has `count` elements or is missing.
 #[derive(Debug, Clone, Copy)]
 struct List<'a> {
     count: usize,
@@ -34,7 +34,8 @@ struct List<'a> {
 }
 
 impl<'a> Instances<'a> {
-    /// The instances of `node`, all of finite numbers. Takes no memory, however many there are.
+    /// Returns the instances of `node`, with all numbers checked to be finite. Allocates no memory,
+    /// however many there are.
     pub(super) fn of(root: &Root, buffers: &'a Buffers<'_>, node: &ShownNode<'_>) -> Result<Self, GltfError> {
         let wrong = |problem: String| GltfError::part(node.designation(), problem);
         let Some(attributes) = attributes(node).map_err(wrong)? else {
@@ -70,17 +71,17 @@ impl<'a> Instances<'a> {
         }
     }
 
-    /// The number of places, at least one.
+    /// Number of places, at least one.
     pub(super) fn count(&self) -> usize {
         self.list.map_or(1, |list| list.count)
     }
 
-    /// Whether the extension says the places.
+    /// Whether the places come from the extension.
     pub(super) fn is_list(&self) -> bool {
         self.list.is_some()
     }
 
-    /// From the mesh's space to the world's, for each place.
+    /// Iterates over the transforms from the mesh's space to world space, one for each place.
     pub(super) fn transforms(&self) -> impl Iterator<Item = DMat4> + 'a {
         let Self { world, list } = *self;
         let mut translations = list.and_then(|list| list.translations).map(Elements::vectors);
@@ -93,8 +94,8 @@ impl<'a> Instances<'a> {
         })
     }
 
-    /// How much longer a length of the mesh is in the world: the cube root of what becomes of volumes, and of several instances the
-    /// largest.
+    /// Factor by which lengths of the mesh grow in world space: the cube root of the change in
+    /// volume, and the largest over all instances.
     pub(super) fn enlargement(&self) -> f64 {
         let of_volumes = self.transforms().map(|transform| DMat3::from_mat4(transform).determinant().abs());
         of_volumes.fold(0.0, f64::max).cbrt()
@@ -113,7 +114,7 @@ impl List<'_> {
     }
 }
 
-/// The attributes of a node's instances; nothing where it has none, or no mesh to show.
+/// Attributes of a node's instances; `None` if it has no instances, or no mesh to show.
 pub(super) fn attributes<'a>(node: &ShownNode<'a>) -> Result<Option<&'a Map<String, Value>>, String> {
     let all = node.node.extensions.as_ref().map(|all| &all.others);
     if node.node.mesh.is_none() || !all.is_some_and(|all| all.contains_key(NAME)) {

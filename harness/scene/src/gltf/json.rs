@@ -1,18 +1,20 @@
-//! From JSON to its types. The gltf crate asks for members that glTF lets be left out, or that nothing here reads; where that is all that it
-//! misses, they are put in or taken out.
+//! Deserialisation of the JSON. The gltf crate requires members that glTF makes optional, and
+//! members that this loader does not use. If these are the only problem, they are inserted or
+//! removed.
 
 use ::gltf::json::Root;
 use serde_json::{Value, json};
 
 use super::error::GltfError;
 
-/// Longer JSON is not mended: as values it takes some ten times its bytes.
+/// Longer JSON is not repaired: as a tree of values it takes about ten times its size.
 const MENDED_BYTES: usize = 64 << 20;
 
-/// Members of the file that nothing drawn here needs. A node's skin is reported by its number alone.
+/// Members of the file that are not needed for drawing. Only the index of a node's skin is
+/// reported.
 const NOT_DRAWN: [&str; 4] = ["images", "samplers", "skins", "textures"];
 
-/// The file's JSON as types.
+/// Deserialises the file's JSON.
 pub(super) fn root(json: &[u8]) -> Result<Root, GltfError> {
     let first = match ::gltf::json::deserialize::from_slice(json) {
         Ok(root) => return Ok(root),
@@ -21,7 +23,7 @@ pub(super) fn root(json: &[u8]) -> Result<Root, GltfError> {
     if json.len() > MENDED_BYTES {
         return Err(first);
     }
-    // The first message has the line and the column of what is wrong in the text.
+    // The first message has the line and column of the problem in the original text.
     let mended = serde_json::from_slice(json).ok().and_then(|value| serde_json::from_value(mended(value)).ok());
     mended.ok_or(first)
 }
@@ -31,7 +33,7 @@ fn mended(mut value: Value) -> Value {
     for name in NOT_DRAWN {
         members.remove(name);
     }
-    // Their number is reported, and nothing else of them read.
+    // Only the number of animations is reported; nothing else of them is read.
     for animation in members.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
         *animation = json!({"channels": [], "samplers": []});
     }

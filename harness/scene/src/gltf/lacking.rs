@@ -1,23 +1,24 @@
-//! What a file asks for and nothing here draws: each thing once, with who asks for it.
+//! Features of a file that are not drawn: each is listed once, with its users.
 
 use std::collections::BTreeMap;
 
 use super::error::excerpt;
 
-/// At most this many clauses are listed: a hostile file may ask for as many things as it has bytes.
+/// Maximum number of clauses in the list: a hostile file may use as many features as it has bytes.
 const MOST: usize = 64;
 
-/// What is asked for: its kind (`textures`), what it is, what is drawn instead, and the kind of its users (`material`).
+/// Unsupported feature: its kind (`textures`), its description, what is drawn instead, and the kind
+/// of its users (`material`).
 type Wish = (&'static str, String, &'static str, &'static str);
 
-/// Things that are asked for, sorted.
+/// Unsupported features, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Lacking {
-    /// With the users' numbers and names.
+    /// Each feature with the indices and names of its users.
     wishes: BTreeMap<Wish, BTreeMap<usize, Option<String>>>,
 }
 
-/// A part of the file that asks for something.
+/// A part of the file that uses a feature.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct User<'a> {
     pub(super) kind: &'static str,
@@ -31,18 +32,18 @@ impl User<'_> {
 }
 
 impl Lacking {
-    /// Notes that `user` asks for `what`, and what is drawn `instead`.
+    /// Records that `user` needs `what`, and what is drawn `instead`.
     pub(super) fn note(&mut self, kind: &'static str, what: String, instead: &'static str, user: User<'_>) {
         let users = self.wishes.entry((kind, what, instead, user.kind)).or_default();
         users.entry(user.index).or_insert_with(|| user.name.map(excerpt));
     }
 
-    /// Whether anyone asks for `what` of this `kind`.
+    /// Whether any user needs `what` of this `kind`.
     pub(super) fn has(&self, kind: &str, what: &str) -> bool {
         self.wishes.keys().any(|wish| wish.0 == kind && wish.1 == what)
     }
 
-    /// A clause for each.
+    /// Returns one clause for each feature.
     pub(super) fn clauses(&self) -> Vec<String> {
         let mut clauses: Vec<String> = self
             .wishes
@@ -57,7 +58,7 @@ impl Lacking {
     }
 }
 
-/// ``material `table` ``, or ``3 materials, first `table` ``.
+/// Formats ``material `table` ``, or ``3 materials, first `table` ``.
 fn list(kind: &str, users: &BTreeMap<usize, Option<String>>) -> String {
     if kind == User::FILE.kind {
         return "the file".to_owned();

@@ -1,9 +1,10 @@
-//! The lights of a file: `KHR_lights_punctual`, placed by the nodes that refer to them.
+//! Lights of a file: `KHR_lights_punctual`, placed by the nodes that refer to them.
 //!
-//! Read are directional, point and spot lights. glTF states them in lux and candela; here the numbers are taken as
-//! radiometric, without a luminous efficacy: W/m² and W/sr, as the environment's are W/(m² sr). `range`, at which a
-//! renderer may cut a point or spot light off, does nothing: the light falls off by the square of the distance alone. As glTF has
-//! it, the scale of a node changes no intensity.
+//! Directional, point and spot lights are supported. glTF states their intensity in lux and
+//! candela; here the numbers are interpreted as radiometric, without a luminous efficacy: W/m² and
+//! W/sr, matching the environment's W/(m² sr). `range`, at which a renderer may cut off a point or
+//! spot light, is ignored: the light only falls off with the square of the distance. As glTF
+//! specifies, the scale of a node does not affect intensity.
 
 use ::gltf::json::Root;
 use glam::{DMat4, DVec3, Vec3};
@@ -19,7 +20,7 @@ use crate::light::are_cone_angles;
 
 const NAME: &str = "KHR_lights_punctual";
 
-/// The lights of the shown nodes, in the nodes' order.
+/// Lights of the visible nodes, in the order of the nodes.
 pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>, GltfError> {
     let in_file = |problem: String| GltfError::part("the file".to_owned(), problem);
     let all = root.extensions.as_ref().map(|all| &all.others);
@@ -46,7 +47,7 @@ pub(super) fn lights(root: &Root, nodes: &[ShownNode<'_>]) -> Result<Vec<Light>,
     Ok(lights)
 }
 
-/// The light that a node refers to, with its number, if it does.
+/// Light that a node refers to, with its index; `None` if there is no such reference.
 pub(super) fn of_node<'a>(root: &'a Root, node: &ShownNode<'_>) -> Option<(usize, &'a Value)> {
     let index = reference(node).ok()??;
     let all = root.extensions.as_ref().map(|all| &all.others);
@@ -54,7 +55,7 @@ pub(super) fn of_node<'a>(root: &'a Root, node: &ShownNode<'_>) -> Option<(usize
     Some((index, list.get(index)?))
 }
 
-/// The number of the light that a node refers to, if it does.
+/// Index of the light that a node refers to; `None` if there is no such reference.
 fn reference(node: &ShownNode<'_>) -> Result<Option<usize>, String> {
     let all = node.node.extensions.as_ref().map(|all| &all.others);
     if !all.is_some_and(|all| all.contains_key(NAME)) {
@@ -65,7 +66,7 @@ fn reference(node: &ShownNode<'_>) -> Result<Option<usize>, String> {
     index.map(Some).ok_or_else(|| format!("its {NAME} names no light by number; export it again"))
 }
 
-/// A light without its place.
+/// A light without its position.
 enum Kind {
     Directional(Vec3),
     Point(Vec3),
@@ -101,7 +102,7 @@ fn read(json: &Value) -> Result<Kind, String> {
     }
 }
 
-/// A spot's inner and outer angle.
+/// Inner and outer cone angle of a spot light.
 fn cone(json: &Value) -> Result<(f32, f32), String> {
     let spot = Extension::of(json.as_object(), "spot")?;
     let inner = spot.number("innerConeAngle")?.unwrap_or(0.0);
@@ -115,7 +116,8 @@ fn cone(json: &Value) -> Result<(f32, f32), String> {
     Ok((inner as f32, outer as f32))
 }
 
-/// A glTF light shines along its node's -z. Nothing where the node has no such direction or is nowhere.
+/// Places a light, which in glTF shines along its node's -z. Returns `None` if the node's direction
+/// or position is undefined.
 fn place(kind: Kind, world: DMat4) -> Option<Light> {
     match kind {
         Kind::Directional(irradiance) => {
@@ -136,7 +138,7 @@ fn origin(world: DMat4) -> Option<Vec3> {
 }
 
 fn unit(direction: DVec3) -> Option<Vec3> {
-    // A direction that f32 cannot bring closer to unit length stays as it is, to the last bit.
+    // A direction that f32 cannot bring closer to unit length is kept to the last bit.
     if (direction.length_squared() - 1.0).abs() < 4.0 * f64::from(f32::EPSILON) {
         return Some(direction.as_vec3());
     }

@@ -1,6 +1,7 @@
-//! Materials of a file: base colour, roughness, `KHR_materials_ior`, `KHR_materials_transmission`, `KHR_materials_volume`,
-//! `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, and `extras.lapidary` for what glTF cannot say
-//! (`gltf/extras.rs`). What a material says beside that, `gltf/survey.rs` lists.
+//! Materials of a file: base colour, roughness, `KHR_materials_ior`, `KHR_materials_transmission`,
+//! `KHR_materials_volume`, `KHR_materials_dispersion`, `KHR_materials_diffuse_transmission`, and
+//! `extras.lapidary` for properties that glTF cannot express (`gltf/extras.rs`). All other
+//! properties of a material are listed by `gltf/survey.rs`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +17,7 @@ use super::extras;
 use super::medium;
 use crate::{Dispersion, Material};
 
-/// What none of [`OF_PHYSICAL_SHADING`] may stand beside, as their specifications say.
+/// Extensions whose specifications forbid combining them with any of [`OF_PHYSICAL_SHADING`].
 const OF_OTHER_SHADING: [&str; 2] = ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"];
 
 /// Extensions of the metallic-roughness material.
@@ -34,8 +35,8 @@ const OF_PHYSICAL_SHADING: [&str; 11] = [
     "KHR_materials_volume_scatter",
 ];
 
-/// The materials of a file. Each is read once, when a primitive first asks for it: a small file may ask very
-/// often for one with large extras.
+/// Materials of a file. Each is read once, when a primitive first uses it: a small file may refer
+/// very often to a material with large extras.
 #[derive(Debug)]
 pub(super) struct Materials<'a> {
     root: &'a Root,
@@ -47,7 +48,8 @@ impl<'a> Materials<'a> {
         Self { root, known: BTreeMap::new() }
     }
 
-    /// Material `index` of the file, which `user` refers to; glTF's default material without a number.
+    /// Returns material `index` of the file, which `user` refers to; for `None`, glTF's default
+    /// material.
     pub(super) fn get(&mut self, index: Option<usize>, user: &str) -> Result<Material, GltfError> {
         let Some(index) = index else {
             return Ok(Material::standard());
@@ -63,19 +65,19 @@ impl<'a> Materials<'a> {
         Ok(material)
     }
 
-    /// Those that were asked for, by number, with their part of the file.
+    /// Materials read so far, with their index and JSON.
     pub(super) fn read(&self) -> impl Iterator<Item = (usize, &'a JsonMaterial, &Material)> {
         let root = self.root;
         self.known.iter().map(move |(&index, material)| (index, &root.materials[index], material))
     }
 }
 
-/// The extensions of a material, by name.
+/// Extensions of a material, by name.
 pub(super) fn extensions(json: &JsonMaterial) -> Option<&Map<String, Value>> {
     json.extensions.as_ref().map(|all| &all.others)
 }
 
-/// A material of the file, still without its name; or what is wrong with it.
+/// Reads a material, without its name; the error describes the problem.
 fn read(json: &JsonMaterial) -> Result<Material, String> {
     let all = extensions(json);
     exclusive(all)?;
@@ -113,7 +115,7 @@ fn read(json: &JsonMaterial) -> Result<Material, String> {
     Ok(material)
 }
 
-/// What glTF says of a surface without an extension.
+/// Reads the surface properties of core glTF, without extensions.
 fn surface(json: &JsonMaterial) -> Result<Material, String> {
     let factors = &json.pbr_metallic_roughness;
     let (roughness, metallic) = (factors.roughness_factor.0, factors.metallic_factor.0);
@@ -148,7 +150,7 @@ fn volume(volume: Extension<'_>, material: &mut Material) -> Result<(), String> 
         material.attenuation_color = color;
     }
     if let Some(distance) = volume.number("attenuationDistance")? {
-        // A subnormal distance may count as 0 on a GPU.
+        // A GPU may flush a subnormal distance to 0.
         let single = distance as f32;
         if !(single.is_finite() && single >= f32::MIN_POSITIVE) {
             return Err(format!(

@@ -1,4 +1,5 @@
-//! A scattering medium of a file, from a material's `extras.lapidary`, or else from its diffuse transmission.
+//! Scattering medium of a material, from its `extras.lapidary`, or else from its diffuse
+//! transmission.
 
 use glam::Vec3;
 use lapidary_veins::VeinsPattern;
@@ -9,7 +10,7 @@ use super::error::excerpt;
 use super::extras::{Lapidary, lengths};
 use crate::{Density, Material, Medium};
 
-/// `extras.lapidary.veins`; every member must be there, so that none is misspelt.
+/// `extras.lapidary.veins`; every member is required, so that a misspelt name is an error.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Veins {
@@ -21,7 +22,7 @@ struct Veins {
     seed: u32,
 }
 
-/// The medium of `extras.lapidary`, of which no half is left out.
+/// The medium of `extras.lapidary`. Scattering and absorption require each other.
 pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
     let of = |scattering: Vec3, absorption: Vec3| -> Result<Medium, String> {
         let mut medium = Medium::isotropic(scattering, absorption);
@@ -36,7 +37,7 @@ pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
                 "its extras.lapidary.scattering and .absorption together are above 1e18; give smaller ones".to_owned()
             );
         }
-        // What the parts above let pass, the whole has to answer for.
+        // Each member passed its own check, but the medium as a whole must be valid too.
         medium.problem().map_or(Ok(medium), |_| Err(unfit("veins", extras.veins)))
     };
     match (extras.scattering, extras.absorption) {
@@ -53,8 +54,9 @@ pub(super) fn medium(extras: &Lapidary<'_>) -> Result<Option<Medium>, String> {
     }
 }
 
-/// The medium behind a surface of diffuse transmission, where its volume attenuates: uniform and isotropic. Its extinction is the
-/// volume's, its albedo the one with which a half space shows the surface's colour.
+/// Medium behind a diffusely transmitting surface whose volume attenuates: uniform and isotropic.
+/// Its extinction is that of the volume, and its albedo the one that gives a half space the
+/// surface's colour.
 pub(super) fn derived(material: &Material) -> Result<Option<Medium>, String> {
     let goes_in = material.diffuse_transmission > 0.0 && material.transmission == 0.0;
     if !(goes_in && material.thickness > 0.0 && material.absorbs()) {
@@ -75,8 +77,9 @@ pub(super) fn derived(material: &Material) -> Result<Option<Medium>, String> {
     })
 }
 
-/// The share of light that survives a scattering in an isotropic medium, a half space of which sends back the share `multiple` of diffuse
-/// light. Kulla and Conty, "Revisiting Physically Based Shading at Imageworks" (2017), as in the draft of `KHR_materials_volume_scatter`.
+/// Single-scattering albedo of an isotropic medium whose half space reflects the share `multiple`
+/// of diffuse light. Kulla and Conty, "Revisiting Physically Based Shading at Imageworks" (2017),
+/// as in the draft of `KHR_materials_volume_scatter`.
 fn single_scattering_albedo(multiple: f64) -> f64 {
     let root = (9.59217 + 41.6808 * multiple + 17.7126 * multiple * multiple).sqrt();
     let s = 4.09712 + 4.20863 * multiple - root;

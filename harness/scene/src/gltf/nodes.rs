@@ -1,4 +1,4 @@
-//! Which nodes a scene shows, and where.
+//! Visible nodes of a scene and their transforms.
 
 use ::gltf::json::Root;
 use ::gltf::json::scene::Node;
@@ -6,34 +6,34 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::error::{GltfError, designation, excerpt, item};
 
-/// A node and its place in the world.
+/// A node with its world transform.
 #[derive(Debug)]
 pub(super) struct ShownNode<'a> {
     pub(super) index: usize,
     pub(super) node: &'a Node,
-    /// From the node's space to the world's. In f64, so that a deep hierarchy loses nothing; may hold
-    /// infinities where scales multiply beyond it.
+    /// Transform from the node's space to world space. In f64, so that a deep hierarchy loses no
+    /// precision; may contain infinities if the product of the scales overflows.
     pub(super) world: DMat4,
 }
 
 impl ShownNode<'_> {
-    /// The node as messages call it.
+    /// The node's designation in messages.
     pub(super) fn designation(&self) -> String {
         designation("node", self.index, self.node.name.as_deref())
     }
 }
 
-/// The nodes of a file's scene, in the file's order, parents first.
+/// Nodes of a file's scene, in the file's order, parents first.
 #[derive(Debug)]
 pub(super) struct Shown<'a> {
-    /// The scene's name, or nothing.
+    /// Name of the scene; empty if it has none.
     pub(super) name: String,
     pub(super) nodes: Vec<ShownNode<'a>>,
 }
 
 impl<'a> Shown<'a> {
-    /// The nodes of the default scene, else of the first scene, else all nodes from those that are no
-    /// one's child.
+    /// Nodes of the default scene, else of the first scene, else all nodes, starting from those
+    /// without a parent.
     pub(super) fn of(root: &'a Root) -> Result<Self, GltfError> {
         let number = root.scene.map_or(0, |scene| scene.value());
         let (name, roots) = if root.scene.is_none() && root.scenes.is_empty() {
@@ -67,7 +67,7 @@ fn children(node: &Node) -> impl DoubleEndedIterator<Item = usize> {
 fn walk<'a>(root: &'a Root, roots: &[usize], scene: usize) -> Result<Vec<ShownNode<'a>>, GltfError> {
     let mut visited = vec![false; root.nodes.len()];
     let mut shown = Vec::new();
-    // Last in, first out: reversed, so that the first comes first.
+    // A stack, so reversed: the first node comes first.
     let mut waiting: Vec<_> = roots.iter().rev().map(|&k| (k, None, DMat4::IDENTITY)).collect();
     while let Some((index, parent, outer)) = waiting.pop() {
         let node = item(&root.nodes, "node", index, || {
@@ -94,15 +94,15 @@ fn local(node: &Node) -> DMat4 {
     composed(node.translation, node.rotation.map(|rotation| rotation.0), node.scale)
 }
 
-/// Translation · rotation (a quaternion, its real part last) · scale; one that is missing changes nothing.
+/// Translation · rotation (a quaternion, real part last) · scale; a missing factor is the identity.
 pub(super) fn composed(translation: Option<[f32; 3]>, rotation: Option<[f32; 4]>, scale: Option<[f32; 3]>) -> DMat4 {
     let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
     let scale = scale.map_or(DVec3::ONE, vector);
     let translation = translation.map_or(DVec3::ZERO, vector);
     let rotation = rotation.map_or(DQuat::IDENTITY, |rotation| {
         let quaternion = DQuat::from_array(rotation.map(f64::from));
-        // Rounded in the file, so that its length is only nearly 1. One without direction
-        // turns nothing, which is what exporters mean by four zeros.
+        // The file's numbers are rounded, so the length is only close to 1. A zero quaternion is
+        // taken as the identity, which is what exporters mean by four zeros.
         let length = quaternion.length();
         if length > 0.0 { quaternion / length } else { DQuat::IDENTITY }
     });

@@ -1,4 +1,4 @@
-//! From a mesh's primitives to objects in the world.
+//! Conversion of a mesh's primitives to objects in world space.
 
 use ::gltf::Semantic;
 use ::gltf::json::Root;
@@ -17,12 +17,13 @@ use super::nodes::ShownNode;
 use crate::normals::{Averaging, shared_normals};
 use crate::{Mesh, Object};
 
-/// The most vertices, and the most corners of triangles, of one mesh of instances. The longest list that is made of them has two nodes of a
-/// hierarchy, 32 bytes each, for a triangle: 85 MiB, which any device holds in a buffer (WebGPU's least is 128 MiB).
+/// Maximum number of vertices, and of triangle corners, in one mesh of instances. The longest list
+/// built from them is a hierarchy with two nodes of 32 bytes each for a triangle: 85 MiB, which any
+/// device holds in one buffer (WebGPU guarantees 128 MiB).
 const MOST_JOINED: usize = 1 << 22;
 
-/// Adds an object for each primitive of triangles that `node` shows, with all instances of it in one mesh, or in several where one would be too
-/// large for a device.
+/// Adds an object for each triangle primitive that `node` shows. All instances of a primitive form
+/// one mesh, or several if one would be too large for a device.
 pub(super) fn add_objects(
     root: &Root,
     buffers: &Buffers<'_>,
@@ -50,7 +51,7 @@ pub(super) fn add_objects(
         let meshes_in_world = reader.meshes(arrangement, &instances)?;
         let material_index = primitive.material.map(|material| material.value());
         let mut material = materials.get(material_index, &user)?;
-        // glTF states it in the mesh's space, unlike its other lengths.
+        // glTF states the thickness in the mesh's space, unlike its other lengths.
         if material.thickness > 0.0 {
             let thickness = (f64::from(material.thickness) * enlargement) as f32;
             material.thickness = thickness.min(f32::MAX);
@@ -68,7 +69,7 @@ pub(super) fn add_objects(
     Ok(())
 }
 
-/// How a list of vertices makes triangles.
+/// How a list of vertices forms triangles.
 #[derive(Debug, Clone, Copy)]
 enum Arrangement {
     List,
@@ -77,7 +78,7 @@ enum Arrangement {
 }
 
 impl Arrangement {
-    /// Nothing for points and lines, and for modes that glTF does not have.
+    /// Returns `None` for points and lines, and for modes that glTF does not define.
     fn of(mode: Checked<Mode>) -> Option<Self> {
         match mode {
             Checked::Valid(Mode::Triangles) => Some(Self::List),
@@ -87,7 +88,7 @@ impl Arrangement {
         }
     }
 
-    /// The number of whole triangles; glTF has readers ignore what is left over.
+    /// Number of complete triangles; glTF requires readers to ignore leftover vertices.
     fn triangles(self, corners: usize) -> usize {
         match self {
             Self::List => corners / 3,
@@ -95,7 +96,7 @@ impl Arrangement {
         }
     }
 
-    /// The places in the list of corners of triangle `k`, in glTF's winding.
+    /// Positions of the corners of triangle `k` in the list, in glTF's winding order.
     fn corners(self, k: usize) -> [usize; 3] {
         match self {
             Self::List => [3 * k, 3 * k + 1, 3 * k + 2],
@@ -109,7 +110,7 @@ struct Reader<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
     primitive: &'a Primitive,
-    /// The primitive as messages call it.
+    /// The primitive's designation in messages.
     user: &'a str,
     budget: &'a mut Budget,
 }
@@ -135,7 +136,7 @@ impl<'a> Reader<'a> {
         let corners = indices.map_or(vertices, |indices| indices.count());
         let triangles = arrangement.triangles(corners);
         let uv_bytes = if uvs.is_some() { size_of::<Vec2>() } else { 0 };
-        // No overflow: each factor is at most a buffer's length, 2³⁰.
+        // No overflow: each factor is at most the length of a buffer, 2³⁰.
         let times = instances.count() as u64;
         let joined = (MOST_JOINED / vertices.max(3 * triangles).max(1)).max(1);
         let objects = times.div_ceil(joined as u64);
@@ -144,7 +145,7 @@ impl<'a> Reader<'a> {
 
         let corners = match indices {
             Some(indices) => self.in_range(indices, vertices)?,
-            // The budget has bounded the vertices below 2²⁶.
+            // The budget bounds the vertices below 2²⁶.
             None => (0..vertices as u32).collect(),
         };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
@@ -181,7 +182,7 @@ impl<'a> Reader<'a> {
         let mut positions = Vec::with_capacity(elements.count());
         for (vertex, local) in elements.vectors().enumerate() {
             let position = world.transform_point3(Vec3::from_array(local).as_dvec3()).as_vec3();
-            // Written so that NaN fails it too.
+            // Written so that NaN fails as well.
             let placed = position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
             if !placed {
                 let user = self.user;
@@ -226,8 +227,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A triangle list, without the triangles that repeat a corner (strips turn by them), and turned over
-/// where a mirror has turned them inside out.
+/// Builds a triangle list. Triangles with a repeated corner, which strips use to turn, are dropped,
+/// and the winding is reversed if a reflection has turned the triangles inside out.
 fn assemble(corners: &[u32], arrangement: Arrangement, mirrored: bool) -> Vec<u32> {
     let count = arrangement.triangles(corners.len());
     let mut indices = Vec::with_capacity(3 * count);
@@ -257,8 +258,9 @@ fn given_or_shared(
     pairs.map(|(given, shared)| given.unwrap_or(shared)).collect()
 }
 
-/// How normals move when points move by a matrix: by its inverse transpose. The matrix of cofactors
-/// is the same up to the determinant's size, and also exists where the matrix flattens.
+/// Transform of normals for points transformed by a matrix: its inverse transpose. The cofactor
+/// matrix is the same up to the magnitude of the determinant, and also exists if the matrix is
+/// singular.
 #[derive(Debug, Clone, Copy)]
 struct Cofactors {
     matrix: DMat3,
@@ -275,10 +277,10 @@ impl Cofactors {
         }
     }
 
-    /// The unit normal, or nothing where there is no direction.
+    /// Returns the unit normal, or `None` if it has no direction.
     fn apply(self, normal: [f32; 3]) -> Option<Vec3> {
         let normal = Vec3::from_array(normal);
-        // A normal that f32 cannot bring closer to unit length stays as it is, to the last bit.
+        // A normal that f32 cannot bring closer to unit length is kept to the last bit.
         if self.is_identity && (normal.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
             return Some(normal);
         }

@@ -1,4 +1,5 @@
-//! The extensions that a file says it cannot be shown without: which are read, which change nothing that is drawn, and which stop it.
+//! Required extensions of a file: those that are supported, those that do not affect what is drawn,
+//! and those that cause the file to be refused.
 
 use ::gltf::json::Root;
 use serde_json::{Map, Value};
@@ -6,7 +7,8 @@ use serde_json::{Map, Value};
 use super::KNOWN_EXTENSIONS;
 use super::error::{self, GltfError};
 
-/// Extensions of images, textures, animations and descriptions: nothing that is drawn here needs them.
+/// Extensions of images, textures, animations and descriptions: nothing that is drawn here needs
+/// them.
 const OF_WHAT_IS_NOT_DRAWN: [&str; 9] = [
     "EXT_texture_avif",
     "EXT_texture_webp",
@@ -19,18 +21,19 @@ const OF_WHAT_IS_NOT_DRAWN: [&str; 9] = [
     "MSFT_texture_dds",
 ];
 
-/// Extensions by which the numbers of a mesh are stored in fewer bytes.
+/// Extensions that compress the numbers of a mesh.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
 pub(super) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
 
-/// Refuses a file that cannot be shown without what is not read.
+/// Refuses a file that requires an unsupported extension.
 pub(super) fn check(root: &Root) -> Result<(), GltfError> {
     let required = || root.extensions_required.iter().map(String::as_str);
     if let Some(name) = required().find(|name| is_compressed_by(root, name)) {
         return Err(GltfError::Compressed { extension: name.to_owned() });
     }
-    // What says how numbers are stored has been looked for where they are, or is where they are read.
+    // Extensions of storage were checked above at the meshes that use them, or are checked when the
+    // data is read.
     let of_storage = |name: &str| name == DRACO || name == QUANTIZATION || MESHOPT.contains(&name);
     let stops =
         |name: &&str| !(KNOWN_EXTENSIONS.contains(name) || OF_WHAT_IS_NOT_DRAWN.contains(name) || of_storage(name));
@@ -42,7 +45,7 @@ pub(super) fn check(root: &Root) -> Result<(), GltfError> {
     }
 }
 
-/// Whether a mesh of the file is stored by a compression.
+/// Whether a mesh of the file is stored compressed by this extension.
 fn is_compressed_by(root: &Root, name: &str) -> bool {
     let has = |all: Option<&Map<String, Value>>| all.is_some_and(|all| all.contains_key(name));
     if name == DRACO {

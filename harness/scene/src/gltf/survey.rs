@@ -1,4 +1,4 @@
-//! Looks through the shown part of a file for what it asks for and nothing here draws.
+//! Survey of the visible part of a file for features that are not drawn.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use super::nodes::ShownNode;
 use super::{KNOWN_EXTENSIONS, extras, instances, light_node};
 use crate::Material;
 
-/// All that the file asks for in vain. Its references are known to be good.
+/// Lists all unsupported features of the file. Its references are known to be valid.
 pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Materials<'_>) -> Vec<String> {
     let mut lacking = Lacking::default();
     let mut meshes = BTreeSet::new();
@@ -49,7 +49,7 @@ pub(super) fn lacking(root: &Root, nodes: &[ShownNode<'_>], materials: &Material
 
 const EXTENSIONS: &str = "extensions";
 
-/// A name from the file.
+/// Quotes a name from the file.
 fn quoted(name: &str) -> String {
     format!("`{}`", excerpt(name))
 }
@@ -72,7 +72,7 @@ fn node(root: &Root, shown: &ShownNode<'_>, lacking: &mut Lacking) {
         lacking.note("instances", quoted(instances::NAME), "the node has no mesh", user);
     }
     let attributes = instances::attributes(shown).ok().flatten();
-    // One underscore marks what an application has for itself.
+    // A leading underscore marks application-specific attributes.
     let known = |name: &&String| instances::PLACING.contains(&name.as_str()) || name.starts_with('_');
     for name in attributes.into_iter().flat_map(Map::keys).filter(|name| !known(name)) {
         lacking.note("instances", quoted(name), "all instances look alike", user);
@@ -125,13 +125,13 @@ fn textures(json: &JsonMaterial, user: User<'_>, lacking: &mut Lacking) {
     }
 }
 
-/// What a material's surface is beside a dielectric's.
+/// Lists the properties of a surface that a dielectric does not have.
 fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mut Lacking) {
     unknown_extensions(extensions(json), user, lacking);
     let factors = &json.pbr_metallic_roughness;
     unknown_extensions(factors.extensions.as_ref().map(|all| &all.others), user, lacking);
 
-    // 1 is also what a file says that leaves the member out, as those of clear bodies do.
+    // 1 is also the default if a file omits the member, as files of clear bodies do.
     let metallic = factors.metallic_factor.0;
     let is_opaque = material.transmission == 0.0 && material.diffuse_transmission == 0.0 && !material.scatters();
     if metallic > 0.0 && (metallic < 1.0 || is_opaque) {
@@ -153,7 +153,7 @@ fn surface(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &m
     }
 }
 
-/// What light does behind a material's surface beside what is drawn.
+/// Lists the effects behind a material's surface that are not drawn.
 fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mut Lacking) {
     let is_share = |factor: f32| factor > 0.0 && factor < 1.0;
     let &Material { transmission, diffuse_transmission, .. } = material;
@@ -171,7 +171,7 @@ fn inside(json: &JsonMaterial, material: &Material, user: User<'_>, lacking: &mu
     if transmission > 0.0 && material.roughness > 0.0 {
         note("transmission", "`roughnessFactor` above 0", "drawn polished");
     }
-    // What passes straight through a wholly clear body is all light, and glTF takes it first.
+    // In a wholly clear body all light passes straight through, and glTF applies that first.
     let diffuse = "diffuse transmission";
     if diffuse_transmission > 0.0 && is_share(transmission) {
         note(diffuse, "`diffuseTransmissionFactor` beside a transmission", "not drawn");

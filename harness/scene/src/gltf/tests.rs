@@ -1,4 +1,4 @@
-//! What the loader reads, and what it says of files that it cannot read.
+//! Tests of what the loader reads, and of its messages for files that it cannot read.
 
 use glam::Quat;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ mod refused_data;
 mod texture_coordinates;
 mod transmission;
 
-/// Three corners of a right triangle, then indices 0 1 2 0 as shorts.
+/// Three corners of a right triangle, followed by the indices 0 1 2 0 as shorts.
 fn binary() -> Vec<u8> {
     let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let indices: [u16; 4] = [0, 1, 2, 0];
@@ -24,7 +24,7 @@ fn binary() -> Vec<u8> {
     corners.chain(indices.into_iter().flat_map(u16::to_le_bytes)).collect()
 }
 
-/// A file with one triangle, which each test changes.
+/// A file with one triangle, which each test modifies.
 fn document() -> Value {
     json!({
         "asset": {"version": "2.0"},
@@ -120,7 +120,7 @@ fn transforms_compose_and_mirrors_turn_the_winding() {
             {"children": [0], "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1]},
         ]);
         d["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(2);
-        // The corners again as normals: zero, +x, +y.
+        // The corners reused as normals: zero, +x, +y.
         let corners = d["accessors"][0].clone();
         d["accessors"].as_array_mut().unwrap().push(corners);
     });
@@ -131,7 +131,7 @@ fn transforms_compose_and_mirrors_turn_the_winding() {
     near(mesh.positions[1], Vec3::new(5.0, 0.0, -1.0));
     near(mesh.positions[2], Vec3::new(5.0, 1.0, 1.0));
     assert_eq!(mesh.indices, [0, 2, 1]);
-    // The first normal has no direction, so the triangle's own stands in for it.
+    // The first normal has no direction, so the triangle's own normal is used.
     near(mesh.normals[0], Vec3::NEG_X);
     near(mesh.normals[1], Vec3::NEG_Z);
     near(mesh.normals[2], Vec3::Y);
@@ -232,7 +232,7 @@ fn what_a_material_leaves_out_has_gltfs_default() {
     let extensions = json!({"KHR_materials_volume": {}, "KHR_materials_dispersion": {}, "KHR_materials_ior": {},
         "KHR_materials_transmission": {}, "KHR_materials_diffuse_transmission": {}});
     let none = json!({"KHR_materials_dispersion": {"dispersion": 0}});
-    // Too small for f32 is no dispersion either.
+    // A value too small for f32 also means no dispersion.
     let tiny = json!({"KHR_materials_dispersion": {"dispersion": 1e-60}});
     for extensions in [extensions, none, tiny, json!({})] {
         for extras in [json!({}), json!([1, {"lapidary": 2}]), json!("text"), json!({"lapidary": {}}), Value::Null] {
@@ -264,7 +264,7 @@ fn a_measured_equation_is_named_in_the_extras() {
         for extensions in [
             json!({}),
             json!({"KHR_materials_ior": {"ior": mineral.index()}}),
-            // As tables round it; and what renderers without the equation need beside it.
+            // Rounded as in tables, with the values that renderers without the equation need.
             json!({"KHR_materials_ior": {"ior": index}, "KHR_materials_dispersion": {"dispersion": dispersion}}),
         ] {
             let material = material_of(json!({
@@ -279,7 +279,7 @@ fn a_measured_equation_is_named_in_the_extras() {
 
 #[test]
 fn a_material_with_large_extras_is_read_once() {
-    // A megabyte of extras under a thousand primitives: a gigabyte, if each read them anew.
+    // A megabyte of extras used by a thousand primitives: a gigabyte if each read them again.
     let extras: Vec<u32> = (0..150_000).collect();
     let scene = load_changed(|d| {
         let primitive = json!({"attributes": {"POSITION": 0}, "indices": 1, "material": 0});

@@ -1,25 +1,27 @@
-//! The grid on whose corners a field is looked at.
+//! The grid whose corners a field is sampled at.
 
 use glam::{DVec2, DVec3};
 
-/// A grid of boxes about a vertical axis, finer in some places than in others: its planes square to z, and those square to x, run together or
-/// apart with height.
+/// A grid of boxes around a vertical axis, finer in some places than in others: the planes
+/// perpendicular to x and to z converge or diverge with height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     /// x and z of the vertical axis.
     axis: DVec2,
-    /// How far from it corners lie along x and along z, where the scale is 1.
+    /// Offsets of the corners from the axis along x and along z, at scale 1.
     across: [Vec<f64>; 2],
-    /// Height and scale of each layer of corners, from below.
+    /// Height and scale of each layer of corners, from the lowest.
     levels: Vec<[f64; 2]>,
 }
 
 impl Grid {
-    /// From the height `low` to `high`, and x and z at least `reach` on either side of `axis` where `scale` is 1. A cell at some height is
-    /// `width` times `scale` of that height wide along y and z, and along x that times what `stretch` makes of its distance from the axis.
+    /// Returns a grid from height `low` to `high` that reaches at least `reach` along x and z on
+    /// either side of `axis` where `scale` is 1. A cell's size along y and z is `width` times
+    /// `scale` at its height; along x, it is also multiplied by `stretch` at its distance from the
+    /// axis.
     ///
     /// # Panics
-    /// Where a cell's width is not above 0.
+    /// If a cell's width is not above 0.
     #[must_use]
     pub fn graded(
         axis: DVec2,
@@ -51,7 +53,8 @@ impl Grid {
         }
     }
 
-    /// Cubes of this width that fill the box from `low` to `high`, and a little more.
+    /// Returns a grid of cubes of this width that fill the box from `low` to `high`, and a little
+    /// more.
     #[must_use]
     pub fn uniform(low: DVec3, high: DVec3, width: f64) -> Self {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -59,19 +62,19 @@ impl Grid {
         Self::graded(axis, DVec2::new(half.x, half.z), [low.y, high.y], width, |_| 1.0, |_| 1.0)
     }
 
-    /// Corners along x, y and z.
+    /// Returns the number of corners along x, y and z.
     pub(super) fn corners(&self) -> [usize; 3] {
         [self.across[0].len(), self.levels.len(), self.across[1].len()]
     }
 
-    /// The place of a corner.
+    /// Returns the position of a corner.
     pub(super) fn place(&self, [x, y, z]: [usize; 3]) -> DVec3 {
         let [height, scale] = self.levels[y];
         let [x, z] = [self.across[0][x], self.across[1][z]];
         DVec3::new(self.axis.x + scale * x, height, self.axis.y + scale * z)
     }
 
-    /// The least side of a cell, by its lowest corner.
+    /// Returns the shortest side of a cell, given its lowest corner.
     pub(super) fn width(&self, [x, y, z]: [usize; 3]) -> f64 {
         (self.place([x + 1, y + 1, z + 1]) - self.place([x, y, z]))
             .y

@@ -1,4 +1,5 @@
-//! Surface nets: a vertex in each cell that the surface passes, a quadrilateral about each edge of the grid that it crosses.
+//! Surface nets: one vertex in each cell that the surface passes through, and one quadrilateral
+//! around each grid edge that it crosses.
 
 use super::{Grid, gradient};
 use crate::Mesh;
@@ -6,21 +7,24 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// How often vertices are drawn towards the middle of their neighbours, along the surface.
+/// Number of passes that move vertices along the surface towards the mean of their neighbours.
 const RELAXATIONS: usize = 12;
-/// The share of the way to that middle.
+/// Fraction of the way to that mean.
 const STRENGTH: f64 = 0.5;
-/// Most steps of Newton's method back to the surface. From within a cell three or four do.
+/// Largest number of steps of Newton's method back to the surface. From within a cell three or four
+/// suffice.
 const STEPS: usize = 10;
-/// A step that is shorter than this is the last, in widths of a cell.
+/// Step length, in cell widths, below which the iteration stops.
 const CONVERGED: f64 = 1e-7;
-/// Half the distance over which a gradient is taken, in widths of a cell.
+/// Half the distance over which a gradient is taken, in cell widths.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The surface where `field` is 0, of triangles about as wide as the grid's cells. Vertices lie on it to f32's digits and have its normals.
+/// Returns the surface where `field` is 0, in triangles about as wide as the grid's cells. Vertices
+/// lie on it to the precision of f32 and carry its normals.
 ///
-/// What reaches the outermost corners of the grid is cut off there. The mesh is closed. Where several surfaces pass one cell, each has a vertex of
-/// its own there, so that hardly any edge is met by more than two triangles. The same field and grid give the same mesh.
+/// Anything that reaches the outermost corners of the grid is cut off there. The mesh is closed. If
+/// several surfaces pass through one cell, each has its own vertex there, so that hardly any edge
+/// is shared by more than two triangles. The same field and grid give the same mesh.
 #[must_use]
 pub fn surface(field: &(dyn Fn(DVec3) -> f64 + Sync), grid: &Grid) -> Mesh {
     let mut net = Net::new(field, grid);
@@ -35,15 +39,15 @@ pub fn surface(field: &(dyn Fn(DVec3) -> f64 + Sync), grid: &Grid) -> Mesh {
 type Field<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
 
 struct Net {
-    /// In order of the cells.
+    /// Vertices, in the order of the cells.
     vertices: Vec<Vertex>,
-    /// Counter-clockwise seen from outside.
+    /// Vertex indices, counter-clockwise seen from outside.
     quads: Vec<[usize; 4]>,
 }
 
 struct Vertex {
     position: DVec3,
-    /// Of its cell.
+    /// Width of the cell that the vertex belongs to.
     width: f64,
 }
 
@@ -57,7 +61,7 @@ impl Net {
         let inside = |place| values[number(place)] < 0.0;
 
         let mut net = Self { vertices: Vec::new(), quads: Vec::new() };
-        // By a cell's number, for each of its edges the vertex of the surface that crosses it.
+        // By cell number: for each edge of the cell, the vertex of the surface that crosses it.
         let mut vertex_of: HashMap<usize, [usize; 12]> = HashMap::new();
         for cell in all(corners.map(|count| count - 1)) {
             let corner = |corner: usize| [0, 1, 2].map(|k| cell[k] + (corner >> k & 1));
@@ -69,7 +73,8 @@ impl Net {
                 let crossings = own.clone().map(|edge| {
                     let [from, to] = EDGES[edge].map(corner);
                     let (a, b) = (values[number(from)], values[number(to)]);
-                    // Beside the outermost corners, which are infinitely far outside: the inner corner itself.
+                    // Next to the outermost corners, which count as infinitely far outside: the
+                    // inner corner itself.
                     let share = if b.is_infinite() {
                         0.0
                     } else if a.is_infinite() {
@@ -94,8 +99,8 @@ impl Net {
                 if inside(from) == inside(to) {
                     continue;
                 }
-                // An edge on the grid's outside is not crossed, so that there are four cells about this one. Counter-clockwise as
-                // seen from its far end.
+                // Edges on the grid's boundary are never crossed, so this edge has four cells
+                // around it, here counter-clockwise as seen from its far end.
                 let about = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[across, beyond]| {
                     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
                     let mut cell = from;
@@ -111,7 +116,7 @@ impl Net {
         net
     }
 
-    /// Brings all vertices to the surface, none further than a cell's width.
+    /// Moves all vertices onto the surface, none by more than a cell's width.
     fn project(&mut self, field: Field<'_>) {
         self.vertices.par_iter_mut().for_each(|Vertex { position, width }| {
             let start = *position;
@@ -126,7 +131,7 @@ impl Net {
         });
     }
 
-    /// Draws all vertices towards the middle of their neighbours, along the surface.
+    /// Moves all vertices along the surface towards the mean of their neighbours.
     fn relax(&mut self, field: Field<'_>) {
         let mut sums = vec![(DVec3::ZERO, 0.0); self.vertices.len()];
         for quad in &self.quads {
@@ -169,29 +174,31 @@ impl Net {
     }
 }
 
-/// The least of a triangle's angles, in radians.
+/// Returns the smallest angle of a triangle, in radians.
 fn least_angle(corners: [DVec3; 3]) -> f64 {
     let angle = |k: usize| (corners[(k + 1) % 3] - corners[k]).angle_between(corners[(k + 2) % 3] - corners[k]);
     angle(0).min(angle(1)).min(angle(2))
 }
 
-/// The edges of a cell by their two corners, whose bits are x, y and z: four along each axis.
+/// Edges of a cell, four along each axis, as pairs of corners whose bits are x, y and z.
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/// Which of the four edges along an axis begins at this corner.
+/// Returns which of the four edges along an axis begins at this corner.
 fn place_of(corner: usize, axis: usize) -> usize {
     let [low, high] = [[1, 2], [0, 2], [0, 1]][axis];
     (corner >> low & 1) | (corner >> high & 1) << 1
 }
 
-/// All triples below the given counts, x fastest, then z.
+/// Returns all triples below the given counts; x varies fastest, then z.
 fn all([columns, levels, rows]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..levels).flat_map(move |y| (0..rows).flat_map(move |z| (0..columns).map(move |x| [x, y, z])))
 }
 
-/// For each edge of a cell that a surface crosses, the first edge that the same surface crosses; by which corners are `within` the body. Across a face
-/// whose corners are in and out by turns, those that are in are apart: what two cells say of their common face is one.
+/// For each edge of a cell that a surface crosses, returns the first edge that the same surface
+/// crosses, given which corners are `within` the body. Across a face whose corners alternate
+/// between inside and outside, the inside corners are kept apart, so that both cells agree on their
+/// common face.
 fn surfaces(within: [bool; 8]) -> [Option<usize>; 12] {
     let crossed = |edge: usize| within[EDGES[edge][0]] != within[EDGES[edge][1]];
     let mut first: [Option<usize>; 12] = std::array::from_fn(|edge| crossed(edge).then_some(edge));

@@ -4,22 +4,23 @@ use glam::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// What is to be known of a mesh from a net.
+/// Measured properties of a mesh from a net.
 #[derive(Debug)]
 pub(crate) struct Survey {
-    /// In degrees.
+    /// Smallest angle of a triangle, in degrees.
     pub(crate) least_angle: f64,
-    /// The share of corners whose normal looks into their triangle.
+    /// Fraction of corners whose normal points into their triangle.
     pub(crate) turned: f64,
-    /// Bodies that no triangle connects.
+    /// Number of bodies that no triangle connects.
     pub(crate) bodies: usize,
 }
 
-/// Of a mesh that is closed, manifold, right side out, and has unit normals: which is checked.
+/// Surveys a mesh, asserting that it is closed, manifold, right side out, and has unit normals.
 pub(crate) fn survey(mesh: &Mesh) -> Survey {
     assert!(mesh.positions.len() == mesh.normals.len() && mesh.uvs.is_empty() && mesh.halo.is_empty());
     assert!(mesh.normals.iter().all(|normal| normal.is_normalized()) && mesh.volume_and_area().0 > 0.0);
-    // About each vertex, which of its neighbours follows which, counter-clockwise. A directed edge occurs once.
+    // For each vertex, the counter-clockwise successor of each of its neighbours. A directed edge
+    // occurs once.
     let mut next: HashMap<[u32; 2], u32> = HashMap::new();
     let mut neighbours = vec![0; mesh.positions.len()];
     let mut first = vec![u32::MAX; mesh.positions.len()];
@@ -104,7 +105,8 @@ fn a_body_that_leaves_the_grid_is_cut_off_and_closed() {
     assert_eq!(survey(&mesh).bodies, 1);
 }
 
-/// Spheres that touch in a cell's middle, at all places within a cell: each keeps its own vertices, or they are one body.
+/// Spheres that touch in the middle of a cell, at all positions within a cell: each keeps its own
+/// vertices, or they are one body.
 #[test]
 fn nothing_that_passes_a_cell_together_shares_a_vertex() {
     for step in 0..20 {
@@ -165,7 +167,7 @@ fn joins_flow_together_within_their_width_alone() {
         let flown = a.min(b) - union(a, b, 0.4);
         assert!((0.0..0.1 + 1e-12).contains(&flown) && (flown > 0.0) == ((a - b).abs() < 0.4), "{a} {b}: {flown}");
     }
-    // Without a jump where the flow begins.
+    // Continuous at the start of the blend.
     assert!((union(0.0, 0.4 - 1e-9, 0.4) - 0.0).abs() < 1e-12);
 }
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 fn seams_and_poles_are_no_openings() {
     for mesh in [sphere(40.0, 64), torus(20.0, 7.0, 40, 20)] {
         assert_eq!(open_edges(&mesh), 0);
-        // By their bits alone they would be.
+        // Comparing bits alone would leave openings.
         assert!(
             mesh.positions.iter().any(|p| {
                 p.abs().max_element() > 1.0 && p.abs().min_element() > 0.0 && p.abs().min_element() < 1e-10
@@ -27,7 +27,8 @@ fn every_built_in_is_sound() {
     }
 }
 
-/// At some of the dragon's edges four or more triangles meet, always as many on one side as on the other.
+/// At some of the dragon's edges four or more triangles meet, always as many on one side as on the
+/// other.
 #[test]
 fn an_edge_with_an_even_number_of_triangles_is_no_opening() {
     let mesh = &Scene::named("dragon").expect("built in").objects[0].mesh;
@@ -75,7 +76,7 @@ fn parts_that_are_inside_out_are_counted_and_cavities_are_not() {
     let mut hollow = ball();
     hollow.append(&inverted(&sphere(0.5, 32)));
     assert_eq!(MeshDiagnosis::of(&hollow), MeshDiagnosis::default());
-    // Far from the origin, where a volume about it is lost in rounding, and beside a sound part.
+    // Far from the origin, where a volume about it is lost in rounding, and next to a sound part.
     let far = |mesh: &Mesh| mesh.placed(glam::DQuat::IDENTITY, DVec3::splat(3000.0));
     let mut two = ball();
     two.append(&far(&inverted(&ball())));
@@ -98,7 +99,7 @@ fn doubled_degenerate_and_flat_meshes_are_told_apart() {
     assert_eq!(found, MeshDiagnosis { degenerate: 3, ..MeshDiagnosis::default() });
     assert!(found.is_solid() && found.clauses() == ["3 triangles have no area"]);
 
-    // A sheet that slants, once and with a back; and nothing at all.
+    // A slanted sheet, once without and once with a back; and an empty mesh.
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.3], [1.0, 1.0, 0.7], [0.0, 1.0, 0.4]].map(Vec3::from_array);
     let sheet = |indices: &[u32]| Mesh::with_shared_normals(corners.to_vec(), indices.to_vec(), Averaging::Angle);
     let found = MeshDiagnosis::of(&sheet(&[0, 1, 2, 0, 2, 3]));

@@ -4,21 +4,23 @@ use glam::{DMat3, DVec3};
 
 use super::{Plane, PolyhedronError};
 
-/// Two corners closer than this, relative to the largest plane distance, are one. Solving three
-/// planes in f64 loses at most 1e-16/[`PARALLEL`]; the facets of real cuts are larger than 1e-3.
+/// Distance, relative to the largest plane distance, below which two corners count as one. Solving
+/// three planes in f64 loses at most 1e-16/[`PARALLEL`]; the facets of real cuts are larger than
+/// 1e-3.
 const MERGE: f64 = 1e-8;
 
-/// Triples whose unit normals span less volume than this do not fix a corner. Adjoining facets of a
-/// stone span more; what is left out is always fixed by a better triple.
+/// Triples whose unit normals span less volume than this do not define a corner. Adjoining facets
+/// of a stone span more, and a corner skipped here is always defined by a better triple.
 const PARALLEL: f64 = 1e-7;
 
-/// How far apart two corners of a solid with these planes may be computed and still be one.
+/// Returns the largest distance between two computed corners of a solid with these planes that
+/// still count as one.
 pub(super) fn tolerance(planes: &[Plane]) -> f64 {
     let largest = |so_far: f64, plane: &Plane| so_far.max(plane.distance.abs());
     MERGE * planes.iter().fold(0.0, largest)
 }
 
-/// The planes with normals of unit length.
+/// Returns the planes with unit normals.
 pub(super) fn unit_planes(planes: &[Plane]) -> Result<Vec<Plane>, PolyhedronError> {
     let unit = planes.iter().enumerate().map(|(index, plane)| {
         let length = plane.normal.length();
@@ -29,7 +31,7 @@ pub(super) fn unit_planes(planes: &[Plane]) -> Result<Vec<Plane>, PolyhedronErro
     unit.collect()
 }
 
-/// The planes, each once, at its first place.
+/// Returns the planes without repeats, each at its first position.
 pub(super) fn without_repeats(planes: Vec<Plane>, tolerance: f64) -> Vec<Plane> {
     let mut kept: Vec<Plane> = Vec::with_capacity(planes.len());
     for plane in planes {
@@ -43,8 +45,9 @@ pub(super) fn without_repeats(planes: Vec<Plane>, tolerance: f64) -> Vec<Plane> 
     kept
 }
 
-/// The corners of the solid: where three planes meet on the inner side of all others. Of the triples
-/// that give the same corner the one that spans the largest volume, the most exact, is kept.
+/// Returns the corners of the solid: points where three planes meet on the inner side of all
+/// others. If several triples give the same corner, the one that spans the largest volume, which is
+/// the most exact, is kept.
 pub(super) fn corners(planes: &[Plane], tolerance: f64) -> Vec<DVec3> {
     let mut found: Vec<(DVec3, f64)> = Vec::new();
     for (i, a) in planes.iter().enumerate() {
@@ -71,11 +74,12 @@ pub(super) fn corners(planes: &[Plane], tolerance: f64) -> Vec<DVec3> {
     found.into_iter().map(|(point, _)| point).collect()
 }
 
-/// `touched` ordered counter-clockwise about `normal`, from its highest corner; of several equally
-/// high ones from the first in that order, and on a level face from the least angle.
+/// Returns `touched` in counter-clockwise order about `normal`, starting from the highest corner.
+/// Among several equally high corners, the first in that order starts; on a level face, the one
+/// with the smallest angle.
 pub(super) fn ordered_loop(normal: DVec3, mut touched: Vec<usize>, corners: &[DVec3], tolerance: f64) -> Vec<usize> {
     let centre = touched.iter().map(|&k| corners[k]).sum::<DVec3>() / touched.len() as f64;
-    // A fixed frame for the level faces, so that they too start alike on every machine.
+    // A fixed frame for level faces, so that they too start alike on every machine.
     let across = if normal.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
     let right = (across - normal * normal.dot(across)).normalize_or_zero();
     let ahead = normal.cross(right);

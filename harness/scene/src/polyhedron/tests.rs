@@ -107,7 +107,7 @@ fn a_face_has_its_centroid_as_inner_vertex() {
     assert!(mesh.normals.last().unwrap().distance(Vec3::Y) < 1e-6);
 }
 
-/// All triangulations of all cuts, and of a flat-ended prism with 64 corners to each end.
+/// All triangulations of all cuts, and of a flat-ended prism with 64 corners at each end.
 fn triangulated() -> Vec<(Mesh, [Mesh; 3])> {
     let flat = prism(&PrismParameters { sides: 64, cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
     let five = prism(&PrismParameters { cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
@@ -135,7 +135,7 @@ fn every_triangulation_is_closed_and_encloses_the_same() {
                 }
             }
             assert!(edges.values().all(|&count| count == 1_001), "each edge runs once each way");
-            // Positions are rounded to f32; the inner ones are where the surface differs at all.
+            // Positions are rounded to f32; the surface can differ only at the inner ones.
             let (other_volume, other_area) = other.volume_and_area();
             assert!((other_volume - volume).abs() < 1e-6 * volume, "{other_volume} is not {volume}");
             assert!((other_area - area).abs() < 1e-6 * area, "{other_area} is not {area}");
@@ -163,7 +163,7 @@ fn every_triangulation_has_its_own_shape() {
     };
     assert_eq!((corners_used(&fan), corners_used(&strip)), (6, 3));
     assert_eq!(sliver.positions.len(), solid.vertices().len() + 6 * SLIVERS);
-    // The octagon's fan: every angle is an inscribed one, of 22.5° at least.
+    // The octagon's fan: every angle is an inscribed one, of at least 22.5°.
     assert!((0..6).all(|k| (least_angle(&fan, k) - 22.5).abs() < 1e-3));
     let mut needles: Vec<f64> = (0..150).map(|k| least_angle(&sliver, k)).collect();
     needles.sort_by(f64::total_cmp);

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-/// How a face of five or more corners is cut into triangles. A face of three or four is a fan from its first
-/// corner in every case.
+/// How a face of five or more corners is cut into triangles. A face of three or four corners is
+/// always a fan from its first corner.
 ///
-/// The surface is the same each time. What differs is what the paper's proxy geometry makes of it, since it
-/// takes each triangle for itself: the last three exist to show that.
+/// The surface is the same in each case. What differs is the paper's proxy geometry, which treats
+/// each triangle by itself; the last three variants exist to show that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Triangulation {
     /// A fan about a vertex at the face's centroid, which keeps the face's symmetry.
@@ -14,29 +14,30 @@ pub enum Triangulation {
     Centroid,
     /// A fan from the face's first corner: no inner vertex, and the first corner in every triangle.
     Fan,
-    /// A zigzag between the two sides of the face, as a triangle strip would run: no inner vertex, and no
+    /// A zigzag between the two sides of the face, like a triangle strip: no inner vertex, and no
     /// corner in more than three triangles.
     Strip,
-    /// The fan, with each of its triangles cut into needles: some vertices stand evenly along its median
-    /// from the first corner, and each of its other two corners is joined to all of them. Most
-    /// triangles so have an angle of a few degrees.
+    /// The fan, with each of its triangles cut into needles: vertices are spaced evenly along the
+    /// median from the first corner, and each of the other two corners is joined to all of them.
+    /// Most triangles thus have an angle of a few degrees.
     Sliver,
 }
 
-/// Vertices along each median of [`Triangulation::Sliver`].
+/// Number of vertices along each median of [`Triangulation::Sliver`].
 pub const SLIVERS: usize = 12;
 
 /// A face cut into triangles.
 #[derive(Debug)]
 pub(super) struct Cut {
-    /// Vertices inside the face, none of them on its edge, where the neighbouring face would not have it.
+    /// Vertices inside the face. None lies on its edge, because the neighbouring face would not
+    /// share it.
     pub(super) inner: Vec<DVec3>,
-    /// Places in the face's ring, followed by those of `inner`; wound like the ring.
+    /// Indices into the face's ring, followed by those of `inner`; wound like the ring.
     pub(super) triangles: Vec<[usize; 3]>,
 }
 
 impl Triangulation {
-    /// The triangles of the convex face with the corners `ring`, at least three.
+    /// Triangulates the convex face with the corners `ring`, at least three.
     pub(super) fn cut(self, ring: &[DVec3], centroid: impl FnOnce() -> DVec3) -> Cut {
         let corners = ring.len();
         match self {

@@ -4,19 +4,19 @@ use crate::nearest;
 use std::fmt;
 use std::str::FromStr;
 
-/// The neighbours of a voxel that edges lead to.
+/// The neighbours that a voxel shares graph edges with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stencil {
-    /// Those that share a face: 6.
+    /// Voxels that share a face: 6.
     Faces,
-    /// Those that share an edge as well: 18.
+    /// Voxels that share a face or an edge: 18.
     Edges,
-    /// Those that share a corner as well: 26.
+    /// Voxels that share a face, an edge or a corner: 26.
     Corners,
 }
 
 impl Stencil {
-    /// How many neighbours they are.
+    /// Returns the number of neighbours.
     #[must_use]
     pub fn neighbours(self) -> u32 {
         match self {
@@ -27,21 +27,22 @@ impl Stencil {
     }
 }
 
-/// How least costs are found.
+/// How the least costs are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The paper's: voxels that were just written offer their cost and the extinction to their six neighbours, whatever the edge's length.
+    /// The paper's method: voxels that were just written offer their cost and the extinction to
+    /// their six neighbours, regardless of the edge's length.
     Paper,
     /// Every voxel takes the least of its neighbours' offers, in every pass.
     PingPong(Stencil),
-    /// The same costs, but tiles that change alone.
+    /// The same costs, but only tiles that change are updated.
     Tiled(Stencil),
     /// The Eikonal equation by tiles: paths in any direction.
     Godunov,
 }
 
 impl Method {
-    /// All of them, from the first rung to the last.
+    /// All methods, from the first rung to the last.
     pub const ALL: [Self; 8] = [
         Self::Paper,
         Self::PingPong(Stencil::Faces),
@@ -53,7 +54,7 @@ impl Method {
         Self::Godunov,
     ];
 
-    /// What a user calls it.
+    /// Returns the name that a user types.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -68,7 +69,8 @@ impl Method {
         }
     }
 
-    /// The stencil whose graph it solves; faces for Godunov's update, which reads no others.
+    /// Returns the stencil of the graph that the method solves; faces for Godunov's update, which
+    /// reads no other neighbours.
     #[must_use]
     pub fn stencil(self) -> Stencil {
         match self {
@@ -77,7 +79,7 @@ impl Method {
         }
     }
 
-    /// Whether it works by tiles.
+    /// Whether the method works by tiles.
     #[must_use]
     pub fn is_tiled(self) -> bool {
         matches!(self, Self::Tiled(_) | Self::Godunov)
@@ -90,13 +92,13 @@ impl fmt::Display for Method {
     }
 }
 
-/// A name that no solver has.
+/// A name that belongs to no solver.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no solver `{name}`{suggestion}")]
 pub struct UnknownMethod {
-    /// The name.
+    /// The name that was given.
     pub name: String,
-    /// `; did you mean ...?` or the names that there are.
+    /// `; did you mean ...?` or a list of the valid names.
     pub suggestion: String,
 }
 

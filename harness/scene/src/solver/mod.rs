@@ -1,4 +1,5 @@
-//! What a material may ask to be drawn by, where it scatters light: the words of `extras.lapidary.solver`, and the limits of what they name.
+//! Techniques that a scattering material may request: the words of `extras.lapidary.solver`, and
+//! the limits of their parameters.
 
 mod method;
 mod reflectance;
@@ -9,49 +10,51 @@ pub use reflectance::{REFLECTANCES, Reflectance};
 use std::fmt;
 use std::str::FromStr;
 
-/// Voxels along an edge of the smallest grid.
+/// Number of voxels along an edge of the smallest grid.
 pub const LEAST_CELLS: u32 = 16;
-/// Voxels along an edge of the largest grid.
+/// Number of voxels along an edge of the largest grid.
 pub const MOST_CELLS: u32 = 256;
-/// The voxels along an edge are a multiple of this: what the passes over voxels take at a time, along any axis, goes into it.
+/// The number of voxels along an edge is a multiple of this, because the passes over voxels work in
+/// blocks that divide it along any axis.
 pub const MULTIPLE: u32 = 8;
 
-/// What a table's texture keeps of a texel.
+/// Texel format of a lookup table's texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// 8 bits a channel, the paper's.
+    /// 8 bits per channel, as in the paper.
     Rgba8,
-    /// Half floats.
+    /// Half-precision floats.
     Rgba16Float,
-    /// Single floats; its one channel is looked up once for each of the material's.
+    /// Single-precision floats; its one channel is looked up once for each channel of the material.
     R32Float,
 }
 
-/// How light's ways through bodies are found.
+/// How paths of light through bodies are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paths {
-    /// Voxels along each edge of a body's grid: a multiple of [`MULTIPLE`] from [`LEAST_CELLS`] to [`MOST_CELLS`].
+    /// Number of voxels along each edge of a body's grid: a multiple of [`MULTIPLE`] from
+    /// [`LEAST_CELLS`] to [`MOST_CELLS`].
     pub cells: u32,
-    /// The solver.
+    /// Solver for the path costs.
     pub method: Method,
 }
 
-/// How a body that scatters light is drawn.
+/// How a scattering body is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
-    /// By what the surface sends back.
+    /// Reflectance at the surface.
     Diffuse(Reflectance),
-    /// By the cheapest ways through it.
+    /// Cheapest optical paths through the body.
     OpticalPath(Paths),
 }
 
 /// Why a text names no solver.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSolver {
-    /// A solver of optical paths with a grid that there is none of.
+    /// A solver of optical paths with an invalid grid size.
     #[error("`{0}` cells; a grid has a multiple of {MULTIPLE} from {LEAST_CELLS} to {MOST_CELLS} along each edge")]
     Cells(String),
-    /// No solver's name.
+    /// Not a solver's name.
     #[error("no such solver")]
     Unknown,
 }

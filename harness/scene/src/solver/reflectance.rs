@@ -1,17 +1,17 @@
-//! How a body that scatters light sends it back: the rungs of the curvature-dependent reflectance function.
+//! How a scattering body reflects light: the rungs of the curvature-dependent reflectance function.
 
 use super::Format;
 
-/// A step of the ladder from cheap to exact.
+/// A rung of the ladder, from cheap to exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reflectance {
     /// Lambert's law: no scattering.
     Lambert,
-    /// Lambert's law with cast shadows: what a renderer without scattering would show.
+    /// Lambert's law with cast shadows, as in a renderer without scattering.
     LambertShadowed,
     /// Wrap lighting.
     Wrap,
-    /// A lookup table of this many texels a side.
+    /// A lookup table with this many texels per side.
     Table(u32, Format),
     /// The cheap closed form.
     Cheap,
@@ -19,13 +19,13 @@ pub enum Reflectance {
     Accurate,
     /// The convolution by quadrature.
     Quadrature,
-    /// The form that keeps energy over the sphere.
+    /// The energy-conserving form over the sphere.
     Spherical,
-    /// Irradiance blurred in the mesh's texture, which the others do without.
+    /// Irradiance blurred in the mesh's texture, the only rung that uses it.
     Blur,
 }
 
-/// Every one, by its rung's name.
+/// All variants, with the names of their rungs.
 pub const REFLECTANCES: [(&str, Reflectance); 11] = [
     ("lambert", Reflectance::Lambert),
     ("lambert-shadowed", Reflectance::LambertShadowed),
@@ -41,12 +41,12 @@ pub const REFLECTANCES: [(&str, Reflectance); 11] = [
 ];
 
 impl Reflectance {
-    /// Its rung's name.
+    /// Returns the name of the rung.
     pub fn name(self) -> &'static str {
         REFLECTANCES.iter().find(|(_, reflectance)| *reflectance == self).map_or("table", |(name, _)| name)
     }
 
-    /// Whether it is Lambert's law, with shadows or without: nothing scatters.
+    /// Whether this is Lambert's law, with or without shadows, so that nothing scatters.
     pub fn is_lambert(self) -> bool {
         matches!(self, Self::Lambert | Self::LambertShadowed)
     }

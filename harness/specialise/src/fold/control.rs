@@ -1,4 +1,4 @@
-//! The branches, switches and loops of a function, folded where what they depend on is known.
+//! Folds the branches, switches and loops of a function whose conditions are known.
 
 use super::super::operands;
 use super::{Flow, Folder, Known, forget};
@@ -6,7 +6,7 @@ use naga::{Block, Expression, Handle, Literal, Span, Statement, SwitchCase, Swit
 use std::collections::HashSet;
 
 impl Folder<'_> {
-    /// An `if` on a constant becomes the arm that is taken.
+    /// Folds an `if`: on a constant, it becomes the arm that is taken.
     pub(super) fn branch(
         &mut self,
         condition: Handle<Expression>,
@@ -35,7 +35,8 @@ impl Folder<'_> {
         Flow::GoesOn
     }
 
-    /// A `switch` on a constant becomes the case that is taken, in a `switch` of its own where it breaks from within.
+    /// Folds a `switch`: on a constant, it becomes the case that is taken, inside a `switch` of its
+    /// own if that case breaks from within.
     pub(super) fn switch(
         &mut self,
         selector: Handle<Expression>,
@@ -54,7 +55,7 @@ impl Folder<'_> {
             for SwitchCase { value, body, fall_through } in cases {
                 let mut known_in_case = if entered_from_above { known_behind.clone() } else { known.clone() };
                 let (body, flow) = self.inner_block(body, &mut known_in_case);
-                // A case that was to fall through and now ends, ends.
+                // A case that falls through no longer does so if its folded body ends.
                 let fall_through = fall_through && flow == Flow::GoesOn;
                 // `case 1, 2` falls through from an empty case, which changes nothing.
                 entered_from_above = fall_through && !body.is_empty();
@@ -83,7 +84,7 @@ impl Folder<'_> {
         flow
     }
 
-    /// A loop that never comes round becomes its first round, often nothing.
+    /// Folds a loop: one that never repeats becomes its first iteration, which is often empty.
     pub(super) fn repeat(
         &mut self,
         body: Block,
@@ -103,7 +104,7 @@ impl Folder<'_> {
         forget(known, &written);
         let outer = self.scope.len();
         let (body, _) = self.block(body, &mut known.clone());
-        // It sees what the body has evaluated.
+        // The continuing block sees what the body has evaluated.
         let (continuing, _) = self.block(continuing, &mut known.clone());
         self.scope.truncate(outer);
         let break_if = break_if.map(|condition| self.resolve(condition));
@@ -111,8 +112,9 @@ impl Folder<'_> {
         Flow::GoesOn
     }
 
-    /// The first round of a loop, where it certainly leaves the loop at its end and nowhere before: folded with what is
-    /// known on entry, which holds for that round alone. Where there is another, nothing of the trial is kept.
+    /// Returns the first iteration of a loop if it certainly leaves the loop at its end and nowhere
+    /// earlier. It is folded with the values known on entry, which hold for that iteration alone.
+    /// If there is another iteration, the trial is undone and the result is `None`.
     fn only_round(&mut self, body: &Block, known: &mut Known) -> Option<(Block, Flow)> {
         let before = (self.expressions.clone(), self.stands_for.clone(), self.scope.len());
         let mut known_inside = known.clone();
@@ -139,7 +141,8 @@ impl Folder<'_> {
     }
 }
 
-/// The statements that a `switch` runs for a selector: a case's, and those that it falls through to.
+/// Returns the statements that a `switch` runs for a selector: those of its case and of the cases
+/// that it falls through to.
 fn taken_case(cases: Vec<SwitchCase>, selected: Literal) -> Block {
     let is_selected = |case: &SwitchCase| match (case.value, selected) {
         (SwitchValue::I32(value), Literal::I32(selected)) => value == selected,
@@ -158,21 +161,21 @@ fn taken_case(cases: Vec<SwitchCase>, selected: Literal) -> Block {
     taken
 }
 
-/// Whether a block breaks out of the switch or loop that it stands in.
+/// Whether a block breaks out of the switch or loop that contains it.
 fn breaks(block: &Block) -> bool {
     block.iter().any(|statement| match statement {
         Statement::Break => true,
-        // A break inside these is theirs.
+        // A `break` inside these belongs to them.
         Statement::Switch { .. } | Statement::Loop { .. } => false,
         other => operands::blocks(other).into_iter().any(breaks),
     })
 }
 
-/// Whether a block goes on to the next round of the loop that it stands in.
+/// Whether a block continues with the next iteration of the loop that contains it.
 fn continues(block: &Block) -> bool {
     block.iter().any(|statement| match statement {
         Statement::Continue => true,
-        // A switch has no rounds.
+        // A switch has no iterations, so only a loop ends the search.
         Statement::Loop { .. } => false,
         other => operands::blocks(other).into_iter().any(continues),
     })

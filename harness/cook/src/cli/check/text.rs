@@ -1,4 +1,4 @@
-//! What `cook check` says to a person.
+//! Output of `cook check` for people.
 
 use super::Checked;
 use anstyle::AnsiColor;
@@ -9,7 +9,7 @@ use lapidary_cook::cookbook::release::Standing;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Whether to colour.
+/// Whether to use colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Style {
     Plain,
@@ -17,7 +17,7 @@ pub(super) enum Style {
 }
 
 impl Style {
-    /// Coloured on a terminal that takes it and where `NO_COLOR` and its like do not say otherwise.
+    /// Coloured on a terminal that supports it, unless `NO_COLOR` or a similar variable forbids it.
     pub(super) fn of_stdout() -> Style {
         match anstream::AutoStream::choice(&std::io::stdout()) {
             anstream::ColorChoice::Never => Style::Plain,
@@ -40,7 +40,7 @@ impl Style {
     }
 }
 
-/// What is compared with what, and on which device.
+/// Describes the two sides of the comparison, and the device.
 pub(super) fn about(on: On<'_>) -> String {
     match on {
         On::Adapter(gpu) if gpu.is_lavapipe() => format!(
@@ -70,7 +70,7 @@ pub(super) fn about(on: On<'_>) -> String {
     }
 }
 
-/// The whole report: notes, the table, each failure, the sum.
+/// Formats the whole report: notes, the table, each failure, the total.
 pub(super) fn report(checked: &Checked, style: Style) -> String {
     let mut text = String::new();
     for line in notes(&checked.notes, &checked.releases) {
@@ -129,7 +129,8 @@ pub(super) fn report(checked: &Checked, style: Style) -> String {
     text
 }
 
-/// Where the browser's results have other bits than the adapter's, the most different function first.
+/// Lists functions whose results in the browser differ in bits from the adapter's, the most
+/// different first.
 fn differences(rows: &[Row], text: &mut String) {
     let differing = difference::differing(rows);
     let _ = writeln!(
@@ -162,7 +163,7 @@ fn differences(rows: &[Row], text: &mut String) {
     }
 }
 
-/// Bounds that first order says are too low, or too high.
+/// Lists bounds that a first-order estimate finds too low or too high.
 fn allowances(rows: &[Row], text: &mut String) {
     let _ = writeln!(
         text,
@@ -187,7 +188,7 @@ fn allowances(rows: &[Row], text: &mut String) {
     }
 }
 
-/// A line each.
+/// Formats each note in one line.
 pub(super) fn notes(notes: &[String], releases: &[Standing]) -> Vec<String> {
     let standing = releases.iter().flat_map(|standing| {
         let text = standing.describe();
@@ -196,7 +197,7 @@ pub(super) fn notes(notes: &[String], releases: &[Standing]) -> Vec<String> {
     notes.iter().map(|note| format!("note: {note}")).chain(standing).collect()
 }
 
-/// What is wrong with a function, or missing in its test; nothing where all is well.
+/// Describes what is wrong with a function or missing in its test; writes nothing if all is well.
 fn details(row: &Row, style: Style, text: &mut String) {
     if row.passed() && row.missed_edges.is_empty() && row.branches_untested.is_none() {
         return;
@@ -256,12 +257,12 @@ fn compared(failure: &Failure, text: &mut String) {
     let _ = writeln!(text, "    allowed error: {}", allowed.join("; "));
 }
 
-/// Three digits.
+/// Rounds to three digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// Three digits, in whichever notation is shorter.
+/// Formats three digits in the shorter notation.
 fn short(value: f64) -> String {
     if value >= f64::MAX {
         return "inf".to_owned();

@@ -1,17 +1,18 @@
-//! The curvature-dependent reflectance's ladder.
+//! Ladder of the curvature-dependent reflectance.
 
 use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number, parse_rung};
 use lapidary_cook::cost::cdrf::{self, CurvatureSource, Options, Part, plot};
 use lapidary_plan::Rung;
 use lapidary_scene::solver::Reflectance;
 
-/// The ladder of the curvature-dependent reflectance, timed beside Lambert's law and a blur in a texture.
+/// Ladder of the curvature-dependent reflectance, timed against Lambert's law and a blur in a
+/// texture.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Rungs to measure, comma-separated; all where left out.
+    /// Rungs to measure, comma-separated; all by default.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
     rungs: Vec<Rung>,
-    /// Rounds of timing; 0 leaves times out.
+    /// Rounds of timing; 0 skips timing.
     #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: u32,
     #[command(flatten)]
@@ -40,7 +41,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     places.write(&report, &shown)
 }
 
-/// A rung of this ladder.
+/// Parses a rung of this ladder.
 fn reflectance(rung: Rung) -> Result<Reflectance, Failure> {
     match rung {
         Rung::Diffuse(reflectance) if cdrf::RUNGS.contains(&reflectance.name()) => Ok(reflectance),

@@ -1,12 +1,12 @@
-//! What each effect costs.
+//! Cost of each effect.
 
 use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number};
 use lapidary_cook::cost::effects::{self, Options};
 
-/// Each effect alone, none, and all: time, instructions and bytes.
+/// Cost of each effect alone, of none, and of all: time, instructions and bytes.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Rounds of timing; 0 leaves times out.
+    /// Rounds of timing; 0 skips timing.
     #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: u32,
     #[command(flatten)]

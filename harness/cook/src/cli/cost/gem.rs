@@ -6,20 +6,20 @@ use super::{
 };
 use lapidary_cook::cost::{self, CostError, plot};
 
-/// The gem's ladder, timed. Takes minutes.
+/// Ladder of the gem, timed. Takes minutes.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Rungs to measure, comma-separated; all where left out.
+    /// Rungs to measure, comma-separated; all by default.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
     rungs: Vec<Rung>,
-    /// Views to compare in, comma-separated; all where left out.
+    /// Views to compare, comma-separated; all by default.
     #[arg(long, value_delimiter = ',', value_parser = parse_view, conflicts_with = "from")]
     views: Vec<views::View>,
-    /// Rounds of timing; 0 leaves times out.
+    /// Rounds of timing; 0 skips timing.
     #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: u32,
-    /// Where the time of the cheapest rungs goes instead: frames from which one thing after another is taken away; with --out,
-    /// gem_profile.txt.
+    /// Profile the cheapest rungs instead, with frames that leave out one part after another; with
+    /// --out, written to gem_profile.txt.
     #[arg(long, conflicts_with_all = ["rungs", "views", "from", "json", "fill"])]
     profile: bool,
     #[command(flatten)]
@@ -34,7 +34,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         )));
     }
     let mut options = Options { rounds: arguments.rounds, ..Options::default() };
-    // What a page needs beside the ladder goes with the whole of it.
+    // The further data that a page needs are measured only with the whole ladder.
     options.sizes = arguments.rungs.is_empty() && arguments.views.is_empty();
     if !arguments.rungs.is_empty() {
         options.rungs.clone_from(&arguments.rungs);

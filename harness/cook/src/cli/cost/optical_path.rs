@@ -1,16 +1,16 @@
-//! The ladder of light's ways through stone.
+//! Ladder of optical paths through stone.
 
 use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number, parse_rung};
 use lapidary_cook::cost::optical_path::{self, Options, RungReport, plot};
 use lapidary_plan::Rung;
 
-/// The ladder of light's ways through stone, by solver, neighbours and size of the grid. Takes minutes.
+/// Ladder of optical paths through stone, by solver, neighbours and grid size. Takes minutes.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Rungs to measure, comma-separated; all where left out.
+    /// Rungs to measure, comma-separated; all by default.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
     rungs: Vec<Rung>,
-    /// Rounds of timing; 0 leaves times out.
+    /// Rounds of timing; 0 skips timing.
     #[arg(long, default_value_t = Options::default().rounds, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
     rounds: u32,
     #[command(flatten)]

@@ -1,14 +1,15 @@
-//! What restraint saves.
+//! Savings from restraint.
 
 use super::{Context, Failure, Outcome, Places, Report, Shown, behind_a_bar, number, parse_rung};
 use lapidary_cook::cost::restraint::{self, Options};
 use lapidary_plan::Rung;
 
-/// What is saved by work that a pixel or a tile has no use for: rays that end when what they carry can no longer be seen, and ways
-/// through stone sought in tiles with matter alone; and a variant of the recipe for each material beside one for all. Takes minutes.
+/// Savings from skipping work that a pixel or a tile does not need. Ends rays whose contribution
+/// can no longer be seen, traces optical paths only in tiles with matter, and compares one recipe
+/// variant per material with one for all. Takes minutes.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Rungs to measure, comma-separated; all where left out.
+    /// Rungs to measure, comma-separated; all by default.
     #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
     rungs: Vec<Rung>,
     /// Rounds of timing, at least 1.

@@ -6,13 +6,14 @@ use lapidary_cook::cost::sphere::{self, plot};
 /// Walks through each sphere: half a minute on two cores.
 const WALKS: u64 = 1_000_000;
 
-/// The curvature-dependent reflectance beside random walks through spheres, on the CPU. Takes half a minute.
+/// Compares the curvature-dependent reflectance with random walks through spheres, on the CPU.
+/// Takes half a minute.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Random walks through each sphere.
     #[arg(long, value_name = "N", default_value_t = WALKS, conflicts_with = "from", value_parser = number::whole(1..=u64::MAX))]
     walks: u64,
-    /// The same seed gives the same walks.
+    /// Seed of the walks; the same seed gives the same walks.
     #[arg(long, default_value_t = 1, conflicts_with = "from", value_parser = number::whole(0..=u64::MAX))]
     seed: u64,
     #[command(flatten)]

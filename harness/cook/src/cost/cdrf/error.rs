@@ -1,4 +1,4 @@
-//! How far a rung's function is from the one that it stands for.
+//! Errors of a rung's function against the one that it approximates.
 
 use super::CostError;
 use glam::{UVec2, Vec3};
@@ -10,31 +10,33 @@ use lapidary_scene::solver::{Format, Reflectance};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A reflectance of a cosine and a width in radians.
+/// Reflectance as a function of cosine and width in radians.
 pub type Function = Box<dyn Fn(f32, f32) -> f32 + Sync>;
 
-/// A distance between functions of the angle and the width.
+/// Distance between two functions of the angle and the width.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distance {
-    /// The largest, over angles from 0 to 180° and widths from 0 to 3, and more closely beside the terminator at small widths.
+    /// Largest difference, for angles from 0 to 180° and widths from 0 to 3, sampled more densely
+    /// near the terminator at small widths.
     pub largest: f64,
-    /// The root mean square over the same angles and widths, both uniform.
+    /// Root mean square over the same angles and widths, both uniform.
     pub rms: f64,
 }
 
-/// A cosine, a width, and the exact value.
+/// Cosine, width and exact value.
 type Sample = (f32, f32, f64);
 
-/// A function's exact values wherever others are compared with it.
+/// Exact values of a function at the sample points of the comparison.
 pub struct Samples {
-    /// Angles from 0 to 180° by widths from 0 to 3, both uniform: what the root mean square is over.
+    /// Angles from 0 to 180° by widths from 0 to 3, both uniform; used for the root mean square.
     everywhere: Vec<Sample>,
-    /// Beside the terminator at small widths, where tables do worst: looked at closely for the largest error.
+    /// Dense samples near the terminator at small widths, where tables are least accurate; used for
+    /// the largest error only.
     at_the_kink: Vec<Sample>,
 }
 
 impl Samples {
-    /// Of a function in f64.
+    /// Samples a function in f64.
     pub fn of(exact: impl Fn(f64, f64) -> f64 + Sync) -> Self {
         let sample = |cosine: f32, sigma: f32| (cosine, sigma, exact(cosine.into(), sigma.into()));
         let angles = (0..=360).into_par_iter().map(|index| (f64::from(index) * 0.5).to_radians().cos() as f32);
@@ -51,15 +53,15 @@ impl Samples {
         }
     }
 
-    /// Of the convolution.
+    /// Samples the convolution.
     pub fn of_the_convolution() -> Self {
         Self::of(oracle::accurate)
     }
 
-    /// How far a function is from this one.
+    /// Returns the distance of `function` from the sampled one.
     pub fn distance(&self, function: impl Fn(f32, f32) -> f32) -> Distance {
         let error = |(cosine, sigma, exact): &Sample| (f64::from(function(*cosine, *sigma)) - exact).abs();
-        // A NaN stays the largest.
+        // A NaN counts as the largest error.
         let larger = |largest: f64, error: f64| if error > largest || error.is_nan() { error } else { largest };
         let largest = self.everywhere.iter().chain(&self.at_the_kink).map(error).fold(0.0, larger);
         let squares: f64 = self.everywhere.iter().map(|sample| error(sample).powi(2)).sum();
@@ -67,21 +69,22 @@ impl Samples {
     }
 }
 
-/// A table of this many texels a side, with the tint (1, 1, 1).
+/// Bakes a table with this many texels per side and the tint (1, 1, 1).
 ///
 /// # Errors
-/// Where the device refuses to bake it.
+/// Returns an error if the device fails while baking it.
 pub fn baked(gpu: &Gpu, side: u32, format: Format) -> Result<Table, CostError> {
     let size = UVec2::splat(side);
     let texels = table::bake(gpu, size, Vec3::ONE).map_err(render::RenderError::from)?;
     Ok(Table::new(size, format, &texels))
 }
 
-/// A rung's function: the mirror, which `cook check` holds to the shader, or a lookup in the table that the shader bakes. None where what a
-/// place sends back depends on more than the angle and the width.
+/// Returns a rung's function: the mirror, which `cook check` compares with the shader, or a lookup
+/// in the table that the shader bakes. `None` if the reflected light at a point depends on more
+/// than the angle and the width.
 ///
 /// # Errors
-/// As [`baked`].
+/// Returns an error as in [`baked`].
 pub fn function(gpu: &Gpu, reflectance: Reflectance) -> Result<Option<Function>, CostError> {
     Ok(Some(match reflectance {
         Reflectance::Lambert | Reflectance::LambertShadowed => Box::new(|cosine, _| mirror::lambert(cosine)),
@@ -101,13 +104,13 @@ pub fn function(gpu: &Gpu, reflectance: Reflectance) -> Result<Option<Function>,
 /// A lookup table and its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableReport {
-    /// Texels a side, format, and what is done wrong.
+    /// Texels per side, format, and deliberate mistake, if any.
     pub name: String,
-    /// From the convolution.
+    /// Distance from the convolution.
     pub distance: Distance,
 }
 
-/// The tables that are compared: texels a side, format, and its name.
+/// The compared tables: texels per side, format, and the format's name.
 const TABLES: [(u32, Format, &str); 7] = [
     (256, Format::Rgba8, "RGBA8 (the paper's)"),
     (257, Format::Rgba8, "RGBA8"),
@@ -118,10 +121,11 @@ const TABLES: [(u32, Format, &str); 7] = [
     (1025, Format::R32Float, "R32F"),
 ];
 
-/// How far tables of several sizes and formats are from the convolution, and the first of them where a lookup leaves out half a texel.
+/// Returns the distances of tables of several sizes and formats from the convolution, including the
+/// first table with a lookup that omits the half-texel offset.
 ///
 /// # Errors
-/// As [`baked`].
+/// Returns an error as in [`baked`].
 pub fn tables(gpu: &Gpu, convolution: &Samples) -> Result<Vec<TableReport>, CostError> {
     let mut found = Vec::new();
     for (index, (side, format, name)) in TABLES.into_iter().enumerate() {
@@ -148,7 +152,8 @@ mod tests {
         assert!(none.largest < 1e-7 && none.rms < 1e-7, "{none:?}");
         let shifted = samples.distance(|cosine, sigma| exact(cosine, sigma) + 0.25);
         assert!((shifted.largest - 0.25).abs() < 1e-6 && (shifted.rms - 0.25).abs() < 1e-6, "{shifted:?}");
-        // Off at one place between the samples of the mean, beside the terminator: the largest shows it, the mean does not.
+        // Wrong at one place near the terminator, between the samples of the mean: the largest
+        // error shows it, the mean does not.
         let spiked = |cosine: f32, sigma: f32| {
             exact(cosine, sigma) + if (cosine - 0.0006).abs() < 1e-5 && sigma < 0.004 { 0.5 } else { 0.0 }
         };

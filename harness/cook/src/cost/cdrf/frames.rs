@@ -1,4 +1,4 @@
-//! The frames that a rung draws, to be timed, and the memory that they need beside mesh and material.
+//! The frames of a rung that are timed, and the memory that they need besides mesh and material.
 
 use super::{CostError, Options, RungReport, shader};
 use crate::cost::timing::{self, Timed, Timing};
@@ -11,24 +11,25 @@ use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Camera, Scene, SceneError};
 use serde::{Deserialize, Serialize};
 
-/// The scene that is timed.
+/// Name of the timed scene.
 const SCENE: &str = "skin_bunny";
 
-/// How much of a renderer's work is drawn.
+/// The part of a renderer's work that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
-    /// Nothing but diffuse light: the body fills the frame, under one light.
+    /// Diffuse light only: the body fills the frame, under one light.
     Lit,
-    /// A whole frame: the body before a backdrop, in the studio and under one light, with what its surface mirrors, tone-mapped and encoded.
+    /// A whole frame: the body in front of a backdrop, in the studio and under one light, with
+    /// specular reflection, tone-mapped and encoded.
     Whole,
 }
 
 impl Part {
-    /// Both.
+    /// Both parts.
     pub const ALL: [Self; 2] = [Self::Lit, Self::Whole];
 
-    /// In a view's name.
+    /// Returns the part's name within a view's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lit => "lit",
@@ -37,21 +38,21 @@ impl Part {
     }
 }
 
-/// Where curvature comes from.
+/// The source of curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurvatureSource {
-    /// The pixel's derivatives.
+    /// Screen-space derivatives at the pixel.
     Screen,
-    /// The mesh, which holds it for each vertex.
+    /// Per-vertex values in the mesh.
     Vertex,
 }
 
 impl CurvatureSource {
-    /// Both.
+    /// Both sources.
     pub const ALL: [Self; 2] = [Self::Screen, Self::Vertex];
 
-    /// In a view's name.
+    /// Returns the source's name within a view's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Screen => "screen",
@@ -67,7 +68,7 @@ impl CurvatureSource {
     }
 }
 
-/// The views of the ladder.
+/// Returns the views of the ladder.
 pub(super) fn views() -> impl Iterator<Item = (Part, CurvatureSource)> {
     Part::ALL.into_iter().flat_map(|part| CurvatureSource::ALL.map(|source| (part, source)))
 }
@@ -75,19 +76,19 @@ pub(super) fn views() -> impl Iterator<Item = (Part, CurvatureSource)> {
 /// One frame of a rung.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {
-    /// What is drawn.
+    /// The part of the work that is drawn.
     pub part: Part,
-    /// Where curvature comes from; none where the rung knows no curvature.
+    /// The source of curvature; `None` if the rung does not use curvature.
     pub curvature: Option<CurvatureSource>,
-    /// Instructions of the specialised vertex shader in SPIR-V.
+    /// Number of SPIR-V instructions in the specialised vertex shader.
     pub vertex_instructions: u32,
-    /// Of the fragment shader.
+    /// Number of SPIR-V instructions in the specialised fragment shader.
     pub fragment_instructions: u32,
-    /// The frame's time.
+    /// The frame's times; `None` if timing was skipped.
     pub timing: Option<Timing>,
 }
 
-/// What is drawn.
+/// The scenes that are drawn, one per part.
 pub(super) struct Scenes {
     lit: Scene,
     whole: Scene,
@@ -106,31 +107,34 @@ impl Scenes {
         }
     }
 
-    /// Vertices of the mesh that is shown: those of halos are in its texture alone.
+    /// Returns the number of vertices of the displayed mesh; halo vertices occur only in its
+    /// texture.
     pub(super) fn vertices(&self) -> usize {
         self.whole.objects.iter().map(|object| object.mesh.without_halo().positions.len()).sum()
     }
 
-    /// Bytes that a rung needs of the mesh beside positions, normals and indices of what is shown.
+    /// Returns the bytes of mesh data that a rung needs besides positions, normals and indices of
+    /// the displayed mesh.
     pub(super) fn mesh_bytes(&self, reflectance: Reflectance) -> u64 {
         let shown = self.vertices();
         let bytes = match reflectance {
             Reflectance::Lambert | Reflectance::LambertShadowed => 0,
-            // Texture coordinates, the vertices of halos, and a list of triangles with halos among them.
+            // Texture coordinates, the vertices of halos, and a list of triangles including halos.
             Reflectance::Blur => {
                 let meshes = || self.whole.objects.iter().map(|object| &object.mesh);
                 let vertices: usize = meshes().map(|mesh| mesh.positions.len()).sum();
                 let drawn: usize = meshes().map(|mesh| mesh.halo.len() + mesh.indices.len()).sum();
                 vertices * size_of::<Vec2>() + (vertices - shown) * 2 * size_of::<Vec3>() + drawn * size_of::<u32>()
             }
-            // A curvature, where it comes from there.
+            // A curvature per vertex, if it comes from the mesh.
             _ => shown * size_of::<f32>(),
         };
         bytes as u64
     }
 }
 
-/// The bunny so near that its flank fills a frame of 16:9: where the middle of the flank is and how high the frame, in halves of the picture's height.
+/// A view of the bunny so close that its flank fills a 16:9 frame: centre of the flank and height
+/// of the frame, in halves of the picture's height.
 const FLANK: ([f32; 2], f32) = ([0.07, -0.19], 0.22);
 
 fn filled(scene: &Scene) -> Scene {
@@ -159,7 +163,7 @@ fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflect
     }
 }
 
-/// A rung's frames, untimed.
+/// Returns a rung's frames, not yet timed.
 pub(super) fn frames(scenes: &Scenes, reflectance: Reflectance, size: [u32; 2]) -> Result<Vec<FrameReport>, CostError> {
     let sources: &[Option<CurvatureSource>] = match reflectance {
         Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur => &[None],
@@ -182,7 +186,7 @@ pub(super) fn frames(scenes: &Scenes, reflectance: Reflectance, size: [u32; 2]) 
     Ok(frames)
 }
 
-/// Times all frames of all rungs, interleaved. `rungs` are those of the options, in their order.
+/// Times all frames of all rungs, interleaved. `rungs` are in the order of the options.
 pub(super) fn time(
     gpu: &Gpu,
     scenes: &Scenes,
@@ -199,7 +203,7 @@ pub(super) fn time(
                 settings,
                 scene: scenes.of(frame.part),
                 displayed: frame.part == Part::Whole,
-                // Its texture is as large for a small picture.
+                // The blur's texture does not shrink with the picture.
                 scales: reflectance != Reflectance::Blur,
             });
         }
@@ -212,7 +216,7 @@ pub(super) fn time(
     Ok(())
 }
 
-/// Bytes of a rung's textures for one material.
+/// Returns the bytes of a rung's textures for one material.
 pub(super) fn texture_bytes(reflectance: Reflectance) -> u64 {
     let bytes = |format: wgpu::TextureFormat, side: u32| {
         u64::from(format.block_copy_size(None).unwrap_or_default()) * u64::from(side).pow(2)
@@ -244,7 +248,7 @@ mod tests {
             let picture = render::render(gpu, scenes.of(part), &settings).expect("rendered");
             let covered = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).count();
             assert_eq!(covered == 320 * 180, part == Part::Lit, "{covered}");
-            // The light and its shadow side are both in sight.
+            // Both the lit and the shadow side are visible.
             let red: Vec<f32> = picture.linear.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| pixel[0]).collect();
             let (least, most) = (red.iter().copied().fold(f32::MAX, f32::min), red.iter().copied().fold(0.0, larger));
             assert!(most > 4.0 * least, "{part:?}: {least} {most}");
@@ -261,7 +265,7 @@ mod tests {
         let scenes = Scenes::new().expect("built in");
         let curvatures = scenes.mesh_bytes(Reflectance::Accurate);
         assert_eq!((scenes.mesh_bytes(Reflectance::Lambert), curvatures), (0, 4 * scenes.vertices() as u64));
-        // Two floats and an index or more for each vertex, and the halos'.
+        // Two floats and at least one index per vertex, plus the halos.
         assert!(scenes.mesh_bytes(Reflectance::Blur) > 3 * curvatures);
     }
 }

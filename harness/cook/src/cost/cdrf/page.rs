@@ -36,7 +36,7 @@ impl Tables for CdrfReport {
     }
 }
 
-/// Whole pictures beside random walks.
+/// Returns the table of whole pictures compared with random walks.
 fn scenes(report: &CdrfReport) -> String {
     let mut columns = vec!["rung".to_owned(), "shadows".to_owned()];
     columns.extend(SCENES.iter().flat_map(|scene| [format!("{scene}, from walks"), "ms".to_owned()]));
@@ -64,7 +64,7 @@ fn scenes(report: &CdrfReport) -> String {
     table
 }
 
-/// Functions and tables beside each other, by their errors alone.
+/// Compares functions and tables by their errors alone.
 fn errors(report: &CdrfReport) -> String {
     let mut table = header(&["rung", "largest error", "mean error"]);
     let mut add = |name: String, Distance { largest, rms }: Distance| {
@@ -157,7 +157,7 @@ fn times(report: &CdrfReport, part: Part) -> String {
     table
 }
 
-/// Where curvature comes from, in words.
+/// Describes the source of curvature in words.
 fn words(source: CurvatureSource) -> &'static str {
     match source {
         CurvatureSource::Screen => "curvature from the screen",
@@ -165,7 +165,8 @@ fn words(source: CurvatureSource) -> &'static str {
     }
 }
 
-/// How many times as near to the convolution a rung is as the paper's table, by the measure where it gains less.
+/// Returns how many times closer to the convolution a rung is than the paper's table, by the
+/// measure in which it gains less.
 fn nearer(report: &CdrfReport, name: &str) -> Option<f64> {
     let [paper, rung] = [report.rung(PAPER)?.distance?, report.rung(name)?.distance?];
     Some((paper.largest / rung.largest).min(paper.rms / rung.rms))
@@ -173,7 +174,7 @@ fn nearer(report: &CdrfReport, name: &str) -> Option<f64> {
 
 fn goals(report: &CdrfReport) -> String {
     let mut table = header(&["goal", "measured", ""]);
-    // The fastest of the rungs without a table that are so much nearer: what the other goals are held to as well.
+    // The fastest rung without a table that is close enough; the other goals apply to it too.
     let near_enough = |name: &&str| nearer(report, name).is_some_and(|times| times >= 100.0);
     for source in CurvatureSource::ALL {
         let of = |part, slow: &str, fast: &str| report.ratio(slow, fast, part, source).unwrap_or(f64::NAN);

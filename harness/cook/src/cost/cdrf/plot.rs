@@ -1,4 +1,4 @@
-//! The ladder as a picture: time of the lit part against the largest error, both logarithmic.
+//! The ladder as a plot of the largest error against the time of the lit part, both logarithmic.
 
 use super::{BLUR, CdrfReport, CurvatureSource, Part, RungReport, SPHERICAL};
 use crate::cost::CostError;
@@ -7,7 +7,7 @@ use crate::cost::drawing::{
 };
 use plotters::prelude::*;
 
-/// Labels of the axis of times.
+/// Labels on the axis of times, in milliseconds.
 const TIMES: [f64; 14] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0];
 
 struct Point<'a> {
@@ -15,12 +15,13 @@ struct Point<'a> {
     source: CurvatureSource,
     ms: f64,
     error: f64,
-    /// No other rung is both faster, with curvature from the same source, and no worse.
+    /// Whether no other rung is both faster, with curvature from the same source, and no worse.
     front: bool,
 }
 
 impl Point<'_> {
-    /// By how the rung does it: no curvature, in a table, in closed form, another function.
+    /// Returns a colour by the rung's method: no curvature, table, closed form, or another
+    /// function.
     fn color(&self) -> RGBColor {
         match self.rung.rung.as_str() {
             SPHERICAL => COLORS[3],
@@ -44,17 +45,17 @@ fn points(report: &CdrfReport, source: CurvatureSource) -> Vec<Point<'_>> {
             source,
             ms,
             error,
-            // The spherical form approximates another function, and stands on no common line.
+            // The spherical form approximates another function, so it is not on the common line.
             front: rung.rung != SPHERICAL && !all.iter().any(|&(_, other_ms, other)| other_ms < ms && other <= error),
         })
         .collect()
 }
 
-/// The ladder as SVG.
+/// Returns the plot as SVG.
 ///
 /// # Errors
 ///
-/// A report without times; plotters' own.
+/// Returns an error if the report has no times or if plotters fails.
 pub fn svg(report: &CdrfReport) -> Result<String, CostError> {
     written(|root| draw(root, report))
 }
@@ -99,7 +100,7 @@ fn draw(root: &Root<'_>, report: &CdrfReport) -> Drawn {
             .label("time of the texture's blur")
             .legend(line(color, 2));
     }
-    // A disc where curvature comes from the screen, a ring where it comes from vertices.
+    // A disc if curvature comes from the screen, a ring if it comes from vertices.
     for point in all() {
         let (at, color) = ((point.ms, point.error), point.color());
         match point.source {
@@ -121,7 +122,7 @@ fn draw(root: &Root<'_>, report: &CdrfReport) -> Drawn {
         }
     }
     let places: Vec<(i32, i32)> = all().map(|point| chart.backend_coord(&(point.ms, point.error))).collect();
-    // One label for a rung's two points.
+    // One label for both points of a rung.
     let [screen, _] = &series;
     let labels: Vec<Label<'_>> =
         screen.iter().zip(&places).map(|(point, &at)| Label { name: &point.rung.rung, at, front: true }).collect();

@@ -1,4 +1,5 @@
-//! Whole pictures beside the committed ones by random walks, with cast shadows and without, and the time of these very pictures.
+//! Whole pictures compared with the committed random walks, with and without cast shadows, and the
+//! times of the same pictures.
 
 use super::CostError;
 use crate::cost::timing::{self, Timed, Timing};
@@ -13,27 +14,29 @@ use lapidary_scene::Scene;
 use lapidary_scene::solver::Reflectance;
 use serde::{Deserialize, Serialize};
 
-/// The scenes.
+/// Names of the scenes.
 pub const SCENES: [&str; 3] = ["skin", "skin_ring", "skin_bunny"];
-/// Pixels along a side of the picture, of which two by two are one of the walks'.
+/// Width and height of the picture; two by two of its pixels correspond to one pixel of the walks.
 pub(super) const SIDE: u32 = 2 * EXR_SIDE;
 
-/// A rung's picture of a scene.
+/// Results for a rung's picture of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneReport {
-    /// The scene.
+    /// Name of the scene.
     pub scene: String,
     /// The rung's name.
     pub rung: String,
     /// Whether lights cast shadows.
     pub shadows: bool,
-    /// From the picture by random walks, over its root mean square, after the best exposure.
+    /// Distance from the picture by random walks after the best exposure, divided by its root mean
+    /// square.
     pub walks: f64,
-    /// The picture's time.
+    /// The picture's times; `None` if timing was skipped.
     pub timing: Option<Timing>,
 }
 
-/// One sample a pixel, by the lights alone, with the mesh's own curvature.
+/// Returns settings for one sample per pixel, no light but the scene's lights, and per-vertex
+/// curvature.
 fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
     Settings {
         samples: 1,
@@ -45,17 +48,17 @@ fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
     }
 }
 
-/// What is drawn: of each scene each rung, without shadows and with them.
+/// Returns the pictures to draw: each scene with each rung, without and with shadows.
 fn drawn(rungs: &[Reflectance]) -> impl Iterator<Item = (&'static str, Reflectance, bool)> {
     SCENES.into_iter().flat_map(move |scene| {
         rungs.iter().flat_map(move |&rung| [false, true].map(move |shadows| (scene, rung, shadows)))
     })
 }
 
-/// Distances of all rungs, and their times where there are rounds.
+/// Measures the distances of all rungs, and their times if `rounds` is not 0.
 ///
 /// # Errors
-/// Where a committed picture is missing or damaged, or the device refuses.
+/// Returns an error if a committed picture is missing or damaged, or if the device fails.
 pub(super) fn measure(
     gpu: &Gpu,
     rungs: &[Reflectance],
@@ -96,7 +99,8 @@ mod tests {
     use super::*;
     use lapidary_gpu::AdapterChoice;
 
-    /// A body that is in the way of its own light: Lambert's law with shadows is the nearer baseline, and the reflectance is nearer still.
+    /// On a body that shadows itself, Lambert's law with shadows is the better baseline, and the
+    /// reflectance is closer still to the walks.
     #[test]
     fn shadows_bring_the_bunny_nearer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
@@ -116,8 +120,10 @@ mod tests {
         assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
     }
 
-    /// As docs/cdrf_shading.md has them: what masks over the whole reflectance would leave on the bunny, everywhere and where the surface faces the
-    /// light. Under its one light, visibility is what Lambert's law keeps of itself with shadows, and 0 where the surface faces away.
+    /// The numbers in docs/cdrf_shading.md: the error on the bunny if a mask were applied to the
+    /// whole reflectance, everywhere or only where the surface faces the light. With the bunny's
+    /// single light, visibility is the ratio of Lambert's law with and without shadows, and 0 where
+    /// the surface faces away.
     #[test]
     fn a_mask_over_all_of_the_reflectance_is_farther_from_the_walks() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
@@ -130,7 +136,8 @@ mod tests {
         let bare = draw(Reflectance::Lambert, false).linear;
         let cast = draw(Reflectance::Lambert, true).linear;
         let crossing = draw(Reflectance::Accurate, false);
-        // What `mask` makes of each value, told the light's visibility there, none where the surface faces away.
+        // Applies `mask` to each value. Its argument is the light's visibility, or `None` where the
+        // surface faces away.
         let masked = |mask: fn(Option<f32>) -> f32| {
             let mut picture = crossing.clone();
             for ((pixel, bare), cast) in picture.linear.iter_mut().zip(&bare).zip(&cast) {
@@ -147,7 +154,7 @@ mod tests {
             "skin_bunny: masked everywhere {everywhere:.3}, where it faces the light {facing:.3}, as the recipe does {own:.3}"
         );
         assert!(own < facing && facing < everywhere, "{own} {facing} {everywhere}");
-        // The page rounds to two digits. Another driver's pixels at shadows' edges are others.
+        // The page rounds to two digits. Pixels at shadow edges differ between drivers.
         for (found, recorded) in [(everywhere, 0.311), (facing, 0.286)] {
             let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };
             assert!((found - recorded).abs() < allowed, "{found}, recorded {recorded}");

@@ -1,4 +1,4 @@
-//! A rung's shaders, specialised to what it uses and counted in SPIR-V.
+//! A rung's specialised shaders, counted in SPIR-V instructions.
 
 use super::CostError;
 use lapidary_render as render;
@@ -11,7 +11,7 @@ use lapidary_specialise::spirv_counts::SpirvCounts;
 /// The recipe's entry points.
 const ENTRIES: [&str; 2] = ["cdrf_vertex", "cdrf_fragment"];
 
-/// What `settings` draw `scene` with.
+/// Counts the instructions that draw `scene` with `settings`.
 pub(super) fn counts(scene: &Scene, settings: &Settings, reflectance: Reflectance) -> Result<SpirvCounts, CostError> {
     let recipe = settings.rung.recipe();
     let constants = render::translucent_constants(scene, settings, reflectance);
@@ -62,9 +62,9 @@ mod tests {
             [(Curvature::Mean, dark), (Curvature::Vertex, dark), (Curvature::Mean, Effects::NONE)]
                 .map(|(c, e)| counted(c, e));
         for (index, name) in RUNGS.iter().enumerate() {
-            // Only rungs that ask for a curvature get to know it.
+            // Only rungs that use curvature receive it.
             assert_eq!(vertex[index] < lit[index], !["lambert", "blur"].contains(name), "{name}: {lit:?} {vertex:?}");
-            // What arrives in the texture is counted with the texture's recipe.
+            // The light that reaches the texture is counted with the texture's recipe.
             assert_eq!(whole[index] > lit[index], *name != "blur", "{name}: {lit:?} {whole:?}");
         }
         let of = |name: &str| lit[RUNGS.iter().position(|rung| *rung == name).expect(name)];

@@ -4,11 +4,11 @@ use super::scenes::SIDE;
 use super::{BLUR, CdrfReport, CurvatureSource, LAMBERT, Part, RungReport};
 use std::fmt::Write as _;
 
-/// The paper's own figures, for comparison.
+/// The paper's own figures for comparison.
 const PAPER: &str = "The paper's figures, by table-256-rgba8 on a PlayStation 3, the GPU's part alone: 5.5 % over Lambert, and 379 % faster (4.8 times as\n\
     fast) than a blur in a texture of 1024x1024.";
 
-/// Where there is no figure.
+/// Placeholder for a missing figure.
 pub(super) const NONE: &str = "-";
 
 pub(super) fn text(report: &CdrfReport) -> String {
@@ -33,29 +33,29 @@ pub(super) fn text(report: &CdrfReport) -> String {
     text
 }
 
-/// A number that spans many powers of ten.
+/// Formats a number that spans many powers of ten.
 pub(super) fn scientific(value: Option<f64>) -> String {
     value.map_or(NONE.to_owned(), |value| format!("{value:.1e}"))
 }
 
-/// The time in milliseconds, with a star where not the whole frame was timed.
+/// Formats the time in milliseconds, with a star if only part of the frame was timed.
 pub(super) fn milliseconds(rung: &RungReport, part: Part, source: CurvatureSource) -> String {
     let timing = rung.frame(part, source).and_then(|frame| frame.timing);
     timing.map_or(NONE.to_owned(), |timing| format!("{:.1}{}", timing.ms, if timing.share < 1.0 { "*" } else { "" }))
 }
 
-/// What `rung` takes beyond Lambert's law.
+/// Formats the additional time of `rung` relative to Lambert's law.
 pub(super) fn over_lambert(report: &CdrfReport, rung: &str, part: Part, source: CurvatureSource) -> String {
     let ratio = report.ratio(rung, LAMBERT, part, source);
     ratio.map_or(NONE.to_owned(), |ratio| format!("{:+.1} %", 100.0 * (ratio - 1.0)))
 }
 
-/// How many times as long the blur takes.
+/// Formats the time of the blur divided by the time of `rung`.
 pub(super) fn under_blur(report: &CdrfReport, rung: &str, part: Part, source: CurvatureSource) -> String {
     report.ratio(BLUR, rung, part, source).map_or(NONE.to_owned(), |ratio| format!("{ratio:.1}"))
 }
 
-/// What is left beside random walks, with a free and with a fixed scale.
+/// Formats the residuals against random walks, with a free and with a fixed scale.
 pub(super) fn residuals(rung: &RungReport) -> String {
     rung.residuals.map_or(NONE.to_owned(), |found| format!("{:.4} / {:.4}", found.free, found.fixed))
 }

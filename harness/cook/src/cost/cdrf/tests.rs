@@ -1,7 +1,8 @@
 use super::*;
 use crate::cost::Timing;
 
-/// A rung whose lit part takes `ms` with curvature from the screen, and half of it from vertices; its whole frame takes ten more.
+/// Returns a rung whose lit part takes `ms` with curvature from the screen and half of it with
+/// curvature from vertices; its whole frame takes ten more.
 fn rung(name: &str, ms: f64, error: f64) -> RungReport {
     let frame = |(part, source): (Part, CurvatureSource)| {
         let lit = if source == CurvatureSource::Screen { ms } else { 0.5 * ms };
@@ -25,7 +26,7 @@ fn rung(name: &str, ms: f64, error: f64) -> RungReport {
     }
 }
 
-/// One that knows no curvature.
+/// Returns a rung without curvature.
 fn plain(name: &str, ms: f64) -> RungReport {
     let mut rung = rung(name, ms, 0.7);
     rung.frames.retain(|frame| frame.curvature == Some(CurvatureSource::Screen));
@@ -54,14 +55,14 @@ fn report(rungs: Vec<RungReport>) -> CdrfReport {
     report
 }
 
-/// Whole pictures, made up: shadows halve the distance and double the time.
+/// Returns made-up whole pictures: shadows halve the distance and double the time.
 fn scene(scene: &str, rung: &str, shadows: bool) -> SceneReport {
     let twice = if shadows { 2.0 } else { 1.0 };
     let timing = Timing { ms: 8.0 * twice, median_ms: 8.0 * twice, share: 1.0, encode_us: 1.0, draw_calls: 1 };
     SceneReport { scene: scene.to_owned(), rung: rung.to_owned(), shadows, walks: 0.4 / twice, timing: Some(timing) }
 }
 
-/// The whole ladder, made up.
+/// Returns the whole ladder with made-up values.
 fn whole() -> CdrfReport {
     let mut report = without_scenes();
     report.scenes = SCENES
@@ -96,7 +97,8 @@ fn every_rung_is_one_of_the_renderers() {
 #[test]
 fn a_rung_is_dominated_by_a_faster_one_that_errs_no_more() {
     let marked: Vec<String> = whole().rungs.into_iter().filter(|rung| rung.dominated).map(|rung| rung.rung).collect();
-    // Neither the spherical form, faster and of a small error from another function, nor the blur, without any, beats or is beaten.
+    // Neither the spherical form (faster, with a small error from another function) nor the blur
+    // (without any error) beats or is beaten.
     assert_eq!(marked, [PAPER, "table-257-rgba16f", "table-257-r32f", "quadrature"]);
     let untimed = |mut rung: RungReport| {
         rung.frames.iter_mut().for_each(|frame| frame.timing = None);
@@ -123,12 +125,12 @@ fn every_rung_view_and_measure_has_a_row() {
     };
     assert_eq!(row("cheap", "lit+screen", "largest").ms, Some(30.0));
     assert_eq!(row("cheap", "whole+vertex", "largest").ms, Some(25.0));
-    // What knows no curvature has one time for both.
+    // A rung without curvature has the same time for both sources.
     assert_eq!(row(LAMBERT, "lit+vertex", "rms").ms, Some(20.0));
     assert_eq!(row("cheap", "lit+screen", "walks").error, Some(0.0301));
     assert!(row(BLUR, "lit+screen", "rms").error.is_none() && !row(BLUR, "lit+screen", "rms").dominated);
     assert!(row(PAPER, "lit+screen", "largest").dominated && !row("cheap", "lit+screen", "largest").dominated);
-    // By the distance from random walks the spherical form can be compared.
+    // The spherical form is comparable by its distance from random walks.
     assert!(row("cheap", "lit+screen", "walks").dominated);
 }
 
@@ -173,7 +175,7 @@ fn goals_are_judged_by_the_fastest_rung_that_is_near_enough() {
     };
     let mut report = whole();
     let table = goals(&report);
-    // The cheap rung is faster, but only 20 times as near.
+    // The cheap rung is faster, but only 20 times closer.
     assert!(table.contains("`accurate`: 1.25 times as fast, 20000 times as near | met |"), "{table}");
     assert!(table.contains("`accurate`: +40.0 % | missed |"), "{table}");
     assert!(table.contains("`accurate`: 12.5 times | met |"), "{table}");

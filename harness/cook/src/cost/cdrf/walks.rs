@@ -1,4 +1,5 @@
-//! How far a rung's function is from what random walks through spheres give: what the convolution itself leaves, and what a rung's errors add to it.
+//! Errors of a rung's function against random walks through spheres: the residual of the
+//! convolution itself, and what a rung's errors add to it.
 
 use crate::cost::CostError;
 use crate::cost::sphere::{Fit, ScaleKind, SphereReport};
@@ -6,25 +7,28 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Root mean squares over the recorded spheres of what is left over a sphere's surface, each sphere with the width that brings the
-/// function nearest, in units of the irradiance square to the light.
+/// Residuals against the recorded spheres, as root mean squares over the spheres of each one's RMS
+/// over its surface.
+///
+/// Each sphere has the best-fit width of the function; the unit is the irradiance of a surface that
+/// faces the light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
-    /// With the scale that brings it nearest.
+    /// With the best-fit scale.
     pub free: f64,
-    /// With the half space's diffuse albedo for a scale.
+    /// With the diffuse albedo of the half space as the scale.
     pub fixed: f64,
 }
 
-/// Where the spheres are recorded.
+/// Returns the path of the recorded spheres.
 pub fn record_file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements/random_walk/sphere.json")
 }
 
-/// The recorded spheres.
+/// Reads the recorded spheres.
 ///
 /// # Errors
-/// Where the record is missing or damaged.
+/// Returns an error if the record is missing or damaged.
 pub fn record(path: &Path) -> Result<SphereReport, CostError> {
     let unfit = |what: String| CostError::Record { path: path.to_owned(), what };
     let text = std::fs::read_to_string(path).map_err(|error| unfit(format!("cannot be read: {error}")))?;
@@ -36,7 +40,7 @@ pub fn record(path: &Path) -> Result<SphereReport, CostError> {
     Ok(report)
 }
 
-/// What `function` leaves.
+/// Returns the residuals of `function`.
 pub fn residuals(spheres: &SphereReport, function: &(dyn Fn(f32, f32) -> f32 + Sync)) -> Residuals {
     let [free, fixed] = ScaleKind::ALL.map(|kind| {
         let squares = spheres.profiles.par_iter().map(|profile| {

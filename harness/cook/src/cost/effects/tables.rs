@@ -16,7 +16,7 @@ impl Tables for EffectsReport {
     }
 }
 
-/// What a frame has beyond another, with its sign.
+/// Formats the signed difference from another frame's value.
 fn beyond(value: f64, below: Option<f64>, digits: usize) -> String {
     below.map_or_else(|| "–".to_owned(), |below| format!("{:+.digits$}", value - below))
 }
@@ -41,7 +41,7 @@ fn cells(study: &Study, frame: &Frame) -> Vec<String> {
 
 const COLUMNS: [&str; 8] = ["effects", "ms", "more", "instructions", "more", "KiB", "more", "draws, dispatches"];
 
-/// For people.
+/// Returns the report as text.
 pub(super) fn text(report: &EffectsReport) -> String {
     let mut text = String::new();
     let [width, height] = report.frame;
@@ -65,7 +65,7 @@ pub(super) fn text(report: &EffectsReport) -> String {
     text
 }
 
-/// For a page.
+/// Returns the report as a table for a page.
 fn page_table(report: &EffectsReport) -> String {
     let mut table = String::new();
     let [width, height] = report.frame;

@@ -1,4 +1,5 @@
-//! The frames that a rung draws, of which the ladder has errors: timed as wholes, the bunny's stage by stage as well, and the memory that they take.
+//! The frames of a rung, which the ladder's errors belong to: their times, those of the bunny's
+//! separate stages, and the memory that they use.
 
 use super::views::{grey, scene, settings};
 use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
@@ -8,51 +9,51 @@ use lapidary_render::{FrameTimer, Stage};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The view that is timed stage by stage.
+/// The view whose stages are timed separately.
 const STAGED: &str = "bunny";
-/// A frame that takes longer is timed in fewer rounds, ...
+/// A frame that takes longer than this gets fewer rounds of timing.
 pub(super) const SLOW: Duration = Duration::from_secs(2);
-/// ... in so many.
+/// Rounds of timing for a slow frame.
 pub(super) const SLOW_ROUNDS: u32 = 2;
 
-/// A frame's time.
+/// The times of a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathTiming {
-    /// The least of the rounds, in milliseconds.
+    /// Minimum over the rounds in milliseconds.
     pub ms: f64,
-    /// The median of the rounds.
+    /// Median over the rounds in milliseconds.
     pub median_ms: f64,
-    /// How many rounds.
+    /// Number of rounds.
     pub rounds: u32,
-    /// Of each of [`Stage::ALL`] submitted and waited for by itself, the least of the rounds; none where there are no stages or they were not
-    /// timed.
+    /// Minimum time of each of [`Stage::ALL`], submitted and waited for separately, in
+    /// milliseconds; `None` if there are no stages or they were not timed.
     pub stages: Option<[f64; Stage::ALL.len()]>,
 }
 
-/// How far a solver came.
+/// Final state of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Solved {
-    /// Passes in which anything was left to do.
+    /// Number of passes that had work to do.
     pub passes: u32,
-    /// Tiles, or for untiled solvers voxels, that these took up.
+    /// Number of tile updates in these passes, or of voxel updates for untiled solvers.
     pub updates: u32,
-    /// What another pass would take up: 0 where the costs are final.
+    /// Number of updates that another pass would make: 0 if the costs are final.
     pub active: u32,
 }
 
-/// One frame and its times so far.
+/// A frame and its times so far.
 struct Timed<'gpu> {
-    /// Its rung's number.
+    /// Index of the rung.
     rung: usize,
     frame: FrameTimer<'gpu>,
-    /// Stage by stage, too.
+    /// Whether the stages are also timed separately.
     staged: bool,
     totals: Vec<Duration>,
     stages: Vec<[Duration; Stage::ALL.len()]>,
 }
 
 impl Timed<'_> {
-    /// Whether the rounds that it has are all that it gets.
+    /// Whether the frame is slow and needs no further rounds.
     fn done(&self) -> bool {
         self.totals.len() >= SLOW_ROUNDS as usize && self.totals.iter().min().is_some_and(|least| *least > SLOW)
     }
@@ -80,7 +81,8 @@ impl Timed<'_> {
     }
 }
 
-/// Draws every rung's frames, and times them: all rungs of a view interleaved, in one colour or in its own. `measured` and `rungs` go together.
+/// Draws and times every rung's frames: all rungs of a view interleaved, in one colour or in its
+/// own. `measured` and `rungs` correspond by index.
 pub(super) fn measure(
     gpu: &Gpu,
     options: &Options,
@@ -100,7 +102,7 @@ pub(super) fn measure(
         let mut timed = Vec::new();
         for &(rung, of) in &drawn {
             let frame = FrameTimer::new(gpu, &scene, &settings(view, of, options.frame), None, false)?;
-            // The first frame compiles.
+            // The first frame includes compilation.
             frame.run()?;
             if staged {
                 rungs[rung].bytes = frame.path_bytes();
@@ -143,7 +145,7 @@ mod tests {
         Measured { rung: rung.parse().expect(rung), unscaled: false }
     }
 
-    /// The goal of ten frames a second is for pictures in the colours that a plan gives them: three solves.
+    /// The goal of ten frames per second is for pictures in the colours of a plan: three solves.
     #[test]
     fn views_in_their_own_colours_have_a_solve_for_each() {
         for view in WALKED {
@@ -166,14 +168,15 @@ mod tests {
         };
         assert_eq!(bytes(&grey, "lambert"), 0);
         let one = bytes(&grey, "godunov-32");
-        // Red, green and blue cost a float for each voxel more, twice.
+        // Green and blue each need another float per voxel.
         assert_eq!(bytes(&bunny, "godunov-32") - one, 2 * 4 * 32 * 32 * 32);
-        // Beside the maps and the costs, ping-pong has a second buffer, tiles have five words each.
+        // Besides the maps and the costs, ping-pong has a second buffer, and each tile has five
+        // words.
         assert_eq!(bytes(&grey, "ping-pong-26-32") - one, 4 * 32 * 32 * 32 - 20 * 8 * 8 * 8);
         assert!(one > 128 * 128 * 20 + 4 * 32 * 32 * 32, "{one}");
     }
 
-    /// A frame drawn stage by stage is drawn by the same passes: the solver comes as far.
+    /// Timing the stages separately runs the same passes: the solver ends in the same state.
     #[test]
     fn stages_are_the_frame() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");

@@ -73,7 +73,7 @@ fn walks(report: &OpticalPathReport) -> String {
     table
 }
 
-/// What the times are of.
+/// Appends a note on what the times are of.
 fn note(table: &mut String, report: &OpticalPathReport, what: &str) {
     let [width, height] = report.frame;
     let _ = writeln!(
@@ -102,7 +102,7 @@ fn times(report: &OpticalPathReport) -> String {
     table
 }
 
-/// Of a grey frame: the solver's time, and the whole frame's.
+/// Returns the times of the solver and of the whole frame, for a grey frame.
 pub(super) fn solve_and_frame(rung: &RungReport) -> Option<[f64; 2]> {
     let timing = rung.grey("bunny")?;
     let solve = Stage::ALL.iter().position(|stage| *stage == Stage::Solve)?;
@@ -122,7 +122,7 @@ fn growth(report: &OpticalPathReport) -> String {
         );
         let timed: Vec<(u32, [f64; 2])> =
             CELLS.into_iter().zip(found).filter_map(|(cells, times)| Some((cells, times?))).collect();
-        // From 64 cells on, where what each pass costs whatever it does no longer rules.
+        // From 64 cells on, because the fixed cost of each pass dominates on smaller grids.
         let power = timed.iter().find(|(cells, _)| *cells == 64).zip(timed.last()).and_then(|(first, last)| {
             let cells = f64::from(last.0) / f64::from(first.0);
             (cells > 1.0).then(|| (last.1[0] / first.1[0]).ln() / cells.ln())

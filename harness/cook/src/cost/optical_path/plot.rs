@@ -1,4 +1,4 @@
-//! The ladder as pictures: error against time, and time against the size of the grid, all logarithmic.
+//! The ladder as plots: error against time, and time against grid size, all logarithmic.
 
 use super::page::solve_and_frame;
 use super::views::BALL;
@@ -9,13 +9,13 @@ use crate::cost::drawing::{
 };
 use plotters::prelude::*;
 
-/// Labels of the axes of times.
+/// Labels on the axes of times, in milliseconds.
 const TIMES: [f64; 14] =
     [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0];
-/// Labels of the axis of errors.
+/// Labels on the axis of errors.
 const ERRORS: [f64; 10] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// By the solver.
+/// Returns a colour by the rung's solver.
 fn color(rung: &str) -> RGBColor {
     match rung {
         name if name.starts_with("tiled") => COLORS[2],
@@ -30,7 +30,7 @@ fn color(rung: &str) -> RGBColor {
 struct Point<'a> {
     rung: &'a RungReport,
     at: (f64, f64),
-    /// No other rung is both faster and no worse.
+    /// Whether no other rung is both faster and no worse.
     front: bool,
 }
 
@@ -42,25 +42,26 @@ fn points<'a>(report: &'a OpticalPathReport, view: &str) -> Vec<Point<'a>> {
     all.iter().map(|&(rung, at)| Point { rung, at, front: !beaten(at) }).collect()
 }
 
-/// Error against time as SVG.
+/// Returns a plot of error against time as SVG.
 ///
 /// # Errors
 ///
-/// A report without times; plotters' own.
+/// Returns an error if the report has no times or if plotters fails.
 pub fn error(report: &OpticalPathReport) -> Result<String, CostError> {
     written(|root| draw_error(root, report))
 }
 
-/// Time against the size of the grid as SVG.
+/// Returns a plot of time against grid size as SVG.
 ///
 /// # Errors
 ///
-/// A report without times of the solvers on any of the grids; plotters' own.
+/// Returns an error if the report has no times of the solvers on any of the grids or if plotters
+/// fails.
 pub fn growth(report: &OpticalPathReport) -> Result<String, CostError> {
     written(|root| draw_growth(root, report))
 }
 
-/// Whether there is anything to draw by [`growth`].
+/// Whether [`growth`] has anything to draw.
 pub fn has_growth(report: &OpticalPathReport) -> bool {
     GROWING.iter().any(|solver| !line_of(report, solver).is_empty())
 }
@@ -117,7 +118,7 @@ fn draw_error(root: &Root<'_>, report: &OpticalPathReport) -> Drawn {
     legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
-/// Cells, and milliseconds of the solve and of the frame.
+/// Returns the number of cells, and the milliseconds of the solve and of the frame.
 fn line_of(report: &OpticalPathReport, solver: &str) -> Vec<(f64, [f64; 2])> {
     let found = |cells: u32| Some((f64::from(cells), solve_and_frame(report.rung(&format!("{solver}-{cells}"))?)?));
     CELLS.into_iter().filter_map(found).collect()

@@ -6,7 +6,7 @@ use super::{COMPARED, FINEST, OpticalPathReport, PathTiming, RungReport, UNSCALE
 use lapidary_render::Stage;
 use std::fmt::Write as _;
 
-/// Where there is no figure.
+/// Placeholder for a missing figure.
 pub(super) const NONE: &str = "-";
 
 pub(super) fn text(report: &OpticalPathReport) -> String {
@@ -30,25 +30,25 @@ pub(super) fn text(report: &OpticalPathReport) -> String {
     text
 }
 
-/// A figure with so many decimals.
+/// Formats a figure with `count` decimals.
 pub(super) fn decimals(value: Option<f64>, count: usize) -> String {
     value.map_or(NONE.to_owned(), |value| format!("{value:.count$}"))
 }
 
-/// Milliseconds, with a star where the rung had fewer rounds than the others.
+/// Formats milliseconds, with a star if the rung had fewer rounds than the others.
 pub(super) fn milliseconds(report: &OpticalPathReport, timing: Option<&PathTiming>) -> String {
     timing.map_or(NONE.to_owned(), |timing| {
         format!("{:.1}{}", timing.ms, if timing.rounds < report.rounds { "*" } else { "" })
     })
 }
 
-/// Milliseconds of each stage.
+/// Formats the milliseconds of each stage.
 pub(super) fn stages(rung: &RungReport) -> [String; Stage::ALL.len()] {
     let times = rung.grey("bunny").and_then(|timing| timing.stages);
     std::array::from_fn(|stage| decimals(times.map(|times| times[stage]), 1))
 }
 
-/// Passes, and what they took up.
+/// Formats the number of passes and of updates.
 pub(super) fn solved(rung: &RungReport) -> [String; 2] {
     rung.solved.map_or([NONE, NONE].map(str::to_owned), |solved| {
         [solved.passes.to_string(), format!("{}{}", solved.updates, if solved.active > 0 { "+" } else { "" })]

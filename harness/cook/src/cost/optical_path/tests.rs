@@ -1,7 +1,7 @@
 use super::*;
 use crate::cost::page::{Tables, fill};
 
-/// A rung whose grey frame takes `ms`, half of it the solver's.
+/// Returns a rung whose grey frame takes `ms`, half of it in the solver.
 fn rung(name: &str, ms: f64, nats: f64) -> RungReport {
     let timing = |ms: f64, stages| PathTiming { ms, median_ms: ms, rounds: 5, stages };
     let distance = Distance { nats: Some(nats), luminance: Some(0.1 * nats), walks: None };
@@ -27,7 +27,8 @@ fn report(rungs: Vec<RungReport>) -> OpticalPathReport {
     report
 }
 
-/// The whole ladder, made up: the more cells the slower and nearer, ping-pong four times as slow as tiles.
+/// Returns the whole ladder with made-up values: more cells are slower and more accurate, and
+/// ping-pong is four times as slow as tiles.
 fn whole() -> OpticalPathReport {
     let of = |name: &str| {
         let cells: f64 = name.rsplit('-').next().and_then(|cells| cells.parse().ok()).unwrap_or(8.0);
@@ -76,7 +77,7 @@ fn a_rung_is_dominated_by_a_faster_one_that_errs_no_more_in_any_view() {
     assert_eq!(marked(&report(rungs.clone())), ["slow"]);
     rungs[1].distances[2].nats = Some(0.4);
     assert!(marked(&report(rungs.clone())).is_empty());
-    // The rung that made a view's truth has no error there, and is judged by the others.
+    // The rung that made a view's truth has no error there and is judged by the other views.
     rungs[1].distances[2].nats = None;
     assert_eq!(marked(&report(rungs.clone())), ["slow"]);
     rungs[1].times.clear();
@@ -95,7 +96,7 @@ fn every_rung_view_and_measure_has_a_row() {
     assert_eq!(row("godunov-64", "ball", "nats").ms, Some(64.0));
     assert_eq!(row("godunov-64", "dragon", "luminance").error, Some(0.1 * 8.0 * 0.25 / 64.0));
     assert!(row("godunov-64", "bunny", "walks").error.is_none());
-    // A distance from walks stands beside the time of three channels.
+    // A distance from walks is listed with the time for three channels.
     assert_eq!(row("godunov-64", "bunny", "walks").ms, Some(192.0));
     assert!(row("tiled-26-64", "ball", "nats").dominated && !row("godunov-16", "ball", "nats").dominated);
     assert!(row(REFERENCE, "ball", "nats").error.is_none() && row(REFERENCE, "ball", "nats").ms.is_none());
@@ -127,7 +128,7 @@ fn text_and_tables_show_every_rung() {
     let stages = table(&report, "optical_path_stages");
     assert!(stages.contains("| tiled-6-64 | 7 | 1234 | 1.0 | 2.0 | 3.0 | 32.0 | 4.0 | 64.0 |"), "{stages}");
     assert!(!stages.contains("| reference |"), "{stages}");
-    // Times that grow with the cells along an edge.
+    // Times proportional to the cells along an edge.
     let growth = table(&report, "optical_path_growth");
     assert!(growth.contains("| tiled-26 | 8.0, 16.0 |") && growth.contains("| 1.0, from 64 |"), "{growth}");
     assert!(growth.contains("| 256.0, 512.0 | - |"), "{growth}");
@@ -154,7 +155,7 @@ fn goals_are_judged_by_the_record() {
         let rung = report.rungs.iter_mut().find(|rung| rung.rung == name).expect("a rung");
         rung.distances[1].walks = Some(error);
     };
-    // Lambert's law without shadows is no baseline.
+    // Lambert's law without shadows is not the baseline.
     walked(&mut report, LAMBERT, 0.9);
     walked(&mut report, LAMBERT_SHADOWED, 0.5);
     walked(&mut report, USUAL, 0.2);

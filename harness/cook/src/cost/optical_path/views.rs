@@ -1,4 +1,4 @@
-//! What is looked at, and how far a rung's costs are from the truth there, pixel by pixel.
+//! The views, and the errors of a rung's costs in them, pixel by pixel.
 
 use super::{FINEST, Measured};
 use crate::cost::CostError;
@@ -14,56 +14,62 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A ball of eight optical depths' radius, lit from the side; the bunny; the dragon, whose density differs from place to place; wax; and thin marble.
+/// Names of the views: a ball with a radius of eight optical depths, lit from the side; the bunny;
+/// the dragon, whose density varies; wax; and thin marble.
 pub const VIEWS: [&str; 5] = [BALL, "bunny", "dragon", "wax_bunny", "figure"];
-/// Those in which costs are compared: with the closed form and with the finest grid.
+/// The views in which costs are compared with the closed form or the finest grid.
 pub const COMPARED: [&str; 3] = [BALL, "bunny", "dragon"];
-/// Those of which a picture by random walks is committed.
+/// The views with a committed picture by random walks.
 pub const WALKED: [&str; 4] = ["bunny", "dragon", "wax_bunny", "figure"];
 /// The view that has a closed form.
 pub const BALL: &str = "ball";
-/// Pixels along a side of a compared picture.
+/// Width and height of a compared picture in pixels.
 pub(super) const SIDE: u32 = 512;
-/// The ball's radius, so long that at 64 cells a voxel's edge is 1: what the paper's solver takes every edge for.
+/// Radius of the ball, such that a voxel's edge is 1 with 64 cells: the paper's solver assumes this
+/// length for every edge.
 const RADIUS: f64 = 31.0;
-/// Optical depths along it.
+/// Optical depths along the radius.
 const DEPTH: f64 = 8.0;
-/// Columns of its mesh: flat triangles lie up to (π / 256)² / 2 of the radius inside, 6e-4 optical depths.
+/// Columns of the ball's mesh: flat triangles lie up to (π / 256)² / 2 of the radius inside the
+/// sphere, 6e-4 optical depths.
 const COLUMNS: u32 = 256;
-/// Pixels nearer to the silhouette than this share of the radius show the mesh's outline.
+/// Fraction of the radius within which pixels are compared; closer to the silhouette they show the
+/// mesh's outline.
 const INSIDE: f64 = 0.99;
-/// Angles whose cost is found, between which it is interpolated.
+/// Number of angles at which the exact cost is computed; it is interpolated between them.
 const ANGLES: u32 = 4096;
-/// Where the truth is deeper, in nats, nothing is compared: there is no light to see.
+/// Largest true cost in nats that is compared: beyond it no light is visible.
 pub(super) const DEEPEST: f64 = 12.0;
-/// What a rung's cost counts as at most, and black with it.
+/// Upper limit of a rung's cost in nats, which is also the cost of a black pixel.
 pub(super) const BLACK: f64 = 24.0;
 
-/// How far a rung is from the truth in a view.
+/// Errors of a rung in a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distance {
-    /// Root mean square of the costs' errors in nats.
+    /// Root mean square of the costs' errors in nats; `None` if no costs are compared.
     pub nats: Option<f64>,
-    /// The same of luminance, e to the minus cost: of the brightest possible.
+    /// Root mean square of the errors in luminance, e to the minus cost, relative to the brightest
+    /// possible; `None` if no costs are compared.
     pub luminance: Option<f64>,
-    /// From the committed picture by random walks: [`crate::exposure::exposed_distance`]. Of the walks themselves, their own standard error.
+    /// Distance from the committed picture by random walks: [`crate::exposure::exposed_distance`].
+    /// For the walks themselves it is their own standard error; `None` if no picture is committed.
     pub walks: Option<f64>,
 }
 
 impl Distance {
-    /// By the measure of that number in [`super::MEASURES`].
+    /// Returns the error, by index into [`super::MEASURES`].
     pub fn of(&self, measure: usize) -> Option<f64> {
         [self.nats, self.luminance, self.walks][measure]
     }
 }
 
-/// A scene of one extinction and what its pixels' costs should be.
+/// A scene with one extinction, and the expected cost of each pixel.
 pub(super) struct View {
     name: &'static str,
     scene: Scene,
-    /// None where there is nothing to compare.
+    /// Expected costs; `None` for a pixel that is not compared.
     truth: Vec<Option<f64>>,
-    /// The rung that the truth is made by, if any.
+    /// The rung that computed the truth; `None` if no rung did.
     maker: Option<Rung>,
 }
 
@@ -80,7 +86,8 @@ impl View {
         Ok(view)
     }
 
-    /// Errors but those beside random walks. The rung that made the truth has none, nor has one of another extinction than the truth's.
+    /// Returns the errors except those against random walks. The rung that computed the truth has
+    /// none; nor has a rung whose extinction differs from the truth's.
     pub(super) fn distance(&self, gpu: &Gpu, Measured { rung, unscaled }: Measured) -> Result<Distance, CostError> {
         if self.maker == Some(rung) || self.truth.is_empty() || unscaled && self.name != BALL {
             return Ok(Distance::default());
@@ -94,7 +101,8 @@ impl View {
     }
 }
 
-/// One sample a pixel, by the scene's lights alone, and nothing mirrors. The ball's extinction is what its closed form has.
+/// Returns settings for one sample per pixel, lit by the scene's lights alone, without reflections.
+/// The ball has the extinction of its closed form.
 pub(super) fn settings(view: &str, Measured { rung, unscaled }: Measured, [width, height]: [u32; 2]) -> Settings {
     Settings {
         rung,
@@ -107,12 +115,12 @@ pub(super) fn settings(view: &str, Measured { rung, unscaled }: Measured, [width
     }
 }
 
-/// The scene of a view, in its own colours.
+/// Returns the scene of a view in its own colours.
 pub(super) fn scene(view: &str) -> Result<Scene, SceneError> {
     if view == BALL { ball() } else { Scene::named(view) }
 }
 
-/// The scene white and with one extinction for all channels, the green one's.
+/// Returns the scene in white, with the green channel's extinction for all channels.
 pub(super) fn grey(mut scene: Scene) -> Scene {
     for object in &mut scene.objects {
         object.material.base_color = Vec3::ONE;
@@ -124,7 +132,7 @@ pub(super) fn grey(mut scene: Scene) -> Scene {
     scene
 }
 
-/// The ball under parallel light from the right, seen square to it.
+/// Returns the ball under parallel light from the right, seen at right angles to the light.
 fn ball() -> Result<Scene, SceneError> {
     let mut scene = Scene::named("bunny")?;
     let medium = Medium::isotropic(Vec3::splat((DEPTH / RADIUS) as f32), Vec3::ZERO);
@@ -134,7 +142,8 @@ fn ball() -> Result<Scene, SceneError> {
     Ok(scene.seen_from(90.0, 0.0))
 }
 
-/// The ball's costs in closed form: where a ray through the pixel's middle meets the sphere.
+/// Returns the ball's exact costs in closed form, where a ray through the pixel's centre meets the
+/// sphere.
 fn exact(scene: &Scene) -> Vec<Option<f64>> {
     let by_angle: Vec<f64> = (0..=ANGLES)
         .into_par_iter()
@@ -160,7 +169,7 @@ fn exact(scene: &Scene) -> Vec<Option<f64>> {
     (0..SIDE * SIDE).map(of_pixel).collect()
 }
 
-/// The cost of each pixel that a body covers, of a white scene in one sun's light.
+/// Returns the cost of each pixel that a body covers, for a white scene lit by one sun.
 fn costs(scene: &Scene, picture: &Picture) -> Vec<Option<f64>> {
     let irradiance = scene.lights.iter().find_map(|light| match light {
         Light::Directional { irradiance, .. } => Some(f64::from(irradiance.x)),
@@ -171,7 +180,7 @@ fn costs(scene: &Scene, picture: &Picture) -> Vec<Option<f64>> {
     picture.linear.iter().map(cost).collect()
 }
 
-/// Root mean squares over the pixels where light is to be seen.
+/// Returns root mean squares over the pixels with visible light.
 fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
     let (mut nats, mut luminance, mut count) = (0.0, 0.0, 0u32);
     for (found, truth) in found.iter().zip(truth).filter_map(|(found, truth)| (*found).zip(*truth)) {
@@ -201,7 +210,8 @@ mod tests {
         assert_eq!(between(&[None; 4], &truth), Distance::default());
     }
 
-    /// Where light falls the ball's costs are those of Lambert's law but near the terminator, pixel by pixel: the pixels' angles are right.
+    /// On its lit side the ball's costs match Lambert's law pixel by pixel except near the
+    /// terminator: the pixels' angles are right.
     #[test]
     fn the_balls_bright_side_is_lamberts() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
@@ -217,10 +227,11 @@ mod tests {
             dark += usize::from(found == BLACK && truth > 3.0);
         }
         println!("{bright} bright pixels, off by {worst:.1e} nats at most; {dark} dark ones");
-        // Of the seen disc the bright part is a sixth, the dark one nearly a half.
+        // The bright part is a sixth of the visible disc, the dark part almost half of it.
         let seen = view.truth.iter().flatten().count();
         assert!(seen > 80_000 && bright > seen / 8 && dark > 2 * seen / 5, "{bright} and {dark} of {seen}");
-        // A pixel of a flat triangle has the interpolated normal of a place up to (2π / 256)² / 8 of the radius away, times the slope of the cost.
+        // Within a flat triangle the interpolated normal is that of a point up to (2π / 256)² / 8
+        // of the radius away; the error is this times the slope of the cost.
         assert!(worst < 1e-3, "{worst}");
     }
 }

@@ -1,4 +1,5 @@
-//! The committed pictures by random walks: how far a rung is from one after its best exposure, and how sure the picture is of itself.
+//! The committed pictures by random walks: a rung's distance from one after the best exposure, and
+//! the picture's own uncertainty.
 
 use super::Measured;
 use super::views::{SIDE, settings};
@@ -13,29 +14,31 @@ use lapidary_render as render;
 use lapidary_render::RenderError;
 use lapidary_scene::Scene;
 
-/// The picture that is walked again, for the spread of its walks, has so many for each pixel.
+/// Walks per pixel of the picture that is simulated again to estimate the spread of the walks.
 const FEW: u32 = 4;
 
-/// A scene and its picture by random walks.
+/// A scene and its committed picture by random walks.
 pub(super) struct Walks {
     name: &'static str,
     scene: Scene,
     linear: Vec<[f32; 4]>,
-    /// For each pixel.
+    /// Walks per pixel.
     count: u32,
     origin: mesh::Origin,
 }
 
 impl Walks {
-    /// Of the built-in scene of that name, in its own colours; nothing where no picture of it is committed.
+    /// Returns the picture of the built-in scene with that name, in its own colours; `None` if no
+    /// picture of it is committed.
     pub(super) fn of(gpu: &Gpu, name: &'static str) -> Result<Option<Self>, CostError> {
         let Some(reference) = WalkedReference::of_scene(name) else { return Ok(None) };
         let linear = reference.picture(gpu)?.linear;
         Ok(Some(Self { name, scene: Scene::named(name)?, linear, count: reference.walks, origin: reference.origin }))
     }
 
-    /// How far a rung's picture, the one that is timed, is from this one, which has half its side: four pixels of one sample each make one; of the
-    /// reference, this one's own standard error.
+    /// Returns the distance of a rung's timed picture from this one. This one has half the side, so
+    /// four pixels of one sample each are averaged into one. For the reference, returns this
+    /// picture's own standard error.
     pub(super) fn distance(&self, gpu: &Gpu, of: Measured) -> Result<f64, CostError> {
         if of.rung == Rung::Reference {
             return self.standard_error();
@@ -44,8 +47,9 @@ impl Walks {
         Ok(exposed_distance(&halved(&picture).linear, &self.linear))
     }
 
-    /// Root mean square of the pixels' standard errors, over the root mean square of their radiance. A picture holds no errors: a few walks
-    /// tell their spread.
+    /// Returns the root mean square of the pixels' standard errors, divided by the root mean square
+    /// of their radiance. A picture does not store errors, so a few walks are repeated to estimate
+    /// their spread.
     fn standard_error(&self) -> Result<f64, CostError> {
         let few = mesh::Settings {
             width: EXR_SIDE,
@@ -59,7 +63,7 @@ impl Walks {
         let walked = mesh::render(&self.scene, &few, &|_, _| {}).map_err(RenderError::from)?;
         let square = |value: &f32| f64::from(*value).powi(2);
         let variance: f64 = walked.standard_error.iter().flatten().map(square).sum();
-        // Of the committed picture, whose noise adds next to nothing to it.
+        // The power of the committed picture, to which its noise adds almost nothing.
         let power: f64 = self.linear.iter().flat_map(|pixel| &pixel[..3]).map(square).sum();
         Ok((variance / power * f64::from(FEW) / f64::from(self.count)).sqrt())
     }

@@ -1,4 +1,4 @@
-//! Rays that end when what they carry can no longer be seen.
+//! Rays that end once the light they carry is too faint to be seen.
 
 use super::{Options, SCENES};
 use crate::cost::timing::{self, Timed, Timing};
@@ -13,40 +13,43 @@ use lapidary_render::{GemOptions, RenderError, Settings};
 use lapidary_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// Side of the pictures that are compared.
+/// Width and height of the compared pictures in pixels.
 const SIDE: u32 = 256;
-/// Width and height of the coarse picture over whose pixels facets are counted.
+/// Width and height of the coarse picture whose pixels are used to count facets.
 const COUNTED: [u32; 2] = [96, 54];
-/// How a loop is left early in the recipes' text, and the same loop gone through to its end.
+/// The early exit from a loop in the recipes' source, and its replacement that runs the loop to its
+/// end.
 const BREAK: [&str; 2] = ["if (LIMIT_THROUGHPUT && !ray.followed) {", "if (LIMIT_THROUGHPUT && false) {"];
 
-/// One rung in one scene, with the limit and without.
+/// One rung in one scene, with and without the limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limited {
     /// The scene's name.
     pub scene: String,
-    /// The rung's.
+    /// The rung's name.
     pub rung: String,
-    /// Facets that a ray looks for, in the mean over the covered pixels of the timed frame, without the limit ...
+    /// Number of facets that a ray searches for without the limit, averaged over the covered pixels
+    /// of the timed frame.
     pub facets_unlimited: f64,
-    /// ... and with it.
+    /// Number of facets that a ray searches for with the limit, averaged in the same way.
     pub facets_limited: f64,
-    /// The largest difference of radiance times exposure over the scene's own picture, in units of the bound.
+    /// Largest difference of radiance times exposure in the scene's own picture, in units of the
+    /// bound.
     pub largest: f64,
-    /// The largest difference of that picture in steps of 8 bits, encoded for a screen.
+    /// Largest difference in that picture after encoding for a display, in 8-bit steps.
     pub largest_encoded: u8,
-    /// Share of its covered pixels that differ by a step of 8 bits or more.
+    /// Fraction of its covered pixels that differ by at least one 8-bit step.
     pub changed: f64,
-    /// The frame without the limit.
+    /// Times of the frame without the limit.
     pub unlimited: Timing,
-    /// With it, and loops that are left early.
+    /// Times with the limit and early exits from the loops.
     pub limited: Timing,
-    /// With it, and loops that go through to their end.
+    /// Times with the limit and loops that run to their end.
     pub limited_without_break: Timing,
 }
 
 impl Limited {
-    /// What each way is called, its largest difference, and its time.
+    /// Returns the name, the largest difference and the time of each variant.
     pub fn ways(&self) -> impl Iterator<Item = (&'static str, f64, Timing)> {
         let largest = self.largest * LEAST_DIFFERENCE;
         [
@@ -57,18 +60,19 @@ impl Limited {
         .into_iter()
     }
 
-    /// The part of the time without the limit that it saves; below 0 where it costs time.
+    /// Returns the fraction of time saved by the limit; negative if it costs time.
     #[must_use]
     pub fn saved(&self) -> f64 {
         1.0 - self.limited.ms / self.unlimited.ms
     }
 }
 
-/// The facets that a ray looks for, in the mean over the rays of the pixels that show the scene's one stone, by the mirror, at every
-/// pixel of a picture of the settings' size.
+/// Returns the number of facets that a ray searches for, computed with the mirror and averaged over
+/// the rays of all pixels that show the scene's single stone, in a picture of the settings' size.
 ///
 /// # Errors
-/// Where the rung cannot draw the stone.
+///
+/// Returns an error if the rung cannot draw the stone.
 pub fn facets(scene: &Scene, settings: &Settings) -> Result<f64, RenderError> {
     let viewer = Viewer::new(scene, settings.width, settings.height);
     let (mut rays, mut facets) = (0, 0);
@@ -91,7 +95,8 @@ fn settings(rung: Rung, limited: bool, [width, height]: [u32; 2]) -> Settings {
     Settings { rung, samples: 1, gem, ..Settings::of_size(width, height) }
 }
 
-/// Largest difference in bounds, largest difference encoded, and share of covered pixels that differ encoded.
+/// Returns the largest difference in units of the bound, the largest encoded difference, and the
+/// fraction of covered pixels whose encoded values differ.
 fn differences(gpu: &Gpu, scene: &Scene, rung: Rung) -> Result<(f64, u8, f64), CostError> {
     let picture = |limited| render::render(gpu, scene, &settings(rung, limited, [SIDE; 2]));
     let (one, other) = (picture(false)?, picture(true)?);
@@ -107,7 +112,7 @@ fn differences(gpu: &Gpu, scene: &Scene, rung: Rung) -> Result<(f64, u8, f64), C
     Ok((largest / LEAST_DIFFERENCE, largest_encoded, changed as f64 / covered as f64))
 }
 
-/// All scenes and rungs, timed in one run.
+/// Measures all scenes and rungs, timed in one run.
 pub(super) fn measure(
     gpu: &Gpu,
     options: &Options,
@@ -129,7 +134,7 @@ pub(super) fn measure(
                 scene: filled,
                 source: Some(source),
                 displayed: false,
-                // Ways that are compared are timed on the same pixels.
+                // All variants of a comparison are timed on the same pixels.
                 scales: false,
             })
         })

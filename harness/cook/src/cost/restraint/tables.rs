@@ -23,7 +23,7 @@ fn milliseconds(timing: Timing) -> String {
     format!("{:.1}", timing.ms)
 }
 
-/// The cells of each line after the scene and the rung.
+/// Returns the cells of each row after the scene and the rung.
 fn throughput_lines(report: &RestraintReport) -> impl Iterator<Item = Vec<String>> {
     report.limited.iter().map(|limited| {
         vec![
@@ -125,7 +125,7 @@ fn variants(report: &RestraintReport) -> String {
     table
 }
 
-/// Columns as wide as their widest cell.
+/// Writes columns that are as wide as their widest cell.
 fn aligned(text: &mut String, columns: &[&str], lines: &[Vec<String>]) {
     let heads: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
     let all: Vec<&Vec<String>> = std::iter::once(&heads).chain(lines).collect();

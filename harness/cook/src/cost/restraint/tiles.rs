@@ -1,4 +1,5 @@
-//! Ways through a body, sought only in tiles that hold matter and may change, beside solvers that take up more.
+//! Optical paths through a body, solved only in tiles that hold matter and may change, compared
+//! with solvers that process more tiles.
 
 use crate::cost::CostError;
 use lapidary_gpu::Gpu;
@@ -13,23 +14,23 @@ use lapidary_scene::{Bounds, Mesh, Scene};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// The body.
+/// The scene whose body is solved.
 const SCENE: &str = "bunny";
-/// Voxels along an edge of the grids.
+/// Voxels along an edge of each grid.
 const CELLS: [u32; 3] = [32, 64, 128];
-/// Costs of the graph are the same to the bit however they are found.
+/// The graph's costs are bit-identical, whatever the order of the search.
 const METHOD: Method = Method::Tiled(Stencil::Corners);
-/// Of light from one side, across the grid.
+/// Optical depth across the grid; light comes from one side.
 const DEPTH: f32 = 8.0;
 /// Voxels along an edge of a tile.
 const TILE: u32 = 4;
 
 const ALL_TILES: &str = "optical_path_tiles_side() * optical_path_tiles_side() * optical_path_tiles_side()";
 
-/// What is put in place of what in the recipe's text.
+/// A replacement in the recipe's source: the original text and the new one.
 type Change = (&'static str, String);
 
-/// Which tiles are taken up: what it is called, and how the recipe's text changes for it.
+/// Returns the ways to choose the tiles to process: name and changes to the recipe's source.
 fn ways() -> [(&'static str, Vec<Change>); 3] {
     [
         ("tiles with matter that may change", Vec::new()),
@@ -57,37 +58,37 @@ fn ways() -> [(&'static str, Vec<Change>); 3] {
     ]
 }
 
-/// One way to choose tiles.
+/// One way to choose the tiles to process.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TileWay {
-    /// Which tiles are taken up.
+    /// Name of the way.
     pub way: String,
-    /// The least of the rounds, in milliseconds for a whole solve.
+    /// Milliseconds for a whole solve, the minimum over the rounds.
     pub ms: f64,
-    /// Passes in which anything was left to do.
+    /// Number of passes that had work to do.
     pub passes: u32,
-    /// Tiles that were taken up, one as often as it was.
+    /// Number of tile updates; a tile counts each time it is processed.
     pub updates: u64,
-    /// Voxels whose costs have other bits than the first way's.
+    /// Number of voxels whose cost is not bit-identical to the first way's.
     pub differing: u32,
 }
 
 /// A grid, solved in each way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tiles {
-    /// The scene whose body it is.
+    /// Name of the scene with the body.
     pub scene: String,
     /// The solver's name.
     pub method: String,
-    /// Voxels along an edge.
+    /// Voxels along an edge of the grid.
     pub cells: u32,
-    /// Share of the grid's tiles that hold matter.
+    /// Fraction of the grid's tiles that hold matter.
     pub with_matter: f64,
-    /// From restraint to none.
+    /// The ways, from full restraint to none.
     pub ways: Vec<TileWay>,
 }
 
-/// The words of the body's voxels.
+/// Voxelises the body and returns the words of its occupancy bits.
 fn voxels(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Vec<u32>, RenderError> {
     let mut builder = Builder::new(Some(gpu));
     let voxelizer = Voxelizer::new(&mut builder, grid, mesh, &[])?;
@@ -99,7 +100,8 @@ fn voxels(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Vec<u32>, RenderErr
     Ok(executor.words(voxelizer.matter)?)
 }
 
-/// Seeds of cost 0 at the first voxel of matter in each row along x, and the share of tiles that hold matter.
+/// Returns seeds of cost 0 at the first voxel of matter in each row along x, and the fraction of
+/// tiles that hold matter.
 fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
     let mut seeds = vec![OPTICAL_PATH_UNREACHED; grid.count()];
     let side = grid.cells / TILE;
@@ -119,7 +121,7 @@ fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
     (seeds, count as f64 / held.len() as f64)
 }
 
-/// One solve from the seeds, and its time in milliseconds.
+/// Solves once from the seeds and returns the time in milliseconds.
 fn solve(gpu: &Gpu, solver: &LoneSolver<'_>, seeds: &[f32]) -> Result<f64, RenderError> {
     let wait =
         || gpu.guarded("solving by tiles", |device| device.poll(wgpu::PollType::wait_indefinitely())).map(Result::ok);
@@ -132,7 +134,7 @@ fn solve(gpu: &Gpu, solver: &LoneSolver<'_>, seeds: &[f32]) -> Result<f64, Rende
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// Every grid in every way, round by round.
+/// Measures every grid in every way, round by round.
 pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Tiles>, CostError> {
     let scene = Scene::named(SCENE)?;
     let mesh = &scene.objects[0].mesh;
@@ -161,7 +163,7 @@ pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)
             let first = first.get_or_insert_with(|| costs.clone());
             let differing =
                 first.iter().zip(&costs).filter(|(one, other)| one.to_bits() != other.to_bits()).count() as u32;
-            // The solver counts what is listed, which these do not go by.
+            // The solver counts listed tiles, but this variant ignores the list.
             let takes_all = changes.len() > 1;
             let updates = if takes_all { tiles * u64::from(status.passes) } else { u64::from(status.updates) };
             ways.push(TileWay { way: (*way).to_owned(), ms, passes: status.passes, updates, differing });

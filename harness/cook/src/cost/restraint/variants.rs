@@ -1,4 +1,5 @@
-//! Each material drawn by its own variant of the recipe, beside one variant with every effect for all of them.
+//! Each material drawn with its own variant of the recipe, compared with one variant that has every
+//! effect and serves all materials.
 
 use crate::cost::CostError;
 use crate::cost::timing::{self, Timed, Timing};
@@ -11,45 +12,45 @@ use lapidary_render::plan::Plan;
 use lapidary_scene::{Dispersion, Material, Object, Scene};
 use serde::{Deserialize, Serialize};
 
-/// Three clear stones: one disperses, one absorbs, one does neither.
+/// A scene with three clear stones: one disperses, one absorbs, one does neither.
 const SCENE: &str = "vitrine";
-/// The rung that draws all of them.
+/// The rung that draws all the stones.
 const VARIED: Rung = Rung::Inside { geometry: Geometry::Proxy, hits: 4, spectrum: Spectrum::Tracker };
-/// A dispersion and a distance that call for the effects and change nothing to be seen.
+/// A dispersion and an attenuation distance that enable the effects without a visible change.
 const FAINT: (f32, f32) = (1e-6, 1e12);
 
 /// One way to draw the stones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariantWay {
-    /// What it is called.
+    /// Name of the way.
     pub way: String,
-    /// Fragment and vertex instructions of each of its pipelines for stones.
+    /// Fragment and vertex instructions of each pipeline for stones.
     pub instructions: Vec<usize>,
-    /// The largest difference of radiance times exposure from the first way's picture.
+    /// Largest difference of radiance times exposure from the first way's picture.
     pub largest: f64,
-    /// The frame.
+    /// Times of the frame.
     pub timing: Timing,
 }
 
-/// The stones of a scene, each way.
+/// The stones of a scene, drawn in each way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variants {
     /// The scene's name.
     pub scene: String,
-    /// The rung.
+    /// The rung's name.
     pub rung: String,
-    /// Its own variant for each material, then one for all.
+    /// The ways: a variant for each material, then one for all.
     pub ways: Vec<VariantWay>,
 }
 
-/// The scene's clear bodies.
+/// Returns the scene with only its clear bodies.
 fn stones() -> Result<Scene, CostError> {
     let scene = Scene::named(SCENE)?;
     let clear = |object: &Object| object.material.transmission > 0.0;
     Ok(Scene { objects: scene.objects.iter().filter(|object| clear(object)).cloned().collect(), ..scene })
 }
 
-/// The same material, calling for absorption and dispersion whether it has any or not.
+/// Returns the material with absorption and dispersion enabled, whether or not it had them.
 fn with_every_effect(material: &Material) -> Material {
     let (faint, far) = FAINT;
     let dispersion =
@@ -70,7 +71,7 @@ pub(super) fn measure(
     let own = stones()?;
     let every = |object: &Object| Object { material: with_every_effect(&object.material), ..object.clone() };
     let shared = Scene { objects: own.objects.iter().map(every).collect(), ..own.clone() };
-    // One recipe draws them all by this rung, so that variants alone differ.
+    // With this rung a single recipe draws all the stones, so that only the variants differ.
     let settings = Settings { rung: VARIED, samples: 1, ..Settings::of_size(width, height) };
     let scenes = [("its own for each material", &own), ("one with every effect for all", &shared)];
     let timed: Vec<Timed<'_>> = scenes

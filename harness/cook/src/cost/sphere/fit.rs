@@ -1,4 +1,4 @@
-//! Reflectance functions fitted to what a sphere really shows.
+//! Reflectance functions fitted to the exitance of a sphere.
 
 use lapidary_assay::golden_section::golden_section;
 use lapidary_cdrf as cdrf;
@@ -10,9 +10,9 @@ use std::convert::Infallible;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// The clamped cosine itself, whatever the width.
+    /// The clamped cosine itself, independent of the width.
     Lambert,
-    /// The paper's: convolved on the circle.
+    /// The paper's form: convolved on the circle.
     Circular,
     /// Diffused over the sphere, which adds no light.
     Spherical,
@@ -20,7 +20,8 @@ pub enum Form {
 
 impl Form {
     fn value(self, cosine: f64, sigma: f64) -> f64 {
-        // The mirror: its error, 1.5e-6, is a thousandth of what a fit leaves, and a fit asks for tens of thousands of values.
+        // The mirror is accurate enough: its error, 1.5e-6, is a thousandth of a fit's residual. It
+        // also has to be fast, since a fit evaluates tens of thousands of values.
         let function = match self {
             Self::Lambert => return cosine.max(0.0),
             Self::Circular => cdrf::accurate,
@@ -30,24 +31,25 @@ impl Form {
     }
 }
 
-/// A reflectance function beside a profile.
+/// A reflectance function fitted to a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// Its width, in radians.
+    /// Width in radians.
     pub sigma: f64,
-    /// What it is multiplied by.
+    /// Factor of the function.
     pub scale: f64,
-    /// RMS of the difference over the sphere's surface, over the irradiance of a surface that faces the light.
+    /// RMS difference over the sphere's surface, divided by the irradiance of a surface that faces
+    /// the light.
     pub residual: f64,
 }
 
 impl Fit {
-    /// The form of width `sigma`, multiplied by `scale`, or where there is none by what brings it nearest.
+    /// Returns the form with width `sigma` and factor `scale`; `None` is the best-fit factor.
     pub fn at(profile: &Profile, form: Form, sigma: f64, scale: Option<f64>) -> Self {
         Self::of(profile, |cosine, sigma| form.value(cosine, sigma), sigma, scale)
     }
 
-    /// The same of any function of a cosine and a width.
+    /// Returns the same as [`Fit::at`] for any function of a cosine and a width.
     pub fn of(profile: &Profile, function: impl Fn(f64, f64) -> f64, sigma: f64, scale: Option<f64>) -> Self {
         let values: [f64; BINS] = std::array::from_fn(|bin| Profile::mean(bin, |cosine| function(cosine, sigma)));
         let sum = |term: &dyn Fn(usize) -> f64| (0..BINS).map(|bin| Profile::share(bin) * term(bin)).sum::<f64>();
@@ -57,7 +59,7 @@ impl Fit {
         Self { sigma, scale, residual }
     }
 
-    /// The width that brings the form nearest, with the scale as in [`Fit::at`].
+    /// Returns the form with the best-fit width; the scale is as in [`Fit::at`].
     pub fn best(profile: &Profile, form: Form, scale: Option<f64>) -> Self {
         if form == Form::Lambert {
             return Self::at(profile, form, 0.0, scale);
@@ -65,17 +67,22 @@ impl Fit {
         Self::best_of(profile, |cosine, sigma| form.value(cosine, sigma), scale)
     }
 
-    /// What the profile's own statistics leave open of this best fit's width, as a standard error; none where the profile does not settle a width.
+    /// Returns the standard error of this best fit's width due to the profile's statistics; `None`
+    /// if the profile does not determine a width.
     ///
-    /// The best fit is where the sum of squares F has no slope, so that its parameters p follow a value y of the profile by the implicit function
-    /// theorem: dp/dy = -(d²F/dp²)⁻¹ d²F/dp dy, with the misfit's part of the second derivatives kept, since the forms do not meet the profile. Counts of
-    /// walks are multinomial; the intervals' covariances, -p q of a walk, are left out: with a free scale the variance is exactly that of counts without
-    /// the factors 1 - p of coin tosses, and no interval holds more than a tenth of the walks, so that an error is at most a twentieth too small.
+    /// At the best fit the gradient of the sum of squares F vanishes, so that the change of its
+    /// parameters p with a value y of the profile follows from the implicit function theorem: dp/dy
+    /// = -(d²F/dp²)⁻¹ d²F/dp dy. The misfit's part of the second derivatives is kept, since the
+    /// forms do not match the profile exactly. Counts of walks are multinomial; the covariances
+    /// between intervals, -p q per walk, are neglected. With a free scale the variance is exactly
+    /// that of counts without the factors 1 - p of coin tosses, and no interval holds more than a
+    /// tenth of the walks, so the error is underestimated by at most a twentieth.
     pub fn sigma_error(&self, profile: &Profile, form: Form, scale: Option<f64>) -> Option<f64> {
         let values = |sigma: f64| -> [f64; BINS] {
             std::array::from_fn(|bin| Profile::mean(bin, |cosine| form.value(cosine, sigma)))
         };
-        // The mirror's rounding, 1e-7, over the square of the step is well below the second derivative.
+        // The mirror's rounding, 1e-7, divided by the square of the step is well below the second
+        // derivative.
         let step = (0.05 * self.sigma).max(2e-3);
         if self.sigma <= step {
             return None;
@@ -88,7 +95,7 @@ impl Fit {
         let width = sum(&|bin| (self.scale * slope(bin)).powi(2) - misfit(bin) * self.scale * bend(bin));
         let mixed = sum(&|bin| (self.scale * at[bin] - misfit(bin)) * slope(bin));
         let own = sum(&|bin| at[bin] * at[bin]);
-        // Of the width alone, or of width and scale.
+        // For the width alone, or for width and scale.
         let determinant = if scale.is_some() { width } else { width * own - mixed * mixed };
         if determinant.is_nan() || determinant <= 0.0 {
             return None;
@@ -101,14 +108,15 @@ impl Fit {
         Some((0..BINS).map(|bin| (response(bin) * profile.standard_error[bin]).powi(2)).sum::<f64>().sqrt())
     }
 
-    /// The same of any function of a cosine and a width.
+    /// Returns the same as [`Fit::best`] for any function of a cosine and a width.
     pub fn best_of(profile: &Profile, function: impl Fn(f64, f64) -> f64, scale: Option<f64>) -> Self {
         let sigma = best_sigma(|sigma| Self::of(profile, &function, sigma, scale).residual);
         Self::of(profile, function, sigma, scale)
     }
 }
 
-/// Where `value` is least between 0 and 10 rad: the best of a grid from 0.01, a twentieth apart, and golden sections about it.
+/// Returns the width between 0 and 10 rad that minimises `value`: the best point of a grid that
+/// starts at 0.01, each point a twentieth above the last, refined by golden-section search.
 pub fn best_sigma(value: impl Fn(f64) -> f64) -> f64 {
     let grid = |k: i32| if k < 0 { 0.0 } else { 0.01 * 1.05f64.powi(k) };
     let values: Vec<f64> = (0..142).map(|k| value(grid(k))).collect();
@@ -123,10 +131,11 @@ mod tests {
     use lapidary_cdrf::oracle;
     use lapidary_reference::random_walk::{half_space, profile};
 
-    /// A reflectance of a cosine and a width.
+    /// A reflectance as a function of cosine and width.
     type Reflectance = fn(f64, f64) -> f64;
 
-    /// A profile of a known function: the oracle's, which is not what is fitted.
+    /// Returns the profile of a known function, the oracle's, which differs from the function that
+    /// is fitted.
     fn known(function: Reflectance, sigma: f64, scale: f64) -> Profile {
         let exitance = std::array::from_fn(|bin| scale * Profile::mean(bin, |cosine| function(cosine, sigma)));
         Profile { radius: 1.0, albedo: 0.9, exitance, standard_error: [0.0; BINS] }
@@ -144,7 +153,7 @@ mod tests {
                     assert!((found.sigma / sigma - 1.0).abs() < 1e-3, "{form:?} {sigma}: {found:?}");
                     assert!((found.scale - 0.7).abs() < 1e-4 && found.residual < 3e-6, "{form:?} {sigma}: {found:?}");
                 }
-                // The wrong scale or the wrong form leaves something over.
+                // The wrong scale or the wrong form leaves a residual.
                 assert!(Fit::best(&profile, form, Some(0.5)).residual > 1e-2);
                 let other = if form == Form::Circular { Form::Spherical } else { Form::Circular };
                 assert!(Fit::best(&profile, other, Some(0.7)).residual > 1e-4);
@@ -152,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Walks of other seeds give widths that are spread as their errors say.
+    /// The widths from walks with different seeds scatter as their standard errors predict.
     #[test]
     fn widths_are_spread_as_their_errors_say() {
         for (radius, albedo, unscattered) in [(2.0, 0.9, false), (2.0, 0.9, true), (10.0, 0.99, false)] {
@@ -173,11 +182,12 @@ mod tests {
                 println!(
                     "{radius} {albedo} {unscattered} {scale:?}: {middle:.4}, spread {spread:.5}, {ratio:.2} of the error"
                 );
-                // A spread of 48 is sure to a tenth: 1 / sqrt(2 x 47). A factor of two in the error is four deviations and more off.
+                // A standard deviation from 48 values is accurate to a tenth: 1 / sqrt(2 x 47). An
+                // error that is wrong by a factor of two is at least four deviations off.
                 assert!((0.6..1.4).contains(&ratio), "{radius} {albedo} {scale:?}: {ratio}");
             }
         }
-        // Nothing but noise has no width.
+        // Pure noise determines no width.
         let flat = Profile { radius: 1.0, albedo: 0.9, exitance: [0.0; BINS], standard_error: [0.1; BINS] };
         let fit = Fit { sigma: 0.5, scale: 0.0, residual: 0.0 };
         assert_eq!(fit.sigma_error(&flat, Form::Circular, None), None);
@@ -194,7 +204,7 @@ mod tests {
         assert!((found.scale - 0.4).abs() < 1e-12 && found.residual < 1e-12, "{found:?}");
     }
 
-    /// A scale that may be chosen brings a function no farther off, and a width no farther than none.
+    /// A free scale never increases the residual, nor does a free width.
     #[test]
     fn freedom_never_harms() {
         for (radius, albedo) in [(2.0, 0.8), (5.0, 1.0), (20.0, 0.99)] {

@@ -4,7 +4,7 @@ use super::Form;
 use super::{ALBEDOS, Choice, FORMS, Law, RADII, Row, ScaleKind, SphereReport, table};
 use crate::cost::page::{Table, Tables, header, row};
 
-/// The radii of the table of residuals.
+/// The radii shown in the table of residuals, in mean free paths.
 const SHOWN: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 
 impl Tables for SphereReport {
@@ -38,7 +38,7 @@ impl Tables for SphereReport {
     }
 }
 
-/// A header of radii, with columns before and after.
+/// Returns a header with a column per radius between the first and the last columns.
 fn radii(first: &[&str], radii: &[f64], last: &[&str]) -> String {
     let mut columns: Vec<String> = first.iter().map(|&name| name.to_owned()).collect();
     columns.extend(radii.iter().enumerate().map(|(k, r)| if k == 0 { format!("R = {r}") } else { r.to_string() }));
@@ -52,7 +52,7 @@ fn walks(report: &SphereReport) -> String {
     format!("{} walks each; chance alone leaves a residual of at most {most:.4}.\n", report.walks)
 }
 
-/// Widths times radii, of each albedo's rows.
+/// Returns the widths times radii from the rows of each albedo.
 fn widths<'a>(rows: &dyn Fn(f64) -> Vec<&'a Row>) -> String {
     let mut table = radii(&["albedo"], &RADII, &["largest over least, to 20", "to 100"]);
     for albedo in ALBEDOS {

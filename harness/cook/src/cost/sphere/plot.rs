@@ -1,4 +1,5 @@
-//! The spheres as pictures: the width over the radius, and what spheres show over the angle from the light.
+//! The spheres as plots: the width against the radius, and exitance against the angle from the
+//! light.
 
 use super::Form;
 use super::{ALBEDOS, RADII as ALL_RADII, ScaleKind, SphereReport};
@@ -8,36 +9,38 @@ use lapidary_cdrf as cdrf;
 use lapidary_reference::random_walk::BINS;
 use plotters::prelude::*;
 
-/// The spheres whose profiles are drawn: their albedo ...
+/// Albedo of the spheres whose profiles are drawn.
 const ALBEDO: f64 = 0.99;
-/// ... and their radii.
+/// Radii of the spheres whose profiles are drawn, in mean free paths.
 const RADII: [f64; 3] = [2.0, 10.0, 50.0];
-/// Labels of the axis of widths times radii.
+/// Labels on the axis of widths times radii.
 const WIDTHS: [f64; 12] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0];
 
-/// Width times radius over the radius, a line for each albedo: level, were sigma = sigma_0 kappa true.
+/// Returns a plot of width times radius against the radius as SVG, with a line for each albedo. The
+/// lines would be level if sigma = sigma_0 kappa held.
 ///
 /// # Errors
 ///
-/// A report without widths; plotters' own.
+/// Returns an error if the report has no widths or if plotters fails.
 pub fn sigma(report: &SphereReport) -> Result<String, CostError> {
     written(|root| draw_sigma(root, report))
 }
 
-/// Exitance over the angle from the light, with the best circular form with a free scale beside it, and Lambert's law.
+/// Returns a plot of exitance against the angle from the light as SVG, together with the best
+/// circular form with a free scale and Lambert's law.
 ///
 /// # Errors
 ///
-/// A report without one of the spheres; plotters' own.
+/// Returns an error if the report lacks one of the spheres or if plotters fails.
 pub fn profile(report: &SphereReport) -> Result<String, CostError> {
     written(|root| draw_profile(root, report))
 }
 
-/// Radius and width times radius.
+/// Radius, and width times radius, both in mean free paths.
 type Point = (f64, f64);
 
 fn draw_sigma(root: &Root<'_>, report: &SphereReport) -> Drawn {
-    // Neither has a place on a logarithmic axis.
+    // A zero cannot be shown on a logarithmic axis.
     let visible = |&(radius, width): &Point| radius > 0.0 && width > 0.0;
     let lines = ALBEDOS.map(|albedo| -> Vec<Point> {
         let rows = report.best(albedo, Form::Circular, ScaleKind::Free);

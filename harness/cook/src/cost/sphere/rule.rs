@@ -1,4 +1,4 @@
-//! Rules for the width: how it goes with the radius, and what one width times radius costs.
+//! Rules for the width: how it depends on the radius, and what a single width times radius costs.
 
 use super::fit::best_sigma;
 use super::{Fit, Form};
@@ -6,61 +6,64 @@ use super::{Row, ScaleKind, rows_of};
 use lapidary_reference::random_walk::Profile;
 use serde::{Deserialize, Serialize};
 
-/// The radii whose widths make the laws: larger spheres are so near Lambert's law that a width hardly matters.
+/// Range of radii that the laws are fitted to: larger spheres are so close to Lambert's law that
+/// the width hardly matters.
 const LAW_RADII: [f64; 2] = [2.0, 20.0];
-/// Ranges of radii to choose one width times radius for.
+/// Ranges of radii, each with its own choice of width times radius.
 pub const RANGES: [[f64; 2]; 3] = [[2.0, 5.0], [5.0, 20.0], [20.0, 100.0]];
 /// The forms that have a width.
 const WIDE: [Form; 2] = [Form::Circular, Form::Spherical];
 
-/// sigma R = factor R^exponent, the straight line of least squares through logarithms of the best widths with free scales.
+/// A law sigma R = factor R^exponent: the least-squares line through the logarithms of the best
+/// widths with free scales.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Law {
-    /// Whose width.
+    /// The form whose width the law gives.
     pub form: Form,
-    /// Of one scattering; none where one law is for all albedos.
+    /// Single-scattering albedo; `None` if the law is for all albedos.
     pub albedo: Option<f64>,
-    /// The least and the largest radius.
+    /// The smallest and the largest radius in mean free paths.
     pub radii: [f64; 2],
-    /// In mean free paths: sigma R at a radius of one.
+    /// sigma R at a radius of one, in mean free paths.
     pub factor: f64,
-    /// 0 were sigma = sigma_0 / R true.
+    /// Exponent of the radius; 0 if sigma = sigma_0 / R held.
     pub exponent: f64,
-    /// By what share the law's width is off at worst.
+    /// Largest relative error of the law's width.
     pub worst: f64,
 }
 
 impl Law {
-    /// Width for a radius in mean free paths, in radians.
+    /// Returns the width in radians for a radius in mean free paths.
     pub fn sigma(&self, radius: f64) -> f64 {
         self.factor * radius.powf(self.exponent - 1.0)
     }
 }
 
-/// One width times radius for a range of radii. Residuals are root mean squares over its spheres.
+/// One width times radius for a range of radii. Residuals are root mean squares over the range's
+/// spheres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// Of one scattering.
+    /// Single-scattering albedo.
     pub albedo: f64,
-    /// What is fitted.
+    /// The fitted reflectance function.
     pub form: Form,
-    /// Whether each sphere has a scale of its own.
+    /// Whether each sphere has its own best-fit scale.
     pub scale_kind: ScaleKind,
-    /// The least and the largest radius.
+    /// The smallest and the largest radius in mean free paths.
     pub radii: [f64; 2],
-    /// The width times radius, in mean free paths, that leaves least.
+    /// Width times radius with the smallest residual, in mean free paths.
     pub sigma0: f64,
-    /// What it leaves.
+    /// Residual with `sigma0`.
     pub residual: f64,
-    /// What the law for all albedos leaves; none where there is no law.
+    /// Residual with the law for all albedos; `None` if there is no law.
     pub law: Option<f64>,
-    /// What each sphere's own best width leaves.
+    /// Residual with each sphere's own best width.
     pub best: f64,
-    /// What no width at all leaves.
+    /// Residual with a width of zero.
     pub lambert: f64,
 }
 
-/// Each form's law, for all albedos and for each.
+/// Returns each form's laws: for all albedos together, and for each one.
 pub(super) fn laws(albedos: &[f64], rows: &[Row]) -> Vec<Law> {
     let kinds = std::iter::once(None).chain(albedos.iter().copied().map(Some));
     let each = kinds.flat_map(|albedo| WIDE.map(|form| (form, albedo)));
@@ -83,7 +86,7 @@ fn law(form: Form, albedo: Option<f64>, rows: &[Row]) -> Option<Law> {
     let moment =
         |axis: usize| points.iter().map(|point| (point[0] - middle[0]) * (point[axis] - middle[axis])).sum::<f64>();
     let spread = moment(0);
-    // One radius alone makes no law, nor does none, whose spread is 0 or not a number.
+    // A law needs at least two radii: with one the spread is 0, with none it is not a number.
     if spread.is_nan() || spread < 1e-9 {
         return None;
     }
@@ -94,7 +97,7 @@ fn law(form: Form, albedo: Option<f64>, rows: &[Row]) -> Option<Law> {
     Some(Law { form, albedo, radii: LAW_RADII, factor, exponent, worst })
 }
 
-/// The choices of an albedo, for each range that has spheres.
+/// Returns the choices for an albedo, for each range that contains spheres.
 pub(super) fn choices(albedo: f64, profiles: &[Profile], rows: &[Row], laws: &[Law]) -> Vec<Choice> {
     let mut found = Vec::new();
     for radii @ [low, high] in RANGES {
@@ -116,7 +119,7 @@ pub(super) fn choices(albedo: f64, profiles: &[Profile], rows: &[Row], laws: &[L
                     let rows = rows_of(rows, albedo, form, scale_kind).filter(|row| inside(row.radius));
                     mean(rows.map(|row| row.residual.powi(2)).sum())
                 };
-                // Searched for as the width at the range's middle.
+                // Searched for as the width at the centre of the range.
                 let middle = (low * high).sqrt();
                 let sigma0 = middle * best_sigma(|sigma| with(&|radius| sigma * middle / radius));
                 let law = laws.iter().find(|law| law.form == form && law.albedo.is_none());
@@ -141,11 +144,11 @@ pub(super) fn choices(albedo: f64, profiles: &[Profile], rows: &[Row], laws: &[L
 mod tests {
     use super::*;
 
-    /// Rows whose widths follow a law, with one that does not.
+    /// Returns rows whose widths follow a law, except one.
     fn rows(factor: f64, exponent: f64, off: f64) -> Vec<Row> {
         let row = |radius: f64| {
             let law = factor * f64::powf(radius, exponent);
-            // A large sphere is no part of the law.
+            // The law does not apply to a large sphere.
             let sigma_radius = if radius > 20.0 { 3.0 * law } else { law };
             Row {
                 albedo: 0.9,
@@ -177,7 +180,7 @@ mod tests {
         assert!(laws(&[0.9], &rows(1.7, 0.4, 0.0)[..1]).is_empty() && laws(&[0.9], &[]).is_empty());
     }
 
-    /// Spheres that obey sigma = sigma_0 / R are met without a loss.
+    /// Spheres that obey sigma = sigma_0 / R are fitted without loss.
     #[test]
     fn a_rule_that_is_true_costs_nothing() {
         let sphere = |radius: f64| {
@@ -189,7 +192,7 @@ mod tests {
         let spheres = [5.0, 10.0, 20.0].map(sphere);
         let rows: Vec<Row> = spheres.iter().flat_map(super::super::fits).collect();
         let found = choices(0.9, &spheres, &rows, &[]);
-        // The first range holds the radius 5 alone, the last 20.
+        // The first range contains only the radius 5, the last one only 20.
         assert_eq!(found.len(), 3 * 4);
         for choice in found.iter().filter(|choice| choice.radii == [5.0, 20.0]) {
             assert!(choice.best <= choice.residual + 1e-9 && choice.residual < choice.lambert, "{choice:?}");

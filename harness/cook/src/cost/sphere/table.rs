@@ -4,7 +4,7 @@ use super::Form;
 use super::{FORMS, Row, ScaleKind, SphereReport};
 use std::fmt::Write as _;
 
-/// A form's name.
+/// Returns a form's name.
 pub(super) fn name(form: Form) -> &'static str {
     match form {
         Form::Lambert => "lambert",
@@ -13,7 +13,7 @@ pub(super) fn name(form: Form) -> &'static str {
     }
 }
 
-/// Width times radius, with its standard error.
+/// Formats width times radius with its standard error.
 pub(super) fn width(row: &Row) -> String {
     let width = row.sigma_radius;
     row.sigma_radius_error.map_or_else(|| format!("{width:.3}"), |error| format!("{width:.3} ± {error:.3}"))

@@ -1,5 +1,7 @@
-//! Walks that set out from the lights, as light does. Each scattering shows in the pixel in which the eye sees it, so that one walk serves many pixels, and
-//! bright ones most: where walks are long, far fewer are needed than from the eye.
+//! Walks that start from the lights, as light does.
+//!
+//! Each scattering contributes to the pixel in which the eye sees it, so that one walk serves many
+//! pixels, and bright ones most. Where walks are long, far fewer are needed than from the eye.
 
 mod emission;
 
@@ -14,19 +16,19 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Walks come in so many batches, whose spread tells their error.
+/// Number of batches of walks; their spread gives the error.
 const BATCHES: u32 = 64;
 
-/// What the walks of a batch bring.
+/// Result of a batch of walks.
 struct Batch {
-    /// Linear RGB of each pixel, row by row.
+    /// Linear RGB radiance of each pixel, row by row.
     radiance: Vec<DVec3>,
     walks: u64,
     scatterings: u64,
     lost: u64,
 }
 
-/// As many walks as from the eye would set out, shared among lights by their power.
+/// Renders with as many walks as would start from the eye, shared among the lights by their power.
 pub(super) fn render(
     matter: &Matter<'_>,
     (lights, bounds): (&[Light], Bounds),
@@ -48,7 +50,8 @@ pub(super) fn render(
     };
     let (mut sums, mut squares) = (vec![DVec3::ZERO; pixels], vec![DVec3::ZERO; pixels]);
     let mut counts = [0; 3];
-    // Some at a time, for the memory, and added in their order, for the same sums on any number of threads.
+    // Only some batches at a time, to save memory, and added in order, for the same sums on any
+    // number of threads.
     let together = rayon::current_num_threads() as u32;
     for first in (0..BATCHES).step_by(together as usize) {
         let batches: Vec<Batch> = (first..BATCHES.min(first + together)).into_par_iter().map(follow).collect();
@@ -94,7 +97,7 @@ impl Batch {
         for number in 0..count {
             let Some((ray, power)) = emission.emit(stratum(number, count, random), random.random()) else { break };
             let Ray { position, direction } = ray;
-            // Outside of a spot's cone there is no light.
+            // There is no light outside a spot's cone.
             let Some(hit) = matter.enter(position, direction).filter(|_| power != DVec3::ZERO) else { continue };
             let flux = power / count as f64;
             let radiance = &mut batch.radiance;
@@ -109,7 +112,7 @@ impl Batch {
     }
 }
 
-/// The share of a pixel in which there is a body.
+/// Returns the share of a pixel that bodies cover.
 fn coverage(matter: &Matter<'_>, view: &View, (x, y): (u32, u32)) -> f32 {
     const SIDE: u32 = 8;
     let at = |from: u32, cell: u32| f64::from(from) + (f64::from(cell) + 0.5) / f64::from(SIDE);

@@ -40,7 +40,7 @@ fn a_seed_gives_the_same_picture_on_any_number_of_threads() {
     }
 }
 
-/// The further a point light, the more parallel its rays.
+/// The further away a point light, the more parallel its rays.
 #[test]
 fn a_far_point_light_is_a_directional_one() {
     let mut scene = named("wax_bunny");
@@ -50,9 +50,9 @@ fn a_far_point_light_is_a_directional_one() {
     scene.lights = vec![Light::Point { position: distance * toward, intensity: distance * distance * irradiance }];
     let lamplit = rendered(&scene, &settings(24, 6));
     let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
-    // The same walks: what differs is the light's direction, by 1e-6, and f32's digits.
+    // The walks are the same: only the light's direction differs, by 1e-6, and f32's digits.
     let apart = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..4).all(|k| (a[k] - b[k]).abs() <= 1e-4 * a[k] + 1e-6);
-    // But a light that just grazes an edge may fall to either side.
+    // But light that just grazes an edge may fall on either side.
     let (compared, different) = (pairs().count(), pairs().filter(apart).count());
     let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
     let ratio = total(&lamplit) / total(&sunlit);
@@ -60,7 +60,8 @@ fn a_far_point_light_is_a_directional_one() {
     assert!(compared > 150 && different * 50 < compared && (ratio - 1.0).abs() < 1e-3);
 }
 
-/// Where nothing is absorbed and nothing shows through, a picture in a white furnace is its own coverage.
+/// If nothing is absorbed and nothing shows through, an image in a white furnace equals its own
+/// coverage.
 #[test]
 fn white_furnace() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
@@ -73,7 +74,7 @@ fn white_furnace() {
     let rendering = rendered(&scene, &Settings { environment: Some(&ones), ..settings(24, 4) });
     let inner = rendering.linear.iter().zip(&rendering.standard_error).filter(|(pixel, _)| pixel[3] == 1.0);
     let whole = inner.clone().filter(|([red, green, blue, _], error)| {
-        // Some of the light from behind may show through near the rim, and is left out.
+        // Some of the light from behind may show through near the rim and is left out.
         let all = [red, green, blue].iter().all(|channel| (**channel - 1.0).abs() < 1e-6);
         assert!(all || error[0] > 0.0);
         all
@@ -84,7 +85,8 @@ fn white_furnace() {
     assert!(rendering.linear.iter().all(|pixel| pixel[0] <= pixel[3] + 1e-6));
 }
 
-/// From either end the same light is found: means of sixteen parts of the picture, over plain matter, veins with forward scattering, several bodies, and lamps.
+/// Walks from either end find the same light: means of sixteen parts of the image, for plain media,
+/// veins with forward scattering, several bodies, and lamps.
 #[test]
 fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
     let mut veined = named("dragon");
@@ -117,7 +119,7 @@ fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
                 };
                 let [(a, error_a), (b, error_b)] = [&eye, &light].map(of_part);
                 assert!([a, b, error_a, error_b].into_iter().all(f64::is_finite));
-                // Of a part next to black, too few walks tell the spread.
+                // In an almost black part, too few walks determine the spread.
                 if a.max(b) > 0.05 {
                     worst = larger(worst, (a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
                 }
@@ -128,7 +130,7 @@ fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
     }
 }
 
-/// What pictures differ by from seed to seed is what their standard errors say, and no more: the strata can only help.
+/// Images of different seeds differ by their standard errors and no more: the strata can only help.
 #[test]
 fn errors_are_what_they_are_said_to_be() {
     for origin in Origin::ALL {
@@ -138,7 +140,7 @@ fn errors_are_what_they_are_said_to_be() {
     }
 }
 
-/// Of pictures of many seeds, and what they say.
+/// Variance between images of many seeds, and the variance that they state.
 fn variances(origin: Origin) -> [DVec3; 2] {
     let scene = named("skin_ring");
     let pictures: Vec<Rendering> =
@@ -212,7 +214,7 @@ fn progress_counts_rows_and_batches() {
     }
 }
 
-/// How fast, how noisy, and how many walks slip through a surface: next to none.
+/// Prints speed and noise, and counts the walks that slip through a surface: next to none.
 #[test]
 fn hardly_a_walk_is_lost() {
     for name in ["skin_bunny", "jade_ring", "wax"] {

@@ -1,5 +1,6 @@
-//! One walk through bodies of scattering matter: backwards from the eye, or from a light, as light goes. Matter does not know the difference, but for what
-//! each scattering is connected with.
+//! One walk through scattering bodies: backwards from the eye, or forwards from a light.
+//!
+//! The two differ only in the targets with which each scattering is connected.
 
 mod general;
 
@@ -15,27 +16,29 @@ use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use std::f64::consts::PI;
 
-/// A walk whose strongest channel has less left than this goes on with the probability that makes up for it. This and the next were
-/// chosen for the least product of time and variance in a picture of a bunny of skin.
+/// A walk whose strongest channel has less left than this continues with the probability that
+/// compensates for its gain. This constant and the next were chosen for the least product of time
+/// and variance in an image of a skin bunny.
 const WEAK: f64 = 0.5;
-/// The optical depth, in the channel that has least, up to which the way out to a light is always looked for.
+/// Optical depth, in the channel with the least, up to which the way out to a light is always
+/// searched.
 const SURE: f64 = 0.7;
 
-/// Bodies of scattering matter, and the lights about them.
+/// Scattering bodies and the lights around them.
 pub(super) struct Matter<'scene> {
     bodies: Bodies,
-    /// Each body's.
+    /// Coefficients of each body.
     coefficients: Vec<Coefficients>,
     structures: Vec<Structure>,
     boundary: Boundary,
     lights: Vec<Light>,
     environment: Option<&'scene Environment>,
-    /// About all bodies: a walk that is outside has slipped through a surface.
+    /// Bounds of all bodies: a walk outside them has slipped through a surface.
     least: DVec3,
     greatest: DVec3,
 }
 
-/// Per unit of length, for red, green and blue.
+/// Coefficients per unit of length, for red, green and blue.
 #[derive(Clone, Copy, Debug)]
 struct Coefficients {
     scattering: DVec3,
@@ -49,12 +52,12 @@ impl From<&Medium> for Coefficients {
     }
 }
 
-/// What each scattering is connected with.
+/// Targets with which each scattering is connected.
 #[derive(Clone, Copy)]
 pub(super) enum Targets<'a> {
-    /// The lights, by a walk from the eye.
+    /// The lights, for a walk from the eye.
     Lights(&'a [Light]),
-    /// The eye, by a walk from a light.
+    /// The eye, for a walk from a light.
     Eye(&'a View),
 }
 
@@ -66,10 +69,11 @@ impl Targets<'_> {
         }
     }
 
-    /// What a point receives from a light, or the radiance that the eye sees of a point that shines with intensity 1, and in which pixel.
+    /// Returns the light that a point receives from a light, or the radiance and pixel in which the
+    /// eye sees a point of intensity 1. `None` outside a spot's cone or the eye's view.
     fn at(self, number: usize, position: DVec3) -> Option<(Arrival, [u32; 2])> {
         match self {
-            // Outside of a spot's cone there is none.
+            // There is no light outside a spot's cone.
             Self::Lights(lights) => Some((lights[number].arrival(position), [0; 2]))
                 .filter(|(arrival, _)| arrival.irradiance != DVec3::ZERO),
             Self::Eye(view) => view.sight(position).map(|Sight { x, y, toward, distance, weight }| {
@@ -80,20 +84,21 @@ impl Targets<'_> {
     }
 }
 
-/// What a walk brought.
+/// Result of a walk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outcome {
-    /// Linear RGB, of light that was scattered at least once, by a walk from the eye.
+    /// Linear RGB radiance of light that was scattered at least once, for a walk from the eye.
     pub(super) radiance: DVec3,
-    /// What is left of a walk that nothing scattered: the mean is the share of what lies behind that shows through.
+    /// Throughput of a walk that was never scattered; its mean is the share of the background that
+    /// shows through.
     pub(super) straight: DVec3,
     pub(super) scatterings: u32,
-    /// It slipped through a surface; what it had brought until then counts.
+    /// Whether the walk slipped through a surface; its contributions until then count.
     pub(super) lost: bool,
 }
 
 impl<'scene> Matter<'scene> {
-    /// Nothing where an object has no medium: that object's number.
+    /// Returns the number of the first object without a medium as the error.
     pub(super) fn new(
         scene: &Scene,
         boundary: Boundary,
@@ -119,7 +124,7 @@ impl<'scene> Matter<'scene> {
         })
     }
 
-    /// Where a ray from outside enters a body first.
+    /// Finds where a ray from outside first enters a body.
     pub(super) fn enter(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         self.bodies.enter(origin, direction, None)
     }
@@ -131,7 +136,8 @@ impl<'scene> Matter<'scene> {
         Outcome { radiance: radiance + outcome.radiance, ..outcome }
     }
 
-    /// Follows light along a ray that meets a body at `hit`; `deposit` gets what the eye sees of it and in which pixel.
+    /// Follows light along a ray that meets a body at `hit`; `deposit` receives a pixel and the
+    /// light that the eye sees there.
     pub(super) fn walk_of_light(
         &self,
         eye: &View,
@@ -158,17 +164,19 @@ impl<'scene> Matter<'scene> {
         }
     }
 
-    /// Whether a point lies within the bounds of all bodies. Written so that NaN and infinity do not.
+    /// Whether a point lies within the bounds of all bodies. Written so that it is false for NaN
+    /// and infinity.
     fn holds(&self, position: DVec3) -> bool {
         position.cmpge(self.least).all() && position.cmple(self.greatest).all()
     }
 
-    /// The walk in matter of one density that scatters to all sides alike, whose surface lets all light pass.
+    /// The walk in uniform media that scatter isotropically, with surfaces that let all light pass.
     ///
-    /// One walk serves all three channels. At each flight one of them is chosen by what is left of it and its extinction gives the
-    /// length; each is then weighted by what it would have done over what the choice does in the mean (the balance heuristic, as
-    /// Chiang, Kutz and Burley, "Practical and Controllable Subsurface Scattering for Production Path Tracing", 2016, have it). So no channel
-    /// ever has more than the three began with together.
+    /// One walk serves all three channels. At each flight, one channel is chosen in proportion to
+    /// its throughput, and its extinction gives the length. Each channel is then weighted by its
+    /// own density over the mean density of the choice (the balance heuristic: Chiang, Kutz and
+    /// Burley, 2016, "Practical and Controllable Subsurface Scattering for Production Path
+    /// Tracing"). So no channel ever has more than the three had together at the start.
     fn follow_plain(
         &self,
         targets: Targets<'_>,
@@ -184,7 +192,7 @@ impl<'scene> Matter<'scene> {
         let (mut body, mut left) = (hit.place.body, Some(hit.place.face));
         loop {
             let Coefficients { scattering, extinction } = self.coefficients[body];
-            // 1 - [0, 1) is never 0; where nothing is extinguished, the way is without end.
+            // 1 - [0, 1) is never 0; without extinction, the path is infinite.
             let depth = -(1.0 - random.random::<f64>()).ln();
             let chosen = channel(throughput, random.random());
             let free = if extinction[chosen] > 0.0 { depth / extinction[chosen] } else { f64::INFINITY };
@@ -227,7 +235,8 @@ impl<'scene> Matter<'scene> {
         }
     }
 
-    /// What the targets send to a point in `body`, or see of it, times the phase function; nothing where a surface has a gap.
+    /// Deposits the light that the targets send to a point in `body`, or see of it, times the phase
+    /// function. Returns `None` if a surface has a gap.
     fn connect(
         &self,
         targets: Targets<'_>,
@@ -239,8 +248,8 @@ impl<'scene> Matter<'scene> {
         let extinction = self.coefficients[body].extinction;
         let least = extinction.min_element();
         for target in 0..targets.count() {
-            // A longer way is looked for with the probability that makes up for its gain below: most of a search's time goes
-            // into ways that bring next to nothing.
+            // A longer way is searched with the probability that compensates for its gain below:
+            // most of the search time goes into paths that contribute almost nothing.
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
             let Some((Arrival { direction, distance, irradiance }, place)) = targets.at(target, position) else {
                 continue;
@@ -262,8 +271,8 @@ impl<'scene> Matter<'scene> {
         Some(())
     }
 
-    /// The optical depth of all matter on the way of a ray that leaves a body at `out`, as far as `distance`; nothing where a surface
-    /// has a gap.
+    /// Optical depth of all media along a ray that leaves a body at `out`, as far as `distance`;
+    /// `None` if a surface has a gap.
     fn depth(&self, position: DVec3, direction: DVec3, out: Hit, distance: f64) -> Option<DVec3> {
         let mut depth = DVec3::ZERO;
         self.beyond(position, direction, out, distance, |body, _, length| {
@@ -272,8 +281,9 @@ impl<'scene> Matter<'scene> {
         Some(depth)
     }
 
-    /// Names each body on the way of a ray that leaves one at `out`, as far as `distance`, with the place where the ray enters it and the length of
-    /// its way inside; nothing where a surface has a gap.
+    /// Calls `pass` for each body along a ray that leaves one at `out`, as far as `distance`, with
+    /// the position where the ray enters the body and the path length inside. Returns `None` if a
+    /// surface has a gap.
     fn beyond(
         &self,
         mut position: DVec3,
@@ -297,14 +307,14 @@ impl<'scene> Matter<'scene> {
     }
 }
 
-/// A ray: a place and a unit direction.
+/// A ray: a position and a unit direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub(super) position: DVec3,
     pub(super) direction: DVec3,
 }
 
-/// A channel, each as likely as its share, from a number in [0, 1).
+/// Picks a channel with its share of the throughput as the probability, from a `number` in [0, 1).
 fn channel(throughput: DVec3, number: f64) -> usize {
     let place = number * throughput.element_sum();
     if place < throughput.x {
@@ -316,8 +326,8 @@ fn channel(throughput: DVec3, number: f64) -> usize {
     }
 }
 
-/// What is left after a step that has these `values` in each channel, and these densities where the channel alone is followed: the step
-/// was drawn with their mean, weighted by throughput.
+/// Returns the throughput after a step with these `values` and probability `densities` in each
+/// channel. The step was drawn from the mean of the densities, weighted by throughput.
 fn weighted(throughput: DVec3, values: DVec3, densities: DVec3) -> DVec3 {
     throughput * values * (throughput.element_sum() / throughput.dot(densities))
 }

@@ -7,7 +7,7 @@ fn bodies(name: &str, geometry: Geometry) -> (Scene, Bodies) {
     (scene, bodies)
 }
 
-/// Rays from a sphere about the bunny through a ball within its bounds, evenly spread.
+/// Evenly spread rays from a sphere around the scene through a ball within its bounds.
 fn rays(scene: &Scene, count: u32) -> impl Iterator<Item = (DVec3, DVec3)> {
     let centre = scene.bounds().centre().as_dvec3();
     let radius = f64::from(scene.bounds().radius());
@@ -42,7 +42,7 @@ fn through_a_closed_surface_ways_in_and_out_alternate() {
     assert!(entered > 2000, "{entered}");
 }
 
-/// How many ways in rays find, and how many of them lead to no way out.
+/// Counts the entries that rays find, and those among them that lead to no exit.
 fn ways_in(scene: &Scene) -> [u32; 2] {
     let bodies = Bodies::new(&scene.objects, Geometry::Triangles);
     let [mut entered, mut trapped] = [0, 0];
@@ -64,7 +64,7 @@ fn ways_in(scene: &Scene) -> [u32; 2] {
     [entered, trapped]
 }
 
-/// A bunny on which triangles lie back to back.
+/// A bunny with some triangles back to back.
 #[test]
 fn between_triangles_back_to_back_there_is_nothing() {
     let mut scene = Scene::named("bunny_stone").expect("built in");
@@ -76,7 +76,7 @@ fn between_triangles_back_to_back_there_is_nothing() {
     assert!(entered > 2000 && trapped == 0, "{trapped} of {entered}");
 }
 
-/// The dragon's scan crosses itself here and there.
+/// The dragon's scan intersects itself in places.
 #[test]
 fn where_a_mesh_crosses_itself_few_rays_are_trapped() {
     let [entered, trapped] = ways_in(&Scene::named("dragon").expect("built in"));
@@ -103,7 +103,7 @@ fn planes_and_triangles_of_one_stone_are_met_alike() {
     let mut met = 0;
     for (origin, direction) in rays(&scene, 2000) {
         let (a, b) = (planes.enter(origin, direction, None), triangles.enter(origin, direction, None));
-        // A ray past the very edge may meet one and not the other.
+        // A ray that grazes an edge may meet one and not the other.
         let (Some(a), Some(b)) = (a, b) else { continue };
         let slope = a.normal.dot(direction).abs();
         assert!((a.distance - b.distance).abs() < 1e-6 / slope, "{a:?} {b:?}");
@@ -117,7 +117,7 @@ fn planes_and_triangles_of_one_stone_are_met_alike() {
     assert!(met > 800, "{met}");
 }
 
-/// The sieve is an aid: what it leaves out is never the answer.
+/// The sieve is only an aid: it never leaves out the answer.
 #[test]
 fn the_sieve_keeps_the_nearest_plane() {
     for (name, offset) in [("brilliant", 0.0), ("step_cut", 0.0), ("prism", 0.0), ("brilliant", 300.0)] {
@@ -129,7 +129,7 @@ fn the_sieve_keeps_the_nearest_plane() {
         for (origin, direction) in rays(&scene, 2000) {
             let Some(hit) = bodies.enter(origin, direction, None) else { continue };
             let (mut origin, mut direction, mut left) = (origin + hit.distance * direction, direction, hit.place.face);
-            // Reflected again and again, to come near edges.
+            // Reflected repeatedly, to come near edges.
             for _ in 0..20 {
                 let distances = planes.planes.iter().enumerate().filter_map(|(face, plane)| {
                     let slope = plane.normal.dot(direction);
@@ -149,7 +149,7 @@ fn the_sieve_keeps_the_nearest_plane() {
     }
 }
 
-/// Through an edge that two triangles share, and through a corner that several share, exactly.
+/// Rays exactly through an edge that two triangles share, and through a corner that several share.
 #[test]
 fn nothing_slips_through_edges_and_corners() {
     let (_, octahedron) = bodies("octahedron", Geometry::Triangles);
@@ -184,7 +184,8 @@ fn what_leaves_a_stone_may_enter_another() {
     }
 }
 
-/// From a point inside, whichever way one looks, as far as there is body; and nothing before a nearer limit.
+/// Rays from a point inside, in any direction, leave where the body ends; none leaves before a
+/// nearer limit.
 #[test]
 fn rays_from_inside_leave() {
     for geometry in [Geometry::Planes, Geometry::Triangles] {

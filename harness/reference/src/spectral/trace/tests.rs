@@ -4,16 +4,16 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};
 use lapidary_scene::{Averaging, Material, Object};
 
-/// Radiance 1 from above, 0 from below, with a soft step of one texel between.
+/// Radiance 1 from above and 0 from below, with a soft step of one texel in between.
 fn sky() -> Environment {
     let pixels = (0..128).map(|place| if place < 64 { [1.0; 4] } else { [0.0; 4] }).collect();
     Environment::Map(EnvironmentMap { width: 2, height: 64, pixels })
 }
 
-/// A plate of thickness 1, its upper side at y = 0, too wide for light to find its rim.
+/// A plate of thickness 1 with its upper side at y = 0, too wide for light to reach its rim.
 fn plate() -> Object {
     let side = |normal: DVec3, distance| Plane { normal, distance };
-    // A polyhedron is made z up: its z is the mesh's y.
+    // A polyhedron is built z up: its z is the mesh's y.
     let around = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|normal| side(normal, 512.0));
     let planes = [around.as_slice(), &[side(DVec3::Z, 0.0), side(-DVec3::Z, 1.0)]].concat();
     let mesh = Polyhedron::from_planes(&planes).unwrap().to_mesh(Averaging::Angle);
@@ -67,7 +67,7 @@ fn an_absorbing_plate_follows_beer_and_lambert() {
 
 #[test]
 fn the_surface_alone_reflects_by_fresnel() {
-    // Black inside: what is left is the first reflection.
+    // Black inside: only the first reflection is left.
     let optics = Optics { absorption: DVec3::splat(1e9), ..clear(2.41749) };
     let seen = outcome(&plate(), &sky(), Geometry::Planes, optics, -DVec3::Y);
     assert!((seen.radiance.x - 0.1720).abs() < 5e-5, "{seen:?}");
@@ -106,13 +106,13 @@ fn reflection_is_the_oracles() {
     for k in 0..1000 {
         let expected = refraction::reflect(direction, normal);
         assert!(reflect(direction, normal).abs_diff_eq(expected, 1e-15), "{direction}");
-        // Turned on by an angle that meets no direction twice.
+        // Rotated by an angle that never repeats a direction.
         direction = glam::DMat3::from_axis_angle(DVec3::new(0.6, 0.48, 0.64), 1.0 + f64::from(k)) * expected;
         direction = direction.normalize();
     }
 }
 
-/// The oracle decides total reflection; the shortcut before it must not.
+/// The oracle decides total reflection; the shortcut before it must agree.
 #[test]
 fn the_shortcut_to_total_reflection_agrees_with_the_oracle() {
     for index in [1.3, 1.5, 2.41749, 4.0] {

@@ -1,17 +1,18 @@
-//! Halos: about each chart what lies beside it on the mesh, drawn as the chart is.
+//! Halos: the neighbourhood of each chart on the mesh, drawn around it in the same projection.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
 use super::{Chart, Sheet, Surface};
 
-/// For each vertex those at the other ends of its edges, and the edges' lengths.
+/// For each vertex, the other ends of its edges and the edges' lengths.
 type Edges = Vec<Vec<(usize, f64)>>;
 
-/// The charts with their halos: triangles whose corners are no more than `reach` away from the chart along edges, nearest first, from
-/// neighbour to neighbour. What leans too far away, or would be drawn over another, is left out, and so is what only lies behind it.
+/// Returns the charts with their halos: triangles whose corners are no more than `reach` away from
+/// the chart along edges, added nearest first, from neighbour to neighbour. Triangles that lean too
+/// far away or would overlap another are left out, and so are those reachable only through them.
 pub(super) fn surrounded(surface: &Surface, sheets: Vec<Sheet>, reach: f64) -> Vec<Chart> {
-    // A NaN is none too.
+    // A NaN means no halo, too.
     let edges = if reach > 0.0 { edges(surface) } else { Vec::new() };
     let chart = |mut sheet: Sheet| {
         let own = sheet.triangles.len();
@@ -35,10 +36,11 @@ fn edges(surface: &Surface) -> Edges {
     edges
 }
 
-/// How far vertices are from the nearest of these triangles along edges, where that is no more than `reach`.
+/// Returns the distances along edges, up to `reach`, from vertices to the nearest of these
+/// triangles.
 fn distances(surface: &Surface, edges: &Edges, triangles: &[u32], reach: f64) -> HashMap<usize, f64> {
     let mut found = HashMap::new();
-    // Numbers that are not negative are ordered as their bits are.
+    // Non-negative floats order like their bits.
     let first = triangles.iter().flat_map(|&triangle| surface.vertices[triangle as usize]);
     let mut waiting: BinaryHeap<Reverse<(u64, usize)>> = first.map(|vertex| Reverse((0, vertex))).collect();
     while let Some(Reverse((distance, vertex))) = waiting.pop() {

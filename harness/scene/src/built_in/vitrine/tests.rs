@@ -6,12 +6,12 @@ fn made() -> Scene {
     Scene::made("vitrine").expect("built in")
 }
 
-/// `./cook scene vitrine --out harness/assets/vitrine.glb` brings it up to date.
+/// `./cook scene vitrine --out harness/assets/vitrine.glb` updates the stored file.
 #[test]
 fn the_stored_vitrine_is_what_is_made() {
     let made = made();
     let read = |bytes: &[u8]| gltf::parse(bytes, None).expect("written here");
-    // Materials, lights and camera as the file says them, meshes as the scene has them.
+    // Materials, lights and camera come from the file, meshes from the scene.
     let (stored, written) = (read(VITRINE), read(&glb::write(&made).expect("a scene that glTF can say")));
     assert_eq!(stored.objects.len(), made.objects.len());
     assert_eq!((&stored.lights, stored.camera, &stored.name), (&written.lights, written.camera, &written.name));
@@ -21,7 +21,7 @@ fn the_stored_vitrine_is_what_is_made() {
         let (stored, made) = (&stored.mesh, &made.mesh);
         assert_eq!((&stored.indices, stored.uvs.len()), (&made.indices, made.uvs.len()));
         let furthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, larger);
-        // Sines differ in their last digit from one system to another.
+        // Sines differ in their last digit between systems.
         assert!(furthest(&stored.positions, &made.positions) < 1e-3);
         assert!(furthest(&stored.normals, &made.normals) < 1e-2);
         assert!(stored.uvs.iter().zip(&made.uvs).all(|(a, b)| a.distance(*b) < 1e-6));
@@ -30,7 +30,7 @@ fn the_stored_vitrine_is_what_is_made() {
     assert!(VITRINE.len() <= 512 * 1024, "{} bytes", VITRINE.len());
 }
 
-/// One body for each technique, each with what calls for it and nothing else.
+/// One body for each technique, each with the properties that select it and no others.
 #[test]
 fn each_body_has_what_calls_for_its_technique() {
     let scene = Scene::named("vitrine").expect("built in");
@@ -47,7 +47,7 @@ fn each_body_has_what_calls_for_its_technique() {
     assert_eq!((ruby.material.dispersion, ruby.material.ior), (Dispersion::None, Mineral::Corundum.index()));
     assert_eq!(chain.material.dispersion, Dispersion::None);
     assert_eq!([diamond, ruby, chain].map(|stone| stone.material.absorbs()), [false, true, false]);
-    // The ruby's colour is that of the built-in ruby: what is left after two girdle radii.
+    // The ruby's colour is that of the built-in ruby, reached after two girdle radii.
     assert_eq!(ruby.material.attenuation_distance, 2.0 * RUBY);
     for (body, spreads) in [(candle, true), (figure, false)] {
         assert_eq!(body.material.sigma0.is_some(), spreads);
@@ -55,7 +55,7 @@ fn each_body_has_what_calls_for_its_technique() {
     }
 }
 
-/// Boxes about any two are apart, so that the bodies are.
+/// The bounding boxes of any two bodies are disjoint, and so are the bodies.
 #[test]
 fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
     let scene = Scene::named("vitrine").expect("built in");
@@ -67,7 +67,7 @@ fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
         let stands = (0.01..0.03).contains(&own.min.y);
         let hangs = own.min.y > 5.0;
         assert_eq!((stands, hangs), (object.name != "prism_chain", object.name == "prism_chain"), "{own:?}");
-        // Some way from the table's edge.
+        // At some distance from the table's edge.
         let margin = (own.min - table.min).min(table.max - own.max);
         assert!(margin.x > 10.0 && margin.z > 10.0, "{}: {margin}", object.name);
         for other in &scene.objects[k + 1..] {
@@ -76,7 +76,7 @@ fn all_stand_on_the_table_or_hang_above_it_and_none_reaches_into_another() {
             assert!(apart, "{} and {}", object.name, other.name);
         }
     }
-    // The stones lie on a facet: as many vertices as its corners touch the table.
+    // The stones rest on a facet: as many vertices touch the table as the facet has corners.
     for stone in &scene.objects[1..3] {
         let touching = stone.mesh.positions.iter().filter(|position| position.y < GAP as f32 + 1e-4).count();
         assert_eq!(touching, 4, "{}", stone.name);

@@ -47,7 +47,7 @@ fn the_documented_skin_and_jade_load_as_they_say() {
     assert!((17.0..17.5).contains(&width), "{width}");
     for triangle in mesh.indices.chunks_exact(3) {
         let [a, b, c] = [0, 1, 2].map(|k| mesh.uvs[triangle[k] as usize]);
-        // A net of equal triangles, clockwise with v down.
+        // A grid of equal triangles, clockwise if v points down.
         assert!(((b - a).perp_dot(c - a) + 0.25).abs() < 1e-4);
     }
     let halved = |p: &Vec3| 0.5 * *p + Vec3::new(22.0, 0.0, 0.0);
@@ -68,7 +68,7 @@ fn the_documented_rubies_and_wax_load_as_they_say() {
     let volume = 4.0 / 3.0 * 64.0;
     assert!((rubies.volume_and_area().0 - volume * (1.0 + 0.125 + 1.5)).abs() < 1e-3);
     let [_, turned, high] = [0, 6, 12].map(|first| &rubies.positions[first..first + 6]);
-    // Half as large, an eighth of a turn about y.
+    // Scaled by a half, rotated by an eighth of a turn about y.
     let expected = Vec3::new(0.0, 4.0, 24.0) + Vec3::new(2.0, 0.0, -2.0) * 0.5f32.sqrt();
     assert!(turned[0].distance(expected) < 1e-3, "{}", turned[0]);
     assert!(high[2].distance(Vec3::new(12.0, 12.0, 20.0)) < 1e-5 && high[0].x < 12.0);
@@ -79,7 +79,7 @@ fn the_documented_rubies_and_wax_load_as_they_say() {
     let medium = wax.medium.as_ref().unwrap();
     let extinction = medium.scattering + medium.absorption;
     assert!(extinction.distance(Vec3::splat(-0.3f32.ln())) < 1e-6);
-    // Wax takes up more blue than red.
+    // Wax absorbs more blue than red.
     assert!(medium.absorption.x < medium.absorption.y && medium.absorption.y < medium.absorption.z);
     assert!(mesh.volume_and_area().0 > 0.0 && mesh.normals.contains(&Vec3::Y));
 }

@@ -1,9 +1,10 @@
-//! Instances of a mesh by `EXT_mesh_gpu_instancing`.
+//! Mesh instances from `EXT_mesh_gpu_instancing`.
 
 use super::*;
 use crate::Mesh;
 
-/// The triangle's file with instances by these attributes, each with its element type, component type and bytes.
+/// The triangle's file with instances from these attributes, each with its element type, component
+/// type and bytes.
 fn instanced(attributes: &[(&str, &str, u32, Vec<u8>)], counts: &[u64]) -> (Value, Vec<u8>) {
     let (mut document, mut data) = (document(), binary());
     let mut names = json!({});
@@ -50,7 +51,7 @@ fn instances_are_one_object_each_placed_before_its_node() {
 
 #[test]
 fn rotations_may_be_floats_bytes_or_shorts() {
-    // A quarter of a turn about z, as (0, 0, √½, √½), and half a turn about it.
+    // A quarter turn about z, as (0, 0, √½, √½), and a half turn about it.
     let half = 0.5f32.sqrt();
     let shorts: Vec<u8> = [0i16, 0, 23_170, 23_170, 0, 0, -32_768, 0].into_iter().flat_map(i16::to_le_bytes).collect();
     let bytes: Vec<u8> = [0i8, 0, 90, 90, 0, 0, -128, 0].into_iter().flat_map(i8::to_le_bytes).collect();
@@ -105,7 +106,7 @@ fn instances_that_do_not_fit_are_refused() {
 
 #[test]
 fn instances_count_in_the_budgets() {
-    // Three floats an instance, and of each instance a strip of 100 triangles.
+    // Each instance adds three floats, and draws a strip of 100 triangles.
     let count: usize = 200_000;
     let (mut document, mut data) = instanced(&[("TRANSLATION", "VEC3", 5126, vec![0; 12 * count])], &[count as u64]);
     let start = data.len();
@@ -116,7 +117,7 @@ fn instances_count_in_the_budgets() {
     document["buffers"][0]["byteLength"] = json!(data.len());
     let message = parse(&file(&document, &data), None).unwrap_err().to_string();
     assert!(message.contains("more than 16777216 triangles"), "{message}");
-    // A twentieth of them is within both bounds.
+    // A twentieth of the instances is within both bounds.
     document["accessors"][2]["count"] = json!(10_000);
     document["bufferViews"][2]["byteLength"] = json!(120_000);
     document["bufferViews"][2]["byteStride"] = json!(12);
@@ -126,7 +127,8 @@ fn instances_count_in_the_budgets() {
     assert_eq!(parse(&file(&document, &data), None).unwrap().triangle_count(), 1_000_000);
 }
 
-/// 1,899 teapots of 6,320 triangles, as a public file has them: two or three hundred times the file's bytes. Here each is a strip of as many.
+/// 1,899 teapots of 6,320 triangles, as in a public file: two or three hundred times the size of
+/// the file. Here each is a strip with the same number of triangles.
 #[test]
 fn thousands_of_instances_of_a_large_mesh_load_in_bodies_that_a_device_holds() {
     let count: usize = 1_899;
@@ -140,7 +142,7 @@ fn thousands_of_instances_of_a_large_mesh_load_in_bodies_that_a_device_holds() {
     document["buffers"][0]["byteLength"] = json!(data.len());
     let scene = parse(&file(&document, &data), None).unwrap();
     assert_eq!(scene.triangle_count(), count * 6_320);
-    // WebGPU's least limit of a storage buffer.
+    // WebGPU's guaranteed minimum for the size of a storage buffer.
     let held = |mesh: &Mesh| 12 * mesh.positions.len() <= 128 << 20 && 64 * mesh.triangle_count() <= 128 << 20;
     assert!(
         scene.objects.len() < 16 && scene.objects.iter().all(|object| held(&object.mesh)),

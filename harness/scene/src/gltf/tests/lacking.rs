@@ -1,4 +1,4 @@
-//! What a file asks for in vain is listed once, by name.
+//! Every unsupported feature of a file is listed once, by name.
 
 use super::*;
 use crate::BUILT_IN;
@@ -12,7 +12,7 @@ fn lacking(change: impl FnOnce(&mut Value)) -> Vec<String> {
     scene.unwrap().lacking
 }
 
-/// Of a material with these members.
+/// Unsupported features of a material with these members.
 fn of_material(members: Value) -> Vec<String> {
     lacking(|d| {
         for (key, value) in members.as_object().unwrap() {
@@ -21,7 +21,7 @@ fn of_material(members: Value) -> Vec<String> {
     })
 }
 
-/// Of a dielectric, polished material with these extensions.
+/// Unsupported features of a polished dielectric material with these extensions.
 fn of_extensions(extensions: Value) -> Vec<String> {
     let factors = json!({"metallicFactor": 0, "roughnessFactor": 0});
     of_material(json!({"pbrMetallicRoughness": factors, "extensions": extensions}))
@@ -32,7 +32,7 @@ fn plain_files_and_built_in_scenes_lack_nothing() {
     assert_eq!(lacking(|_| ()), [""; 0]);
     for built_in in BUILT_IN {
         assert_eq!(Scene::named(built_in.name).unwrap().lacking, [""; 0]);
-        // Nor do they when they come from a file.
+        // The same holds when the scene is read back from a file.
         let again = parse(&glb::write(&Scene::named(built_in.name).unwrap()).unwrap(), None).unwrap();
         assert_eq!(again.lacking, [""; 0], "{}", built_in.name);
     }
@@ -104,7 +104,7 @@ fn what_is_no_dielectric_surface_is_named() {
         one(json!({"extensions": {name: {}}}), &format!("extensions: `{name}` of material `gem` (not known)"));
     }
     assert_eq!(of_material(json!({"doubleSided": true, "alphaMode": "OPAQUE"})), [""; 0]);
-    // What lets light through is no metal, though glTF's default is one.
+    // A transmissive material is not a metal, although glTF's default is one.
     let clear = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
     assert_eq!(of_material(json!({"pbrMetallicRoughness": {"roughnessFactor": 0}, "extensions": clear})), [""; 0]);
     let default = "metal: the default material, a metal, of mesh 0 (drawn as a dielectric)";
@@ -125,7 +125,7 @@ fn light_that_goes_nowhere_is_named() {
         json!({"KHR_materials_transmission": clear(1.0), "KHR_materials_volume": solid, "KHR_materials_dispersion": {"dispersion": 1}}),
     );
     none(json!({"KHR_materials_diffuse_transmission": diffuse(1.0), "KHR_materials_volume": solid}));
-    // Light that passes straight through leaves none to scatter.
+    // If all light passes straight through, none is left to scatter.
     none(json!({"KHR_materials_transmission": clear(1.0), "KHR_materials_diffuse_transmission": diffuse(1.0)}));
     one(json!({"KHR_materials_transmission": clear(0.5)}), "transmission: `transmissionFactor` between 0 and 1 of");
     one(
@@ -152,7 +152,7 @@ fn light_that_goes_nowhere_is_named() {
     let rough = json!({"extensions": {"KHR_materials_transmission": clear(1.0)}});
     let says = "transmission: `roughnessFactor` above 0 of material `gem` (drawn polished)";
     assert_eq!(of_material(rough), [says]);
-    // A medium of its own makes use of what goes in.
+    // An explicit medium uses the light that enters.
     let medium = json!({"lapidary": {"scattering": [1, 1, 1], "absorption": [0, 0, 0]}});
     assert_eq!(of_material(json!({"extensions": {"KHR_materials_volume": solid}, "extras": medium})), [""; 0]);
 }

@@ -1,10 +1,10 @@
-//! KHR_lights_punctual.
+//! Lights from `KHR_lights_punctual`.
 
 use super::refusals::message;
 use super::*;
 use crate::Light;
 
-/// Puts `light` into the file, at a second node with `transform`.
+/// Adds `light` to the file, at a second node with `transform`.
 fn add_light(document: &mut Value, light: &Value, transform: &Value) {
     document["extensionsRequired"] = json!(["KHR_lights_punctual"]);
     document["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});
@@ -29,7 +29,7 @@ fn a_directional_light_shines_along_its_nodes_negative_z() {
     let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(-0.9);
     let turned = light_of(
         json!({"type": "directional", "color": [1, 0.5, 0], "intensity": 3, "range": 7}),
-        // Neither the place nor the scale says anything.
+        // Position and scale have no effect.
         json!({"rotation": turn.to_array(), "scale": [1, 2, 30], "translation": [1e30, 0, 0]}),
     );
     let Light::Directional { toward, irradiance } = turned else { panic!("{turned:?}") };
@@ -59,7 +59,7 @@ fn a_spot_light_stands_where_its_node_is_and_shines_along_its_negative_z() {
     let cone = json!({"innerConeAngle": 0.25, "outerConeAngle": 0.5});
     let found = light_of(
         json!({"type": "spot", "color": [1, 0.5, 0], "intensity": 3, "range": 7, "spot": cone}),
-        // The scale says nothing.
+        // The scale has no effect.
         json!({"rotation": turn.to_array(), "scale": [1, 2, 30], "translation": [1, 2, 3]}),
     );
     let Light::Spot { position, direction, intensity, inner_angle, outer_angle } = found else { panic!("{found:?}") };
@@ -75,7 +75,7 @@ fn cones_have_gltfs_default_angles() {
         (json!({}), (0.0, FRAC_PI_4)),
         (json!({"innerConeAngle": 0.5}), (0.5, FRAC_PI_4)),
         (json!({"outerConeAngle": 0.5}), (0.0, 0.5)),
-        // The f32 next to pi/2 lies a little beyond it.
+        // The f32 nearest to pi/2 lies slightly above it.
         (json!({"outerConeAngle": f64::from(FRAC_PI_2)}), (0.0, FRAC_PI_2)),
     ] {
         let found = light_of(json!({"type": "spot", "spot": cone}), json!({}));

@@ -1,4 +1,4 @@
-//! Each kind of bad file gets one line that says what is wrong.
+//! Each kind of bad file is refused with one line that describes the problem.
 
 use super::*;
 
@@ -8,7 +8,8 @@ pub(super) fn message(change: impl FnOnce(&mut Value)) -> String {
     message
 }
 
-/// Asserts that the file with `value` at the JSON pointer `place` is refused with `says`.
+/// Asserts that the file with `value` at the JSON pointer `place` is refused with the message
+/// `says`.
 pub(super) fn refused(place: &str, value: Value, says: &str) {
     let message = message(|document| {
         let (parent, key) = place.rsplit_once('/').unwrap();
@@ -72,7 +73,8 @@ fn versions_and_extensions() {
     refused("/extensionsRequired", unknown, "supported: VENDOR_y, EXT_x;");
 }
 
-/// glTF 1.0 has objects where 2.0 has lists; its version is said, not the place where the JSON differs.
+/// glTF 1.0 has objects in place of the lists of 2.0; the message states the version, not the place
+/// where the JSON differs.
 #[test]
 fn the_first_version_is_named_also_as_text() {
     let first = |asset: Value| {
@@ -107,7 +109,7 @@ fn compressed_meshes_are_named_with_what_to_do() {
         });
         assert!(message.contains(&format!("compressed by {name}")), "{message}");
     }
-    // Used, not required, and yet without plain data beside it.
+    // Used but not required, and still without an uncompressed fallback.
     let message = self::message(|d| {
         d["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
         d["accessors"][0].as_object_mut().unwrap().remove("bufferView");
@@ -123,7 +125,7 @@ fn compressed_meshes_are_named_with_what_to_do() {
     assert!(message.contains("quantised by KHR_mesh_quantization") && message.contains("dequantize"), "{message}");
 }
 
-/// What is required is no reason to refuse a file in which nothing that is drawn needs it.
+/// A required extension is no reason to refuse a file if nothing that is drawn needs it.
 #[test]
 fn what_nothing_drawn_needs_stops_nothing() {
     let loads = |change: &dyn Fn(&mut Value)| load_changed(change).unwrap_or_else(|error| panic!("{error}"));
@@ -143,7 +145,7 @@ fn what_nothing_drawn_needs_stops_nothing() {
         let says = format!("extensions: `{name}` of the file (not known)");
         assert!(scene.lacking.contains(&says), "{:?}", scene.lacking);
     }
-    // As exporters write them, and with members that this program's parser does not take.
+    // As exporters write them, and with members that this program's parser refuses.
     let scene = loads(&|d| {
         d["extensionsRequired"] = json!(["EXT_texture_webp"]);
         d["textures"] = json!([{"sampler": 0, "extensions": {"EXT_texture_webp": {"source": 0}}}]);
@@ -240,7 +242,7 @@ fn materials_and_cameras_out_of_range() {
     }
 }
 
-/// Asserts that a material with this `extensions` or `extras` is refused with `says`.
+/// Asserts that a material with this `extensions` or `extras` is refused with the message `says`.
 fn material_refused(key: &str, value: Value, says: &str) {
     let message = message(|d| {
         d["meshes"][0]["primitives"][0]["material"] = json!(0);
@@ -403,7 +405,7 @@ fn factors_out_of_range() {
 
 #[test]
 fn numbers_beyond_all_range() {
-    // JSON has no larger number than f64 has.
+    // JSON has no number larger than the f64 range.
     let text = document().to_string().replace("\"name\":\"gem\"", "\"extras\":{},\"emissiveFactor\":[1e999,0,0]");
     let message = parse(text.as_bytes(), None).unwrap_err().to_string();
     assert!(message.contains("its JSON is not valid glTF: number out of range at line 1"), "{message}");

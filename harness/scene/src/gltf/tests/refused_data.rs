@@ -1,4 +1,4 @@
-//! Bad buffers, views, accessors and vertices get one line that says what is wrong.
+//! Bad buffers, views, accessors and vertices are refused with one line that describes the problem.
 
 use super::refusals::{message, refused};
 use super::*;
@@ -134,7 +134,8 @@ fn many_nodes_of_many_lines_are_refused() {
 
 #[test]
 fn small_files_that_unfold_to_large_scenes() {
-    // A thousand primitives of a mesh, shown by a thousand nodes: a million bodies from some 100 KB.
+    // A thousand primitives of a mesh, shown by a thousand nodes: a million bodies from about 100
+    // KB.
     let message = message(|d| {
         let primitive = d["meshes"][0]["primitives"][0].clone();
         d["meshes"][0]["primitives"] = vec![primitive; 1_000].into();
@@ -144,13 +145,14 @@ fn small_files_that_unfold_to_large_scenes() {
     assert!(message.contains("show fewer instances"), "{message}");
 }
 
-/// Bytes are bounded as they are, not by the file's size: a mesh of a thousand triangles at two thousand places loads from a small file, and no file
-/// gets more than the budget.
+/// The limit is on the memory needed, not on its ratio to the size of the file: a mesh of a
+/// thousand triangles at two thousand places loads from a small file, and no file exceeds the
+/// budget.
 #[test]
 fn memory_is_bounded_whatever_the_files_size() {
     let with = |nodes: usize, corners: usize| {
         load_changed(|d| {
-            // One triangle again and again, by indices that lie in four bytes.
+            // One triangle repeated, with indices that share four bytes.
             d["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "mode": 5, "indices": 1}]);
             let data: Vec<u8> = (0..corners).flat_map(|k| ((k % 3) as u16).to_le_bytes()).collect();
             use base64::Engine;
@@ -162,7 +164,7 @@ fn memory_is_bounded_whatever_the_files_size() {
             d["scenes"][0]["nodes"] = (0..nodes).collect();
         })
     };
-    // 24 MB of mesh from 100 KB, beyond 256 times the file before.
+    // 24 MB of mesh from 100 KB, beyond the former limit of 256 times the size of the file.
     let scene = with(2_000, 1_002).unwrap();
     assert_eq!(scene.triangle_count(), 2_000_000);
     let message = with(20_000, 1_002).unwrap_err().to_string();
@@ -171,7 +173,7 @@ fn memory_is_bounded_whatever_the_files_size() {
     assert!(message.contains("more than 65536 bodies"), "{message}");
 }
 
-/// What one budget lets pass another stops: vertices with texture coordinates that no triangle uses.
+/// The limits complement each other: vertices with texture coordinates that no triangle uses.
 #[test]
 fn the_budget_counts_bytes() {
     use crate::gltf::budget::Budget;

@@ -1,4 +1,4 @@
-//! TEXCOORD_0, in every form that glTF gives it.
+//! `TEXCOORD_0`, in every format that glTF allows.
 
 use glam::Vec2;
 
@@ -40,7 +40,7 @@ fn texture_coordinates_are_read_as_floats_or_fractions() {
     let shorts: [u16; 6] = [0, 0, 65535, 13107, 26214, 65535];
     let shorts: Vec<u8> = shorts.into_iter().flat_map(u16::to_le_bytes).collect();
     assert_eq!(uvs(textured(&shorts, accessor(5123))), expected);
-    // Outside the unit square too: the texture repeats there.
+    // Coordinates outside the unit square are valid: the texture repeats.
     assert_eq!(uvs(floats(&[-3.0, 0.0, 1e30, 0.2, 0.4, 1.0]))[0], Vec2::new(-3.0, 0.0));
 }
 

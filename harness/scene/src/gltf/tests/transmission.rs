@@ -1,9 +1,9 @@
-//! The medium that diffuse transmission stands for.
+//! The medium that represents diffuse transmission.
 
 use super::*;
 use lapidary_assay::extremum::largest;
 
-/// A material of this colour, behind which light scatters.
+/// A material with diffuse transmission of this colour.
 fn diffuse(color: Vec3, volume: Value) -> Result<Material, SceneError> {
     material_of(json!({
         "pbrMetallicRoughness": {"baseColorFactor": color.extend(1.0).to_array()},
@@ -17,7 +17,8 @@ fn diffuse(color: Vec3, volume: Value) -> Result<Material, SceneError> {
 #[test]
 fn the_colour_gives_the_albedo_and_the_attenuation_the_extinction() {
     let volume = json!({"thicknessFactor": 1, "attenuationColor": [0.5, 0.25, 0], "attenuationDistance": 2});
-    // Each built-in body has coefficients that were measured or chosen, and the colour that a half space of it was found to show.
+    // The coefficients of each built-in body were measured or chosen, and its colour is the one
+    // that a half space of the medium was found to show.
     for name in ["skin", "wax", "jade", "bunny"] {
         let built_in = Scene::named(name).unwrap().objects.remove(0).material;
         let known = built_in.medium.unwrap();

@@ -1,14 +1,15 @@
-//! Rays from lights towards bodies.
+//! Sampling of rays from lights towards bodies.
 
 use super::super::walk::Ray;
 use glam::{DVec2, DVec3};
 use lapidary_scene::{Bounds, Light};
 use std::f64::consts::{PI, TAU};
 
-/// Lights about a sphere that holds all bodies.
+/// Lights around a sphere that contains all bodies.
 pub(super) struct Emission {
     lights: Vec<Light>,
-    /// How many of all rays come from each light or one before it: by power, the strongest channel's.
+    /// Share of all rays that come from each light or one before it, by the power of its strongest
+    /// channel.
     shares: Vec<f64>,
     centre: DVec3,
     radius: f64,
@@ -16,7 +17,7 @@ pub(super) struct Emission {
 
 impl Emission {
     pub(super) fn new(lights: &[Light], bounds: Bounds) -> Self {
-        // A little more than half the diagonal, which is rounded.
+        // Slightly more than half the diagonal, which is rounded.
         let (centre, radius) = (bounds.centre().as_dvec3(), 1.0001 * f64::from(bounds.radius()));
         let mut emission = Self { lights: lights.to_vec(), shares: Vec::new(), centre, radius };
         let mut sum = 0.0;
@@ -31,7 +32,8 @@ impl Emission {
         emission
     }
 
-    /// Of a sun the area of the sphere's disc, of a lamp the solid angle under which it sees the sphere.
+    /// Area of the sphere's disc for a directional light; solid angle of the sphere as seen from a
+    /// point light or spot.
     fn measure(&self, light: &Light) -> f64 {
         match light {
             Light::Directional { .. } => PI * self.radius * self.radius,
@@ -39,18 +41,20 @@ impl Emission {
         }
     }
 
-    /// How far the cone of directions from a point to the sphere reaches off its axis: 1 less the cosine of its half angle, 2 amid the sphere.
+    /// 1 minus the cosine of the half-angle of the cone of directions from a point to the sphere; 2
+    /// inside the sphere.
     fn rise(&self, position: DVec3) -> f64 {
         let distance = position.distance(self.centre);
         if distance <= self.radius {
             return 2.0;
         }
         let sine = self.radius / distance;
-        // 1 - sqrt(1 - s²), of which nothing cancels.
+        // 1 - sqrt(1 - s²) without cancellation.
         sine * sine / (1.0 + ((1.0 - sine) * (1.0 + sine)).sqrt())
     }
 
-    /// A ray and its power, from two numbers in [0, 1) for its place and one for its light; none where no light shines.
+    /// Samples a ray and its power: two numbers in [0, 1) choose its `place` and one its light.
+    /// Returns `None` if no light shines.
     pub(super) fn emit(&self, place: DVec2, choice: f64) -> Option<(Ray, DVec3)> {
         let chosen = self.shares.iter().position(|share| choice < *share)?;
         let light = &self.lights[chosen];
@@ -73,7 +77,7 @@ impl Emission {
                 Ray { position, direction: direction.normalize() }
             }
         };
-        // At distance 1 a lamp's irradiance is its intensity.
+        // At distance 1, a lamp's irradiance equals its intensity.
         let brightness = light.arrival(ray.position + ray.direction).irradiance;
         Some((ray, brightness * self.measure(light) / probability))
     }
@@ -88,7 +92,8 @@ mod tests {
         Bounds { min: Vec3::new(-1.0, 0.0, 2.0), max: Vec3::new(3.0, 2.0, 3.0) }
     }
 
-    /// Rays through a small disc, over its area: the irradiance there, as the lights have it.
+    /// The power of rays through a small disc, divided by its area, is the irradiance that the
+    /// lights give there.
     #[test]
     fn what_arrives_is_the_lights_irradiance() {
         let sun = Light::Directional { toward: Vec3::new(0.0, 0.6, 0.8), irradiance: Vec3::new(1.0, 2.0, 3.0) };
@@ -116,7 +121,7 @@ mod tests {
                     received += power / f64::from(side * side) / (PI * disc * disc);
                 }
             }
-            // Over the disc, since it is square to each ray.
+            // The disc is perpendicular to each ray, so the irradiances add up.
             let wanted: DVec3 = lights.iter().map(|light| light.arrival(centre).irradiance).sum();
             let apart = (received / wanted - 1.0).abs().max_element();
             assert!(apart < 0.05, "{lights:?}: {received} {wanted}");

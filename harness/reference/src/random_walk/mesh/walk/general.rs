@@ -1,11 +1,15 @@
-//! Walks where matter is not of one density, scatters forwards or back, or has a surface that bends and reflects light.
+//! Walks in media that are heterogeneous, scatter forwards or backwards, or have a surface that
+//! refracts and reflects light.
 //!
-//! Delta tracking keeps one walk for all three channels: tentative collisions are drawn by the chosen channel's majorant, and since the density is
-//! common to the channels, so is the probability that one of them is real. The balance heuristic weights each flight by what each channel would
-//! have done, as in matter of one density.
+//! Delta tracking keeps one walk for all three channels: tentative collisions are drawn with the
+//! chosen channel's majorant. The channels share the density, and so the probability that a
+//! collision is real. The balance heuristic weights each flight by what each channel would have
+//! done, as in uniform media.
 //!
-//! No ray from a collision finds a light through a surface that bends it, but by chance. So with a dielectric boundary light is found by walks
-//! that leave: the environment, and directional lights as small discs. Fresnel's share decides by chance between refraction and reflection.
+//! A ray from a collision finds a light through a refracting surface only by chance. With a
+//! dielectric boundary, light is therefore found by walks that leave: from the environment, and
+//! from directional lights as small discs. Refraction or reflection is chosen at random by the
+//! Fresnel reflectance.
 
 use super::super::Boundary;
 use super::{Coefficients, Matter, Outcome, Ray, SURE, Targets, WEAK, channel, weighted};
@@ -18,28 +22,29 @@ use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
 use std::f64::consts::{PI, TAU};
 
-/// Half the angle under which a directional light is seen behind a dielectric boundary, in radians. Half shadows of stone are wider.
+/// Angular radius of a directional light behind a dielectric boundary, in radians. Penumbrae of
+/// stone are wider.
 const LIGHT_RADIUS: f64 = 0.1;
-/// A walk that meets surfaces more often than this between two collisions is caught between them.
+/// Largest number of surfaces met between two collisions; a walk that meets more is trapped.
 const MOST_REFLECTIONS: u32 = 10_000;
-/// A transmittance below this goes on with the probability [`GOES_ON`].
+/// A transmittance below this continues with the probability [`GOES_ON`].
 const FAINT: f64 = 0.02;
 const GOES_ON: f64 = 0.25;
 
-/// What is not in a body's coefficients.
+/// Properties of a medium besides its coefficients.
 #[derive(Clone, Debug)]
 pub(super) struct Structure {
     anisotropy: f64,
     density: Density,
-    /// The density's least and greatest.
+    /// Least and greatest density.
     least: f64,
     most: f64,
-    /// Refractive index, relative to what is about all bodies; 1 where the boundary is matched.
+    /// Refractive index relative to the surroundings of all bodies; 1 if the boundary is matched.
     index: f64,
 }
 
 impl Structure {
-    /// Nothing where the object has no medium.
+    /// Returns `None` if the object has no medium.
     pub(super) fn new(object: &Object, boundary: Boundary) -> Option<Self> {
         let medium = object.material.medium.as_ref()?;
         Some(Self {
@@ -54,17 +59,17 @@ impl Structure {
         })
     }
 
-    /// Whether the walk for matter of one density, isotropic and without a boundary, will do.
+    /// Whether the walk for uniform, isotropic media without a boundary suffices.
     pub(super) fn is_plain(&self) -> bool {
         self.anisotropy == 0.0 && self.density == Density::Uniform && self.index == 1.0
     }
 
-    /// The density over the greatest.
+    /// Density divided by the greatest density.
     fn share(&self, position: DVec3) -> f64 {
         if self.most > 0.0 { f64::from(self.density.at(position.as_vec3())) / self.most } else { 0.0 }
     }
 
-    /// A direction after a scattering.
+    /// Samples a direction after a scattering.
     fn scattered(&self, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
         if self.anisotropy == 0.0 {
             return isotropic(random);
@@ -75,12 +80,13 @@ impl Structure {
         (cosine * direction + sine * (along * a + across * b)).normalize()
     }
 
-    /// Of light that turns by an angle of that cosine.
+    /// Phase function for light deflected by an angle of this cosine.
     fn phase(&self, cosine: f64) -> f64 {
         if self.anisotropy == 0.0 { 0.25 / PI } else { oracle::phase(cosine, self.anisotropy) }
     }
 
-    /// Turns a direction at the boundary, whose `normal` is on the side that it comes from; whether it goes to the other side.
+    /// Refracts or reflects a direction at the boundary, whose `normal` is on the side that it
+    /// comes from; returns whether it crosses to the other side.
     fn crosses(&self, direction: &mut DVec3, normal: DVec3, index: f64, random: &mut Xoshiro256PlusPlus) -> bool {
         if self.index == 1.0 {
             return true;
@@ -91,17 +97,17 @@ impl Structure {
     }
 }
 
-/// Where a ray outside of all bodies comes to.
+/// Where a ray outside all bodies arrives.
 enum Arrival {
-    /// Inside a body, on its surface.
+    /// Inside a body, at this place on its surface.
     Body(Place),
     Nowhere,
-    /// Between surfaces that send it to and fro.
+    /// Trapped between surfaces that keep reflecting it.
     Caught,
 }
 
 impl Matter<'_> {
-    /// [`Matter::follow`] in any matter.
+    /// [`Matter::follow`] in any medium.
     pub(super) fn follow_general(
         &self,
         targets: Targets<'_>,
@@ -152,7 +158,8 @@ impl Matter<'_> {
                 }
                 left = None;
                 let transmittance = (-free * majorant).exp();
-                // Of all channels alike, so that the weights of a real collision do not know it.
+                // The same for all channels, so that it cancels out of the weights of a real
+                // collision.
                 let share = structure.share(ray.position);
                 if share < 1.0 && random.random::<f64>() >= share {
                     throughput = weighted(throughput, majorant * transmittance, majorant * transmittance);
@@ -179,7 +186,8 @@ impl Matter<'_> {
         outcome
     }
 
-    /// Takes a ray outside on to the body that it enters, reflected by those that it does not; `next` is what it meets.
+    /// Takes a ray outside to the body that it enters, reflected by those that it does not; `next`
+    /// is its first hit.
     fn arrive(&self, ray: &mut Ray, mut next: Option<Hit>, random: &mut Xoshiro256PlusPlus) -> Arrival {
         for _ in 0..MOST_REFLECTIONS {
             let Some(hit) = next else { return Arrival::Nowhere };
@@ -193,7 +201,7 @@ impl Matter<'_> {
         Arrival::Caught
     }
 
-    /// Adds what comes along the last direction of a walk.
+    /// Adds the light that arrives along a walk's last direction.
     fn leave(&self, direction: DVec3, throughput: DVec3, outcome: &mut Outcome) {
         if outcome.scatterings == 0 {
             outcome.straight = throughput;
@@ -207,14 +215,15 @@ impl Matter<'_> {
                 if let Light::Directional { toward, irradiance } = light
                     && direction.dot(toward.as_dvec3().normalize()) > LIGHT_RADIUS.cos()
                 {
-                    // A disc's irradiance, square to its middle.
+                    // Radiance of a disc with this irradiance, measured perpendicular to its
+                    // centre.
                     outcome.radiance += throughput * irradiance.as_dvec3() / (PI * LIGHT_RADIUS.sin().powi(2));
                 }
             }
         }
     }
 
-    /// [`Matter::connect`] in any matter; nothing at all behind a dielectric boundary.
+    /// [`Matter::connect`] in any medium; does nothing behind a dielectric boundary.
     fn connect_general(
         &self,
         targets: Targets<'_>,
@@ -227,7 +236,7 @@ impl Matter<'_> {
             return Some(());
         }
         let structure = &self.structures[body];
-        // Any rate at all gives the right mean; at this one no gain outgrows what the way takes away.
+        // Any rate gives the right mean; at this one, no gain outgrows the attenuation on the way.
         let least = self.coefficients[body].extinction.min_element() * structure.least;
         for target in 0..targets.count() {
             let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
@@ -252,7 +261,8 @@ impl Matter<'_> {
         Some(())
     }
 
-    /// An estimate of the share of light that is left after a way inside a body, by ratio tracking; exact in matter of one density.
+    /// Estimates the share of light left after a path inside a body, by ratio tracking; exact in
+    /// uniform media.
     fn transmittance(&self, body: usize, ray: Ray, length: f64, random: &mut Xoshiro256PlusPlus) -> DVec3 {
         let structure = &self.structures[body];
         let majorant = structure.most * self.coefficients[body].extinction;

@@ -7,7 +7,7 @@ use lapidary_scene::{Averaging, Camera, Material, Mesh};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A box with these corners.
+/// A box between these two corners.
 pub(super) fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
     let corner = |k: u8| Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), greatest, least);
     let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -30,7 +30,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
     }
 }
 
-/// Matter whose lengths are in mean free paths.
+/// A medium whose lengths are in mean free paths.
 pub(super) fn grey(albedo: f32) -> Medium {
     Medium::isotropic(Vec3::splat(albedo), Vec3::splat(1.0 - albedo))
 }
@@ -39,7 +39,7 @@ pub(super) fn sun(toward: DVec3) -> Light {
     Light::Directional { toward: toward.as_vec3(), irradiance: Vec3::ONE }
 }
 
-/// The mean of a sample and its standard error.
+/// Mean of a sample and its standard error.
 pub(super) fn estimate(
     count: u32,
     seed: u64,
@@ -60,7 +60,7 @@ pub(super) fn estimate(
     (mean, ((squares / count - mean * mean).max(DVec3::ZERO) / count).map(f64::sqrt))
 }
 
-/// What a ray brings, and what is left of it where nothing scatters it.
+/// Result of a ray: its radiance, and its throughput if nothing scatters it.
 pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> Outcome {
     let Some(hit) = matter.enter(origin, direction) else { return Outcome::default() };
     let outcome = matter.walk(Ray { position: origin, direction }, hit, random);
@@ -68,22 +68,22 @@ pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random:
     outcome
 }
 
-/// What the lights send to a point in the first body, times the phase function.
+/// Light that the lights send to a point in the first body, times the phase function.
 fn direct(matter: &Matter<'_>, from: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
     let mut sum = DVec3::ZERO;
     matter.connect(Targets::Lights(&matter.lights), from, 0, random, &mut |_, value| sum += value).expect("no gap");
     sum
 }
 
-/// A vector of the hemisphere about a unit normal, as likely as its cosine.
+/// Samples the hemisphere around a unit normal in proportion to the cosine.
 fn diffuse(normal: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
     let (x, y) = in_disc(random);
     let (a, b) = normal.any_orthonormal_pair();
     x * a + y * b + (1.0 - x * x - y * y).max(0.0).sqrt() * normal
 }
 
-/// Walks from the eye through a sphere of triangles against walks from the light through a ball: what leaves by the angle from the
-/// light.
+/// Compares walks from the eye through a sphere of triangles with walks from the light through a
+/// ball: the exitance by the angle from the light.
 #[test]
 fn spheres_show_what_leaves_them() {
     for (radius, albedo) in [(2.0, 0.9), (2.0, 1.0), (10.0, 0.9), (10.0, 1.0)] {
@@ -94,7 +94,7 @@ fn spheres_show_what_leaves_them() {
         let (mut deviations, mut compared) = (Vec::new(), 0);
         for bin in 0..BINS {
             let [greater, less] = Profile::cosines(bin);
-            // Radiant exitance is pi times the mean radiance over directions as likely as their cosines.
+            // Radiant exitance is pi times the mean radiance over cosine-distributed directions.
             let (mean, error) = estimate(3200, bin as u64, |random| {
                 let cosine = less + (greater - less) * random.random::<f64>();
                 let (y, x) = (TAU * random.random::<f64>()).sin_cos();
@@ -109,7 +109,7 @@ fn spheres_show_what_leaves_them() {
             total += area * found;
             expected_total += area * exitance;
             variance += area * area * (error * error + exitance_error * exitance_error);
-            // Of fewer than 25 walks the error is not known.
+            // With fewer than 25 walks, the error is not known.
             if exitance_error < 0.2 * exitance {
                 deviations.push((found - exitance) / error.hypot(exitance_error));
                 compared += 1;
@@ -130,8 +130,11 @@ fn spheres_show_what_leaves_them() {
     }
 }
 
-/// Chandrasekhar's H function of isotropic scattering, as Stibbs and Weir have it ("On the H-functions for isotropic scattering", 1959):
-/// ln H = -mu/pi times the integral of ln(1 - albedo phi cot phi) / (cos^2 phi + mu^2 sin^2 phi) over phi from 0 to pi/2.
+/// Chandrasekhar's H function of isotropic scattering, after Stibbs and Weir ("On the H-functions
+/// for isotropic scattering", 1959).
+///
+/// ln H = -mu/pi times the integral of ln(1 - albedo phi cot phi) / (cos^2 phi + mu^2 sin^2 phi)
+/// over phi from 0 to pi/2.
 pub(super) fn h(mu: f64, albedo: f64) -> f64 {
     const STEPS: u32 = 2000;
     let sum: f64 = (0..STEPS)
@@ -141,10 +144,14 @@ pub(super) fn h(mu: f64, albedo: f64) -> f64 {
     (-mu / PI * sum * FRAC_PI_2 / f64::from(STEPS)).exp()
 }
 
-/// Light of irradiance E, measured square to it, that falls on a half space under the cosine mu0 is seen under mu with the radiance
-/// I = albedo E / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0) (Chandrasekhar, "Radiative Transfer", on principles of invariance, with pi F for E).
-/// For a thin layer dt more on top changes nothing: what it takes on both ways, (1/mu + 1/mu0) I dt, is what it scatters, albedo E / (4 pi mu) dt,
-/// once for the light itself and again for what the half space sends back to it, which multiplies by H(mu0), and as much on the way to the eye, by H(mu).
+/// Light of irradiance E, measured perpendicular to it, that falls on a half space at the cosine
+/// mu0 is seen at the cosine mu with the radiance I = albedo E / (4 pi) mu0 / (mu + mu0) H(mu)
+/// H(mu0) (Chandrasekhar, "Radiative Transfer", on principles of invariance, with pi F for E).
+///
+/// A thin layer dt added on top changes nothing. It takes (1/mu + 1/mu0) I dt on both ways, and it
+/// scatters as much: albedo E / (4 pi mu) dt, once for the light itself and again for what the half
+/// space sends back to it, which multiplies it by H(mu0), and likewise on the way to the eye, by
+/// H(mu).
 #[test]
 fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
     let mut deviations = Vec::new();
@@ -169,7 +176,7 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
             deviations.push((mean.x / expected - 1.0, error.x / expected));
         }
     }
-    // All together they know the scale better than each.
+    // Together they determine the scale better than each alone.
     let count = deviations.len() as f64;
     let deviation = deviations.iter().map(|(deviation, _)| deviation).sum::<f64>() / count;
     let error = deviations.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / count;
@@ -177,8 +184,9 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
     assert!(deviation.abs() < 4.0 * error && error < 0.003);
 }
 
-/// Matter that absorbs nothing shows a radiance of 1 where 1 comes from all sides, whatever its shape: each walk to f64's digits in the
-/// mean over its channels, and each channel in the mean over the walks.
+/// A medium that absorbs nothing shows a radiance of 1 if 1 comes from all sides, whatever its
+/// shape: each walk to f64's digits in the mean over its channels, and each channel in the mean
+/// over the walks.
 #[test]
 fn white_furnace() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
@@ -189,7 +197,7 @@ fn white_furnace() {
     let scene = scene(bodies, Vec::new());
     let matter = Matter::new(&scene, Boundary::Matched, Some(&ones)).expect("media");
     let sample = |random: &mut Xoshiro256PlusPlus| {
-        // From all sides, through both bodies or one.
+        // From all sides, through one body or both.
         let (towards, around) = (isotropic(random), isotropic(random));
         loop {
             let through = 5.0 * random.random::<f64>() * isotropic(random);
@@ -208,7 +216,7 @@ fn white_furnace() {
     assert!((mean - 1.0).abs().cmplt(4.0 * error).all() && error.max_element() < 0.01);
 }
 
-/// A scene through which rays along z pass: a body of two parts about one of another matter.
+/// Bodies crossed by rays along z: one of two parts around one of another medium.
 pub(super) fn layers() -> Vec<(Mesh, Medium)> {
     let layer = |from: f32, to: f32| cuboid(Vec3::new(-1.0, -1.0, from), Vec3::new(1.0, 1.0, to));
     let mut outer = layer(0.0, 1.0);
@@ -220,13 +228,13 @@ pub(super) fn layers() -> Vec<(Mesh, Medium)> {
     ]
 }
 
-/// From 0.25 on, in the first part's light: 0.75 of the first matter, 1 of the second, 2 of the first again, and up to a light no more
-/// than lies before it.
+/// Seen from 0.25, inside the first part, the way crosses 0.75 of the first medium, 1 of the second
+/// and 2 of the first again; up to a light, only what lies before it.
 #[test]
 fn light_is_weakened_by_all_matter_on_its_way() {
     let [first, second] = [DVec3::new(0.11, 0.2, 0.35), DVec3::new(0.3, 0.1, 0.0)];
     let at = |z: f32| Light::Point { position: Vec3::new(0.125, 0.25, z), intensity: Vec3::ONE };
-    // On its axis a spot is a point.
+    // On its axis, a spot is a point light.
     let spot = |direction| Light::Spot {
         position: Vec3::new(0.125, 0.25, 5.0),
         direction,
@@ -259,7 +267,7 @@ fn light_is_weakened_by_all_matter_on_its_way() {
     assert_eq!(direct(&matter, from, &mut generator(1, 0)), DVec3::ZERO);
 }
 
-/// Beyond the depth to which a way out is always looked for the mean is the same.
+/// Beyond the depth up to which a way out is always searched, the mean is the same.
 #[test]
 fn a_deep_point_gets_its_light_in_the_mean() {
     let body = cuboid(Vec3::splat(-8.0), Vec3::splat(8.0));
@@ -272,12 +280,12 @@ fn a_deep_point_gets_its_light_in_the_mean() {
         let (mean, error) = estimate(40_000, 9, |random| direct(&matter, from, random));
         let expected = (-way * medium.scattering.as_dvec3()).exp() / (4.0 * PI);
         println!("{mean} ± {error}, expected {expected}");
-        // The lamp is a little aside.
+        // The lamp is slightly off the axis.
         assert!((mean - expected).abs().cmplt(4.0 * error + 2e-3 * expected).all());
     }
 }
 
-/// Nothing comes out of matter that only absorbs; what shows through it is Beer and Lambert's law.
+/// Nothing comes out of a medium that only absorbs; light shows through it by the Beer-Lambert law.
 #[test]
 fn what_goes_straight_through_is_weakened_and_no_more() {
     let scene = scene(layers(), vec![sun(DVec3::X)]);
@@ -302,7 +310,8 @@ fn what_goes_straight_through_is_weakened_and_no_more() {
     assert!((mean - expected).abs().cmplt(4.0 * error).all());
 }
 
-/// Three channels in one walk are what each is alone, and the statistics of a walk in matter of one colour are those of each channel.
+/// Three channels in one walk give what each gives alone; in a medium of one colour, the statistics
+/// of a walk are those of each channel.
 #[test]
 fn channels_do_not_mix() {
     let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 2.0));

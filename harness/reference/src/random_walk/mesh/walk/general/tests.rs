@@ -12,7 +12,8 @@ fn veins() -> Density {
     Density::Veins(VeinsPattern { frequency: 0.8, width: 0.3, least: 0.3, greatest: 1.6, octaves: 2, seed: 4 })
 }
 
-/// A density of 1/2 in all of a body, as a grid that is of 1 far away from it: half of all collisions are none.
+/// A density of 1/2 throughout a body, from a grid that is 1 far away from it: half of all
+/// collisions are null.
 fn split_grid(least: Vec3, greatest: Vec3) -> Density {
     let mut densities = vec![0.5; 64];
     densities[63] = 1.0;
@@ -20,7 +21,7 @@ fn split_grid(least: Vec3, greatest: Vec3) -> Density {
     Density::Grid(Arc::new(DensityGrid::new(least - wide, greatest + wide, UVec3::splat(4), densities).expect("sound")))
 }
 
-/// Matter whose coefficients are doubled where its density is a half.
+/// A medium with doubled coefficients where its density is a half.
 fn split(albedo: f32, least: Vec3, greatest: Vec3) -> Medium {
     let medium = grey(albedo);
     Medium {
@@ -44,7 +45,8 @@ fn towards(cosine: f64) -> DVec3 {
     DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)
 }
 
-/// Delta tracking, null collisions and ratio tracking in all: radiances of a half space, with its light from a sun.
+/// Delta tracking, null collisions and ratio tracking together: radiances of a half space lit by a
+/// sun.
 #[test]
 fn a_density_split_by_a_grid_reflects_as_chandrasekhar_has_it() {
     for albedo in [0.5, 0.9, 0.99] {
@@ -62,8 +64,8 @@ fn a_density_split_by_a_grid_reflects_as_chandrasekhar_has_it() {
     }
 }
 
-/// The share that a half space gives back, by walks that leave it into a room of radiance 1: what is seen along a ray is, backwards, what falls on it
-/// from there and comes out.
+/// Reflectance of a half space, by walks that leave it into a room of radiance 1: the radiance seen
+/// along a ray is, backwards, the share of the light arriving along it that comes out.
 fn given_back(medium: Medium, boundary: Boundary, ior: f32, cosine: f64) -> (f64, f64) {
     let (body, ..) = deep_box();
     let mut scene = scene(vec![(body, medium)], Vec::new());
@@ -94,7 +96,7 @@ fn half_spaces_give_back_what_is_known() {
     }
 }
 
-/// Where scattering goes deep, g counts by 1 - g alone.
+/// Where scattering goes deep, g matters only through 1 - g.
 #[test]
 fn forward_scattering_is_like_less_scattering() {
     let medium =
@@ -112,7 +114,7 @@ fn forward_scattering_is_like_less_scattering() {
     assert!(unlike < 0.9 * isotropic);
 }
 
-/// What light is left of a way through veins, in the mean, is e to the minus the optical depth.
+/// The mean transmittance of a path through veins is e to the minus the optical depth.
 #[test]
 fn the_mean_transmittance_of_veins_is_beers() {
     let coefficients = Vec3::new(0.4, 0.9, 0.1);
@@ -134,7 +136,8 @@ fn the_mean_transmittance_of_veins_is_beers() {
     }
 }
 
-/// Matter that absorbs nothing shows a radiance of 1 where 1 comes from all sides, whatever its density, phase function and boundary.
+/// A medium that absorbs nothing shows a radiance of 1 if 1 comes from all sides, whatever its
+/// density, phase function and boundary.
 #[test]
 fn white_furnace() {
     let room = white_room();
@@ -165,7 +168,7 @@ fn white_furnace() {
     }
 }
 
-/// The walk for any matter is that for plain matter, where matter is plain.
+/// In plain media, the general walk agrees with the plain walk.
 #[test]
 fn plain_matter_is_the_same_both_ways() {
     let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 1.0));
@@ -194,7 +197,8 @@ fn plain_matter_is_the_same_both_ways() {
     assert!((plain.0 - general.0).abs().cmplt(4.0 * error).all() && (error / plain.0).max_element() < 0.03);
 }
 
-/// Behind a boundary that does nothing a light's disc is as bright as the light itself: sun by chance against sun by shadow rays.
+/// Behind a boundary that does nothing, a light's disc is as bright as the light itself: a sun
+/// found by chance against a sun found by shadow rays.
 #[test]
 fn a_directional_light_is_found_by_chance_too() {
     let lit = |boundary: Boundary, count: u32| {
@@ -206,7 +210,7 @@ fn a_directional_light_is_found_by_chance_too() {
     let (sure, sure_error) = lit(Boundary::Matched, 20_000);
     let (chance, error) = lit(Boundary::Dielectric, 600_000);
     println!("{} ± {}, by chance {} ± {}", sure.x, sure_error.x, chance.x, error.x);
-    // The disc's own width moves the mean by less than a percent.
+    // The disc's width moves the mean by less than a percent.
     assert!((chance.x - sure.x).abs() < 4.0 * error.x.hypot(sure_error.x) + 0.01 * sure.x && error.x < 0.05 * sure.x);
 }
 
