@@ -16,7 +16,7 @@ const WITHOUT_COMMIT: u32 = 0x1a91_da21;
 /// A seed and its origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SuiteSeed {
-    /// The seed; it fits 32 bits, so that it is easy to retype.
+    /// The seed; a derived one fits 32 bits, so that it is easy to retype.
     pub value: u64,
     /// Description of the origin, for the first line of a run.
     pub origin: String,

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 /// additional memory as the mesh itself.
 const MOST_DIAGNOSED: usize = 1 << 20;
 
-/// Share of light below which nothing is visible: an eighth of the smallest 8-bit step at exposure
-/// 1.
+/// Share of light below which a body counts as black at exposure 1: an eighth of the smallest step
+/// of linear 8-bit encoding.
 const INVISIBLE: f32 = 1.0 / 2048.0;
 
 /// Darkest channel of a pixel whose channels are all written as 255.

@@ -22,7 +22,7 @@ pub enum RenderError {
     /// Number of samples out of range.
     #[error("{0} samples a side are out of range; take 1 to {MOST_SAMPLES}")]
     Samples(u32),
-    /// A mesh or an environment map that this device cannot hold.
+    /// A mesh or an environment map beyond the limits that every device offers (`wgpu`'s defaults).
     #[error("{what} needs {bytes} bytes in one buffer, and this device offers {limit}; use a smaller one")]
     TooLarge {
         /// The mesh or the map.

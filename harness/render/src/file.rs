@@ -5,7 +5,7 @@ use exr::prelude::{Image, WritableImage as _, f16};
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Reason why a picture could not be written or read.
+/// Reason why a picture could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// A file name whose extension names no format.

@@ -207,7 +207,8 @@ fn render_from(
             progress(done, tiles);
         }
     })?;
-    picture.notes = pass.paths().map_or(Ok(Vec::new()), |paths| paths.notes(&executor))?;
+    let notes = pass.paths().map(|paths| paths.notes(&executor));
+    picture.notes = notes.collect::<Result<Vec<_>, _>>()?.concat();
     Ok(picture)
 }
 
@@ -281,8 +282,17 @@ fn follow(
     let (width, height) = (settings.width, settings.height);
     let rows: u64 = Tile::all(width, height, settings.samples).map(|tile| u64::from(tile.height)).sum();
     let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
-    let mut means: Vec<(Tile, Vec<[f32; 4]>)> = Vec::new();
-    Display::new(gpu, settings)?.show(picture, |_, tile| {
+    // Of the tile before, in place of the device's means, which are of f32.
+    let mut means: Option<(Tile, Vec<[f32; 4]>)> = None;
+    let keep = |picture: &mut Picture, means: Option<(Tile, Vec<[f32; 4]>)>| {
+        let Some((Tile { left, top, width, .. }, linear)) = means else { return };
+        for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
+            let start = (row * picture.width + left) as usize;
+            picture.linear[start..start + means.len()].copy_from_slice(means);
+        }
+    };
+    Display::new(gpu, settings)?.show(picture, |picture, tile| {
+        keep(picture, means.take());
         let Tile { left, top, width, height } = tile;
         let of_reference = spectral::Settings {
             window: Some(Window { left, top, width, height }),
@@ -299,16 +309,10 @@ fn follow(
         let share: f64 = linear.iter().map(|pixel| f64::from(pixel[3])).sum();
         covered += share;
         lost = Lost { max: lost.max.max(of_tile.max), mean: lost.mean + share * of_tile.mean };
-        means.push((tile, linear));
+        means = Some((tile, linear));
         Ok(samples)
     })?;
-    // Replaces the device's means, which are f32.
-    for (Tile { left, top, width, .. }, linear) in means {
-        for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
-            let start = (row * picture.width + left) as usize;
-            picture.linear[start..start + means.len()].copy_from_slice(means);
-        }
-    }
+    keep(picture, means);
     picture.lost = Some(Lost { mean: if covered > 0.0 { lost.mean / covered } else { 0.0 }, ..lost });
     Ok(())
 }

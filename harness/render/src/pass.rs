@@ -79,9 +79,9 @@ impl ScenePass {
         stages
     }
 
-    /// Returns the paths of light, or `None` if the rung follows none.
-    pub(super) fn paths(&self) -> Option<&OpticalPaths> {
-        self.before.iter().find_map(|before| match before {
+    /// Paths of light, of each rung that follows any.
+    pub(super) fn paths(&self) -> impl Iterator<Item = &OpticalPaths> {
+        self.before.iter().filter_map(|before| match before {
             Before::Paths(paths) => Some(paths),
             Before::Shadows(_) | Before::Diffusion(_) => None,
         })

@@ -9,8 +9,8 @@ use lapidary_scene::{Environment, SAMPLES};
 /// Default number of walks from each pixel.
 pub const WALKS: u32 = 256;
 
-/// Default share of a body's extinction that applies along a light path. Scattering removes light
-/// from the path, but much of it continues close to the path. Fitted to random walks:
+/// Default share of a body's reduced extinction that applies along a light path. Scattering removes
+/// light from the path, but much of it continues close to the path. Fitted to random walks:
 /// docs/optical_path_shading.md.
 pub const EXTINCTION_SCALE: f32 = 0.18;
 

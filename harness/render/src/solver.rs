@@ -66,8 +66,8 @@ pub struct Solve {
     pub method: Method,
     /// Whether bodies have a density per voxel.
     pub heterogeneous: bool,
-    /// Maximum number of passes. `None` allows as many as any body needs whose paths of least cost
-    /// do not wind.
+    /// Maximum number of passes; ping-pong rounds it up to an even number. `None` allows as many as
+    /// any body needs whose paths of least cost do not wind.
     pub most_passes: Option<u32>,
 }
 

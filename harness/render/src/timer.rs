@@ -111,12 +111,13 @@ impl<'gpu> FrameTimer<'gpu> {
     /// Returns the progress of each body's path solver in the last frame drawn; for several
     /// channels, that of the last channel. Waits for the device.
     pub fn solved(&self) -> Result<Vec<Status>, RenderError> {
-        Ok(self.pass.paths().map_or(Ok(Vec::new()), |paths| paths.statuses(&self.executor))?)
+        let statuses = self.pass.paths().map(|paths| paths.statuses(&self.executor));
+        Ok(statuses.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Returns the bytes allocated for following light paths, uniforms excluded.
     pub fn path_bytes(&self) -> u64 {
-        self.pass.paths().map_or(0, |paths| paths.bytes(self.executor.frame()))
+        self.pass.paths().map(|paths| paths.bytes(self.executor.frame())).sum()
     }
 
     /// Returns the number of draw calls that the scene takes.

@@ -169,7 +169,7 @@ impl Welded {
     }
 
     /// Returns the number of parts with negative volume that are not cavities. The volume of a part
-    /// is taken about its own middle, so that a hole far from the origin weighs little.
+    /// is taken about one of its own corners, so that a hole far from the origin weighs little.
     fn inverted_parts(&self) -> usize {
         let parts = self.parts();
         let volume = |part: &[usize]| -> f64 {

@@ -358,8 +358,8 @@ mod tests {
         let (whole, surface) = (of(&[]), of(&[("EFFECT_PROXY_GEOMETRY", 0.0)]));
         assert!(surface.fragment_instructions < whole.fragment_instructions, "{surface:?} {whole:?}");
         assert!(surface.vertex_instructions < whole.vertex_instructions, "{surface:?} {whole:?}");
-        // Two uniform blocks: 64 + 12, padded to 80, and 52, padded to 64; the normals are not
-        // read.
+        // One uniform block, the view: 64 + 12 bytes, padded to 80. Without the proxy the normals are
+        // not read.
         assert_eq!((surface.constant_bytes, surface.storage_bindings), (80, 3));
         assert_eq!((whole.constant_bytes, whole.storage_bindings), (80, 4));
     }

@@ -1,10 +1,9 @@
 //! `cook frame`.
 
-use super::asked::Asked;
-use super::{Context, Failure, Outcome, number, output};
+use super::drawn::{Drawn, tell};
+use super::{Context, Failure, Outcome, output};
 use lapidary_plan::{Decisions, Rung};
-use lapidary_render::{MOST_SAMPLES, Settings};
-use lapidary_scene::{SAMPLES, Scene};
+use lapidary_render::frame::{Frame, Resource};
 use std::path::PathBuf;
 
 /// Writes a scene's frame as data for another host: resources with their contents, pipelines as
@@ -15,29 +14,27 @@ use std::path::PathBuf;
 )]
 pub(super) struct Arguments {
     #[command(flatten)]
-    asked: Asked,
-    /// Samples along each side of a pixel.
-    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = number::whole(1..=MOST_SAMPLES))]
-    samples: u32,
+    drawn: Drawn,
     /// New or empty output folder.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let scene = Scene::open(&arguments.asked.scene)?;
-    let (settings, mut notes) = arguments.asked.settings(&scene)?;
+    Frame::check_folder(&arguments.out)?;
+    let (scene, settings, mut notes) = arguments.drawn.open(Vec::new())?;
     if settings.rung == Rung::Reference {
         return Err(Failure("rung `reference` is computed on the CPU and has no frame; take another rung".to_owned()));
     }
-    let settings = Settings { samples: arguments.samples, ..settings };
-    let frame = lapidary_render::frame(Some(context.gpu()?), &scene, &settings)?;
+    let mut frame = lapidary_render::frame(None, &scene, &settings)?;
+    // Only reflectance tables are computed by a device.
+    if frame.resources.iter().any(Resource::is_left_out) {
+        frame = lapidary_render::frame(Some(context.gpu()?), &scene, &settings)?;
+    }
     frame.write(&arguments.out)?;
     let decisions = Decisions::all(&scene, &settings.request());
     notes.extend(lapidary_plan::notes(&scene, &settings.request(), &decisions.iter().collect::<Vec<_>>()));
-    for note in notes {
-        eprintln!("cook: {note}");
-    }
+    tell(&notes, &scene);
     output::line(&format!(
         "{}: {} resources, {} pipelines, {} passes",
         arguments.out.display(),

@@ -8,6 +8,7 @@ mod builtins;
 mod check;
 mod copy;
 mod cost;
+mod drawn;
 mod frame;
 mod gallery;
 mod list;

@@ -84,6 +84,9 @@ fn a_frame_is_whole() {
         if let Some(file) = resource["contents"].as_str() {
             let bytes = std::fs::metadata(folder.path().join(file)).expect(file).len();
             assert!(resource["kind"] != "buffer" || resource["bytes"] == bytes, "{name}");
+            // WebGPU fills a texture by copying.
+            let usage = resource["usage"].as_array().expect("a list");
+            assert!(resource["kind"] == "buffer" || usage.contains(&"COPY_DST".into()), "{name}");
         }
         let Some(layout) = resource["layout"].as_object() else { continue };
         for field in layout["fields"].as_array().expect("a list") {
@@ -99,6 +102,7 @@ fn a_frame_is_whole() {
     ]);
     assert_eq!(view["layout"]["fields"], expected);
     // A second time there is something in it.
+    assert!(std::fs::read_dir(folder.path()).expect("a folder").count() == 3, "nothing else is left there");
     let refused = frame.write(folder.path()).expect_err("taken").to_string();
     assert!(refused.ends_with("is there and not empty; name a new folder"), "{refused}");
     // And of what is looked at, nothing is written that cannot be run.

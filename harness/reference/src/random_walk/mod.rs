@@ -1,10 +1,11 @@
 //! Random walks of light through scattering media, on the CPU: the reference for the translucent
 //! techniques.
 //!
-//! Media here are homogeneous and scatter isotropically, and their surfaces do not refract light.
-//! Lengths are in mean free paths. A walk is analogue: at each scattering it ends with the
-//! probability of absorption, so that counts of walks are shares of light with the statistics of
-//! coin tosses. A seed gives the same walks on any number of threads.
+//! Media in this file and in `sphere` are homogeneous and scatter isotropically, and their surfaces
+//! do not refract light. Lengths are in mean free paths. A walk is analogue: at each scattering it
+//! ends with the probability of absorption, so that counts of walks are shares of light with the
+//! statistics of coin tosses. [`mesh`] follows weighted walks through bodies of any density, phase
+//! function and boundary. A seed gives the same walks on any number of threads.
 
 pub mod half_space;
 pub mod mesh;

@@ -2,8 +2,8 @@
 //!
 //! Every ray that meets a surface is split into its reflection and its refraction by the oracles of
 //! `fresnel` and `refraction`, separately at each wavelength, in f64, until the remaining energy is
-//! below a bound. The rest is dropped: an image is too dark, never too bright, and [`Lost`] says by
-//! how much at most. Nothing is random, so two runs give the same image.
+//! below a bound. The rest is dropped: at each wavelength an image is too dark, never too bright,
+//! and [`Lost`] says by how much at most. Nothing is random, so two runs give the same image.
 //!
 //! A pixel is the mean of a regular grid of rays, as in the renderer. Bodies are closed and do not
 //! overlap; a ray that leaves one may enter another, or the same one again. Surfaces are flat:
@@ -102,8 +102,8 @@ pub struct Rendering {
     pub lost: Lost,
 }
 
-/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` lowers
-/// the radiance by at most x times the environment's greatest radiance.
+/// Shares of the energy of camera rays that were not followed to their ends. A share of `x` changes
+/// the radiance at a wavelength by at most x times the environment's greatest radiance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
     /// Largest share of any sample that meets a body, at any wavelength. It exceeds the energy

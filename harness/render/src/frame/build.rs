@@ -113,7 +113,9 @@ impl<'gpu> Builder<'gpu> {
 
     /// Adds a uniform buffer that holds one struct.
     pub(crate) fn uniform(&mut self, what: &str, record: Record) -> Buffer {
-        self.records(what, vec![record], wgpu::BufferUsages::UNIFORM)
+        // A host may move the camera, and change whatever else uniforms hold.
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        self.records(what, vec![record], usage)
     }
 
     /// Adds a storage buffer that holds one struct.
@@ -139,7 +141,8 @@ impl<'gpu> Builder<'gpu> {
         size: [u32; 3],
         contents: Contents,
     ) -> Texture {
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        // A host copies its contents there.
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         Texture(self.resource(what, ResourceKind::Texture { size, dimension, format, usage, contents }))
     }
 

@@ -384,6 +384,21 @@ impl Frame {
         }
     }
 
+    /// Whether the folder is there already, and empty.
+    ///
+    /// # Errors
+    /// If something is in it, or it cannot be read.
+    pub fn check_folder(folder: &Path) -> Result<bool, WriteError> {
+        match std::fs::read_dir(folder) {
+            Ok(mut entries) => match entries.next() {
+                Some(_) => Err(WriteError::Taken { path: folder.to_owned() }),
+                None => Ok(true),
+            },
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
+            Err(error) => Err(WriteError::File { path: folder.to_owned(), error }),
+        }
+    }
+
     /// Writes the frame to a new or empty folder, completely or not at all.
     ///
     /// # Errors
@@ -393,26 +408,19 @@ impl Frame {
             let path = path.to_owned();
             move |error| WriteError::File { path, error }
         };
-        match std::fs::read_dir(folder) {
-            Ok(mut entries) => {
-                if entries.next().is_some() {
-                    return Err(WriteError::Taken { path: folder.to_owned() });
-                }
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
-            Err(error) => return Err(failed(folder)(error)),
-        }
-        // Created next to its final location, then moved there as a whole.
+        let is_there = Self::check_folder(folder)?;
+        // In an empty folder it is made inside, and moved up at the end; else beside its place, and moved there whole.
         let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        std::fs::create_dir_all(parent).map_err(failed(parent))?;
+        let place = if is_there { folder } else { parent };
+        std::fs::create_dir_all(place).map_err(failed(place))?;
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
-            // Access for other users is limited only by the process's umask.
+            // The process's umask limits who else may read it.
             builder.permissions(std::fs::Permissions::from_mode(0o777));
         }
-        let aside = builder.prefix(".frame-").tempdir_in(parent).map_err(failed(folder))?;
+        let aside = builder.prefix(".frame-").tempdir_in(place).map_err(failed(folder))?;
         let write = |name: &str, contents: &[u8]| {
             let path = aside.path().join(name);
             std::fs::write(&path, contents).map_err(failed(&folder.join(name)))
@@ -439,8 +447,12 @@ impl Frame {
         let json = serde_json::to_string_pretty(&self.document());
         let json = json.map_err(std::io::Error::from).map_err(failed(&folder.join("frame.json")))?;
         write("frame.json", format!("{json}\n").as_bytes())?;
-        // An empty folder is replaced.
-        let _ = std::fs::remove_dir(folder);
-        std::fs::rename(aside.path(), folder).map_err(failed(folder))
+        if !is_there {
+            return std::fs::rename(aside.path(), folder).map_err(failed(folder));
+        }
+        // frame.json last: where it is, all is.
+        ["resources", "pipelines", "frame.json"].into_iter().try_for_each(|name| {
+            std::fs::rename(aside.path().join(name), folder.join(name)).map_err(failed(&folder.join(name)))
+        })
     }
 }

@@ -42,7 +42,7 @@ impl<'gpu> Executor<'gpu> {
     ///
     /// # Errors
     /// If the device rejects a shader or runs out of memory.
-    pub fn new(gpu: &'gpu Gpu, frame: Frame) -> Result<Self, GpuError> {
+    pub fn new(gpu: &'gpu Gpu, mut frame: Frame) -> Result<Self, GpuError> {
         let resource = |of: &Resource| {
             let what = format!("making `{}`", of.name);
             if of.is_left_out() {
@@ -52,6 +52,8 @@ impl<'gpu> Executor<'gpu> {
             gpu.guarded(&what, |_| made(gpu, of))
         };
         let resources = frame.resources.iter().map(resource).collect::<Result<_, _>>()?;
+        // The device holds them now.
+        frame.resources.iter_mut().for_each(Resource::leave_out);
         let pipeline = |of: &Pipeline| {
             gpu.guarded(&format!("compiling `{}` of recipe `{}`", of.name, of.shader.recipe()), |device| {
                 compiled(device, of)
@@ -158,7 +160,15 @@ impl<'gpu> Executor<'gpu> {
             // Up to and including the next reads.
             let is_read = |pass: &Pass| matches!(pass, Pass::Read(_));
             let start = rest.iter().position(is_read).unwrap_or(rest.len());
-            let count = rest[start..].iter().take_while(|pass| is_read(pass)).count();
+            // Together, as long as each has a buffer of its own.
+            let mut buffers = Vec::new();
+            let mut is_another = |pass: &&Pass| {
+                let Pass::Read(read) = pass else { return false };
+                let is_new = !buffers.contains(&read.buffer);
+                buffers.push(read.buffer);
+                is_new
+            };
+            let count = rest[start..].iter().take_while(|pass| is_another(pass)).count();
             let (now, later) = rest.split_at(start + count);
             self.submit(now)?;
             for pass in &now[start..] {

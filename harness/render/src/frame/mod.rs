@@ -110,8 +110,18 @@ pub enum Contents {
 }
 
 impl Resource {
+    /// Drops its bytes, which are somewhere else.
+    fn leave_out(&mut self) {
+        if let ResourceKind::Buffer { contents, .. } | ResourceKind::Texture { contents, .. } = &mut self.kind
+            && matches!(contents, Contents::Bytes(_))
+        {
+            *contents = Contents::LeftOut;
+        }
+    }
+
     /// Whether its contents are [`Contents::LeftOut`].
-    pub(crate) fn is_left_out(&self) -> bool {
+    #[must_use]
+    pub fn is_left_out(&self) -> bool {
         let (ResourceKind::Buffer { contents, .. } | ResourceKind::Texture { contents, .. }) = &self.kind else {
             return false;
         };
@@ -280,8 +290,8 @@ pub struct Draw {
     pub groups: Vec<Option<BindGroupId>>,
     /// Number of vertices.
     pub vertices: u32,
-    /// The part of the targets that may change: left, top, width and height in texels; `None` for
-    /// all.
+    /// Part of the targets that may change: left, top, width and height in texels. `None` for all of
+    /// them. Either all draws of a pass have one or none has.
     pub scissor: Option<[u32; 4]>,
 }
 

@@ -160,7 +160,8 @@ impl Place<'_> {
                     direction,
                 );
                 *plane = proxy_geometry::next_plane(*centre, facet);
-                // Steps are far below 2^31 for any sane stone; the sign is kept by the offset.
+                // Steps are far below 2^30 for any sane stone, so that the low 31 bits of x, in two's
+                // complement, still tell all steps apart.
                 let [x, y] = cell.steps.to_array().map(|step| u64::from(step.cast_unsigned()));
                 let facet = x << 33 | (y & 0xffff_ffff) << 1 | u64::from(cell.turned);
                 Hit { point: hit.point, normal, distance: hit.distance, facet: Some(facet) }

@@ -16,8 +16,8 @@ fn the_figure_is_one_closed_body_without_slivers() {
 #[test]
 fn arms_wings_and_wreath_are_free_of_the_body() {
     let inside = |x: f64, y: f64, z: f64| field(dvec3(x, y, z)) < 0.0;
-    // Between the arm on the hip and the waist, through the wreath, between two feathers, between
-    // the raised arm and the head.
+    // Between the arm on the hip and the waist, through the wreath, and between the raised arm and
+    // the head.
     for (x, y, z) in [(12.0, 70.0, 0.0), (-15.0, 110.5, 6.4), (-13.0, 97.0, 5.0)] {
         assert!(!inside(x, y, z), "{x} {y} {z}");
     }

@@ -60,7 +60,6 @@ impl Timed<'_> {
 
     fn round(&mut self) -> Result<(), CostError> {
         self.totals.push(self.frame.run()?.total);
-        // Once is enough to know where the time goes.
         if self.staged {
             self.stages.extend(self.frame.run_stages()?);
         }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
-use wgpu::util::{BufferInitDescriptor, DeviceExt as _, TextureDataOrder};
+use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 use wgpu::*;
 
 /// A picture: its width, height and texels, row by row.
@@ -87,19 +87,18 @@ fn texel_bytes(format: TextureFormat) -> u32 {
 impl Host<'_> {
     fn resource(&self, row: &Value, folder: &Path) -> Resource {
         let contents = row["contents"].as_str().map(|file| std::fs::read(folder.join(file)).expect("contents"));
-        let label = Some(string(&row["name"]));
         match string(&row["kind"]) {
             "buffer" => {
                 let flag = |name: &Value| BufferUsages::from_name(string(name)).expect("a usage");
                 let usage = list(&row["usage"]).iter().map(flag).collect();
                 let contents = &contents.unwrap_or_else(|| vec![0; number(&row["bytes"]) as usize]);
-                Resource::Buffer(self.device.create_buffer_init(&BufferInitDescriptor { label, contents, usage }))
+                Resource::Buffer(self.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage }))
             }
             "texture" => {
                 let [width, height, depth_or_array_layers] = numbers(&row["size"]);
                 let flag = |name: &Value| TextureUsages::from_name(string(name)).expect("a usage");
                 let descriptor = TextureDescriptor {
-                    label,
+                    label: None,
                     size: Extent3d { width, height, depth_or_array_layers },
                     mip_level_count: 1,
                     sample_count: 1,
@@ -108,17 +107,18 @@ impl Host<'_> {
                     usage: list(&row["usage"]).iter().map(flag).collect(),
                     view_formats: &[],
                 };
-                let order = TextureDataOrder::LayerMajor;
-                Resource::Texture(match contents {
-                    Some(texels) => self.device.create_texture_with_data(self.queue, &descriptor, order, &texels),
-                    None => self.device.create_texture(&descriptor),
-                })
+                let texture = self.device.create_texture(&descriptor);
+                if let Some(texels) = contents {
+                    let bytes_per_row = Some(width * texel_bytes(descriptor.format));
+                    let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: Some(height) };
+                    self.queue.write_texture(texture.as_image_copy(), &texels, layout, descriptor.size);
+                }
+                Resource::Texture(texture)
             }
             "sampler" => {
                 let modes = [("repeat", AddressMode::Repeat), ("clamp-to-edge", AddressMode::ClampToEdge)];
                 let filter = named(&row["filter"], &[("linear", FilterMode::Linear), ("nearest", FilterMode::Nearest)]);
                 Resource::Sampler(self.device.create_sampler(&SamplerDescriptor {
-                    label,
                     mag_filter: filter,
                     min_filter: filter,
                     address_mode_u: named(&row["address"][0], &modes),

@@ -1,0 +1,238 @@
+//! Shared options of `cook render` and `cook frame`: the scene, its camera, exposure and samples, and
+//! each technique's own.
+
+use super::asked::Asked;
+use super::{Failure, number};
+use lapidary_plan::{Decisions, Geometry, Note, Rung, Spectrum};
+use lapidary_render as render;
+use lapidary_render::{Curvature, DiffuseOptions, GemOptions, OpticalPathOptions, Settings};
+use lapidary_scene::Scene;
+use lapidary_scene::nearest::suggest;
+
+#[derive(clap::Args)]
+pub(super) struct Drawn {
+    #[command(flatten)]
+    pub(super) asked: Asked,
+    /// Camera direction in degrees off the vertical, and from +z towards +x; the scene's own camera
+    /// by default.
+    #[arg(long, value_name = "POLAR,AZIMUTH", value_parser = parse_from, allow_hyphen_values = true)]
+    from: Option<(f32, f32)>,
+    /// Factor on radiance before the tone curve.
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    exposure: f32,
+    /// Samples along each side of a pixel.
+    #[arg(long, default_value_t = lapidary_scene::SAMPLES, value_parser = number::whole(1..=render::MOST_SAMPLES))]
+    samples: u32,
+    #[command(flatten)]
+    gem: Option<Gem>,
+    #[command(flatten)]
+    diffuse: Option<Diffuse>,
+    #[command(flatten)]
+    optical_path: Option<OpticalPath>,
+}
+
+/// Options of the gem recipes.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Gem recipes")]
+struct Gem {
+    /// Factor on the paper's dispersion, eq. (12), for rungs with +paper; 1 by default.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_positive)]
+    strength: Option<f32>,
+    /// Energy that a ray still carries at its last hit: replaced by the environment in the ray's
+    /// direction (the default), or dropped.
+    #[arg(long, value_name = "WAY", value_parser = ["environment", "dropped"])]
+    rest: Option<String>,
+    /// Maximum distance that a ray travels inside, in units of length.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    distance_limit: Option<f32>,
+    /// Whether a ray inside ends when its contribution can no longer be seen. On by default for
+    /// rungs of 16 hits or more, which it makes faster.
+    #[arg(long, value_name = "WHETHER", value_parser = ["on", "off"])]
+    throughput_limit: Option<String>,
+    /// Draw with a geometry buffer and a lighting pass, as a deferred renderer does.
+    #[arg(long)]
+    deferred: bool,
+    /// Centre of the proxy: stable (the default), or the paper's eq. (4).
+    #[arg(long, value_name = "FORM", value_parser = ["stable", "paper"])]
+    centre: Option<String>,
+}
+
+/// Options for scattering bodies drawn by their curvature.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scattering bodies by their curvature")]
+struct Diffuse {
+    /// Curvature that spreads the light. From the pixel's derivatives: mean (the default), towards
+    /// (towards each light) or naive (|dN| / |dP|). From the mesh: vertex, its mean curvature.
+    #[arg(long, value_name = "FORM", value_parser = parse_curvature)]
+    curvature: Option<Curvature>,
+}
+
+/// Options for translucent scattering bodies.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scattering bodies by optical paths")]
+struct OpticalPath {
+    /// Share of scattering and absorption that attenuates light along its path through a body; 0.18
+    /// by default.
+    #[arg(long, value_name = "SHARE", value_parser = parse_positive)]
+    extinction_scale: Option<f32>,
+}
+
+/// Options that were given, and the technique that they are for.
+pub(super) struct Given {
+    /// The technique.
+    pub(super) technique: &'static str,
+    /// The options.
+    pub(super) flags: Vec<&'static str>,
+    /// Whether a rung draws by this technique, in a scene that scatters light or not.
+    pub(super) draws: fn(Rung, bool) -> bool,
+}
+
+/// The options that were given of these.
+pub(super) fn given<const COUNT: usize>(flags: [(&'static str, bool); COUNT]) -> Vec<&'static str> {
+    flags.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag).collect()
+}
+
+fn parse_from(text: &str) -> Result<(f32, f32), String> {
+    let number = |text: &str| text.trim().parse::<f32>().ok().filter(|angle| angle.is_finite());
+    let parsed = text.split_once(',').and_then(|(polar, azimuth)| Some((number(polar)?, number(azimuth)?)));
+    parsed.ok_or_else(|| "expected two angles in degrees, such as 20,11".to_owned())
+}
+
+fn parse_curvature(text: &str) -> Result<Curvature, String> {
+    let names = Curvature::ALL.map(Curvature::name);
+    let found = Curvature::ALL.into_iter().find(|curvature| curvature.name() == text);
+    found.ok_or_else(|| format!("no such curvature{}", suggest(text, &names)))
+}
+
+fn parse_positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(exposure) if exposure.is_finite() && exposure > 0.0 => Ok(exposure),
+        _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+impl Gem {
+    fn options(&self) -> GemOptions {
+        let usual = GemOptions::default();
+        GemOptions {
+            paper_centre: self.centre.as_deref() == Some("paper"),
+            dispersion_strength: self.strength.unwrap_or(usual.dispersion_strength),
+            rest_from_environment: self.rest.as_deref() != Some("dropped"),
+            distance_limit: self.distance_limit,
+            limit_throughput: self.throughput_limit.as_deref().map(|whether| whether == "on"),
+            deferred: self.deferred,
+        }
+    }
+
+    fn given(&self) -> [Given; 4] {
+        let centre = self.centre.as_deref() == Some("paper");
+        let strength = self.strength.is_some();
+        let inside = || {
+            given([
+                ("--strength", strength),
+                ("--rest", self.rest.is_some()),
+                ("--distance-limit", self.distance_limit.is_some()),
+                ("--throughput-limit", self.throughput_limit.is_some()),
+                ("--centre paper", centre),
+            ])
+        };
+        let all = [inside(), given([("--deferred", self.deferred)])].concat();
+        [
+            Given {
+                technique: "the gem recipes",
+                flags: all,
+                draws: |rung, _| matches!(rung, Rung::Inside { .. } | Rung::Surface),
+            },
+            Given {
+                technique: "rays inside clear stones",
+                flags: inside(),
+                draws: |rung, _| matches!(rung, Rung::Inside { .. }),
+            },
+            Given {
+                technique: "the proxy",
+                flags: given([("--centre paper", centre)]),
+                draws: |rung, _| matches!(rung, Rung::Inside { geometry: Geometry::Proxy, .. }),
+            },
+            Given {
+                technique: "the paper's dispersion",
+                flags: given([("--strength", strength)]),
+                draws: |rung, _| rung.spectrum() == Spectrum::Paper,
+            },
+        ]
+    }
+}
+
+impl Drawn {
+    /// Opens the scene, and makes the settings and what should be known of the environment. `others` are further options that
+    /// were given.
+    pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
+        let mut scene = Scene::open(&self.asked.scene)?;
+        if let Some((polar, azimuth)) = self.from {
+            scene = scene.seen_from(polar, azimuth);
+        }
+        let (asked, notes) = self.asked.settings(&scene)?;
+        let curvature = self.diffuse.as_ref().and_then(|of| of.curvature);
+        let extinction_scale = self.optical_path.as_ref().and_then(|of| of.extinction_scale);
+        let settings = Settings {
+            exposure: self.exposure,
+            samples: self.samples,
+            gem: self.gem.as_ref().map_or(asked.gem, Gem::options),
+            diffuse: curvature.map_or(asked.diffuse, |curvature| DiffuseOptions { curvature, ..asked.diffuse }),
+            optical_path: extinction_scale
+                .map_or(asked.optical_path, |extinction_scale| OpticalPathOptions { extinction_scale }),
+            ..asked
+        };
+        let own = [
+            Given {
+                technique: "curvature",
+                flags: given([("--curvature", curvature.is_some())]),
+                draws: |rung, _| matches!(rung, Rung::Diffuse(of) if !of.is_lambert()),
+            },
+            Given {
+                technique: "optical paths",
+                flags: given([("--extinction-scale", extinction_scale.is_some())]),
+                draws: |rung, _| matches!(rung, Rung::OpticalPath(_)),
+            },
+        ];
+        let gem = self.gem.iter().flat_map(Gem::given);
+        refuse_what_is_ignored(gem.chain(own).chain(others), &scene, &settings)?;
+        Ok((scene, settings, notes))
+    }
+}
+
+/// Refuses options of techniques that draw no object: they would be believed to have been obeyed.
+fn refuse_what_is_ignored(
+    given: impl Iterator<Item = Given>,
+    scene: &Scene,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    let given: Vec<Given> = given.filter(|given| !given.flags.is_empty()).collect();
+    // Deciding measures bodies.
+    if given.is_empty() {
+        return Ok(());
+    }
+    let scatters = render::scatters(scene);
+    let rungs: Vec<Rung> =
+        scene.objects.iter().map(|object| Decisions::of(object, scene, &settings.request()).rung).collect();
+    match given.iter().find(|given| !rungs.iter().any(|rung| (given.draws)(*rung, scatters))) {
+        Some(Given { technique, flags, .. }) => Err(Failure(format!(
+            "scene `{}` by rung `{}`: {} {} no meaning, since nothing there is drawn by {technique}; leave {} out or take another rung",
+            scene.name,
+            settings.rung,
+            flags.join(", "),
+            if flags.len() == 1 { "has" } else { "have" },
+            if flags.len() == 1 { "it" } else { "them" },
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Says on stderr what should be known of a scene that is drawn.
+pub(super) fn tell(notes: &[Note], scene: &Scene) {
+    for note in notes {
+        eprintln!("cook: {note}");
+    }
+    for lacking in &scene.lacking {
+        eprintln!("cook: not drawn, though the file asks for it: {lacking}");
+    }
+}
