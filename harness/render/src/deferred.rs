@@ -4,7 +4,7 @@
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{Environment, RenderError, Settings, Tile};
-use crate::frame::{Bound, Builder, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
+use crate::frame::{Bound, Builder, PipelineId, PipelineSource, Texture};
 use crate::record::Record;
 use glam::{Mat4, UVec2, Vec3};
 
@@ -86,13 +86,7 @@ impl DeferredPass {
         let group = builder.bind(self.pipeline, 0, &resources);
         let draw = builder.draw(self.pipeline, vec![group], 3);
         let [width, height] = size;
-        builder.pass(Pass::Render(RenderPass {
-            name: COMPOSITE.to_owned(),
-            targets: vec![Target::from(samples)],
-            depth: None,
-            viewport: Some([0, 0, width, height]),
-            draws: vec![draw],
-        }));
+        builder.draw_to(COMPOSITE, &[samples], Some([0, 0, width, height]), vec![draw]);
     }
 }
 

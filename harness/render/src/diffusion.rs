@@ -2,9 +2,10 @@
 //! recipe `texture_diffusion` blurs it.
 
 use super::RenderError;
+use super::mesh_buffers;
 use super::texture_diffusion::{Chart, IRRADIANCE_FORMAT, STRETCH_FORMAT, Taps, TextureDiffusion};
 use super::translucent::{self, Light};
-use crate::frame::{BindGroupId, Buffer, Builder, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture};
+use crate::frame::{BindGroupId, Buffer, Builder, PipelineId, PipelineSource, Texture};
 use lapidary_scene::Object;
 use lapidary_scene::layout::Layout;
 
@@ -50,7 +51,7 @@ impl Diffusion {
         // Halos first: if a halo and a chart's own triangle touch the same texel, the triangle
         // stays.
         let drawn = [&object.mesh.halo[..], &object.mesh.indices].concat();
-        let vertices = builder.mesh_vertices(object, &drawn, [bytemuck::cast_slice(&drawn)])?;
+        let vertices = mesh_buffers::vertices(object, &drawn, [bytemuck::cast_slice(&drawn)])?;
         let shared = translucent::shared(builder, light, pipeline)?;
         let indices = builder.storage("indices with halos", bytemuck::cast_slice(&drawn));
         let own = [(0, positions.into()), (1, indices.into()), (2, normals.into()), (3, uvs.into())];
@@ -75,13 +76,7 @@ impl Diffusion {
     pub(super) fn encode(&self, builder: &mut Builder<'_>) {
         builder.of_object(&self.name, |builder| {
             let draw = builder.draw(self.pipeline, self.groups.clone(), self.vertices);
-            builder.pass(Pass::Render(RenderPass {
-                name: RECIPE.to_owned(),
-                targets: [self.textures.irradiance, self.textures.stretch].map(Target::from).to_vec(),
-                depth: None,
-                viewport: None,
-                draws: vec![draw],
-            }));
+            builder.draw_to(RECIPE, &[self.textures.irradiance, self.textures.stretch], None, vec![draw]);
             self.textures.encode(builder, &self.taps, &self.charts);
         });
     }

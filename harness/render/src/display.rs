@@ -2,10 +2,7 @@
 
 use super::pass::SAMPLE_FORMAT;
 use super::{Picture, RenderError, Settings, Tile};
-use crate::frame::{
-    BindGroupId, Bound, Builder, Executor, Pass, PipelineId, PipelineSource, Read, Readback, RenderPass, Target,
-    Texture,
-};
+use crate::frame::{BindGroupId, Bound, Builder, Executor, PipelineId, PipelineSource, Read, Readback, Texture};
 use crate::record::Record;
 use glam::{UVec2, Vec2};
 use lapidary_gpu::Gpu;
@@ -51,13 +48,7 @@ impl DisplayPass {
         let corner = UVec2::new(tile.left, tile.top).as_vec2();
         let group = group(builder, self.pipeline, self.samples, corner, settings);
         let draw = builder.draw(self.pipeline, group, 3);
-        builder.pass(Pass::Render(RenderPass {
-            name: RECIPE.to_owned(),
-            targets: self.pictures.map(Target::from).to_vec(),
-            depth: None,
-            viewport: Some([0, 0, tile.width, tile.height]),
-            draws: vec![draw],
-        }));
+        builder.draw_to(RECIPE, &self.pictures, Some([0, 0, tile.width, tile.height]), vec![draw]);
         for read in self.read {
             builder.read(read, [tile.width, tile.height], [tile.left, tile.top]);
         }
@@ -121,7 +112,8 @@ pub(super) struct Display<'gpu> {
     executor: Executor<'gpu>,
     count: u32,
     samples: Texture,
-    tiles: Vec<(Tile, Range<usize>)>,
+    /// Each tile and its passes.
+    pub(super) tiles: Vec<(Tile, Range<usize>)>,
 }
 
 impl<'gpu> Display<'gpu> {
@@ -139,19 +131,16 @@ impl<'gpu> Display<'gpu> {
         Ok(Self { executor, count: pass.count, samples: pass.samples, tiles })
     }
 
-    /// Fills each tile of a picture from its samples, row by row.
+    /// Fills a tile of a picture from its samples, row by row.
     pub(super) fn show(
         &self,
+        (tile, passes): &(Tile, Range<usize>),
+        samples: &[[f32; 4]],
         picture: &mut Picture,
-        mut samples: impl FnMut(&mut Picture, Tile) -> Result<Vec<[f32; 4]>, RenderError>,
     ) -> Result<(), RenderError> {
-        for (tile, passes) in &self.tiles {
-            let samples = samples(picture, *tile)?;
-            let size = [tile.width, tile.height].map(|side| side * self.count);
-            self.executor.write_texture(self.samples, size, bytemuck::cast_slice(&samples));
-            self.executor.run_passes(passes.clone(), |read, texels| picture.take(read, texels))?;
-        }
-        Ok(())
+        let size = [tile.width, tile.height].map(|side| side * self.count);
+        self.executor.write_texture(self.samples, size, bytemuck::cast_slice(samples));
+        Ok(self.executor.run_passes(passes.clone(), |read, texels| picture.take(read, texels))?)
     }
 }
 

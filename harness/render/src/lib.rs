@@ -29,6 +29,7 @@ mod gem;
 mod harmonics;
 mod light_views;
 mod lighting;
+mod mesh_buffers;
 mod optical_path;
 mod pass;
 pub mod pixel;
@@ -282,18 +283,9 @@ fn follow(
     let (width, height) = (settings.width, settings.height);
     let rows: u64 = Tile::all(width, height, settings.samples).map(|tile| u64::from(tile.height)).sum();
     let (mut done, mut covered, mut lost) = (0u64, 0.0, Lost::default());
-    // Of the tile before, in place of the device's means, which are of f32.
-    let mut means: Option<(Tile, Vec<[f32; 4]>)> = None;
-    let keep = |picture: &mut Picture, means: Option<(Tile, Vec<[f32; 4]>)>| {
-        let Some((Tile { left, top, width, .. }, linear)) = means else { return };
-        for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
-            let start = (row * picture.width + left) as usize;
-            picture.linear[start..start + means.len()].copy_from_slice(means);
-        }
-    };
-    Display::new(gpu, settings)?.show(picture, |picture, tile| {
-        keep(picture, means.take());
-        let Tile { left, top, width, height } = tile;
+    let display = Display::new(gpu, settings)?;
+    for tile in &display.tiles {
+        let Tile { left, top, width, height } = tile.0;
         let of_reference = spectral::Settings {
             window: Some(Window { left, top, width, height }),
             samples: settings.samples,
@@ -309,10 +301,13 @@ fn follow(
         let share: f64 = linear.iter().map(|pixel| f64::from(pixel[3])).sum();
         covered += share;
         lost = Lost { max: lost.max.max(of_tile.max), mean: lost.mean + share * of_tile.mean };
-        means = Some((tile, linear));
-        Ok(samples)
-    })?;
-    keep(picture, means);
+        display.show(tile, &samples, picture)?;
+        // Replaces the device's means, which are f32.
+        for (row, means) in (top..).zip(linear.chunks_exact(width as usize)) {
+            let start = (row * picture.width + left) as usize;
+            picture.linear[start..start + means.len()].copy_from_slice(means);
+        }
+    }
     picture.lost = Some(Lost { mean: if covered > 0.0 { lost.mean / covered } else { 0.0 }, ..lost });
     Ok(())
 }
@@ -320,10 +315,15 @@ fn follow(
 /// Fills `encoded` from `linear`: the display recipe applied to means, with one sample per pixel.
 pub fn encode(gpu: &Gpu, settings: &Settings, picture: &mut Picture) -> Result<(), RenderError> {
     let settings = Settings { width: picture.width, height: picture.height, samples: 1, ..settings.clone() };
-    Display::new(gpu, &settings)?.show(picture, |picture, tile| {
-        let rows = (tile.top..tile.top + tile.height).map(|row| (row * picture.width + tile.left) as usize);
-        Ok(rows.flat_map(|start| &picture.linear[start..start + tile.width as usize]).copied().collect())
-    })
+    let display = Display::new(gpu, &settings)?;
+    for tile in &display.tiles {
+        let Tile { left, top, width, height } = tile.0;
+        let rows = (top..top + height).map(|row| (row * picture.width + left) as usize);
+        let means: Vec<[f32; 4]> =
+            rows.flat_map(|start| &picture.linear[start..start + width as usize]).copied().collect();
+        display.show(tile, &means, picture)?;
+    }
+    Ok(())
 }
 
 /// A rectangle of the picture in pixels.

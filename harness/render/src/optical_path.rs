@@ -7,9 +7,9 @@ mod stage;
 
 use super::light_views;
 use super::lighting::Lighting;
+use super::mesh_buffers::MeshBuffers;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
-use super::shadows::MeshBuffers;
 use super::variant::{Drawn, Part};
 use super::{RenderError, Settings};
 use crate::frame::{Bound, Buffer, Builder, Dispatch, Executor, Frame, PipelineId, PipelineSource};
@@ -164,16 +164,14 @@ impl Add<'_> {
         let Drawn { object: Object { mesh, material, .. }, name, .. } = drawn;
         let extinction = extinction(material, self.settings);
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), self.paths.cells);
-        let parts = MeshBuffers::parts(mesh).map(|(_, contents)| contents);
-        let vertices = builder.mesh_vertices(drawn.object, &mesh.indices, parts)?;
-        let buffers = MeshBuffers::of(builder, mesh);
-        maps.add(builder, name, &buffers, vertices);
+        let buffers = MeshBuffers::of(builder, drawn.object)?;
+        maps.add(builder, name, &buffers);
         let of_body = match &self.seeds {
             Some(seeds) => Some(self.paths(builder, drawn, seeds, grid, extinction, &buffers)?),
             None => None,
         };
         let record = builder.record("material", record_of(grid, material, extinction, self.largest));
-        let MeshBuffers { positions, indices, normals } = buffers;
+        let MeshBuffers { positions, indices, normals, vertices } = buffers;
         let mut resources: Vec<(u32, Bound)> =
             (0..).zip([record, positions, indices, normals].map(Bound::from)).collect();
         if let Some(of_body) = &of_body {
@@ -303,7 +301,7 @@ impl OpticalPaths {
     /// Size in bytes of the maps and of each body's voxels, densities, costs and solver.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
         let of = |body: &BodyPaths| {
-            let costs: u64 = body.channels.iter().map(|channel| frame.buffer(channel.solved.cost).bytes()).sum();
+            let costs: u64 = body.channels.iter().map(|channel| frame.resource(channel.solved.cost).bytes()).sum();
             let densities = body.densities.as_ref().map_or(0, |densities| densities.bytes(frame));
             body.voxelizer.bytes(frame) + densities + costs + body.solver.bytes(frame)
         };

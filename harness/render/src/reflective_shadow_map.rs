@@ -3,8 +3,8 @@
 
 use super::RenderError;
 use super::light_views::LightView;
+use super::mesh_buffers::MeshBuffers;
 use super::pass::DEPTH_FORMAT;
-use super::shadows::MeshBuffers;
 use crate::frame::{
     BindGroupId, Bound, Buffer, Builder, Frame, Pass, PipelineId, PipelineSource, RenderPass, Target, Texture,
 };
@@ -63,9 +63,9 @@ impl ReflectiveShadowMaps {
         Ok(Self { pipeline, texture, depth, side, views, meshes: Vec::new() })
     }
 
-    /// Adds an object: its name, its mesh, and the number of vertices to draw.
-    pub(super) fn add(&mut self, builder: &mut Builder<'_>, name: &str, mesh: &MeshBuffers, vertices: u32) {
-        let MeshBuffers { positions, indices, normals } = *mesh;
+    /// Adds an object by its name and its mesh.
+    pub(super) fn add(&mut self, builder: &mut Builder<'_>, name: &str, mesh: &MeshBuffers) {
+        let MeshBuffers { positions, indices, normals, vertices } = *mesh;
         let resources = [(0, positions.into()), (1, indices.into()), (2, normals.into())];
         let group = builder.bind(self.pipeline, 1, &resources);
         self.meshes.push((name.to_owned(), group, vertices));
@@ -102,7 +102,7 @@ impl ReflectiveShadowMaps {
 
     /// Size in bytes of the maps and their depth.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
-        [self.texture, self.depth].map(|texture| frame.texture(texture).bytes()).iter().sum()
+        [self.texture, self.depth].map(|texture| frame.resource(texture).bytes()).iter().sum()
     }
 }
 

@@ -1,41 +1,18 @@
 //! Shadows on objects that are shaded at their surface alone: the lights' views of all bodies
 //! except the clear ones, drawn once for the whole scene.
 
+use super::mesh_buffers::MeshBuffers;
 use super::reflective_shadow_map::{self, ReflectiveShadowMaps};
 use super::variant::Part;
 use super::{RenderError, Rung, light_views};
 use crate::frame::{Bound, Buffer, Builder, PipelineId};
 use lapidary_plan::Effect;
-use lapidary_scene::{Bounds, Light, Mesh};
+use lapidary_scene::{Bounds, Light};
 use std::collections::HashMap;
 
 /// Texels along a side of a map. A shadow's edge is one texel soft, and detail that stands out by
 /// less than a texel casts no shadow.
 const SIDE: u32 = 1024;
-
-/// A mesh's positions, indices and normals, as recipes for bodies bind them.
-pub(super) struct MeshBuffers {
-    pub(super) positions: Buffer,
-    pub(super) indices: Buffer,
-    pub(super) normals: Buffer,
-}
-
-impl MeshBuffers {
-    /// Creates the buffers of the current object's mesh.
-    pub(super) fn of(builder: &mut Builder<'_>, mesh: &Mesh) -> Self {
-        let [positions, indices, normals] = Self::parts(mesh).map(|(what, part)| builder.storage(what, part));
-        Self { positions, indices, normals }
-    }
-
-    /// Names and contents of the buffers.
-    pub(super) fn parts(mesh: &Mesh) -> [(&'static str, &[u8]); 3] {
-        [
-            ("positions", bytemuck::cast_slice(&mesh.positions)),
-            ("indices", bytemuck::cast_slice(&mesh.indices)),
-            ("normals", bytemuck::cast_slice(&mesh.normals)),
-        ]
-    }
-}
 
 /// The lights' maps.
 pub(super) struct Shadows {
@@ -65,15 +42,12 @@ impl Shadows {
         let views = reflective_shadow_map::view_buffer(builder, &views);
         let mut meshes = HashMap::new();
         for drawn in casting() {
-            let mesh = &drawn.object.mesh;
-            let parts = MeshBuffers::parts(mesh).map(|(_, contents)| contents);
-            let vertices = builder.mesh_vertices(drawn.object, &mesh.indices, parts)?;
-            let buffers = builder.of_object(&drawn.name, |builder| {
-                let buffers = MeshBuffers::of(builder, mesh);
-                maps.add(builder, &drawn.name, &buffers, vertices);
-                buffers
-            });
-            meshes.insert(drawn.name.clone(), buffers);
+            let mesh = builder.of_object(&drawn.name, |builder| {
+                let mesh = MeshBuffers::of(builder, drawn.object)?;
+                maps.add(builder, &drawn.name, &mesh);
+                Ok::<_, RenderError>(mesh)
+            })?;
+            meshes.insert(drawn.name.clone(), mesh);
         }
         Ok(Some(Self { maps, views, meshes }))
     }

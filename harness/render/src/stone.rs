@@ -1,5 +1,6 @@
 //! A stone in a frame: its material, its mesh, and the data that its rung's geometry also needs.
 
+use super::mesh_buffers::vertices as mesh_vertices;
 use super::pass::Body;
 use super::variant::Drawn;
 use super::{RenderError, Settings, restraint};
@@ -31,7 +32,7 @@ pub(super) fn add(
     ];
     parts.extend((0..).zip(&own).map(|(binding, (what, part))| (2, binding, *what, &part[..])));
     parts.retain(|(group, binding, ..)| read((*group, *binding)));
-    let vertices = builder.mesh_vertices(object, &indices, parts.iter().map(|(.., contents)| *contents))?;
+    let vertices = mesh_vertices(object, &indices, parts.iter().map(|(.., contents)| *contents))?;
     let wavelengths = read((1, 3)).then(|| wavelengths(&object.material, rung.spectrum()));
     Ok(builder.of_object(name, |builder| {
         let material = builder.record("material", GemMaterial::of(&object.material, rung, settings).record());

@@ -2,9 +2,7 @@
 //! texture that shading looks up.
 
 use super::RenderError;
-use crate::frame::{
-    BindGroupId, Bound, Builder, Draw, Pass, PipelineId, PipelineSource, RenderPass, Sampler, Target, Texture,
-};
+use crate::frame::{BindGroupId, Bound, Builder, Draw, PipelineId, PipelineSource, Sampler, Texture};
 use crate::record::Record;
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_texture_diffusion as mirror;
@@ -142,11 +140,5 @@ fn draw(builder: &mut Builder<'_>, target: Texture, pipeline: PipelineId, charts
         Draw { scissor: Some(scissor), ..builder.draw(pipeline, vec![*group], 3) }
     };
     let draws = charts.iter().map(of_chart).collect();
-    builder.pass(Pass::Render(RenderPass {
-        name: RECIPE.to_owned(),
-        targets: vec![Target::from(target)],
-        depth: None,
-        viewport: None,
-        draws,
-    }));
+    builder.draw_to(RECIPE, &[target], None, draws);
 }

@@ -5,7 +5,7 @@ use super::drawing::scene_pass;
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, Stage, display};
-use crate::frame::{Builder, Executor, Pass, RenderPass, Target};
+use crate::frame::{Builder, Executor};
 use crate::solver::Status;
 use glam::Vec2;
 use lapidary_gpu::{Gpu, GpuError};
@@ -66,16 +66,9 @@ impl<'gpu> FrameTimer<'gpu> {
             let pipeline = display::pipeline(&mut builder, 1, &DISPLAY_FORMATS)?;
             let groups = display::group(&mut builder, pipeline, color, Vec2::ZERO, settings);
             let usage = wgpu::TextureUsages::empty();
-            let targets =
-                DISPLAY_FORMATS.map(|format| Target::from(builder.target("screen", [width, height, 1], format, usage)));
+            let targets = DISPLAY_FORMATS.map(|format| builder.target("screen", [width, height, 1], format, usage));
             let draw = builder.draw(pipeline, groups, 3);
-            builder.pass(Pass::Render(RenderPass {
-                name: "display".to_owned(),
-                targets: targets.to_vec(),
-                depth: None,
-                viewport: None,
-                draws: vec![draw],
-            }));
+            builder.draw_to("display", &targets, None, vec![draw]);
         }
         let shade = start..builder.frame().passes.len();
         let stages = stages.map(|[voxels, maps, seeds, solve]| [voxels, maps, seeds, solve, shade]);
@@ -101,7 +94,7 @@ impl<'gpu> FrameTimer<'gpu> {
     /// Submits some passes and waits.
     fn timed(&self, passes: Range<usize>) -> Result<FrameTime, RenderError> {
         let start = Instant::now();
-        self.executor.submit_passes(passes)?;
+        self.executor.run_passes(passes, |_, _| {})?;
         let encode = start.elapsed();
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         waited.map_err(|error| GpuError::Device { what: "drawing a frame".to_owned(), reason: error.to_string() })?;

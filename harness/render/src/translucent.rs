@@ -3,6 +3,7 @@
 
 use super::diffusion::Diffusion;
 use super::lighting::Lighting;
+use super::mesh_buffers::vertices as mesh_vertices;
 use super::pass::{Before, Body, DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, Variant};
 use super::reflectance::form;
 use super::shadows::Shadows;
@@ -117,7 +118,7 @@ fn add(
     let blurs = builder.binds(pipeline, 1, 9);
     let is_read = |binding: u32| builder.binds(pipeline, 1, binding) || blurs && [1, 3, 8].contains(&binding);
     let read: Vec<_> = parts.into_iter().filter(|(binding, _, _)| is_read(*binding)).collect();
-    let vertices = builder.mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
+    let vertices = mesh_vertices(object, &mesh.indices, read.iter().map(|(_, _, contents)| *contents))?;
     let record = builder.record("material", record_of(material));
     // Bodies that cast shadows already have buffers.
     let cast = light.1.and_then(|shadows| shadows.mesh(name));

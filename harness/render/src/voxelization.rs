@@ -4,7 +4,7 @@ use crate::frame::{BindGroupId, Buffer, Builder, Executor, Frame, Pass, Pipeline
 use crate::record::Record;
 use crate::shader::ShaderError;
 use crate::voxel_grid::VoxelGrid;
-use lapidary_gpu::GpuError;
+use lapidary_gpu::{Gpu, GpuError};
 use lapidary_scene::Mesh;
 use lapidary_voxelization::VoxelizationGrid;
 
@@ -146,7 +146,7 @@ impl Voxelizer {
     #[must_use]
     pub fn bytes(&self, frame: &Frame) -> u64 {
         let buffers = [self.grid, self.beyond, self.large, self.corners, self.matter, self.status];
-        buffers.into_iter().chain(self.surface).map(|buffer| frame.buffer(buffer).bytes()).sum()
+        buffers.into_iter().chain(self.surface).map(|buffer| frame.resource(buffer).bytes()).sum()
     }
 
     /// Returns the counts of the last frame that was submitted. Waits for the device.
@@ -157,4 +157,19 @@ impl Voxelizer {
         let words = executor.words(self.status)?;
         Ok(Status { solid: words[0], surface: words[1], odd_columns: words[2] })
     }
+}
+
+/// Returns the words of the voxels that a mesh fills, computed in a frame of its own.
+///
+/// # Errors
+/// If the recipe is invalid or the device rejects it.
+pub fn matter(gpu: &Gpu, grid: VoxelGrid, mesh: &Mesh, effects: &[(&str, f64)]) -> Result<Vec<u32>, ShaderError> {
+    let mut builder = Builder::new(Some(gpu));
+    let voxelizer = Voxelizer::new(&mut builder, grid, mesh, effects)?;
+    let positions = builder.storage("positions", bytemuck::cast_slice(&mesh.positions));
+    let indices = builder.storage("indices", bytemuck::cast_slice(&mesh.indices));
+    voxelizer.encode(&mut builder, positions, indices);
+    let executor = Executor::new(gpu, builder.finish())?;
+    executor.run(|_, _| {})?;
+    Ok(executor.words(voxelizer.matter)?)
 }

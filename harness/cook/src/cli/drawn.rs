@@ -163,8 +163,8 @@ impl Gem {
 }
 
 impl Drawn {
-    /// Opens the scene, and makes the settings and what should be known of the environment. `others` are further options that
-    /// were given.
+    /// Opens the scene, and makes the settings and the environment's warnings. `others` are further
+    /// options that were given.
     pub(super) fn open(&self, others: Vec<Given>) -> Result<(Scene, Settings, Vec<Note>), Failure> {
         let mut scene = Scene::open(&self.asked.scene)?;
         if let Some((polar, azimuth)) = self.from {
@@ -227,7 +227,13 @@ fn refuse_what_is_ignored(
     }
 }
 
-/// Says on stderr what should be known of a scene that is drawn.
+/// Returns what a plan warns of.
+pub(super) fn planned(scene: &Scene, settings: &Settings) -> Vec<Note> {
+    let decisions = Decisions::all(scene, &settings.request());
+    lapidary_plan::notes(scene, &settings.request(), &decisions.iter().collect::<Vec<_>>())
+}
+
+/// Prints warnings on stderr, and what of the scene's file is not drawn.
 pub(super) fn tell(notes: &[Note], scene: &Scene) {
     for note in notes {
         eprintln!("cook: {note}");

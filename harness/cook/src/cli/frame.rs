@@ -1,8 +1,8 @@
 //! `cook frame`.
 
-use super::drawn::{Drawn, tell};
+use super::drawn::{Drawn, planned, tell};
 use super::{Context, Failure, Outcome, output};
-use lapidary_plan::{Decisions, Rung};
+use lapidary_plan::Rung;
 use lapidary_render::frame::{Frame, Resource};
 use std::path::PathBuf;
 
@@ -32,8 +32,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
         frame = lapidary_render::frame(Some(context.gpu()?), &scene, &settings)?;
     }
     frame.write(&arguments.out)?;
-    let decisions = Decisions::all(&scene, &settings.request());
-    notes.extend(lapidary_plan::notes(&scene, &settings.request(), &decisions.iter().collect::<Vec<_>>()));
+    notes.extend(planned(&scene, &settings));
     tell(&notes, &scene);
     output::line(&format!(
         "{}: {} resources, {} pipelines, {} passes",

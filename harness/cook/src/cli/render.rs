@@ -1,9 +1,8 @@
 //! `cook render`.
 
-use super::drawn::{Drawn, Given, given, tell};
+use super::drawn::{Drawn, Given, given, planned, tell};
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_plan as plan;
-use lapidary_plan::{Decisions, Note, Rung};
+use lapidary_plan::{Note, Rung};
 use lapidary_reference::random_walk::mesh::{Boundary, Origin};
 use lapidary_reference::spectral::Lost;
 use lapidary_render as render;
@@ -149,8 +148,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     })?;
     bar.finish_and_clear();
     file::write(&picture, &out)?;
-    let decisions = Decisions::all(&scene, &settings.request());
-    notes.extend(plan::notes(&scene, &settings.request(), &decisions.iter().collect::<Vec<_>>()));
+    notes.extend(planned(&scene, &settings));
     notes.retain(|note| !is_told_again(note, &picture.notes));
     notes.extend(picture.notes);
     tell(&notes, &scene);

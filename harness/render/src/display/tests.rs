@@ -17,7 +17,7 @@ fn displayed(samples: &[[f32; 4]], settings: &Settings) -> Picture {
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     let display = Display::new(gpu(), settings).expect("a pass");
-    display.show(&mut picture, |_, _| Ok(samples.to_vec())).expect("displayed");
+    display.show(&display.tiles[0], samples, &mut picture).expect("displayed");
     picture
 }
 

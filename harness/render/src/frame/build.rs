@@ -1,7 +1,6 @@
 //! Builds a frame: techniques add resources, pipelines and passes as they need them.
 
 use super::*;
-use crate::RenderError;
 use crate::record::Record;
 use crate::shader::ShaderError;
 use lapidary_gpu::Gpu;
@@ -261,6 +260,12 @@ impl<'gpu> Builder<'gpu> {
         self.frame.passes.push(pass);
     }
 
+    /// Adds a pass of draws to these textures, from nothing, without a depth buffer.
+    pub fn draw_to(&mut self, name: &str, targets: &[Texture], viewport: Option<[u32; 4]>, draws: Vec<Draw>) {
+        let targets = targets.iter().copied().map(Target::from).collect();
+        self.pass(Pass::Render(RenderPass { name: name.to_owned(), targets, depth: None, viewport, draws }));
+    }
+
     /// Appends a pass of dispatches.
     pub fn compute(&mut self, name: &str, dispatches: Vec<Dispatch>, repeat: u32) {
         self.pass(Pass::Compute(ComputePass { name: name.to_owned(), dispatches, repeat }));
@@ -268,7 +273,7 @@ impl<'gpu> Builder<'gpu> {
 
     /// Appends a pass that sets a buffer to 0.
     pub fn clear(&mut self, buffer: Buffer) {
-        let bytes = self.frame.buffer(buffer).bytes();
+        let bytes = self.frame.resource(buffer).bytes();
         self.pass(Pass::Clear { buffer, bytes });
     }
 
@@ -290,34 +295,14 @@ impl<'gpu> Builder<'gpu> {
 
     /// Appends a pass that reads a whole texture back, as the named picture.
     pub fn read_whole(&mut self, picture: &'static str, texture: Texture) {
-        if let ResourceKind::Texture { size: [width, height, _], .. } = self.frame.texture(texture).kind {
+        if let ResourceKind::Texture { size: [width, height, _], .. } = self.frame.resource(texture).kind {
             let readback = self.readback(picture, texture, [width, height]);
             self.read(readback, [width, height], [0, 0]);
         }
     }
 
     fn bytes_per_row(&self, texture: Texture, width: u32) -> u32 {
-        let ResourceKind::Texture { format, .. } = self.frame.texture(texture).kind else { return 0 };
+        let ResourceKind::Texture { format, .. } = self.frame.resource(texture).kind else { return 0 };
         (width * texel_bytes(format)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
-    }
-
-    /// Returns the number of vertices that draw a mesh with these `indices`; `parts` are to be
-    /// storage buffers.
-    ///
-    /// # Errors
-    /// If a part exceeds the limits that every device meets.
-    pub(crate) fn mesh_vertices<'a>(
-        &self,
-        object: &lapidary_scene::Object,
-        indices: &[u32],
-        parts: impl IntoIterator<Item = &'a [u8]>,
-    ) -> Result<u32, RenderError> {
-        let limits = self.limits();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let too_large = |bytes: u64| RenderError::TooLarge { what: format!("mesh `{}`", object.name), bytes, limit };
-        if let Some(bytes) = parts.into_iter().map(|part| part.len() as u64).find(|bytes| *bytes > limit) {
-            return Err(too_large(bytes));
-        }
-        u32::try_from(indices.len()).map_err(|_| too_large(size_of_val(indices) as u64))
     }
 }

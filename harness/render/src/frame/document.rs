@@ -359,7 +359,7 @@ impl Frame {
         let mut pictures: Vec<PictureRow> = Vec::new();
         for pass in &self.passes {
             let Pass::Read(read) = pass else { continue };
-            let ResourceKind::Texture { format, .. } = self.texture(read.texture).kind else { continue };
+            let ResourceKind::Texture { format, .. } = self.resource(read.texture).kind else { continue };
             let end = [0, 1].map(|axis| read.at[axis] + read.size[axis]);
             match pictures.iter_mut().find(|picture| picture.name == read.picture) {
                 Some(picture) => picture.size = [0, 1].map(|axis| picture.size[axis].max(end[axis])),
@@ -399,7 +399,8 @@ impl Frame {
         }
     }
 
-    /// Writes the frame to a new or empty folder, completely or not at all.
+    /// Writes the frame to a new or empty folder: a new one is complete or absent, in an empty one
+    /// `frame.json` comes last.
     ///
     /// # Errors
     /// If the folder is not empty or cannot be written.
@@ -409,7 +410,8 @@ impl Frame {
             move |error| WriteError::File { path, error }
         };
         let is_there = Self::check_folder(folder)?;
-        // In an empty folder it is made inside, and moved up at the end; else beside its place, and moved there whole.
+        // In an empty folder it is made inside and moved up at the end; otherwise it is made beside
+        // its place and moved there whole.
         let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let place = if is_there { folder } else { parent };
         std::fs::create_dir_all(place).map_err(failed(place))?;

@@ -67,7 +67,7 @@ impl<'gpu> Executor<'gpu> {
         Ok(executor)
     }
 
-    /// Returns the frame that it runs.
+    /// Returns the frame that it runs, without contents, which the device holds.
     #[must_use]
     pub fn frame(&self) -> &Frame {
         &self.frame
@@ -182,7 +182,7 @@ impl<'gpu> Executor<'gpu> {
     }
 
     /// Encodes and submits passes without waiting.
-    pub(crate) fn submit(&self, passes: &[Pass]) -> Result<(), GpuError> {
+    fn submit(&self, passes: &[Pass]) -> Result<(), GpuError> {
         self.gpu.guarded("drawing a frame", |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             for pass in passes {
@@ -190,11 +190,6 @@ impl<'gpu> Executor<'gpu> {
             }
             self.gpu.queue.submit([encoder.finish()]);
         })
-    }
-
-    /// Encodes and submits the passes in a range of indices without waiting.
-    pub(crate) fn submit_passes(&self, passes: Range<usize>) -> Result<(), GpuError> {
-        self.submit(&self.frame.passes[passes])
     }
 
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, pass: &Pass) {

@@ -346,22 +346,15 @@ pub struct Read {
 }
 
 impl Frame {
-    /// Returns the resource of a handle.
+    /// Returns the buffer, texture or sampler of a handle or binding.
     ///
     /// # Panics
-    /// For a buffer of another frame.
+    /// If the handle is of another frame.
     #[must_use]
-    pub fn buffer(&self, buffer: Buffer) -> &Resource {
-        &self.resources[buffer.0]
-    }
-
-    /// Returns the resource of a handle.
-    ///
-    /// # Panics
-    /// For a texture of another frame.
-    #[must_use]
-    pub fn texture(&self, texture: Texture) -> &Resource {
-        &self.resources[texture.0]
+    pub fn resource(&self, of: impl Into<Bound>) -> &Resource {
+        let (Bound::Buffer(Buffer(place)) | Bound::Texture(Texture(place), _) | Bound::Sampler(Sampler(place))) =
+            of.into();
+        &self.resources[place]
     }
 
     /// Returns the pipeline of a handle.
@@ -380,13 +373,6 @@ impl Frame {
     #[must_use]
     pub fn bind_group(&self, group: BindGroupId) -> &BindGroup {
         &self.bind_groups[group.0]
-    }
-
-    /// Returns the resource at a binding.
-    #[must_use]
-    pub fn bound(&self, bound: Bound) -> &Resource {
-        let (Bound::Buffer(Buffer(place)) | Bound::Texture(Texture(place), _) | Bound::Sampler(Sampler(place))) = bound;
-        &self.resources[place]
     }
 
     /// Returns the number of draw calls in the frame.

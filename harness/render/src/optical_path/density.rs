@@ -58,7 +58,7 @@ impl Densities {
 
     /// Size of the buffer in bytes.
     pub(super) fn bytes(&self, frame: &Frame) -> u64 {
-        frame.buffer(self.buffer).bytes()
+        frame.resource(self.buffer).bytes()
     }
 }
 

@@ -148,7 +148,7 @@ fn steps(frame: &Frame) -> Vec<Step> {
     };
     let names = |bound: Vec<Bound>| {
         let mut names: Vec<String> = Vec::new();
-        for name in bound.into_iter().map(|bound| &frame.bound(bound).name) {
+        for name in bound.into_iter().map(|bound| &frame.resource(bound).name) {
             if !names.contains(name) {
                 names.push(name.clone());
             }

@@ -5,12 +5,11 @@ use crate::cost::CostError;
 use lapidary_gpu::Gpu;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_render::RenderError;
-use lapidary_render::frame::{Builder, Executor};
 use lapidary_render::solver::{LoneSolver, Solve};
 use lapidary_render::voxel_grid::VoxelGrid;
-use lapidary_render::voxelization::Voxelizer;
+use lapidary_render::voxelization;
 use lapidary_scene::solver::{Method, Stencil};
-use lapidary_scene::{Bounds, Mesh, Scene};
+use lapidary_scene::{Bounds, Scene};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -88,18 +87,6 @@ pub struct Tiles {
     pub ways: Vec<TileWay>,
 }
 
-/// Voxelises the body and returns the words of its occupancy bits.
-fn voxels(gpu: &Gpu, mesh: &Mesh, grid: VoxelGrid) -> Result<Vec<u32>, RenderError> {
-    let mut builder = Builder::new(Some(gpu));
-    let voxelizer = Voxelizer::new(&mut builder, grid, mesh, &[])?;
-    let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
-    let [positions, indices] = parts.map(|contents| builder.storage("a body's mesh", contents));
-    voxelizer.encode(&mut builder, positions, indices);
-    let executor = Executor::new(gpu, builder.finish())?;
-    executor.run(|_, _| {})?;
-    Ok(executor.words(voxelizer.matter)?)
-}
-
 /// Returns seeds of cost 0 at the first voxel of matter in each row along x, and the fraction of
 /// tiles that hold matter.
 fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
@@ -142,7 +129,7 @@ pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)
     let mut found = Vec::new();
     for (done, cells) in (1..).zip(CELLS) {
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
-        let matter = voxels(gpu, mesh, grid)?;
+        let matter = voxelization::matter(gpu, grid, mesh, &[]).map_err(RenderError::from)?;
         let (seeds, with_matter) = seeded(&matter, grid);
         let extinction = DEPTH / (grid.spacing * cells as f32);
         let mut solvers = Vec::new();

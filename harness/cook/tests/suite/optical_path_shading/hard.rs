@@ -5,9 +5,8 @@ use crate::pixels::on_the_ball;
 use glam::{BVec3, DQuat, DVec3, UVec3, Vec3};
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Note;
-use lapidary_render::frame::{Builder, Executor};
 use lapidary_render::voxel_grid::VoxelGrid;
-use lapidary_render::voxelization::Voxelizer;
+use lapidary_render::voxelization;
 use lapidary_render::{OpticalPathOptions, Picture, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Averaging, Bounds, Light, Mesh, Scene};
@@ -141,14 +140,7 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
             let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
             // What the surface alone touches may lie in the outermost voxels by rounding: a face lies on their border.
             let effects = [("EFFECT_SURFACE", 0.0)];
-            let mut builder = Builder::new(Some(gpu));
-            let voxelizer = Voxelizer::new(&mut builder, grid, &mesh, &effects).expect("compiled");
-            let parts: [&[u8]; 2] = [bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices)];
-            let [positions, indices] = parts.map(|contents| builder.storage("mesh", contents));
-            voxelizer.encode(&mut builder, positions, indices);
-            let executor = Executor::new(gpu, builder.finish()).expect("made");
-            executor.run(|_, _| {}).expect("run");
-            let matter = executor.words(voxelizer.matter).expect("read back");
+            let matter = voxelization::matter(gpu, grid, &mesh, &effects).expect("made");
             let mut filled = 0;
             for index in 0..grid.count() {
                 let UVec3 { x, y, z } = grid.voxel(index);
