@@ -43,6 +43,9 @@ pub const SAME_TIME: f64 = 0.1;
 /// Ratio of errors that count as equal: the same geometry gives the same picture up to rounding.
 const ALIKE: f64 = 1.001;
 
+/// The views of the gem ladder that show bodies which are not convex; not every rung draws them.
+pub const CONCAVE: [&str; 2] = ["bunny_stone", "prism_chain"];
+
 const GEM: &str = include_str!("../../../docs/measurements/lavapipe/gem.json");
 const CDRF: &str = include_str!("../../../docs/measurements/lavapipe/cdrf.json");
 const OPTICAL_PATH: &str = include_str!("../../../docs/measurements/lavapipe/optical_path.json");
@@ -64,29 +67,49 @@ impl Ladder {
         COMMITTED.get(technique as usize)?.as_ref()
     }
 
-    /// Reads the ladder of a technique from a record of `cook cost`.
+    /// Reads the ladder of a technique from a report of `cook cost`: the mean error and the mean time
+    /// over the views that the technique is judged by. Rungs that lack either in one of the views
+    /// are left out, such as the one that made the views' reference.
     ///
     /// # Errors
-    /// Returns an error if the record is not one of this technique.
+    /// Returns an error if the record is not a report.
     pub fn of_record(technique: Technique, record: &str) -> Result<Self, serde_json::Error> {
-        let (measure, steps) = match technique {
-            Technique::Convex | Technique::Concave => {
-                let record: Record<GemRung> = serde_json::from_str(record)?;
-                let concave = technique == Technique::Concave;
-                ("FLIP", record.rungs.iter().filter_map(|rung| rung.step(concave)).collect())
-            }
-            Technique::Cdrf => {
-                let record: Record<CdrfRung> = serde_json::from_str(record)?;
-                ("largest error of the function", record.rungs.iter().filter_map(CdrfRung::step).collect())
-            }
-            Technique::OpticalPath => {
-                let record: Record<PathRung> = serde_json::from_str(record)?;
-                let views = record.rungs.iter().map(|rung| rung.nats().count()).max().unwrap_or(0);
-                ("nats of error", record.rungs.iter().filter_map(|rung| rung.step(views)).collect())
-            }
-            Technique::Opaque | Technique::ThinWall => ("", Vec::new()),
+        let Record { rows } = serde_json::from_str(record)?;
+        let (measure, name): (_, fn(&Row) -> bool) = match technique {
+            Technique::Convex => ("FLIP", |row| row.measure == "flip" && !CONCAVE.contains(&&*row.view)),
+            Technique::Concave => ("FLIP", |row| row.measure == "flip" && CONCAVE.contains(&&*row.view)),
+            // The lit part, with curvature from the screen. The spherical form is a different function:
+            // its error relative to its own definition is not comparable.
+            Technique::Cdrf => ("largest error of the function", |row| {
+                row.measure == "largest" && row.view == "lit+screen" && row.rung != "spherical"
+            }),
+            Technique::OpticalPath => ("nats of error", |row| row.measure == "nats"),
+            Technique::Opaque | Technique::ThinWall => ("", |_| false),
         };
-        Ok(Self { measure, steps })
+        let judged: Vec<&Row> = rows.iter().filter(|row| name(row)).collect();
+        let mut names: Vec<&str> = Vec::new();
+        for row in &judged {
+            if !names.contains(&&*row.rung) {
+                names.push(&row.rung);
+            }
+        }
+        let measured = |rung: &str| -> Vec<(f64, f64)> {
+            judged.iter().filter(|row| row.rung == rung).filter_map(|row| row.value.zip(row.ms)).collect()
+        };
+        let views = names.iter().map(|rung| measured(rung).len()).max().unwrap_or(0);
+        let step = |rung: &&str| {
+            let measured = measured(rung);
+            let (error, ms) = measured.iter().fold((0.0, 0.0), |(error, ms), row| (error + row.0, ms + row.1));
+            let worst = measured.iter().map(|row| row.0).reduce(f64::max)?;
+            let count = measured.len() as f64;
+            (measured.len() == views).then(|| Step {
+                rung: (*rung).to_owned(),
+                error: error / count,
+                worst,
+                ms: ms / count,
+            })
+        };
+        Ok(Self { measure, steps: names.iter().filter_map(step).collect() })
     }
 
     /// Returns the rung with the given name; `None` if the ladder lacks it.
@@ -164,114 +187,20 @@ impl Ladder {
     }
 }
 
-/// Returns a step from a rung's errors, one per view; `None` without errors or a time.
-fn step(rung: &str, errors: impl Iterator<Item = f64> + Clone, ms: Option<f64>) -> Option<Step> {
-    let count = errors.clone().count();
-    let worst = errors.clone().reduce(f64::max)?;
-    Some(Step { rung: rung.to_owned(), error: errors.sum::<f64>() / count as f64, worst, ms: ms? })
+/// A report of `cook cost`, as far as it is read here.
+#[derive(Deserialize)]
+struct Record {
+    rows: Vec<Row>,
 }
 
 #[derive(Deserialize)]
-struct Record<R> {
-    rungs: Vec<R>,
-}
-
-#[derive(Deserialize)]
-struct GemRung {
+struct Row {
     rung: String,
-    views: Vec<Option<GemView>>,
-    concave: Vec<Option<GemView>>,
-}
-
-#[derive(Deserialize)]
-struct GemView {
-    errors: GemErrors,
+    view: String,
+    measure: String,
+    value: Option<f64>,
+    #[serde(default)]
     ms: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct GemErrors {
-    flip: f64,
-}
-
-impl GemRung {
-    /// Returns the mean error and the mean time over the same views.
-    fn step(&self, concave: bool) -> Option<Step> {
-        let views: Vec<&GemView> = if concave { &self.concave } else { &self.views }.iter().flatten().collect();
-        let times = views.iter().map(|view| view.ms).sum::<Option<f64>>();
-        step(&self.rung, views.iter().map(|view| view.errors.flip), times.map(|sum| sum / views.len() as f64))
-    }
-}
-
-#[derive(Deserialize)]
-struct CdrfRung {
-    rung: String,
-    distance: Option<CdrfDistance>,
-    frames: Vec<CdrfFrame>,
-}
-
-#[derive(Deserialize)]
-struct CdrfDistance {
-    largest: f64,
-}
-
-#[derive(Deserialize)]
-struct CdrfFrame {
-    part: String,
-    curvature: Option<String>,
-    timing: Option<CdrfTiming>,
-}
-
-#[derive(Deserialize)]
-struct CdrfTiming {
-    ms: f64,
-}
-
-impl CdrfRung {
-    /// Returns the step of the lit part, with curvature from the screen. `None` for the spherical
-    /// form: it is a different function, and its error relative to its own definition is not
-    /// comparable.
-    fn step(&self) -> Option<Step> {
-        if self.rung == "spherical" {
-            return None;
-        }
-        let is_lit =
-            |frame: &&CdrfFrame| frame.part == "lit" && frame.curvature.as_ref().is_none_or(|of| of == "screen");
-        let timing = self.frames.iter().find(is_lit)?.timing.as_ref();
-        step(&self.rung, self.distance.iter().map(|distance| distance.largest), timing.map(|timing| timing.ms))
-    }
-}
-
-#[derive(Deserialize)]
-struct PathRung {
-    rung: String,
-    distances: Vec<PathDistance>,
-    times: Vec<PathTimes>,
-}
-
-#[derive(Deserialize)]
-struct PathTimes {
-    grey: Option<CdrfTiming>,
-}
-
-#[derive(Deserialize)]
-struct PathDistance {
-    nats: Option<f64>,
-}
-
-impl PathRung {
-    fn nats(&self) -> impl Iterator<Item = f64> + Clone + '_ {
-        self.distances.iter().filter_map(|distance| distance.nats)
-    }
-
-    /// Returns the mean error and mean time of the views that have an error. `None` if a view lacks
-    /// one: this excludes the finest grid, which is the others' reference, and the walks.
-    fn step(&self, views: usize) -> Option<Step> {
-        let compared = self.distances.iter().zip(&self.times).filter(|(distance, _)| distance.nats.is_some());
-        let times: Option<Vec<f64>> = compared.map(|(_, times)| times.grey.as_ref().map(|timing| timing.ms)).collect();
-        let times = times.filter(|times| times.len() == views)?;
-        step(&self.rung, self.nats(), Some(times.iter().sum::<f64>() / views as f64))
-    }
 }
 
 #[cfg(test)]

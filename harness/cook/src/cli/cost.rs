@@ -1,19 +1,13 @@
 //! `cook cost`.
 
-mod cdrf;
-mod effects;
-mod gem;
-mod optical_path;
-mod restraint;
-mod sphere;
-
 use super::{Context, Failure, Outcome, number, output, progress};
-use lapidary_cook::cost::page::{self, Tables};
-use lapidary_cook::cost::{CostError, Options, views};
+use lapidary_cook::cost::gem::{self, views};
+use lapidary_cook::cost::{CostError, Ladder, Progress, Report, cdrf, effects, optical_path, page, restraint, sphere};
 use lapidary_cook::text_file;
+use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render::file;
-use serde::{Serialize, de::DeserializeOwned};
+use lapidary_scene::solver::Reflectance;
 use std::path::{Path, PathBuf};
 
 /// Measures what accuracy costs: the error and the time of every rung of a ladder. Times are the
@@ -32,21 +26,32 @@ pub(super) struct Arguments {
 #[derive(clap::Subcommand)]
 #[command(rename_all = "snake_case")]
 enum Technique {
-    Gem(gem::Arguments),
-    Cdrf(cdrf::Arguments),
-    OpticalPath(optical_path::Arguments),
-    Effects(effects::Arguments),
-    Restraint(restraint::Arguments),
-    Sphere(sphere::Arguments),
+    /// Ladder of the gem, timed. Takes minutes.
+    Gem(Gem),
+    /// Ladder of the curvature-dependent reflectance, timed against Lambert's law and a blur in a
+    /// texture.
+    Cdrf(Rungs),
+    /// Ladder of optical paths through stone, by solver, neighbours and grid size. Takes minutes.
+    OpticalPath(Rungs),
+    /// Cost of each effect alone, of none, and of all: time, instructions and bytes.
+    Effects(Timed),
+    /// Savings from skipping work that a pixel or a tile does not need. Ends rays whose contribution
+    /// can no longer be seen, traces optical paths only in tiles with matter, and compares one
+    /// recipe variant per material with one for all. Takes minutes.
+    Restraint(Rungs),
+    /// Compares the curvature-dependent reflectance with random walks through spheres, on the CPU.
+    /// Takes half a minute.
+    Sphere(Sphere),
 }
 
 /// Source and destination of a report.
 #[derive(clap::Args)]
-struct Report {
+struct Shown {
     /// Show an earlier run's NAME.json, such as gem.json, instead of measuring.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
-    /// Print one JSON document on stdout, with a row for each measurement, and nothing else.
+    /// Print the report as one JSON document on stdout, with a row for each measurement, and nothing
+    /// else.
     #[arg(long)]
     json: bool,
     /// Folder for the text, the plots, and NAME.json with all data.
@@ -55,6 +60,50 @@ struct Report {
     /// Pages, comma-separated, whose generated tables are updated.
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     fill: Vec<PathBuf>,
+}
+
+#[derive(clap::Args)]
+struct Timed {
+    /// Rounds of timing; 0 skips timing, except for restraint. 7 by default, 5 for optical_path and
+    /// restraint.
+    #[arg(long, conflicts_with = "from", value_parser = number::whole(0..=u32::MAX))]
+    rounds: Option<u32>,
+    #[command(flatten)]
+    shown: Shown,
+}
+
+#[derive(clap::Args)]
+struct Rungs {
+    /// Rungs to measure, comma-separated; all by default.
+    #[arg(long, value_delimiter = ',', value_parser = parse_rung, conflicts_with = "from")]
+    rungs: Vec<Rung>,
+    #[command(flatten)]
+    timed: Timed,
+}
+
+#[derive(clap::Args)]
+struct Gem {
+    /// Views to compare, comma-separated; all by default.
+    #[arg(long, value_delimiter = ',', value_parser = parse_view, conflicts_with = "from")]
+    views: Vec<views::View>,
+    /// Profile the cheapest rungs instead, with frames that leave out one part after another; with
+    /// --out, written to gem_profile.txt.
+    #[arg(long, conflicts_with_all = ["rungs", "views", "from", "json", "fill"])]
+    profile: bool,
+    #[command(flatten)]
+    rungs: Rungs,
+}
+
+#[derive(clap::Args)]
+struct Sphere {
+    /// Random walks through each sphere: a million take half a minute on two cores.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, conflicts_with = "from", value_parser = number::whole(1..=u64::MAX))]
+    walks: u64,
+    /// Seed of the walks; the same seed gives the same walks.
+    #[arg(long, default_value_t = 1, conflicts_with = "from", value_parser = number::whole(0..=u64::MAX))]
+    seed: u64,
+    #[command(flatten)]
+    shown: Shown,
 }
 
 fn parse_rung(text: &str) -> Result<Rung, String> {
@@ -73,19 +122,114 @@ fn parse_view(text: &str) -> Result<views::View, String> {
 
 pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.technique {
-        Technique::Gem(arguments) => gem::run(context, arguments),
-        Technique::Cdrf(arguments) => cdrf::run(context, arguments),
-        Technique::OpticalPath(arguments) => optical_path::run(context, arguments),
-        Technique::Effects(arguments) => effects::run(context, arguments),
-        Technique::Restraint(arguments) => restraint::run(context, arguments),
-        Technique::Sphere(arguments) => sphere::run(arguments),
+        Technique::Gem(arguments) => gem(context, arguments),
+        Technique::Cdrf(arguments) => {
+            let mut options = cdrf::Options::default();
+            set(&mut options.rounds, arguments.timed.rounds);
+            if !arguments.rungs.is_empty() {
+                options.rungs = arguments.rungs.iter().map(|rung| reflectance(*rung)).collect::<Result<_, _>>()?;
+            }
+            let measure = |gpu: &Gpu, progress: Progress<'_>| cdrf::run(gpu, &options, progress);
+            show(&cdrf::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+        }
+        Technique::OpticalPath(arguments) => {
+            let draws_stone = |rung: &Rung| match rung {
+                Rung::Diffuse(reflectance) => reflectance.is_lambert(),
+                other => matches!(other, Rung::OpticalPath(_)),
+            };
+            if let Some(other) = arguments.rungs.iter().find(|rung| !draws_stone(rung)) {
+                let names = optical_path::RUNGS.join(", ");
+                return Err(Failure(format!("`optical_path` has no rung {other}; there are {names}")));
+            }
+            let mut options = optical_path::Options::default();
+            set(&mut options.rounds, arguments.timed.rounds);
+            replace(&mut options.rungs, &arguments.rungs);
+            let measure = |gpu: &Gpu, progress: Progress<'_>| optical_path::run(gpu, &options, progress);
+            show(&optical_path::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+        }
+        Technique::Effects(arguments) => {
+            let mut options = effects::Options::default();
+            set(&mut options.rounds, arguments.rounds);
+            let measure = |gpu: &Gpu, progress: Progress<'_>| effects::run(gpu, &options, progress);
+            show(&effects::LADDER, &arguments.shown, || on_gpu(context, measure))
+        }
+        Technique::Restraint(arguments) => {
+            if let Some(rung) = arguments.rungs.iter().find(|rung| !matches!(rung, Rung::Inside { .. })) {
+                return Err(Failure(format!(
+                    "`restraint` has no rung {rung}, whose rays end at once; take one such as convex-8"
+                )));
+            }
+            if arguments.timed.rounds == Some(0) {
+                return Err(Failure("`restraint` compares times; --rounds takes at least 1".to_owned()));
+            }
+            let mut options = restraint::Options::default();
+            set(&mut options.rounds, arguments.timed.rounds);
+            replace(&mut options.rungs, &arguments.rungs);
+            let measure = |gpu: &Gpu, progress: Progress<'_>| restraint::run(gpu, &options, progress);
+            show(&restraint::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+        }
+        Technique::Sphere(arguments) => {
+            let walk = |progress: Progress<'_>| Ok(sphere::run(arguments.walks, arguments.seed, progress));
+            show(&sphere::LADDER, &arguments.shown, || behind_a_bar(walk))
+        }
+    }
+}
+
+/// Sets an option that was given.
+fn set<T: Copy>(option: &mut T, given: Option<T>) {
+    *option = given.unwrap_or(*option);
+}
+
+/// Replaces a list if another one was given.
+fn replace<T: Clone>(list: &mut Vec<T>, given: &[T]) {
+    if !given.is_empty() {
+        *list = given.to_vec();
+    }
+}
+
+fn gem(context: &Context, Gem { views, profile, rungs }: &Gem) -> Result<Outcome, Failure> {
+    let Rungs { rungs, timed } = rungs;
+    if let Some(rung) = rungs.iter().find(|rung| matches!(rung, Rung::Diffuse(_) | Rung::OpticalPath(_))) {
+        let ladder = if matches!(rung, Rung::Diffuse(_)) { "cdrf" } else { "optical_path" };
+        return Err(Failure(format!(
+            "`gem` has no rung {rung}, which draws no clear stone; `./cook cost {ladder}` has it"
+        )));
+    }
+    let mut options = gem::Options::default();
+    set(&mut options.rounds, timed.rounds);
+    // The further data that a page needs are measured only with the whole ladder.
+    options.sizes = rungs.is_empty() && views.is_empty();
+    replace(&mut options.rungs, rungs);
+    if !views.is_empty() {
+        (options.concave, options.views) = views.iter().partition(|view| views::CONCAVE.contains(view));
+    }
+    if *profile {
+        if let Some(out) = &timed.shown.out {
+            prepare(out, "gem_profile.txt")?;
+        }
+        let text = on_gpu(context, |gpu, progress| {
+            let mut timing = |done, total| progress("timing", done, total);
+            gem::profile(gpu, options.rounds.max(1), options.frame, &mut timing)
+        })?;
+        if let Some(out) = &timed.shown.out {
+            file::replace(&out.join("gem_profile.txt"), format!("{text}\n").as_bytes())?;
+        }
+        output::line(&text)?;
+        return Ok(Outcome::Passed);
+    }
+    show(&gem::LADDER, &timed.shown, || on_gpu(context, |gpu, progress| gem::run(gpu, &options, progress)))
+}
+
+/// Returns a rung of the ladder of reflectances.
+fn reflectance(rung: Rung) -> Result<Reflectance, Failure> {
+    match rung {
+        Rung::Diffuse(reflectance) if cdrf::RUNGS.contains(&reflectance.name()) => Ok(reflectance),
+        other => Err(Failure(format!("`cdrf` has no rung {other}; there are {}", cdrf::RUNGS.join(", ")))),
     }
 }
 
 /// Runs a measurement of several minutes behind a progress bar.
-fn behind_a_bar<T>(
-    run: impl FnOnce(&mut dyn FnMut(&'static str, u64, u64)) -> Result<T, CostError>,
-) -> Result<T, Failure> {
+fn behind_a_bar<T>(run: impl FnOnce(Progress<'_>) -> Result<T, CostError>) -> Result<T, Failure> {
     let bar = progress::bar(0, "measuring");
     let done = run(&mut |what, done, total| {
         bar.set_message(what);
@@ -96,6 +240,12 @@ fn behind_a_bar<T>(
     Ok(done)
 }
 
+/// Runs a measurement on the chosen device.
+fn on_gpu<T>(context: &Context, run: impl FnOnce(&Gpu, Progress<'_>) -> Result<T, CostError>) -> Result<T, Failure> {
+    let gpu = context.gpu()?;
+    behind_a_bar(|progress| run(gpu, progress))
+}
+
 /// Maximum size of a record or a page in bytes; the largest record takes a hundredth of it.
 const MOST_BYTES: u64 = 64 << 20;
 
@@ -103,68 +253,47 @@ fn read_text(path: &Path) -> Result<String, Failure> {
     text_file::read(path, MOST_BYTES).map_err(Failure)
 }
 
-/// Destinations of a report, checked before anything is measured.
-struct Places<'a> {
-    technique: &'static str,
-    report: &'a Report,
-    pages: Vec<(&'a PathBuf, String)>,
+/// Makes the folder of a report and checks that a file can be written there.
+fn prepare(out: &Path, name: &str) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
+    std::fs::create_dir_all(out).map_err(failed)?;
+    Ok(file::check_writable(&out.join(name))?)
 }
 
-/// Forms in which a report is shown.
-struct Shown {
-    text: String,
-    /// Document for `--json`.
-    rows: String,
-    /// Names and contents of plots.
-    plots: Vec<(String, String)>,
-}
-
-impl<'a> Places<'a> {
-    fn new(technique: &'static str, report: &'a Report) -> Result<Self, Failure> {
-        if let Some(out) = &report.out {
-            let failed = |error: std::io::Error| Failure(format!("{}: cannot be made: {error}", out.display()));
-            std::fs::create_dir_all(out).map_err(failed)?;
-            file::check_writable(&out.join(format!("{technique}.txt")))?;
-        }
-        let read = |path: &'a PathBuf| Ok((path, read_text(path)?));
-        let pages: Vec<(&PathBuf, String)> = report.fill.iter().map(read).collect::<Result<_, Failure>>()?;
-        for (path, page) in &pages {
-            page::check(page).map_err(|error| Failure(format!("{}: {error}", path.display())))?;
-            file::check_writable(path)?;
-        }
-        Ok(Self { technique, report, pages })
+/// Measures a ladder or reads its report, writes the report's files and pages, and prints it. Files
+/// and pages are checked before anything is measured, and none is left partially written.
+fn show(ladder: &Ladder, shown: &Shown, measure: impl FnOnce() -> Result<Report, Failure>) -> Result<Outcome, Failure> {
+    let name = ladder.name;
+    let at = |path: &Path, error: &dyn std::fmt::Display| Failure(format!("{}: {error}", path.display()));
+    if let Some(out) = &shown.out {
+        prepare(out, &format!("{name}.txt"))?;
     }
-
-    /// Returns the report of `--from`, or measures a new one.
-    fn report<R: DeserializeOwned>(&self, measure: impl FnOnce() -> Result<R, Failure>) -> Result<R, Failure> {
-        let Some(path) = &self.report.from else { return measure() };
-        let technique = self.technique;
-        serde_json::from_str(&read_text(path)?).map_err(|error| {
-            let path = path.display();
-            Failure(format!("{path}: not a {technique}.json of `./cook cost {technique} --out`: {error}; measure anew"))
-        })
+    let mut pages = Vec::new();
+    for path in &shown.fill {
+        let page = read_text(path)?;
+        page::check(&page).map_err(|error| at(path, &error))?;
+        file::check_writable(path)?;
+        pages.push((path, page));
     }
-
-    /// Writes the report's files and pages, and shows the report. No file is left partially
-    /// written.
-    fn write<R: Tables + Serialize>(&self, report: &R, shown: &Shown) -> Result<Outcome, Failure> {
-        let fill = |(path, page): &(&'a PathBuf, String)| match page::fill(page, report) {
-            Ok(filled) => Ok((*path, filled)),
-            Err(error) => Err(Failure(format!("{}: {error}", path.display()))),
-        };
-        let filled: Vec<(&PathBuf, String)> = self.pages.iter().map(fill).collect::<Result<_, _>>()?;
-        if let Some(out) = &self.report.out {
-            let write = |name: &str, contents: &str| file::replace(&out.join(name), contents.as_bytes());
-            write(&format!("{}.txt", self.technique), &shown.text)?;
-            write(&format!("{}.json", self.technique), &serde_json::to_string_pretty(report)?)?;
-            for (name, plot) in &shown.plots {
-                write(name, plot)?;
-            }
-        }
-        for (path, page) in filled {
-            file::replace(path, page.as_bytes())?;
-        }
-        output::line(if self.report.json { &shown.rows } else { shown.text.trim_end() })?;
-        Ok(Outcome::Passed)
+    let report = match &shown.from {
+        Some(path) => Report::from_json(name, &read_text(path)?).map_err(|error| at(path, &error))?,
+        None => measure()?,
+    };
+    for (path, page) in &mut pages {
+        *page = page::fill(page, ladder, &report).map_err(|error| at(path, &error))?;
     }
+    let (text, json) = (report.text(ladder), report.json()?);
+    if let Some(out) = &shown.out {
+        let plots = (ladder.plots)(&report).into_iter().filter(|plot| !plot.is_empty());
+        let plots = plots.map(|plot| Ok((plot.file.to_owned(), plot.svg()?))).collect::<Result<Vec<_>, CostError>>()?;
+        let reports = [(format!("{name}.txt"), text.clone()), (format!("{name}.json"), format!("{json}\n"))];
+        for (file, contents) in reports.into_iter().chain(plots) {
+            file::replace(&out.join(file), contents.as_bytes())?;
+        }
+    }
+    for (path, page) in pages {
+        file::replace(path, page.as_bytes())?;
+    }
+    output::line(if shown.json { &json } else { text.trim_end() })?;
+    Ok(Outcome::Passed)
 }

@@ -1,7 +1,7 @@
 //! `cook gallery`.
 
 use super::{Context, Failure, Outcome, output, progress};
-use lapidary_cook::cost::drawing::SIZE as PLOT_SIZE;
+use lapidary_cook::cost::plot::SIZE as PLOT_SIZE;
 use lapidary_cook::gallery::{self, Picture, Site};
 use lapidary_cook::snapshot::{self, Committed, EXR_SIDE, PNG_SIDE, SHOTS, WALKED, beside_walks, strip};
 use lapidary_render::file;

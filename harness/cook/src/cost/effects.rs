@@ -1,20 +1,19 @@
 //! What each effect costs in time, SPIR-V instructions and bytes of resources: frames with the
 //! effect alone, without any effect, and with all of them.
 
-mod tables;
-
-use super::timing::{self, Timed, Timing};
-use super::{CostError, Row};
+use super::table::{Table, figure};
+use super::timing::{self, Timed};
+use super::{CostError, Ladder, Progress, Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, DiffuseOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Light, Scene};
-use serde::{Deserialize, Serialize};
 
-/// The ladder's name.
-pub const TECHNIQUE: &str = "effects";
+/// The ladder.
+pub const LADDER: Ladder =
+    Ladder { name: "effects", tables: |report| vec![table(report)], plots: |_| Vec::new(), whole };
 
 /// How thoroughly to measure.
 #[derive(Clone, Debug)]
@@ -29,47 +28,6 @@ impl Default for Options {
     fn default() -> Self {
         Self { rounds: 7, frame: [480, 270] }
     }
-}
-
-/// A frame with some of a study's effects.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Frame {
-    /// `none`, `all`, or the one effect that is on (with its prerequisite, if it has one).
-    pub effects: String,
-    /// SPIR-V instructions of all pipelines together.
-    pub instructions: usize,
-    /// Number of pipelines.
-    pub pipelines: usize,
-    /// Number of draws and dispatches.
-    pub steps: u32,
-    /// Bytes of all resources for a picture of the timed size.
-    pub bytes: u64,
-    /// The frame's times; `None` if timing was skipped.
-    pub timing: Option<Timing>,
-}
-
-/// One scene drawn with one rung, whose effects are switched on and off.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Study {
-    /// Name of the scene.
-    pub scene: String,
-    /// Name of the rung.
-    pub rung: String,
-    /// The frames without any effect, with each effect alone, and with all.
-    pub frames: Vec<Frame>,
-}
-
-/// The results of all studies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EffectsReport {
-    /// The device and its driver.
-    pub adapter: String,
-    /// Width and height of the timed frame in pixels.
-    pub frame: [u32; 2],
-    /// Rounds of timing.
-    pub rounds: u32,
-    /// The studies in the order of measurement.
-    pub studies: Vec<Study>,
 }
 
 /// A scene and settings in which every listed effect is on.
@@ -232,104 +190,80 @@ impl Case {
     }
 }
 
-/// Measures all studies. `progress` receives the current step, the work done and the total.
+/// Measures each scene without any effect, with each effect alone, and with all. A row's measure
+/// names the effects, its value counts draws and dispatches; bytes are those of all resources of a
+/// picture of the timed size, instructions those of each pipeline.
 ///
 /// # Errors
 ///
 /// Returns an error if a scene cannot be made or if the device fails.
-pub fn run(
-    gpu: &Gpu,
-    options: &Options,
-    progress: &mut dyn FnMut(&'static str, u64, u64),
-) -> Result<EffectsReport, CostError> {
+pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Report, CostError> {
+    let [width, height] = options.frame;
+    let settings = [("width", width), ("height", height), ("rounds", options.rounds)];
+    let mut report = Report::new(LADDER.name, gpu.describe(), &settings.map(|(name, value)| (name, value.into())));
     let cases = cases(options.frame)?;
-    let mut studies = Vec::new();
     let mut timed = Vec::new();
     for case in &cases {
-        let mut frames = Vec::new();
-        for (effects, settings) in case.frames() {
-            let listing = Plan::of(&case.scene, &settings)?.listing;
-            frames.push(Frame {
-                effects,
-                instructions: listing.pipelines.iter().map(|pipeline| pipeline.instructions).sum(),
-                pipelines: listing.pipelines.len(),
-                steps: listing.steps.iter().map(|step| step.times).sum(),
-                bytes: listing.bytes(),
-                timing: None,
-            });
-            timed.push(Timed { source: None, settings, scene: &case.scene, displayed: true, scales: false });
-        }
         let drawn =
             case.scene.objects.iter().map(|object| Decisions::of(object, &case.scene, &case.settings.request()));
         let rung = drawn.map(|decisions| decisions.rung).next().unwrap_or(case.settings.rung).to_string();
-        studies.push(Study { scene: case.name.to_owned(), rung, frames });
-    }
-    if options.rounds > 0 {
-        let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
-        let frames = studies.iter_mut().flat_map(|study| &mut study.frames);
-        for (frame, timing) in frames.zip(timings) {
-            frame.timing = Some(timing);
+        for (effects, settings) in case.frames() {
+            let listing = Plan::of(&case.scene, &settings)?.listing;
+            let steps: u32 = listing.steps.iter().map(|step| step.times).sum();
+            report.rows.push(Row {
+                bytes: Some(listing.bytes()),
+                instructions: listing.pipelines.iter().map(|pipeline| pipeline.instructions as u32).collect(),
+                ..Row::new(&rung, case.name, &effects, f64::from(steps), "draws and dispatches")
+            });
+            timed.push(Timed { displayed: true, ..Timed::new(&case.scene, settings) });
         }
     }
-    Ok(EffectsReport { adapter: gpu.describe(), frame: options.frame, rounds: options.rounds, studies })
+    let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
+    for (row, timing) in report.rows.iter_mut().zip(timings) {
+        row.ms = timing.map(|timing| timing.ms);
+    }
+    Ok(report)
 }
 
-impl Study {
-    /// Returns the frame to compare with: the one with only the prerequisite, or else the one
-    /// without effects.
-    fn below(&self, frame: &Frame) -> Option<&Frame> {
-        let under = frame.effects.split_once(", on ").map_or("none", |(_, under)| under);
-        self.frames.iter().find(|other| other.effects == under)
+/// Checks that all frames were timed.
+fn whole(report: &Report) -> Result<(), String> {
+    if report.rows.is_empty() || report.rows.iter().any(|row| row.ms.is_none()) {
+        return Err("the report has no times; only a whole report fills a page".to_owned());
     }
+    Ok(())
 }
 
-impl EffectsReport {
-    /// Returns one row per frame of each study.
-    pub fn rows(&self) -> Vec<EffectRow> {
-        let rows = self.studies.iter().flat_map(|study| {
-            study.frames.iter().map(|frame| EffectRow {
-                row: Row {
-                    technique: TECHNIQUE,
-                    rung: study.rung.clone(),
-                    view: study.scene.clone(),
-                    error: None,
-                    error_measure: "none",
-                    ms: frame.timing.map(|timing| timing.ms),
-                    dominated: false,
-                    adapter: self.adapter.clone(),
-                },
-                effects: frame.effects.clone(),
-                instructions: frame.instructions,
-                pipelines: frame.pipelines,
-                steps: frame.steps,
-                bytes: frame.bytes,
-            })
-        });
-        rows.collect()
-    }
-
-    /// Returns the report as text.
-    pub fn text(&self) -> String {
-        tables::text(self)
-    }
-}
-
-/// A frame as output by `--json`.
-#[derive(Clone, Debug, Serialize)]
-pub struct EffectRow {
-    /// The fields that rows of all ladders share.
-    #[serde(flatten)]
-    pub row: Row,
-    /// The same as [`Frame::effects`].
-    pub effects: String,
-    /// The same as [`Frame::instructions`].
-    pub instructions: usize,
-    /// The same as [`Frame::pipelines`].
-    pub pipelines: usize,
-    /// The same as [`Frame::steps`].
-    pub steps: u32,
-    /// The same as [`Frame::bytes`].
-    pub bytes: u64,
+fn table(report: &Report) -> Table {
+    // The frame to compare with: the one with only the prerequisite, or else without effects.
+    let below = |row: &Row| {
+        let under = row.measure.split_once(", on ").map_or("none", |(_, under)| under);
+        report.row(&row.rung, &row.view, under).filter(|below| below.measure != row.measure)
+    };
+    let shown = |value: Option<f64>, decimals| value.map_or("–".to_owned(), |value| format!("{value:+.decimals$}"));
+    let more = |row: &Row, of: fn(&Row) -> Option<f64>, decimals| {
+        shown(of(row).zip(below(row).and_then(of)).map(|(value, below)| value - below), decimals)
+    };
+    let ms = |row: &Row| row.ms;
+    let instructions = |row: &Row| Some(f64::from(row.instructions.iter().sum::<u32>()));
+    let kibi = |row: &Row| row.bytes.map(|bytes| bytes as f64 / 1024.0);
+    Table::of("effects", "What each effect takes", &report.rows[..])
+        .column("scene and rung", |row| {
+            if row.measure == "none" { format!("{} by `{}`", row.view, row.rung) } else { String::new() }
+        })
+        .column("effects", |row| row.measure.clone())
+        .column("ms", |row| figure(row.ms, 1))
+        .column("more", |row| more(row, ms, 1))
+        .column("instructions", |row| figure(instructions(row), 0))
+        .column("more", |row| more(row, instructions, 0))
+        .column("KiB", |row| figure(kibi(row), 0))
+        .column("more", |row| more(row, kibi, 1))
+        .column("draws, dispatches", |row| figure(row.value, 0))
+        .note(format!(
+            "Frames of {} pixels, displayed; {}. `more` is beyond the frame without effects, or with what the effect \
+             stands on.",
+            report.size(),
+            report.run()
+        ))
 }
 
 #[cfg(test)]

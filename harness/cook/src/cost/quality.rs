@@ -1,67 +1,50 @@
 //! The rungs that `--quality` selects, as shown on a ladder's page.
 
-use super::page::{header, row};
+use super::{Report, Table};
 use lapidary_plan::ladder::{CUT, Ladder, SAME_TIME, Step};
 use lapidary_plan::quality::figure;
 use lapidary_plan::{Quality, Technique};
-use serde::Serialize;
-use std::fmt::Write as _;
 
 /// Returns a table of the rungs selected by each quality of `techniques`, with their errors and
 /// times in `report` and the reason why each was chosen.
-pub(super) fn table<R: Serialize>(report: &R, techniques: &[Technique]) -> String {
-    let mut table = header(&[
-        "technique",
-        "quality",
-        "rung",
-        "error",
-        "in the worst view",
-        "ms",
-        "× fast",
-        "next cheaper on the hull",
-    ]);
-    let Ok(record) = serde_json::to_string(report) else { return table };
-    for &technique in techniques {
-        let Ok(ladder) = Ladder::of_record(technique, &record) else { continue };
+pub(super) fn table(name: &'static str, report: &Report, techniques: &[Technique]) -> Table {
+    let ladders = techniques.iter().filter_map(|&technique| {
+        let record = report.json().ok()?;
+        Some((technique, Ladder::of_record(technique, &record).ok()?))
+    });
+    let ladders: Vec<(Technique, Ladder)> = ladders.collect();
+    let mut lines: Vec<(Technique, Quality, &Step, &Step, Option<&Step>)> = Vec::new();
+    for (technique, ladder) in &ladders {
+        let Some(fast) = ladder.step(&technique.rung(Quality::Fast).to_string()) else { continue };
         for quality in Quality::ALL {
-            let rung = technique.rung(quality).to_string();
-            let fast = ladder.step(&technique.rung(Quality::Fast).to_string());
-            let (Some(Step { error, worst, ms, .. }), Some(fast)) = (ladder.step(&rung), fast) else { continue };
-            let cheaper = ladder.step(&rung).and_then(|step| ladder.next_cheaper(step));
-            let cheaper = cheaper.map_or("-".to_owned(), |cheaper| {
-                format!(
-                    "`{}`: {}, cut by {:.0} %",
-                    cheaper.rung,
-                    figure(cheaper.error),
-                    100.0 * (1.0 - error / cheaper.error)
-                )
-            });
-            row(
-                &mut table,
-                &[
-                    name(technique).to_owned(),
-                    quality.to_string(),
-                    format!("`{rung}`"),
-                    format!("{} {}", ladder.measure, figure(*error)),
-                    figure(*worst),
-                    format!("{ms:.1}"),
-                    format!("{:.1}", ms / fast.ms),
-                    cheaper,
-                ],
-            );
+            let step = ladder.step(&technique.rung(quality).to_string());
+            lines.extend(step.map(|step| (*technique, quality, step, fast, ladder.next_cheaper(step))));
         }
     }
-    let _ = writeln!(
-        table,
-        "\nA default is on the hull of error against time (no faster rung errs less), and cuts the error of the next cheaper there by at least {:.0} %; \
-         times within {:.0} % count as one.",
-        100.0 * CUT,
-        100.0 * SAME_TIME
-    );
-    table
+    let measure = ladders.first().map_or("error", |(_, ladder)| ladder.measure);
+    Table::of(name, "The rung of each quality", lines)
+        .column("technique", |(technique, ..)| shown(*technique).to_owned())
+        .column("quality", |(_, quality, ..)| quality.to_string())
+        .column("rung", |(_, _, step, ..)| format!("`{}`", step.rung))
+        .column("error", |(_, _, step, ..)| format!("{measure} {}", figure(step.error)))
+        .column("in the worst view", |(_, _, step, ..)| figure(step.worst))
+        .column("ms", |(_, _, step, ..)| format!("{:.1}", step.ms))
+        .column("× fast", |(_, _, step, fast, _)| format!("{:.1}", step.ms / fast.ms))
+        .column("next cheaper on the hull", |(_, _, step, _, cheaper)| {
+            cheaper.map_or("-".to_owned(), |cheaper| {
+                let cut = 100.0 * (1.0 - step.error / cheaper.error);
+                format!("`{}`: {}, cut by {cut:.0} %", cheaper.rung, figure(cheaper.error))
+            })
+        })
+        .note(format!(
+            "A default is on the hull of error against time (no faster rung errs less), and cuts the error of the next \
+             cheaper there by at least {:.0} %; times within {:.0} % count as one.",
+            100.0 * CUT,
+            100.0 * SAME_TIME
+        ))
 }
 
-fn name(technique: Technique) -> &'static str {
+fn shown(technique: Technique) -> &'static str {
     match technique {
         Technique::Convex => "clear, convex",
         Technique::Concave => "clear, not convex",

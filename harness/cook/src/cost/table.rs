@@ -1,157 +1,198 @@
-//! The gem ladder as text.
+//! Tables, made of columns; shown as text and as Markdown.
 
-use super::proxy_sizes::AtSize;
-use super::{Choice, Colours, MEASURES, Reflection, Report, RungReport, Seen, Steadiness};
 use std::fmt::Write as _;
 
-/// The paper's own figures for comparison: NVIDIA GeForce GTX 760, 1920×1080 filled by the stone,
-/// section 5 and Table 1.
-const PAPER: &str = "The paper's figures (GeForce GTX 760, 1920x1080 filled): proxy 3 ms, exact 15 ms (5 times); 20 us of CPU for both;\n\
-    vertex/geometry/pixel shader 16/160/181 slots and 2304 bytes of constants (proxy), 16/160/152 slots and 15056 bytes (exact).";
-
-pub(super) fn text(report: &Report) -> String {
-    let mut text = String::new();
-    ladder(&mut text, report);
-    each_view(&mut text, report);
-    colours(&mut text, &report.colours);
-    choices(&mut text, &report.choices);
-    steadiness(&mut text, &report.steadiness);
-    sizes(&mut text, &report.sizes);
-    reflections(&mut text, &report.reflections);
-    let _ = writeln!(text, "\n{PAPER}");
-    text
+/// A table of a report.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Name, by which pages mark the table's place.
+    pub name: &'static str,
+    title: String,
+    columns: Vec<(String, Vec<String>)>,
+    note: String,
 }
 
-fn ladder(text: &mut String, report: &Report) {
-    let Report { frame: [width, height], side, samples, .. } = report;
-    let _ = writeln!(text, "{}", report.adapter);
-    let _ = writeln!(
-        text,
-        "{:26} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>9} {:>9} {:>8}",
-        "rung", "ms", "x proxy", "flip", "rmse", "energy", "change", "ms filled", "SPIR-V", "bytes", "us CPU"
-    );
-    for rung in &report.rungs {
-        let view_ms = rung.view_ms();
-        let ms = view_ms.map_or("-".to_owned(), |ms| format!("{ms:.2}"));
-        let ratio = view_ms.zip(report.rung("proxy-1").and_then(RungReport::view_ms));
-        let ratio = ratio.map_or("-".to_owned(), |(ms, proxy)| format!("{:.2}", ms / proxy));
-        let filled = rung.milliseconds();
-        let cpu = rung.timing.map_or("-".to_owned(), |timing| format!("{:.0}", timing.encode_us));
-        let instructions = format!("{}+{}", rung.vertex_instructions, rung.fragment_instructions);
-        let _ = writeln!(
-            text,
-            "{:26} {ms:>9} {ratio:>8} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {filled:>10} {instructions:>9} {:>9} {cpu:>8}{}",
-            rung.rung,
-            rung.mean(0),
-            rung.mean(1),
-            rung.mean(2),
-            rung.mean(3),
-            rung.geometry_bytes,
-            if rung.dominated { "  dominated" } else { "" }
-        );
+/// A table in the making, with a line for each of `keys`.
+pub struct Lines<K> {
+    table: Table,
+    keys: Vec<K>,
+}
+
+impl Table {
+    /// Begins a table with a line for each key; `title` stands above it in text.
+    pub fn of<K>(name: &'static str, title: &str, keys: impl Into<Vec<K>>) -> Lines<K> {
+        Lines { table: Self { name, title: title.to_owned(), ..Self::default() }, keys: keys.into() }
     }
-    let _ = writeln!(
-        text,
-        "\nms, flip, rmse, |energy|, change: of the same pictures, {side}x{side} and samples a pixel: {samples}; means over the views. ms: \
-         least of the rounds,\ninterleaved. Errors are against the spectral reference; change is from this frame to one turned by 0.05 \
-         degrees, RMS over the\nreference's. ms filled: {width}x{height} pixels that the brilliant fills; * timed on 1/16 of them and \
-         scaled. SPIR-V: instructions of\nvertex + fragment shader, specialised. bytes: what the geometry needs beside positions and \
-         indices. dominated: another rung is\nfaster and, in the mean over the views, no worse by FLIP nor by RMSE."
-    );
-}
 
-fn each_view(text: &mut String, report: &Report) {
-    let measures = MEASURES.into_iter().enumerate().map(|(measure, name)| (Some(measure), name));
-    for (measure, name) in measures.chain([(None, "ms")]) {
-        let _ = write!(text, "\n{name:26}");
-        for view in report.views.iter().chain(&report.concave) {
-            let _ = write!(text, " {view:>17}");
-        }
-        for rung in &report.rungs {
-            let _ = write!(text, "\n{:26}", rung.rung);
-            for seen in rung.views.iter().chain(&rung.concave) {
-                let value = |seen: &Seen| match measure {
-                    Some(2) => Some(seen.errors.energy),
-                    Some(measure) => Some(seen.of(measure)),
-                    None => seen.ms,
-                };
-                let value = seen.as_ref().and_then(value).map_or("-".to_owned(), |value| format!("{value:.4}"));
-                let _ = write!(text, " {value:>17}");
+    /// Returns the cells of each line, the headings first.
+    fn lines(&self) -> impl Iterator<Item = Vec<&str>> {
+        let count = self.columns.first().map_or(0, |(_, cells)| cells.len());
+        let head = self.columns.iter().map(|(heading, _)| heading.as_str()).collect();
+        let line = |at: usize| self.columns.iter().map(|(_, cells)| cells[at].as_str()).collect();
+        std::iter::once(head).chain((0..count).map(line))
+    }
+
+    /// Returns the table as Markdown, with its note below.
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        for (at, cells) in self.lines().enumerate().filter(|(_, cells)| !cells.is_empty()) {
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
+            if at == 0 {
+                let _ = writeln!(text, "|{}", "---|".repeat(cells.len()));
             }
         }
-        text.push('\n');
+        if !self.note.is_empty() {
+            let gap = if text.is_empty() { "" } else { "\n" };
+            let _ = writeln!(text, "{gap}{}", wrapped(&self.note));
+        }
+        text
+    }
+
+    /// Returns the table as text: its title, columns as wide as their widest cells, and its note.
+    pub fn text(&self) -> String {
+        let plain = |text: &str| text.replace('`', "");
+        let mut text = if self.title.is_empty() { String::new() } else { format!("{}\n", self.title) };
+        let lines: Vec<Vec<String>> = self.lines().map(|cells| cells.into_iter().map(plain).collect()).collect();
+        let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        for cells in lines.iter().filter(|cells| !cells.is_empty()) {
+            let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
+                0 => format!("{cell:<width$}"),
+                _ => format!("{cell:>width$}"),
+            });
+            let _ = writeln!(text, "{}", padded.collect::<Vec<_>>().join("  ").trim_end());
+        }
+        if !self.note.is_empty() {
+            let _ = writeln!(text, "{}", wrapped(&plain(&self.note)));
+        }
+        text
     }
 }
 
-fn steadiness(text: &mut String, steadiness: &[Steadiness]) {
-    let _ = writeln!(text, "\nChange from frame to frame under a turn of 0.05 degrees, by samples a pixel");
-    let _ = writeln!(text, "{:20} {:>8} {:>10} {:>10}", "rung", "samples", "views", "brilliant");
-    for Steadiness { rung, samples, change, brilliant } in steadiness {
-        let brilliant = brilliant.map_or("-".to_owned(), |change| format!("{change:.4}"));
-        let _ = writeln!(text, "{rung:20} {samples:>8} {change:>10.4} {brilliant:>10}");
+impl<K> Lines<K> {
+    /// Adds a column.
+    #[must_use]
+    pub fn column(mut self, heading: impl Into<String>, cell: impl Fn(&K) -> String) -> Self {
+        self.table.columns.push((heading.into(), self.keys.iter().map(cell).collect()));
+        self
+    }
+
+    /// Ends the table with a note; empty for none.
+    pub fn note(self, note: impl Into<String>) -> Table {
+        Table { note: note.into(), ..self.table }
     }
 }
 
-fn sizes(text: &mut String, sizes: &[AtSize]) {
-    if sizes.is_empty() {
-        return;
+/// A goal, the measured figure, and whether it is met.
+pub struct Goal {
+    goal: String,
+    measured: String,
+    verdict: &'static str,
+}
+
+impl Goal {
+    /// Returns a judged goal.
+    pub fn new(goal: impl Into<String>, measured: String, met: bool) -> Self {
+        Self { goal: goal.into(), measured, verdict: if met { "met" } else { "missed" } }
     }
-    let _ = writeln!(
-        text,
-        "\nBy size, 16 samples a pixel: mean radiance over the reference's, and RMSE over its root mean square"
-    );
-    let _ =
-        writeln!(text, "{:12} {:14} {:>6} {:20} {:>8} {:>8}", "stone", "environment", "pixels", "rung", "mean", "rmse");
-    for AtSize { stone, environment, size, rung, mean, rmse } in sizes {
-        let _ = writeln!(text, "{stone:12} {environment:14} {size:>6} {rung:20} {mean:>8.3} {rmse:>8.3}");
+
+    /// Returns a table of goals.
+    pub fn table(name: &'static str, goals: Vec<Self>) -> Table {
+        Table::of(name, "Goals", goals)
+            .column("goal", |goal| goal.goal.clone())
+            .column("measured", |goal| goal.measured.clone())
+            .column("", |goal| goal.verdict.to_owned())
+            .note("")
     }
 }
 
-fn colours(text: &mut String, colours: &[Colours]) {
-    if colours.is_empty() {
-        return;
+/// Columns of text after which a line is broken.
+const WIDTH: usize = 100;
+
+/// Returns the text with line breaks between words so that no line is longer than a page's.
+fn wrapped(text: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(word.to_owned());
+        } else {
+            let space = if lines[last].is_empty() { "" } else { " " };
+            lines[last].push_str(space);
+            lines[last].push_str(word);
+        }
     }
-    let _ = writeln!(
-        text,
-        "\nColours where the three wavelengths meet the same facets, RMS of the difference from separate wavelengths\n\
-         {:12} {:18} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>16}",
-        "geometry", "view", "shared", "none", "paper", "strength", "fitted", "tracker", "fitted/tracker"
-    );
-    for colours in colours {
-        let _ = writeln!(
-            text,
-            "{:12} {:18} {:>6.1}% {:>9.5} {:>9.5} {:>9.5} {:>9.5} {:>9.5} {:>16.1}",
-            colours.rung,
-            colours.view,
-            100.0 * colours.shared,
-            colours.none_rms,
-            colours.paper_rms,
-            colours.strength,
-            colours.fitted_rms,
-            colours.tracker_rms,
-            colours.fitted_rms / colours.tracker_rms
+    lines.join("\n")
+}
+
+/// Shows a figure with this many decimals, or a dash for none.
+pub fn figure(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
+}
+
+/// Shows a figure that spans many powers of ten.
+pub fn scientific(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.1e}"))
+}
+
+/// Shows how much larger a ratio is than 1.
+pub fn beyond(ratio: Option<f64>) -> String {
+    ratio.map_or("-".to_owned(), |ratio| format!("{:+.1} %", 100.0 * (ratio - 1.0)))
+}
+
+/// Shows numbers of instructions.
+pub fn sum(instructions: &[u32]) -> String {
+    instructions.iter().map(u32::to_string).collect::<Vec<_>>().join(" + ")
+}
+
+/// Shows a number of bytes.
+pub fn bytes(count: Option<u64>) -> String {
+    match count.unwrap_or(0) {
+        0 => "0".to_owned(),
+        count @ 1..10_000 => format!("{count} B"),
+        count @ 10_000..10_000_000 => format!("{:.0} KiB", count as f64 / 1024.0),
+        count => format!("{:.0} MiB", count as f64 / f64::from(1 << 20)),
+    }
+}
+
+/// Marks the rungs that are dominated.
+pub fn marked(rung: &str, dominated: &[&str]) -> String {
+    if dominated.contains(&rung) { "dominated" } else { "" }.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_text_and_markdown() {
+        let table = Table::of("squares", "Squares", [3, 10])
+            .column("n", |n: &i32| format!("`{n}`"))
+            .column("n²", |n| (n * n).to_string())
+            .note("of `n`");
+        assert_eq!(table.markdown(), "| n | n² |\n|---|---|\n| `3` | 9 |\n| `10` | 100 |\n\nof `n`\n");
+        assert_eq!(table.text(), "Squares\nn    n²\n3     9\n10  100\nof n\n");
+        let empty = Table::of("none", "", [0; 0]).column("n", i32::to_string).note("");
+        assert_eq!((empty.markdown().as_str(), empty.text().as_str()), ("| n |\n|---|\n", "n\n"));
+    }
+
+    #[test]
+    fn notes_are_wrapped_between_words() {
+        let text = "word ".repeat(60);
+        let lines = wrapped(&text);
+        assert!(lines.lines().count() == 3 && lines.lines().all(|line| line.len() <= WIDTH), "{lines}");
+        assert_eq!(lines.split_whitespace().count(), 60);
+    }
+
+    #[test]
+    fn figures_are_shown_with_their_units() {
+        assert_eq!(
+            [bytes(None), bytes(Some(9999)), bytes(Some(20_480)), bytes(Some(20 << 20))],
+            ["0", "9999 B", "20 KiB", "20 MiB"]
         );
-    }
-}
-
-fn choices(text: &mut String, choices: &[Choice]) {
-    if choices.is_empty() {
-        return;
-    }
-    let _ = writeln!(text, "\nHow a ray ends, means over the views");
-    let _ = writeln!(text, "{:20} {:28} {:>8} {:>8} {:>8}", "rung", "choice", "flip", "rmse", "energy");
-    for (rung, choice, [flip, rmse, energy]) in Choice::means(choices) {
-        let _ = writeln!(text, "{rung:20} {choice:28} {flip:>8.4} {rmse:>8.4} {energy:>+8.4}");
-    }
-}
-
-fn reflections(text: &mut String, reflections: &[Reflection]) {
-    let _ = writeln!(
-        text,
-        "\nTotal internal reflection at the first hit, brilliant face-up, share of the rays that enter by\n{:52} {:>7} {:>7}",
-        "", "table", "crown"
-    );
-    for Reflection { mesh, table, crown } in reflections {
-        let _ = writeln!(text, "{mesh:52} {:>6.1}% {:>6.1}%", 100.0 * table, 100.0 * crown);
+        assert_eq!(
+            [figure(Some(1.25), 1), figure(None, 1), scientific(Some(1e-7)), beyond(Some(1.055))],
+            ["1.2", "-", "1.0e-7", "+5.5 %"]
+        );
     }
 }

@@ -3,7 +3,6 @@
 use lapidary_gpu::Gpu;
 use lapidary_render::{FrameTimer, RenderError, Settings};
 use lapidary_scene::Scene;
-use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A rung whose frame takes longer than this is timed on fewer pixels.
@@ -12,7 +11,7 @@ const SLOW: Duration = Duration::from_secs(4);
 const REDUCTION: u32 = 4;
 
 /// The times of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// Minimum over the rounds, in milliseconds for the whole frame.
     pub ms: f64,
@@ -22,8 +21,6 @@ pub struct Timing {
     pub share: f64,
     /// CPU time for recording and submitting a frame in microseconds, the minimum over the rounds.
     pub encode_us: f64,
-    /// Number of draw calls per frame.
-    pub draw_calls: usize,
 }
 
 /// A frame to time.
@@ -38,6 +35,13 @@ pub struct Timed<'a> {
     pub displayed: bool,
     /// Whether the time is proportional to the number of pixels, so that fewer may be timed.
     pub scales: bool,
+}
+
+impl<'a> Timed<'a> {
+    /// Returns the frame of `scene` by the original recipe, all of whose pixels are timed.
+    pub fn new(scene: &'a Scene, settings: Settings) -> Self {
+        Self { settings, scene, source: None, displayed: false, scales: false }
+    }
 }
 
 impl Timed<'_> {
@@ -64,13 +68,17 @@ impl Timed<'_> {
     }
 }
 
-/// Times all frames, round by round. `progress` receives the number of frames done and the total.
+/// Times all frames, round by round; not at all if there are no rounds. `progress` receives the
+/// number of frames done and the total.
 pub fn time(
     gpu: &Gpu,
     timed: &[Timed<'_>],
     rounds: u32,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Vec<Timing>, RenderError> {
+) -> Result<Vec<Option<Timing>>, RenderError> {
+    if rounds == 0 {
+        return Ok(vec![None; timed.len()]);
+    }
     let total = timed.len() as u64 * (u64::from(rounds) + 1);
     let mut frames = Vec::new();
     for (done, timed) in (1..).zip(timed) {
@@ -86,17 +94,16 @@ pub fn time(
             progress(done, total);
         }
     }
-    let timing = |((frame, share), times): (&(FrameTimer<'_>, f64), &Vec<lapidary_render::FrameTime>)| {
+    let timing = |((_, share), times): (&(FrameTimer<'_>, f64), &Vec<lapidary_render::FrameTime>)| {
         let mut totals: Vec<f64> = times.iter().map(|time| time.total.as_secs_f64() * 1e3 / share).collect();
         totals.sort_by(f64::total_cmp);
         let encode = times.iter().map(|time| time.encode.as_secs_f64() * 1e6).fold(f64::INFINITY, f64::min);
-        Timing {
+        Some(Timing {
             ms: totals.first().copied().unwrap_or(f64::NAN),
             median_ms: totals.get(totals.len() / 2).copied().unwrap_or(f64::NAN),
             share: *share,
             encode_us: encode,
-            draw_calls: frame.draw_calls(),
-        }
+        })
     };
     Ok(frames.iter().zip(&times).map(timing).collect())
 }

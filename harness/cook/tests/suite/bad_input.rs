@@ -250,8 +250,11 @@ const OTHERS: &[Row] = &[
     ("cost sphere --from {}/none.json", One, &["none.json: ", "cannot be read"]),
     ("cost sphere --from {}/text.glb", One, &["text.glb: ", "not a sphere.json"]),
     ("cost sphere --from {}/empty.json --walks 9", Usage, &["--walks", "--from"]),
-    ("cost sphere --from {}/empty.json --fill {}/page.md", One, &["page.md: ", "no sphere of albedo 0.8 and radius 2"]),
-    ("cost sphere --from {}/empty.json --out {}/folder.png", One, &["no widths"]),
+    (
+        "cost sphere --from {}/empty.json --fill {}/page.md",
+        One,
+        &["page.md: ", "no fits of a sphere of albedo 0.8 and radius 2"],
+    ),
     ("cost sphere --fill {}/none.md", One, &["none.md: ", "cannot be read"]),
     ("cost sphere --fill {}/bad.md", One, &["bad.md: ", "no table `other`", "sphere_widths"]),
     ("cost gem --out {}/text.glb/cost", One, &["text.glb/cost", "cannot be made"]),
@@ -367,13 +370,10 @@ fn write_bad_files(folder: &Path) {
         b"fn refraction_reflect(incident: f32, normal: vec3f) -> vec3f {\n    return incident * normal;\n}\n",
     );
     write("other.wgsl", b"fn mine(incident: vec3f) -> vec3f {\n    return incident;\n}\n");
-    let empty = json!({"walks": 1, "seed": 1, "profiles": [], "rows": [], "rows_with_unscattered": [], "limits": [], "laws": [],
-        "laws_with_unscattered": [], "choices": []});
-    write("empty.json", empty.to_string().as_bytes());
-    let none = json!({"largest": 0.0, "rms": 0.0});
-    let untimed = json!({"adapter": "", "frame": [1, 1], "rounds": 0, "vertices": 0, "spheres": 0, "rungs": [], "tables": [], "scenes": [],
-        "spherical_from_circular": none});
-    write("untimed.json", untimed.to_string().as_bytes());
+    let report =
+        |technique: &str| json!({"technique": technique, "adapter": "", "settings": {}, "rows": []}).to_string();
+    write("empty.json", report("sphere").as_bytes());
+    write("untimed.json", report("cdrf").as_bytes());
     write("ladder.md", b"<!-- generated: cdrf_lit --><!-- end -->\n");
     write("page.md", b"<!-- generated: sphere_widths --><!-- end -->\n");
     write("bad.md", b"<!-- generated: other --><!-- end -->\n");

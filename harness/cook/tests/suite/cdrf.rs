@@ -4,8 +4,9 @@
 use glam::{UVec2, Vec3};
 use lapidary_assay::extremum::largest;
 use lapidary_cdrf as mirror;
-use lapidary_cook::cost::cdrf::error::{self, Samples};
-use lapidary_cook::cost::cdrf::{CdrfReport, Distance, Options, SPHERICAL};
+use lapidary_cook::cost::Report;
+use lapidary_cook::cost::cdrf::error::{self, Distance, Samples};
+use lapidary_cook::cost::cdrf::{CIRCULAR, Options, SCREEN, SPHERICAL, TABLE};
 use lapidary_render::cdrf::table::{self, Table};
 use lapidary_scene::solver::Format;
 use std::sync::OnceLock;
@@ -99,28 +100,27 @@ fn an_odd_width_wins_and_the_half_texel_counts() {
 fn the_record_has_the_rungs_errors() {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/measurements/lavapipe/cdrf.json");
     let record = std::fs::read_to_string(file).expect("the record");
-    let record: CdrfReport = serde_json::from_str(&record).expect("a report");
+    let record = Report::from_json("cdrf", &record).unwrap_or_else(|error| panic!("{error}"));
     let again = "./cook cost cdrf --out docs/measurements/lavapipe";
-    let same = |name: &str, recorded: Distance, found: Distance| {
-        let shown = |distance: Distance| format!("{:.1e} {:.1e}", distance.largest, distance.rms);
-        assert_eq!(shown(recorded), shown(found), "{name}: the record is not of this code; measure anew: {again}");
+    let same = |name: &str, view: &str, found: Option<Distance>| {
+        let shown = |value: Option<f64>| value.map(|value| format!("{value:.1e}"));
+        for (measure, found) in [("largest", found.map(|found| found.largest)), ("rms", found.map(|found| found.rms))] {
+            let recorded = record.value(name, view, measure);
+            let message = "the record is not of this code; measure anew";
+            assert_eq!(shown(recorded), shown(found), "{name}, {measure}: {message}: {again}");
+        }
     };
     let spherical = Samples::of(mirror::oracle::spherical);
     for reflectance in Options::default().rungs {
         let name = reflectance.name();
         let function = error::function(super::gpu(), reflectance).unwrap_or_else(|error| panic!("{error}"));
-        let recorded = record.rung(name).and_then(|rung| rung.distance);
-        assert_eq!(function.is_some(), recorded.is_some(), "{name}");
-        if let Some((function, recorded)) = function.zip(recorded) {
-            let definition = if name == SPHERICAL { &spherical } else { convolution() };
-            same(name, recorded, definition.distance(function));
-        }
+        let definition = if name == SPHERICAL { &spherical } else { convolution() };
+        same(name, SCREEN, function.map(|function| definition.distance(function)));
     }
     let tables = error::tables(super::gpu(), convolution()).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(record.tables.len(), tables.len());
-    for (recorded, found) in record.tables.iter().zip(tables) {
-        assert_eq!(recorded.name, found.name);
-        same(&found.name, recorded.distance, found.distance);
+    assert_eq!(record.rows.iter().filter(|row| row.view == TABLE).count(), 2 * tables.len());
+    for (name, found) in tables {
+        same(&name, TABLE, Some(found));
     }
-    same("spherical", record.spherical_from_circular, convolution().distance(mirror::spherical));
+    same(SPHERICAL, CIRCULAR, Some(convolution().distance(mirror::spherical)));
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 use lapidary_assay::extremum::larger;
-use lapidary_cook::cost::Errors;
+use lapidary_cook::cost::gem::Errors;
 use lapidary_render as render;
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;

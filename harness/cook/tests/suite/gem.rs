@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lapidary_assay::extremum::{larger, largest};
-use lapidary_cook::cost::Errors;
+use lapidary_cook::cost::gem::Errors;
 use lapidary_plan::Rung;
 use lapidary_render as render;
 use lapidary_render::pixel::Viewer;

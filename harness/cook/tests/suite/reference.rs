@@ -2,7 +2,7 @@
 //! sample places, environment and reflectance of one to those of the other.
 
 use lapidary_assay::extremum::larger;
-use lapidary_cook::cost::views::{CONCAVE, SHOWN, VIEWS};
+use lapidary_cook::cost::gem::views::{CONCAVE, SHOWN, VIEWS};
 use lapidary_plan::Rung;
 use lapidary_reference::spectral;
 use lapidary_render as render;

@@ -1,6 +1,6 @@
 //! Errors of a rung's function against the one that it approximates.
 
-use super::CostError;
+use super::{CostError, Row};
 use glam::{UVec2, Vec3};
 use lapidary_cdrf::{self as mirror, oracle};
 use lapidary_gpu::Gpu;
@@ -8,19 +8,25 @@ use lapidary_render as render;
 use lapidary_render::cdrf::table::{self, Table};
 use lapidary_scene::solver::{Format, Reflectance};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// Reflectance as a function of cosine and width in radians.
 pub type Function = Box<dyn Fn(f32, f32) -> f32 + Sync>;
 
 /// Distance between two functions of the angle and the width.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
     /// Largest difference, for angles from 0 to 180° and widths from 0 to 3, sampled more densely
     /// near the terminator at small widths.
     pub largest: f64,
     /// Root mean square over the same angles and widths, both uniform.
     pub rms: f64,
+}
+
+impl Distance {
+    /// Returns the rows of a rung in a view.
+    pub(super) fn rows(self, rung: &str, view: &str) -> [Row; 2] {
+        [("largest", self.largest), ("rms", self.rms)].map(|(measure, value)| Row::new(rung, view, measure, value, ""))
+    }
 }
 
 /// Cosine, width and exact value.
@@ -101,15 +107,6 @@ pub fn function(gpu: &Gpu, reflectance: Reflectance) -> Result<Option<Function>,
     }))
 }
 
-/// A lookup table and its error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TableReport {
-    /// Texels per side, format, and deliberate mistake, if any.
-    pub name: String,
-    /// Distance from the convolution.
-    pub distance: Distance,
-}
-
 /// The compared tables: texels per side, format, and the format's name.
 const TABLES: [(u32, Format, &str); 7] = [
     (256, Format::Rgba8, "RGBA8 (the paper's)"),
@@ -126,15 +123,15 @@ const TABLES: [(u32, Format, &str); 7] = [
 ///
 /// # Errors
 /// Returns an error as in [`baked`].
-pub fn tables(gpu: &Gpu, convolution: &Samples) -> Result<Vec<TableReport>, CostError> {
+pub fn tables(gpu: &Gpu, convolution: &Samples) -> Result<Vec<(String, Distance)>, CostError> {
     let mut found = Vec::new();
     for (index, (side, format, name)) in TABLES.into_iter().enumerate() {
         let table = baked(gpu, side, format)?;
         let distance = convolution.distance(|cosine, sigma| table.lookup(cosine, sigma).x);
-        found.push(TableReport { name: format!("table {side} × {side}, {name}"), distance });
+        found.push((format!("table {side} × {side}, {name}"), distance));
         if index == 0 {
             let distance = convolution.distance(|cosine, sigma| table.sampled_naive(cosine, sigma).x);
-            found.push(TableReport { name: "the same, half a texel left out".to_owned(), distance });
+            found.push(("the same, half a texel left out".to_owned(), distance));
         }
     }
     Ok(found)

@@ -1,23 +1,21 @@
 //! The frames of a rung that are timed, and the memory that they need besides mesh and material.
 
-use super::{CostError, Options, RungReport, shader};
-use crate::cost::timing::{self, Timed, Timing};
+use super::{CostError, MEASURES, Options, Report, Row, VIEWS, shader};
+use crate::cost::timing::{self, Timed};
 use glam::{Vec2, Vec3};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_render::texture_diffusion::{IRRADIANCE_FORMAT, STRETCH_FORMAT};
-use lapidary_render::{Curvature, DiffuseOptions, FrameTimer, RenderError, Settings};
+use lapidary_render::{Curvature, DiffuseOptions, FrameTimer, Settings};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::{Camera, Scene, SceneError};
-use serde::{Deserialize, Serialize};
 
 /// Name of the timed scene.
 const SCENE: &str = "skin_bunny";
 
 /// The part of a renderer's work that is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Part {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
     /// Diffuse light only: the body fills the frame, under one light.
     Lit,
     /// A whole frame: the body in front of a backdrop, in the studio and under one light, with
@@ -27,21 +25,12 @@ pub enum Part {
 
 impl Part {
     /// Both parts.
-    pub const ALL: [Self; 2] = [Self::Lit, Self::Whole];
-
-    /// Returns the part's name within a view's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Lit => "lit",
-            Self::Whole => "whole",
-        }
-    }
+    const ALL: [Self; 2] = [Self::Lit, Self::Whole];
 }
 
 /// The source of curvature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CurvatureSource {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CurvatureSource {
     /// Screen-space derivatives at the pixel.
     Screen,
     /// Per-vertex values in the mesh.
@@ -50,15 +39,7 @@ pub enum CurvatureSource {
 
 impl CurvatureSource {
     /// Both sources.
-    pub const ALL: [Self; 2] = [Self::Screen, Self::Vertex];
-
-    /// Returns the source's name within a view's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Screen => "screen",
-            Self::Vertex => "vertex",
-        }
-    }
+    const ALL: [Self; 2] = [Self::Screen, Self::Vertex];
 
     fn curvature(self) -> Curvature {
         match self {
@@ -66,26 +47,6 @@ impl CurvatureSource {
             Self::Vertex => Curvature::Vertex,
         }
     }
-}
-
-/// Returns the views of the ladder.
-pub(super) fn views() -> impl Iterator<Item = (Part, CurvatureSource)> {
-    Part::ALL.into_iter().flat_map(|part| CurvatureSource::ALL.map(|source| (part, source)))
-}
-
-/// One frame of a rung.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrameReport {
-    /// The part of the work that is drawn.
-    pub part: Part,
-    /// The source of curvature; `None` if the rung does not use curvature.
-    pub curvature: Option<CurvatureSource>,
-    /// Number of SPIR-V instructions in the specialised vertex shader.
-    pub vertex_instructions: u32,
-    /// Number of SPIR-V instructions in the specialised fragment shader.
-    pub fragment_instructions: u32,
-    /// The frame's times; `None` if timing was skipped.
-    pub timing: Option<Timing>,
 }
 
 /// The scenes that are drawn, one per part.
@@ -163,55 +124,61 @@ fn settings(part: Part, curvature: Option<CurvatureSource>, reflectance: Reflect
     }
 }
 
-/// Returns a rung's frames, not yet timed.
-pub(super) fn frames(scenes: &Scenes, reflectance: Reflectance, size: [u32; 2]) -> Result<Vec<FrameReport>, CostError> {
-    let sources: &[Option<CurvatureSource>] = match reflectance {
-        Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur => &[None],
-        _ => &CurvatureSource::ALL.map(Some),
+/// Returns the settings of a rung's frames, in the order of [`VIEWS`]; a rung that does not use
+/// curvature has the same frame with either source.
+fn frames(reflectance: Reflectance, size: [u32; 2]) -> Vec<(Part, Option<CurvatureSource>, Settings)> {
+    let uses = !matches!(reflectance, Reflectance::Lambert | Reflectance::LambertShadowed | Reflectance::Blur);
+    let views = Part::ALL.into_iter().flat_map(|part| CurvatureSource::ALL.map(|source| (part, source)));
+    let frame = |(part, source): (Part, CurvatureSource)| {
+        let source = uses.then_some(source);
+        (part, source, settings(part, source, reflectance, size))
     };
-    let mut frames = Vec::new();
-    for part in Part::ALL {
-        for &curvature in sources {
-            let settings = settings(part, curvature, reflectance, size);
-            let counts = shader::counts(scenes.of(part), &settings, reflectance)?;
-            frames.push(FrameReport {
-                part,
-                curvature,
-                vertex_instructions: counts.vertex_instructions,
-                fragment_instructions: counts.fragment_instructions,
-                timing: None,
-            });
-        }
-    }
-    Ok(frames)
+    views.map(frame).collect()
 }
 
-/// Times all frames of all rungs, interleaved. `rungs` are in the order of the options.
-pub(super) fn time(
+/// Adds the rungs' frames in all views, timed interleaved. `errors` has the rungs' errors by
+/// [`MEASURES`], in the order of the options.
+pub(super) fn measure(
     gpu: &Gpu,
     scenes: &Scenes,
     options: &Options,
-    rungs: &mut [RungReport],
+    errors: &[Option<[f64; MEASURES.len()]>],
+    report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<(), RenderError> {
-    let mut timed = Vec::new();
-    for (rung, &reflectance) in rungs.iter().zip(&options.rungs) {
-        for frame in &rung.frames {
-            let settings = settings(frame.part, frame.curvature, reflectance, options.frame);
-            timed.push(Timed {
-                source: None,
-                settings,
-                scene: scenes.of(frame.part),
-                displayed: frame.part == Part::Whole,
-                // The blur's texture does not shrink with the picture.
-                scales: reflectance != Reflectance::Blur,
+) -> Result<(), CostError> {
+    let mut rows = Vec::new();
+    let mut timed: Vec<Timed<'_>> = Vec::new();
+    for (&reflectance, errors) in options.rungs.iter().zip(errors) {
+        let mut own: Vec<(Part, Option<CurvatureSource>, usize)> = Vec::new();
+        for ((part, source, settings), view) in frames(reflectance, options.frame).into_iter().zip(VIEWS) {
+            let counts = shader::counts(scenes.of(part), &settings, reflectance)?;
+            let row = Row {
+                bytes: Some(texture_bytes(reflectance)),
+                instructions: vec![counts.vertex_instructions, counts.fragment_instructions],
+                ..Row::new(reflectance.name(), view, "", None, "")
+            };
+            let same = own.iter().find(|other| (other.0, other.1) == (part, source)).map(|other| other.2);
+            let index = same.unwrap_or_else(|| {
+                timed.push(Timed {
+                    displayed: part == Part::Whole,
+                    // The blur's texture does not shrink with the picture.
+                    scales: reflectance != Reflectance::Blur,
+                    ..Timed::new(scenes.of(part), settings)
+                });
+                timed.len() - 1
             });
+            own.push((part, source, index));
+            rows.push((row, errors, index));
         }
     }
     let timings = timing::time(gpu, &timed, options.rounds, progress)?;
-    let frames = rungs.iter_mut().flat_map(|rung| &mut rung.frames);
-    for (frame, timing) in frames.zip(timings) {
-        frame.timing = Some(timing);
+    for (row, errors, index) in rows {
+        let timing = timings[index].as_ref();
+        for (place, measure) in MEASURES.into_iter().enumerate() {
+            let error = errors.map(|errors| errors[place]);
+            report.rows.push(Row::new(&row.rung, &row.view, measure, error, "").timed(timing.map(|timing| timing.ms)));
+        }
+        report.add_time(row, timing);
     }
     Ok(())
 }

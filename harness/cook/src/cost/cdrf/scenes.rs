@@ -1,8 +1,8 @@
 //! Whole pictures compared with the committed random walks, with and without cast shadows, and the
 //! times of the same pictures.
 
-use super::CostError;
-use crate::cost::timing::{self, Timed, Timing};
+use super::{CostError, Options, Report, Row};
+use crate::cost::timing::{self, Timed};
 use crate::exposure::exposed_distance;
 use crate::snapshot::frames::halved;
 use crate::snapshot::{EXR_SIDE, WalkedReference};
@@ -12,27 +12,15 @@ use lapidary_render as render;
 use lapidary_render::{Curvature, DiffuseOptions, Settings};
 use lapidary_scene::Scene;
 use lapidary_scene::solver::Reflectance;
-use serde::{Deserialize, Serialize};
 
 /// Names of the scenes.
 pub const SCENES: [&str; 3] = ["skin", "skin_ring", "skin_bunny"];
 /// Width and height of the picture; two by two of its pixels correspond to one pixel of the walks.
 pub(super) const SIDE: u32 = 2 * EXR_SIDE;
 
-/// Results for a rung's picture of a scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneReport {
-    /// Name of the scene.
-    pub scene: String,
-    /// The rung's name.
-    pub rung: String,
-    /// Whether lights cast shadows.
-    pub shadows: bool,
-    /// Distance from the picture by random walks after the best exposure, divided by its root mean
-    /// square.
-    pub walks: f64,
-    /// The picture's times; `None` if timing was skipped.
-    pub timing: Option<Timing>,
+/// Returns the name of a scene's view, with or without shadows.
+pub(super) fn view(scene: &str, shadows: bool) -> String {
+    format!("{scene}, shadows {}", if shadows { "cast" } else { "none" })
 }
 
 /// Returns settings for one sample per pixel, no light but the scene's lights, and per-vertex
@@ -48,50 +36,38 @@ fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
     }
 }
 
-/// Returns the pictures to draw: each scene with each rung, without and with shadows.
-fn drawn(rungs: &[Reflectance]) -> impl Iterator<Item = (&'static str, Reflectance, bool)> {
-    SCENES.into_iter().flat_map(move |scene| {
-        rungs.iter().flat_map(move |&rung| [false, true].map(move |shadows| (scene, rung, shadows)))
-    })
-}
-
-/// Measures the distances of all rungs, and their times if `rounds` is not 0.
+/// Adds each scene's picture by each rung, without and with shadows: its distance from the picture by
+/// random walks after the best exposure, divided by that one's root mean square, and its time.
 ///
 /// # Errors
 /// Returns an error if a committed picture is missing or damaged, or if the device fails.
 pub(super) fn measure(
     gpu: &Gpu,
-    rungs: &[Reflectance],
-    rounds: u32,
+    options: &Options,
+    report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Vec<SceneReport>, CostError> {
+) -> Result<(), CostError> {
     let mut scenes = Vec::new();
     for name in SCENES {
         let reference = WalkedReference::of_scene(name);
         let truth = reference.map(|reference| reference.picture(gpu)).transpose()?;
         scenes.push((name, Scene::named(name)?, truth.map_or_else(Vec::new, |truth| truth.linear)));
     }
-    let mut reports = Vec::new();
-    let mut timed = Vec::new();
-    for (of, reflectance, shadows) in drawn(rungs) {
-        let Some((_, scene, truth)) = scenes.iter().find(|(name, ..)| *name == of) else { continue };
-        let settings = settings(reflectance, shadows);
-        let picture = render::render(gpu, scene, &settings)?;
-        reports.push(SceneReport {
-            scene: of.to_owned(),
-            rung: reflectance.name().to_owned(),
-            shadows,
-            walks: exposed_distance(&halved(&picture).linear, truth),
-            timing: None,
-        });
-        timed.push(Timed { source: None, settings, scene, displayed: false, scales: false });
-    }
-    if rounds > 0 {
-        for (report, timing) in reports.iter_mut().zip(timing::time(gpu, &timed, rounds, progress)?) {
-            report.timing = Some(timing);
+    let (mut rows, mut timed) = (Vec::new(), Vec::new());
+    for (name, scene, truth) in &scenes {
+        for &rung in &options.rungs {
+            for shadows in [false, true] {
+                let settings = settings(rung, shadows);
+                let picture = render::render(gpu, scene, &settings)?;
+                let walks = exposed_distance(&halved(&picture).linear, truth);
+                rows.push(Row::new(rung.name(), &view(name, shadows), "walks", walks, ""));
+                timed.push(Timed::new(scene, settings));
+            }
         }
     }
-    Ok(reports)
+    let timings = timing::time(gpu, &timed, options.rounds, progress)?;
+    report.rows.extend(rows.into_iter().zip(timings).map(|(row, timing)| row.timed(timing.map(|timing| timing.ms))));
+    Ok(())
 }
 
 #[cfg(test)]
@@ -104,18 +80,15 @@ mod tests {
     #[test]
     fn shadows_bring_the_bunny_nearer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
-        let reports =
-            measure(gpu, &[Reflectance::Lambert, Reflectance::Accurate], 0, &mut |_, _| {}).expect("measured");
-        assert_eq!(reports.len(), SCENES.len() * 4);
-        let of = |rung: &str, shadows: bool| {
-            let is = |report: &&SceneReport| {
-                (report.scene.as_str(), report.rung.as_str(), report.shadows) == ("skin_bunny", rung, shadows)
-            };
-            reports.iter().find(is).expect("measured").walks
-        };
-        for report in &reports {
-            println!("{} by {}, shadows {}: {:.3}", report.scene, report.rung, report.shadows, report.walks);
+        let rungs = vec![Reflectance::Lambert, Reflectance::Accurate];
+        let options = Options { rounds: 0, rungs, ..Options::default() };
+        let mut report = Report::default();
+        measure(gpu, &options, &mut report, &mut |_, _| {}).expect("measured");
+        assert_eq!(report.rows.len(), SCENES.len() * 4);
+        for row in &report.rows {
+            println!("{} by {}: {:.3}", row.view, row.rung, row.value.expect("measured"));
         }
+        let of = |rung: &str, shadows| report.value(rung, &view("skin_bunny", shadows), "walks").expect("measured");
         assert!(of("lambert", true) < 0.8 * of("lambert", false));
         assert!(of("accurate", true) < 0.8 * of("accurate", false) && of("accurate", true) < of("lambert", true));
     }

@@ -1,24 +1,11 @@
 //! Errors of a rung's function against random walks through spheres: the residual of the
 //! convolution itself, and what a rung's errors add to it.
 
-use crate::cost::CostError;
-use crate::cost::sphere::{Fit, ScaleKind, SphereReport};
+use crate::cost::sphere::{self, Fit, ScaleKind};
+use crate::cost::{CostError, Report};
+use lapidary_reference::random_walk::Profile;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-
-/// Residuals against the recorded spheres, as root mean squares over the spheres of each one's RMS
-/// over its surface.
-///
-/// Each sphere has the best-fit width of the function; the unit is the irradiance of a surface that
-/// faces the light.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Residuals {
-    /// With the best-fit scale.
-    pub free: f64,
-    /// With the diffuse albedo of the half space as the scale.
-    pub fixed: f64,
-}
 
 /// Returns the path of the recorded spheres.
 pub fn record_file() -> PathBuf {
@@ -29,29 +16,29 @@ pub fn record_file() -> PathBuf {
 ///
 /// # Errors
 /// Returns an error if the record is missing or damaged.
-pub fn record(path: &Path) -> Result<SphereReport, CostError> {
+pub fn record(path: &Path) -> Result<Vec<Profile>, CostError> {
     let unfit = |what: String| CostError::Record { path: path.to_owned(), what };
     let text = std::fs::read_to_string(path).map_err(|error| unfit(format!("cannot be read: {error}")))?;
-    let report: SphereReport =
-        serde_json::from_str(&text).map_err(|error| unfit(format!("is not a sphere.json: {error}")))?;
-    if report.profiles.is_empty() {
-        return Err(unfit("holds no sphere".to_owned()));
-    }
-    Ok(report)
+    let report = Report::from_json(sphere::LADDER.name, &text).map_err(|error| unfit(error.to_string()))?;
+    let profiles = sphere::profiles(&report);
+    if profiles.is_empty() { Err(unfit("holds no sphere".to_owned())) } else { Ok(profiles) }
 }
 
-/// Returns the residuals of `function`.
-pub fn residuals(spheres: &SphereReport, function: &(dyn Fn(f32, f32) -> f32 + Sync)) -> Residuals {
-    let [free, fixed] = ScaleKind::ALL.map(|kind| {
-        let squares = spheres.profiles.par_iter().map(|profile| {
+/// Returns the residuals of `function` against the spheres, with the best-fit scale and with the
+/// diffuse albedo of the half space as the scale.
+///
+/// They are root mean squares over the spheres of each one's RMS over its surface, with its best-fit
+/// width of the function; the unit is the irradiance of a surface that faces the light.
+pub fn residuals(spheres: &[Profile], function: &(dyn Fn(f32, f32) -> f32 + Sync)) -> [f64; 2] {
+    ScaleKind::ALL.map(|kind| {
+        let squares = spheres.par_iter().map(|profile| {
             let function = |cosine: f64, sigma: f64| f64::from(function(cosine as f32, sigma as f32));
             Fit::best_of(profile, function, kind.of(profile.albedo)).residual.powi(2)
         });
         // Summed in order, so that every run gives the same digits.
         let squares: Vec<f64> = squares.collect();
         (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-    });
-    Residuals { free, fixed }
+    })
 }
 
 #[cfg(test)]
@@ -62,11 +49,10 @@ mod tests {
 
     #[test]
     fn residuals_are_those_of_the_spheres_rows() {
-        let record = record(&record_file()).expect("the committed record");
-        let spheres = SphereReport {
-            profiles: record.profiles.iter().filter(|profile| profile.albedo == 0.99).cloned().collect(),
-            ..record.clone()
-        };
+        let text = std::fs::read_to_string(record_file()).expect("the committed record");
+        let report = Report::from_json("sphere", &text).expect("a report");
+        let mut spheres = record(&record_file()).expect("the committed record");
+        spheres.retain(|profile| profile.albedo == 0.99);
         type Mirror = fn(f32, f32) -> f32;
         let forms: [(Form, Mirror); 3] = [
             (Form::Lambert, |cosine, _| mirror::lambert(cosine)),
@@ -75,9 +61,13 @@ mod tests {
         ];
         for (form, function) in forms {
             let found = residuals(&spheres, &function);
-            for (found, kind) in [(found.free, ScaleKind::Free), (found.fixed, ScaleKind::Fixed)] {
-                let rows: Vec<f64> = record.best(0.99, form, kind).map(|row| row.residual.powi(2)).collect();
-                let recorded = (rows.iter().sum::<f64>() / rows.len() as f64).sqrt();
+            for (found, kind) in found.into_iter().zip(ScaleKind::ALL) {
+                let residual = |profile: &Profile| {
+                    let view = sphere::view(profile.albedo, profile.radius);
+                    report.value(&sphere::rung(form, kind), &view, "residual").expect("recorded")
+                };
+                let squares: f64 = spheres.iter().map(|profile| residual(profile).powi(2)).sum();
+                let recorded = (squares / spheres.len() as f64).sqrt();
                 assert!((found / recorded - 1.0).abs() < 1e-3, "{form:?} {kind:?}: {found} {recorded}");
             }
         }
@@ -90,9 +80,9 @@ mod tests {
         let said = |path: &Path| record(path).expect_err("no record").to_string();
         assert!(said(&path).contains("sphere.json: cannot be read") && said(&path).contains("./cook cost sphere"));
         std::fs::write(&path, "{}").expect("written");
-        assert!(said(&path).contains("is not a sphere.json"));
-        std::fs::write(&path, serde_json::to_string(&SphereReport::of(1, 1, Vec::new())).expect("JSON"))
-            .expect("written");
+        assert!(said(&path).contains("not a sphere.json"), "{}", said(&path));
+        let empty = Report::new("sphere", String::new(), &[]).json().expect("JSON");
+        std::fs::write(&path, empty).expect("written");
         assert!(said(&path).contains("holds no sphere"));
     }
 }

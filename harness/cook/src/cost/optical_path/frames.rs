@@ -2,49 +2,20 @@
 //! separate stages, and the memory that they use.
 
 use super::views::{grey, scene, settings};
-use super::{COMPARED, CostError, Measured, Options, RungReport, VIEWS, WALKED};
+use super::{COMPARED, CostError, GREY, MEASURES, Measured, Options, RGB, Report, STAGED, VIEWS, WALKED};
+use crate::cost::Row;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render::{FrameTimer, Stage};
-use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The view whose stages are timed separately.
-const STAGED: &str = "bunny";
 /// A frame that takes longer than this gets fewer rounds of timing.
 pub(super) const SLOW: Duration = Duration::from_secs(2);
 /// Rounds of timing for a slow frame.
 pub(super) const SLOW_ROUNDS: u32 = 2;
 
-/// The times of a frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PathTiming {
-    /// Minimum over the rounds in milliseconds.
-    pub ms: f64,
-    /// Median over the rounds in milliseconds.
-    pub median_ms: f64,
-    /// Number of rounds.
-    pub rounds: u32,
-    /// Minimum time of each of [`Stage::ALL`], submitted and waited for separately, in
-    /// milliseconds; `None` if there are no stages or they were not timed.
-    pub stages: Option<[f64; Stage::ALL.len()]>,
-}
-
-/// Final state of a solver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Solved {
-    /// Number of passes that had work to do.
-    pub passes: u32,
-    /// Number of tile updates in these passes, or of voxel updates for untiled solvers.
-    pub updates: u32,
-    /// Number of updates that another pass would make: 0 if the costs are final.
-    pub active: u32,
-}
-
 /// A frame and its times so far.
 struct Timed<'gpu> {
-    /// Index of the rung.
-    rung: usize,
     frame: FrameTimer<'gpu>,
     /// Whether the stages are also timed separately.
     staged: bool,
@@ -66,69 +37,98 @@ impl Timed<'_> {
         Ok(())
     }
 
-    fn timing(&self) -> Option<PathTiming> {
-        let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
+    /// Returns the minimum and the median time in milliseconds.
+    fn ms(&self) -> Option<[f64; 2]> {
         let mut totals = self.totals.clone();
         totals.sort_unstable();
-        let least = |stage: usize| milliseconds(self.stages.iter().map(|times| times[stage]).min().unwrap_or_default());
-        Some(PathTiming {
-            ms: milliseconds(*totals.first()?),
-            median_ms: milliseconds(totals[totals.len() / 2]),
-            rounds: totals.len() as u32,
-            stages: (!self.stages.is_empty()).then(|| std::array::from_fn(least)),
-        })
+        let middle = totals.get(totals.len() / 2)?;
+        Some([totals.first()?, middle].map(|time| milliseconds(*time)))
+    }
+
+    /// Returns the rows of the frame: its median, the number of rounds if there were fewer than of
+    /// other frames, and for a frame timed in stages the least of each and the solver's final state.
+    fn rows(&self, name: &str, view: &str, measure: &str, rounds: u32) -> Result<Vec<Row>, CostError> {
+        let row = |measure: &str, value: f64, unit: &str| Row::new(name, view, measure, value, unit);
+        let bytes = self.staged.then(|| self.frame.path_bytes());
+        let (least, median) = self.ms().map(|[least, median]| (least, median)).unzip();
+        let time = Row { value: median, ..row(measure, 0.0, "ms") };
+        let mut rows = vec![Row { bytes, ..time.timed(least) }];
+        if (1..rounds as usize).contains(&self.totals.len()) {
+            rows.push(row(&format!("rounds of {measure}"), self.totals.len() as f64, ""));
+        }
+        if self.staged {
+            for (place, stage) in Stage::ALL.into_iter().enumerate() {
+                let least = self.stages.iter().map(|times| times[place]).min();
+                rows.extend(least.map(|least| row(stage.name(), milliseconds(least), "ms")));
+            }
+            if let Some(status) = self.frame.solved()?.first() {
+                let state = [("passes", status.passes), ("updates", status.updates), ("active", status.active)];
+                rows.extend(state.map(|(measure, count)| row(measure, count.into(), "")));
+            }
+        }
+        Ok(rows)
     }
 }
 
-/// Draws and times every rung's frames: all rungs of a view interleaved, in one colour or in its
-/// own. `measured` and `rungs` correspond by index.
+fn milliseconds(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}
+
+/// Draws and times every rung's frames: all rungs of a view interleaved, in white or in its own
+/// colours. `errors` has the errors by [`MEASURES`], view by view in the order of `measured`.
+///
+/// Bytes are those of maps, voxels, costs and solver.
 pub(super) fn measure(
     gpu: &Gpu,
     options: &Options,
     measured: &[Measured],
-    rungs: &mut [RungReport],
+    errors: &[[Option<f64>; MEASURES.len()]],
+    report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
-    let drawn: Vec<(usize, Measured)> =
-        measured.iter().copied().enumerate().filter(|(_, of)| of.rung != Rung::Reference).collect();
-    let kinds = COMPARED.map(|view| (view, true)).into_iter().chain(WALKED.map(|view| (view, false)));
+    let drawn: Vec<Measured> = measured.iter().copied().filter(|of| of.rung != Rung::Reference).collect();
     let total = (COMPARED.len() + WALKED.len()) as u64 * drawn.len() as u64 * (u64::from(options.rounds) + 1);
     let mut done = 0;
-    for (view, is_grey) in kinds {
-        let scene = scene(view)?;
-        let scene = if is_grey { grey(scene) } else { scene };
-        let staged = is_grey && view == STAGED;
-        let mut timed = Vec::new();
-        for &(rung, of) in &drawn {
-            let frame = FrameTimer::new(gpu, &scene, &settings(view, of, options.frame), None, false)?;
-            // The first frame includes compilation.
-            frame.run()?;
-            if staged {
-                rungs[rung].bytes = frame.path_bytes();
-                rungs[rung].solved = frame.solved()?.first().map(|status| Solved {
-                    passes: status.passes,
-                    updates: status.updates,
-                    active: status.active,
-                });
+    for (view, errors) in VIEWS.into_iter().zip(errors.chunks_exact(measured.len())) {
+        let mut rows = Vec::new();
+        for (kind, views) in [(GREY, &COMPARED[..]), (RGB, &WALKED)] {
+            if !views.contains(&view) {
+                continue;
             }
-            timed.push(Timed { rung, frame, staged, totals: Vec::new(), stages: Vec::new() });
-            done += 1;
-            progress(done, total);
-        }
-        for _ in 0..options.rounds {
-            for timed in &mut timed {
-                if !timed.done() {
-                    timed.round()?;
-                }
+            let scene = scene(view)?;
+            let scene = if kind == GREY { grey(scene) } else { scene };
+            let mut timed = Vec::new();
+            for &of in &drawn {
+                let frame = FrameTimer::new(gpu, &scene, &settings(view, of, options.frame), None, false)?;
+                // The first frame includes compilation.
+                frame.run()?;
+                let staged = kind == GREY && view == STAGED;
+                timed.push(Timed { frame, staged, totals: Vec::new(), stages: Vec::new() });
                 done += 1;
                 progress(done, total);
             }
+            for _ in 0..options.rounds {
+                for timed in &mut timed {
+                    if !timed.done() {
+                        timed.round()?;
+                    }
+                    done += 1;
+                    progress(done, total);
+                }
+            }
+            for (of, timed) in drawn.iter().zip(&timed) {
+                rows.extend(timed.rows(&of.name(), view, kind, options.rounds)?);
+            }
         }
-        let Some(place) = VIEWS.iter().position(|name| *name == view) else { continue };
-        for timed in &timed {
-            let times = &mut rungs[timed.rung].times[place];
-            *(if is_grey { &mut times.grey } else { &mut times.rgb }) = timed.timing();
+        for (of, errors) in measured.iter().zip(errors) {
+            let name = of.name();
+            for (measure, error) in MEASURES.into_iter().zip(*errors) {
+                let kind = if measure == "walks" { RGB } else { GREY };
+                let ms = rows.iter().find(|row| row.rung == name && row.measure == kind).and_then(|row| row.ms);
+                report.rows.push(Row::new(&name, view, measure, error, "").timed(ms));
+            }
         }
+        report.rows.append(&mut rows);
     }
     Ok(())
 }

@@ -11,7 +11,6 @@ use lapidary_render::{Picture, RenderError, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Material, Medium, Object, Scene, SceneError};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Names of the views: a ball with a radius of eight optical depths, lit from the side; the bunny;
@@ -43,26 +42,6 @@ pub(super) const DEEPEST: f64 = 12.0;
 /// Upper limit of a rung's cost in nats, which is also the cost of a black pixel.
 pub(super) const BLACK: f64 = 24.0;
 
-/// Errors of a rung in a view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Distance {
-    /// Root mean square of the costs' errors in nats; `None` if no costs are compared.
-    pub nats: Option<f64>,
-    /// Root mean square of the errors in luminance, e to the minus cost, relative to the brightest
-    /// possible; `None` if no costs are compared.
-    pub luminance: Option<f64>,
-    /// Distance from the committed picture by random walks: [`crate::exposure::exposed_distance`].
-    /// For the walks themselves it is their own standard error; `None` if no picture is committed.
-    pub walks: Option<f64>,
-}
-
-impl Distance {
-    /// Returns the error, by index into [`super::MEASURES`].
-    pub fn of(&self, measure: usize) -> Option<f64> {
-        [self.nats, self.luminance, self.walks][measure]
-    }
-}
-
 /// A scene with one extinction, and the expected cost of each pixel.
 pub(super) struct View {
     name: &'static str,
@@ -88,9 +67,9 @@ impl View {
 
     /// Returns the errors except those against random walks. The rung that computed the truth has
     /// none; nor has a rung whose extinction differs from the truth's.
-    pub(super) fn distance(&self, gpu: &Gpu, Measured { rung, unscaled }: Measured) -> Result<Distance, CostError> {
+    pub(super) fn distance(&self, gpu: &Gpu, Measured { rung, unscaled }: Measured) -> Result<Errors, CostError> {
         if self.maker == Some(rung) || self.truth.is_empty() || unscaled && self.name != BALL {
-            return Ok(Distance::default());
+            return Ok([None; 2]);
         }
         Ok(between(&self.costs(gpu, rung)?, &self.truth))
     }
@@ -180,8 +159,12 @@ fn costs(scene: &Scene, picture: &Picture) -> Vec<Option<f64>> {
     picture.linear.iter().map(cost).collect()
 }
 
-/// Returns root mean squares over the pixels with visible light.
-fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
+/// RMS errors of the costs in nats, and of luminance, e to the minus cost, relative to the brightest
+/// possible; `None` if no costs are compared.
+type Errors = [Option<f64>; 2];
+
+/// Returns the errors over the pixels with visible light.
+fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Errors {
     let (mut nats, mut luminance, mut count) = (0.0, 0.0, 0u32);
     for (found, truth) in found.iter().zip(truth).filter_map(|(found, truth)| (*found).zip(*truth)) {
         if truth < DEEPEST {
@@ -191,7 +174,7 @@ fn between(found: &[Option<f64>], truth: &[Option<f64>]) -> Distance {
         }
     }
     let mean = |sum: f64| (count > 0).then(|| (sum / f64::from(count)).sqrt());
-    Distance { nats: mean(nats), luminance: mean(luminance), walks: None }
+    [mean(nats), mean(luminance)]
 }
 
 #[cfg(test)]
@@ -205,9 +188,9 @@ mod tests {
         let truth = [Some(0.0), Some(DEEPEST), None, Some(1.0)];
         let found = between(&[Some(1.0), Some(0.0), Some(0.0), Some(1.0)], &truth);
         let half = 0.5f64.sqrt();
-        assert!((found.nats.expect("seen") - half).abs() < 1e-12);
-        assert!((found.luminance.expect("seen") - half * (1.0 - (-1f64).exp())).abs() < 1e-12);
-        assert_eq!(between(&[None; 4], &truth), Distance::default());
+        let [nats, luminance] = found.map(|error| error.expect("seen"));
+        assert!((nats - half).abs() < 1e-12 && (luminance - half * (1.0 - (-1f64).exp())).abs() < 1e-12);
+        assert_eq!(between(&[None; 4], &truth), [None; 2]);
     }
 
     /// On its lit side the ball's costs match Lambert's law pixel by pixel except near the

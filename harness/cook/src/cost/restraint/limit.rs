@@ -1,8 +1,9 @@
 //! Rays that end once the light they carry is too faint to be seen.
 
 use super::{Options, SCENES};
-use crate::cost::timing::{self, Timed, Timing};
-use crate::cost::{CostError, views};
+use crate::cost::gem::views;
+use crate::cost::timing::{self, Timed};
+use crate::cost::{CostError, Progress, Report, Row};
 use lapidary_assay::extremum::larger;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
@@ -11,7 +12,6 @@ use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::restraint::LEAST_DIFFERENCE;
 use lapidary_render::{GemOptions, RenderError, Settings};
 use lapidary_scene::Scene;
-use serde::{Deserialize, Serialize};
 
 /// Width and height of the compared pictures in pixels.
 const SIDE: u32 = 256;
@@ -21,51 +21,10 @@ const COUNTED: [u32; 2] = [96, 54];
 /// end.
 const BREAK: [&str; 2] = ["if (LIMIT_THROUGHPUT && !ray.followed) {", "if (LIMIT_THROUGHPUT && false) {"];
 
-/// One rung in one scene, with and without the limit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limited {
-    /// The scene's name.
-    pub scene: String,
-    /// The rung's name.
-    pub rung: String,
-    /// Number of facets that a ray searches for without the limit, averaged over the covered pixels
-    /// of the timed frame.
-    pub facets_unlimited: f64,
-    /// Number of facets that a ray searches for with the limit, averaged in the same way.
-    pub facets_limited: f64,
-    /// Largest difference of radiance times exposure in the scene's own picture, in units of the
-    /// bound.
-    pub largest: f64,
-    /// Largest difference in that picture after encoding for a display, in 8-bit steps.
-    pub largest_encoded: u8,
-    /// Fraction of its covered pixels that differ by at least one 8-bit step.
-    pub changed: f64,
-    /// Times of the frame without the limit.
-    pub unlimited: Timing,
-    /// Times with the limit and early exits from the loops.
-    pub limited: Timing,
-    /// Times with the limit and loops that run to their end.
-    pub limited_without_break: Timing,
-}
-
-impl Limited {
-    /// Returns the name, the largest difference and the time of each variant.
-    pub fn ways(&self) -> impl Iterator<Item = (&'static str, f64, Timing)> {
-        let largest = self.largest * LEAST_DIFFERENCE;
-        [
-            ("unlimited", 0.0, self.unlimited),
-            ("limited", largest, self.limited),
-            ("limited without break", largest, self.limited_without_break),
-        ]
-        .into_iter()
-    }
-
-    /// Returns the fraction of time saved by the limit; negative if it costs time.
-    #[must_use]
-    pub fn saved(&self) -> f64 {
-        1.0 - self.limited.ms / self.unlimited.ms
-    }
-}
+/// The way of a rung with the limit and early exits from the loops.
+pub(super) const LIMITED: &str = "limited";
+/// The way of a rung with the limit and loops that run to their end.
+pub(super) const NO_BREAK: &str = "limited without break";
 
 /// Returns the number of facets that a ray searches for, computed with the mirror and averaged over
 /// the rays of all pixels that show the scene's single stone, in a picture of the settings' size.
@@ -112,12 +71,16 @@ fn differences(gpu: &Gpu, scene: &Scene, rung: Rung) -> Result<(f64, u8, f64), C
     Ok((largest / LEAST_DIFFERENCE, largest_encoded, changed as f64 / covered as f64))
 }
 
-/// Measures all scenes and rungs, timed in one run.
+/// Adds all scenes and rungs, timed in one run: the facets that a ray searches for, averaged over the
+/// covered pixels of the timed frame; the largest difference of radiance times exposure in the
+/// scene's own picture, in units of the bound; the same in 8-bit steps; and the fraction of its
+/// covered pixels that differ by at least one.
 pub(super) fn measure(
     gpu: &Gpu,
     options: &Options,
-    progress: &mut dyn FnMut(&'static str, u64, u64),
-) -> Result<Vec<Limited>, CostError> {
+    report: &mut Report,
+    progress: Progress<'_>,
+) -> Result<(), CostError> {
     let mut scenes = Vec::new();
     for name in SCENES {
         let scene = Scene::named(name)?;
@@ -129,36 +92,31 @@ pub(super) fn measure(
         .flat_map(|((_, filled, _), rung)| {
             let source = lapidary_wgsl::recipe_source(rung.recipe());
             let through = source.replace(BREAK[0], BREAK[1]);
+            // All variants of a comparison are timed on the same pixels.
             [(false, source.clone()), (true, source), (true, through)].map(|(limited, source)| Timed {
-                settings: settings(*rung, limited, options.frame),
-                scene: filled,
                 source: Some(source),
-                displayed: false,
-                // All variants of a comparison are timed on the same pixels.
-                scales: false,
+                ..Timed::new(filled, settings(*rung, limited, options.frame))
             })
         })
         .collect();
     let timings = timing::time(gpu, &timed, options.rounds.max(1), &mut |done, total| progress("timing", done, total))?;
-    let mut found = Vec::new();
     for ((&((name, filled, scene), rung), timings), done) in pairs.iter().zip(timings.chunks_exact(3)).zip(1..) {
         let counted = |limited| facets(filled, &settings(rung, limited, COUNTED));
-        let (largest, largest_encoded, changed) = differences(gpu, scene, rung)?;
-        found.push(Limited {
-            scene: (*name).to_owned(),
-            rung: rung.to_string(),
-            facets_unlimited: counted(false)?,
-            facets_limited: counted(true)?,
-            largest,
-            largest_encoded,
-            changed,
-            unlimited: timings[0],
-            limited: timings[1],
-            limited_without_break: timings[2],
-        });
+        let (largest, steps, changed) = differences(gpu, scene, rung)?;
+        let [unlimited, limited, no_break] = [0, 1, 2].map(|way: usize| timings[way].map(|timing| timing.ms));
+        let (own, with) = (rung.to_string(), |way: &str| format!("{rung}, {way}"));
+        let row = |rung: &str, measure: &str, value: f64| Row::new(rung, name, measure, value, "");
+        report.rows.extend([
+            row(&own, "facets", counted(false)?).timed(unlimited),
+            row(&with(LIMITED), "facets", counted(true)?).timed(limited),
+            row(&with(LIMITED), "radiance", largest).timed(limited),
+            row(&with(LIMITED), "steps", steps.into()),
+            row(&with(LIMITED), "changed", changed),
+            row(&with(NO_BREAK), "radiance", largest).timed(no_break),
+        ]);
         progress("comparing", done, pairs.len() as u64);
     }
-    Ok(found)
+    Ok(())
 }
 
 #[cfg(test)]

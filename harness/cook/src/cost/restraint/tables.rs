@@ -1,154 +1,97 @@
-//! The report as text, and as tables for the pages of `docs/`.
+//! The tables of what restraint saves.
 
-use super::{RUNGS, RestraintReport, SCENES};
-use crate::cost::Timing;
-use crate::cost::page::{Table, Tables, header, row};
-use std::fmt::Write as _;
+use super::limit::{LIMITED, NO_BREAK};
+use super::{RUNGS, SCENES};
+use crate::cost::report::Report;
+use crate::cost::table::{Table, figure, scientific};
 
-impl Tables for RestraintReport {
-    const TABLES: &'static [Table<Self>] =
-        &[("restraint_throughput", throughput), ("restraint_tiles", tiles), ("restraint_variants", variants)];
-
-    fn whole(&self) -> Result<(), String> {
-        for (scene, rung) in SCENES.iter().flat_map(|scene| RUNGS.iter().map(move |rung| (scene, rung))) {
-            if !self.limited.iter().any(|limited| limited.scene == *scene && limited.rung == *rung) {
-                return Err(format!("the report has no `{rung}` of `{scene}`; only a whole report fills a page"));
-            }
+/// Checks that a report has every scene by every rung, and tiles.
+pub(super) fn whole(report: &Report) -> Result<(), String> {
+    for (scene, rung) in SCENES.iter().flat_map(|scene| RUNGS.iter().map(move |rung| (scene, rung))) {
+        if report.row(rung, scene, "facets").is_none() {
+            return Err(format!("the report has no `{rung}` of `{scene}`; only a whole report fills a page"));
         }
-        if self.tiles.is_empty() { Err("the report has no tiles".to_owned()) } else { Ok(()) }
     }
+    if report.rungs("updates").is_empty() { Err("the report has no tiles".to_owned()) } else { Ok(()) }
 }
 
-fn milliseconds(timing: Timing) -> String {
-    format!("{:.1}", timing.ms)
+pub(super) fn tables(report: &Report) -> Vec<Table> {
+    vec![throughput(report), tiles(report), variants(report)]
 }
 
-/// Returns the cells of each row after the scene and the rung.
-fn throughput_lines(report: &RestraintReport) -> impl Iterator<Item = Vec<String>> {
-    report.limited.iter().map(|limited| {
-        vec![
-            limited.scene.clone(),
-            limited.rung.clone(),
-            format!("{:.2}", limited.facets_unlimited),
-            format!("{:.2}", limited.facets_limited),
-            milliseconds(limited.unlimited),
-            milliseconds(limited.limited_without_break),
-            milliseconds(limited.limited),
-            format!("{:+.0} %", -100.0 * limited.saved()),
-            format!("{:.2}", limited.largest),
-            format!("{}, {:.1} %", limited.largest_encoded, 100.0 * limited.changed),
-        ]
-    })
+/// Returns the ways that a measure was taken in, as full name, rung and way, with the view.
+fn ways<'r>(report: &'r Report, measure: &str) -> Vec<(&'r str, &'r str, &'r str, &'r str)> {
+    let rows = report.rows.iter().filter(|row| row.measure == measure);
+    rows.filter_map(|row| row.rung.split_once(", ").map(|(rung, way)| (&*row.rung, rung, way, &*row.view))).collect()
 }
 
-const THROUGHPUT: [&str; 10] = [
-    "scene",
-    "rung",
-    "facets",
-    "limited",
-    "ms",
-    "limited, no break",
-    "limited",
-    "time",
-    "largest / bound",
-    "steps of 8 bits",
-];
-
-fn tile_lines(report: &RestraintReport) -> impl Iterator<Item = Vec<String>> {
-    report.tiles.iter().flat_map(|tiles| {
-        let full = tiles.ways.last().map_or(f64::NAN, |way| way.ms);
-        tiles.ways.iter().map(move |way| {
-            vec![
-                format!("{}-{}", tiles.method, tiles.cells),
-                format!("{:.0} %", 100.0 * tiles.with_matter),
-                way.way.clone(),
-                way.passes.to_string(),
-                way.updates.to_string(),
-                format!("{:.1}", way.ms),
-                format!("{:.2}", way.ms / full),
-                way.differing.to_string(),
-            ]
+fn throughput(report: &Report) -> Table {
+    let rows = report.rows.iter().filter(|row| row.measure == "facets" && !row.rung.contains(", "));
+    let lines: Vec<(&str, &str)> = rows.map(|row| (&*row.view, &*row.rung)).collect();
+    let with = |rung: &str, way: &str| format!("{rung}, {way}");
+    let value = |(scene, rung): &(&str, &str), measure: &str| report.value(&with(rung, LIMITED), scene, measure);
+    let ms = |(scene, rung): &(&str, &str)| report.ms(rung, scene, "facets");
+    let limited = |(scene, rung): &(&str, &str)| report.ms(&with(rung, LIMITED), scene, "facets");
+    Table::of("restraint_throughput", "Rays that end when what they carry can no longer be seen", lines)
+        .column("scene", |(scene, _)| (*scene).to_owned())
+        .column("rung", |(_, rung)| (*rung).to_owned())
+        .column("facets", |(scene, rung)| figure(report.value(rung, scene, "facets"), 2))
+        .column("limited", |line| figure(value(line, "facets"), 2))
+        .column("ms", |line| figure(ms(line), 1))
+        .column("limited, no break", |(scene, rung)| figure(report.ms(&with(rung, NO_BREAK), scene, "radiance"), 1))
+        .column("limited", |line| figure(limited(line), 1))
+        .column("time", |line| {
+            let saved = limited(line).zip(ms(line)).map(|(limited, ms)| 100.0 * (limited / ms - 1.0));
+            saved.map_or("-".to_owned(), |saved| format!("{saved:+.0} %"))
         })
-    })
+        .column("largest / bound", |line| figure(value(line, "radiance"), 2))
+        .column("steps of 8 bits", |line| {
+            let changed = value(line, "changed").map(|changed| 100.0 * changed);
+            format!("{}, {} %", figure(value(line, "steps"), 0), figure(changed, 1))
+        })
+        .note(format!(
+            "Milliseconds for {} pixels filled by the stone, {}. Facets: looked for by a ray, in the mean. Time: with \
+             the limit, against without. Largest / bound: the largest difference of radiance times exposure, in 1/510. \
+             Steps of 8 bits: the largest difference once encoded for a screen, and the share of pixels that differ.",
+            report.size(),
+            report.run()
+        ))
 }
 
-const TILES: [&str; 8] =
-    ["solver", "tiles with matter", "taken up", "passes", "updates", "ms", "of all", "voxels that differ"];
-
-fn throughput(report: &RestraintReport) -> String {
-    let [width, height] = report.frame;
-    let mut table = header(&THROUGHPUT);
-    throughput_lines(report).for_each(|cells| row(&mut table, &cells));
-    let _ = writeln!(
-        table,
-        "\nMilliseconds for {width} × {height} pixels filled by the stone, the least of {} interleaved rounds, on {}.",
-        report.rounds, report.adapter
-    );
-    table
+fn tiles(report: &Report) -> Table {
+    let lines = ways(report, "updates");
+    let value = |line: &(&str, &str, &str, &str), measure: &str| report.value(line.0, line.3, measure);
+    let ms = |line: &(&str, &str, &str, &str)| report.ms(line.0, line.3, "updates");
+    // The last way of a solver takes up all tiles.
+    let all = |line: &(&str, &str, &str, &str)| ms(lines.iter().rev().find(|other| other.1 == line.1)?);
+    Table::of("restraint_tiles", "Paths through stone, sought in fewer tiles", &lines[..])
+        .column("solver", |line| line.1.to_owned())
+        .column("tiles with matter", |line| {
+            format!("{} %", figure(value(line, "with matter").map(|share| 100.0 * share), 0))
+        })
+        .column("taken up", |line| line.2.to_owned())
+        .column("passes", |line| figure(value(line, "passes"), 0))
+        .column("updates", |line| figure(value(line, "updates"), 0))
+        .column("ms", |line| figure(ms(line), 1))
+        .column("of all", |line| figure(ms(line).zip(all(line)).map(|(ms, all)| ms / all), 2))
+        .column("voxels that differ", |line| figure(value(line, "differing"), 0))
+        .note(format!("Milliseconds for a solve, {}.", report.run()))
 }
 
-fn tiles(report: &RestraintReport) -> String {
-    let mut table = header(&TILES);
-    tile_lines(report).for_each(|cells| row(&mut table, &cells));
-    let _ = writeln!(
-        table,
-        "\nMilliseconds for a solve, the least of {} interleaved rounds, on {}.",
-        report.rounds, report.adapter
-    );
-    table
-}
-
-fn variant_lines(report: &RestraintReport) -> impl Iterator<Item = Vec<String>> {
-    let shared = report.variants.ways.last().map_or(f64::NAN, |way| way.timing.ms);
-    report.variants.ways.iter().map(move |way| {
-        vec![
-            way.way.clone(),
-            way.instructions.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
-            milliseconds(way.timing),
-            format!("{:.2}", way.timing.ms / shared),
-            format!("{:.1e}", way.largest),
-        ]
-    })
-}
-
-const VARIANTS: [&str; 5] = ["variant", "instructions", "ms", "of one for all", "largest difference"];
-
-fn variants(report: &RestraintReport) -> String {
-    let mut table = header(&VARIANTS);
-    variant_lines(report).for_each(|cells| row(&mut table, &cells));
-    let [width, height] = report.frame;
-    let _ = writeln!(
-        table,
-        "\nMilliseconds for the clear bodies of `{}`, {width} × {height} pixels, the least of {} interleaved rounds, on {}.",
-        report.variants.scene, report.rounds, report.adapter
-    );
-    table
-}
-
-/// Writes columns that are as wide as their widest cell.
-fn aligned(text: &mut String, columns: &[&str], lines: &[Vec<String>]) {
-    let heads: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
-    let all: Vec<&Vec<String>> = std::iter::once(&heads).chain(lines).collect();
-    let width = |column: usize| all.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    for cells in all {
-        let padded: Vec<String> = cells.iter().zip(&widths).map(|(cell, &width)| format!("{cell:>width$}")).collect();
-        let _ = writeln!(text, "{}", padded.join("  "));
-    }
-}
-
-pub(super) fn text(report: &RestraintReport) -> String {
-    let [width, height] = report.frame;
-    let mut text = format!("{}, {width}x{height}, least of {} interleaved rounds\n", report.adapter, report.rounds);
-    text.push_str("\nRays that end when what they carry can no longer be seen\n");
-    aligned(&mut text, &THROUGHPUT, &throughput_lines(report).collect::<Vec<_>>());
-    text.push_str(
-        "facets: looked for by a ray, in the mean. time: with the limit, against without. largest / bound: the largest difference of radiance times \
-         exposure, in 1/510.\nsteps of 8 bits: the largest difference once encoded for a screen, and the share of pixels that differ.\n",
-    );
-    text.push_str("\nWays through stone, sought in fewer tiles\n");
-    aligned(&mut text, &TILES, &tile_lines(report).collect::<Vec<_>>());
-    text.push_str("\nStones of several materials\n");
-    aligned(&mut text, &VARIANTS, &variant_lines(report).collect::<Vec<_>>());
-    text
+fn variants(report: &Report) -> Table {
+    let lines = ways(report, "variant");
+    let row = |line: &(&str, &str, &str, &str)| report.row(line.0, line.3, "variant");
+    let ms = |line: &(&str, &str, &str, &str)| row(line)?.ms;
+    let shared = lines.last().and_then(ms);
+    let scene = lines.first().map_or("", |line| line.3);
+    Table::of("restraint_variants", "Stones of several materials", lines)
+        .column("variant", |line| line.2.to_owned())
+        .column("instructions", |line| {
+            let counts = row(line).map_or(&[][..], |row| &row.instructions);
+            counts.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+        })
+        .column("ms", |line| figure(ms(line), 1))
+        .column("of one for all", |line| figure(ms(line).zip(shared).map(|(ms, shared)| ms / shared), 2))
+        .column("largest difference", |line| scientific(row(line).and_then(|row| row.value)))
+        .note(format!("Milliseconds for the clear bodies of `{scene}`, {} pixels, {}.", report.size(), report.run()))
 }

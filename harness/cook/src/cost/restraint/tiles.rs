@@ -1,7 +1,7 @@
 //! Optical paths through a body, solved only in tiles that hold matter and may change, compared
 //! with solvers that process more tiles.
 
-use crate::cost::CostError;
+use crate::cost::{CostError, Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_render::RenderError;
@@ -10,7 +10,6 @@ use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_render::voxelization;
 use lapidary_scene::solver::{Method, Stencil};
 use lapidary_scene::{Bounds, Scene};
-use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// The scene whose body is solved.
@@ -57,36 +56,6 @@ fn ways() -> [(&'static str, Vec<Change>); 3] {
     ]
 }
 
-/// One way to choose the tiles to process.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TileWay {
-    /// Name of the way.
-    pub way: String,
-    /// Milliseconds for a whole solve, the minimum over the rounds.
-    pub ms: f64,
-    /// Number of passes that had work to do.
-    pub passes: u32,
-    /// Number of tile updates; a tile counts each time it is processed.
-    pub updates: u64,
-    /// Number of voxels whose cost is not bit-identical to the first way's.
-    pub differing: u32,
-}
-
-/// A grid, solved in each way.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Tiles {
-    /// Name of the scene with the body.
-    pub scene: String,
-    /// The solver's name.
-    pub method: String,
-    /// Voxels along an edge of the grid.
-    pub cells: u32,
-    /// Fraction of the grid's tiles that hold matter.
-    pub with_matter: f64,
-    /// The ways, from full restraint to none.
-    pub ways: Vec<TileWay>,
-}
-
 /// Returns seeds of cost 0 at the first voxel of matter in each row along x, and the fraction of
 /// tiles that hold matter.
 fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
@@ -121,12 +90,18 @@ fn solve(gpu: &Gpu, solver: &LoneSolver<'_>, seeds: &[f32]) -> Result<f64, Rende
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// Measures every grid in every way, round by round.
-pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Tiles>, CostError> {
+/// Adds every grid in every way, round by round: the fraction of the grid's tiles that hold matter,
+/// the passes that had work to do, the updates of tiles, where a tile counts each time it is
+/// processed, and the voxels whose cost is not bit-identical to the first way's.
+pub(super) fn measure(
+    gpu: &Gpu,
+    rounds: u32,
+    report: &mut Report,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(), CostError> {
     let scene = Scene::named(SCENE)?;
     let mesh = &scene.objects[0].mesh;
     let plain = lapidary_wgsl::recipe_source("optical_path_tiles");
-    let mut found = Vec::new();
     for (done, cells) in (1..).zip(CELLS) {
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
         let matter = voxelization::matter(gpu, grid, mesh, &[]).map_err(RenderError::from)?;
@@ -141,30 +116,39 @@ pub(super) fn measure(gpu: &Gpu, rounds: u32, progress: &mut dyn FnMut(u64, u64)
             solvers.push(solver);
         }
         let tiles = u64::from(cells / TILE).pow(3);
-        let mut ways: Vec<TileWay> = Vec::new();
         let mut first: Option<Vec<f32>> = None;
-        for ((way, changes), solver) in self::ways().iter().zip(&solvers) {
-            let ms = solve(gpu, solver, &seeds)?;
+        let mut counts = Vec::new();
+        let mut times = Vec::new();
+        for ((_, changes), solver) in ways().iter().zip(&solvers) {
+            times.push(solve(gpu, solver, &seeds)?);
             let status = solver.status().map_err(RenderError::from)?;
             let costs = solver.costs().map_err(RenderError::from)?;
             let first = first.get_or_insert_with(|| costs.clone());
-            let differing =
-                first.iter().zip(&costs).filter(|(one, other)| one.to_bits() != other.to_bits()).count() as u32;
+            let differing = first.iter().zip(&costs).filter(|(one, other)| one.to_bits() != other.to_bits()).count();
             // The solver counts listed tiles, but this variant ignores the list.
             let takes_all = changes.len() > 1;
             let updates = if takes_all { tiles * u64::from(status.passes) } else { u64::from(status.updates) };
-            ways.push(TileWay { way: (*way).to_owned(), ms, passes: status.passes, updates, differing });
+            counts.push([
+                ("with matter", with_matter),
+                ("passes", status.passes.into()),
+                ("updates", updates as f64),
+                ("differing", differing as f64),
+            ]);
         }
         for _ in 0..rounds {
-            for (solver, way) in solvers.iter().zip(&mut ways) {
-                way.ms = way.ms.min(solve(gpu, solver, &seeds)?);
+            for (solver, ms) in solvers.iter().zip(&mut times) {
+                *ms = ms.min(solve(gpu, solver, &seeds)?);
             }
         }
-        let (scene, method, with_matter) = (SCENE.to_owned(), METHOD.to_string(), with_matter);
-        found.push(Tiles { scene, method, cells, with_matter, ways });
+        for (((way, _), counts), ms) in ways().iter().zip(counts).zip(times) {
+            let rung = format!("{METHOD}-{cells}, {way}");
+            report
+                .rows
+                .extend(counts.map(|(measure, value)| Row::new(&rung, SCENE, measure, value, "").timed(Some(ms))));
+        }
         progress(done, CELLS.len() as u64);
     }
-    Ok(found)
+    Ok(())
 }
 
 #[cfg(test)]

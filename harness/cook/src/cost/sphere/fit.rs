@@ -3,12 +3,10 @@
 use lapidary_assay::golden_section::golden_section;
 use lapidary_cdrf as cdrf;
 use lapidary_reference::random_walk::{BINS, Profile};
-use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 
 /// A reflectance function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// The clamped cosine itself, independent of the width.
     Lambert,
@@ -19,6 +17,15 @@ pub enum Form {
 }
 
 impl Form {
+    /// Returns the form's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lambert => "lambert",
+            Self::Circular => "circular",
+            Self::Spherical => "spherical",
+        }
+    }
+
     fn value(self, cosine: f64, sigma: f64) -> f64 {
         // The mirror is accurate enough: its error, 1.5e-6, is a thousandth of a fit's residual. It
         // also has to be fast, since a fit evaluates tens of thousands of values.

@@ -1,7 +1,8 @@
 //! Where a frame's time goes: frames of one stone, with one part after another cut from the recipe.
 
-use super::timing::{self, Timed};
 use super::{CostError, views};
+use crate::cost::table::figure;
+use crate::cost::timing::{self, Timed};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_render::Settings;
@@ -50,7 +51,7 @@ pub fn profile(
             let settings = Settings { rung, samples: 1, ..Settings::of_size(width, height) };
             let source = if right.is_empty() { source } else { source.replace(right, cut) };
             places.push((row, column));
-            timed.push(Timed { settings, scene: &scene, source: Some(source), displayed: false, scales: true });
+            timed.push(Timed { source: Some(source), scales: true, ..Timed::new(&scene, settings) });
         }
     }
     let timings = timing::time(gpu, &timed, rounds, progress)?;
@@ -62,7 +63,8 @@ pub fn profile(
         let _ = write!(text, "\n{what:52}");
         for column in 0..RUNGS.len() {
             let found = places.iter().position(|place| *place == (row, column));
-            let _ = write!(text, "{:>10}", found.map_or(String::new(), |k| format!("{:.1}", timings[k].ms)));
+            let _ =
+                write!(text, "{:>10}", found.map_or(String::new(), |k| figure(timings[k].map(|timing| timing.ms), 1)));
         }
     }
     Ok(text)

@@ -1,15 +1,38 @@
-//! The gem ladder.
+//! The gem ladder: each rung's picture of several stones against the spectral reference, and its
+//! time.
 
-use super::seen::{SAMPLES, Seen, Watched, steadiness};
+mod choices;
+mod dispersion;
+mod error;
+mod profile;
+pub mod proxy_sizes;
+mod reflection;
+mod seen;
+mod tables;
+pub mod views;
+
+pub use error::Errors;
+pub use profile::profile;
+
 use super::timing::{self, Timed};
-use super::views::{self, View};
-use super::{Colours, CostError, Report, RungReport, choices, dispersion, proxy_sizes, reflection};
+use super::{CostError, Ladder, Progress, Report, Row};
+use dispersion::Colours;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_render as render;
 use lapidary_render::shader::Shader;
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::Scene;
+use seen::{SAMPLES, Watched};
+use views::View;
+
+/// The ladder.
+pub const LADDER: Ladder = Ladder { name: "gem", tables: tables::tables, plots: tables::plots, whole: tables::whole };
+
+/// The measures of a rung in a view: FLIP, RMSE, energy and the change to the next frame.
+pub const MEASURES: [&str; 4] = ["flip", "rmse", "energy", "change"];
+/// The frame that the paper times: the brilliant fills it.
+pub const FILLED: &str = "filled";
 
 /// The ladder from cheap to exact; the number of hits doubles from rung to rung.
 ///
@@ -138,12 +161,22 @@ fn papers(options: &Options) -> impl Iterator<Item = Rung> + '_ {
     options.rungs.iter().copied().filter(|rung| rung.spectrum() == Spectrum::Paper)
 }
 
-/// Measures the ladder. `progress` receives the current step, the work done and the total.
-pub fn run(
-    gpu: &Gpu,
-    options: &Options,
-    progress: &mut dyn FnMut(&'static str, u64, u64),
-) -> Result<Report, CostError> {
+/// Measures the ladder. A row of a view has the errors and the time of the same picture; the rows of
+/// [`FILLED`] have the shaders' instructions, and the bytes of constants and storage that the
+/// stone's geometry needs besides the mesh.
+///
+/// # Errors
+/// Returns an error if a committed reference is damaged or if the device fails.
+pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Report, CostError> {
+    let [width, height] = options.frame;
+    let settings = [
+        ("width", width),
+        ("height", height),
+        ("rounds", options.rounds),
+        ("side", views::SIDE),
+        ("samples", SAMPLES * SAMPLES),
+    ];
+    let mut report = Report::new(LADDER.name, gpu.describe(), &settings.map(|(name, value)| (name, value.into())));
     let open = |views: &[View]| views.iter().map(|view| Watched::open(gpu, view)).collect::<Result<Vec<_>, _>>();
     let (watched, concave) = (open(&options.views)?, open(&options.concave)?);
     let fits = (papers(options).count() * watched.len()) as u64;
@@ -157,107 +190,58 @@ pub fn run(
         colours.push(found);
     }
     let entries = entries(options, &colours);
-    let brilliant = Scene::named("brilliant")?;
-    let mut rungs = entries.iter().map(|entry| count(&brilliant, entry)).collect::<Result<Vec<_>, _>>()?;
     let total = (watched.len() + concave.len()) as u64;
-    for (done, (view, watched)) in (0..).zip(watched.iter().enumerate()) {
-        progress("comparing and timing views", done, total);
-        for (rung, seen) in rungs.iter_mut().zip(see(gpu, options, watched, &entries, Some(view))?) {
-            rung.views.push(Some(seen));
-        }
+    for (view, watched) in watched.iter().enumerate() {
+        progress("comparing and timing views", view as u64, total);
+        let drawn = entries.iter().map(|entry| (&*entry.name, entry.settings_in(Some(view))));
+        watched.see(gpu, options.rounds, &drawn.collect::<Vec<_>>(), &mut report)?;
     }
-    for (done, watched) in (options.views.len() as u64..).zip(&concave) {
+    for (done, watched) in (watched.len() as u64..).zip(&concave) {
         progress("comparing and timing views", done, total);
-        let (drawing, drawn): (Vec<_>, Vec<_>) =
-            entries.iter().zip(&mut rungs).partition(|(entry, _)| entry.draws_concave());
-        drawn.into_iter().for_each(|(_, rung)| rung.concave.push(None));
-        let (entries, rungs): (Vec<&Entry>, Vec<&mut RungReport>) = drawing.into_iter().unzip();
-        for (rung, seen) in rungs.into_iter().zip(see(gpu, options, watched, entries, None)?) {
-            rung.concave.push(Some(seen));
-        }
+        let drawing = entries.iter().filter(|entry| entry.draws_concave());
+        let drawn = drawing.map(|entry| (&*entry.name, entry.settings_in(None)));
+        watched.see(gpu, options.rounds, &drawn.collect::<Vec<_>>(), &mut report)?;
     }
-    if options.rounds > 0 {
-        let filled = views::filled(&brilliant);
-        let [width, height] = options.frame;
-        let timed: Vec<Timed<'_>> = entries
-            .iter()
-            .map(|entry| Timed {
-                settings: Settings { width, height, ..entry.settings.clone() },
-                scene: &filled,
-                source: None,
-                displayed: false,
-                scales: true,
-            })
-            .collect();
-        let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
-        for (rung, timing) in rungs.iter_mut().zip(timings) {
-            rung.timing = Some(timing);
-        }
+    let brilliant = Scene::named("brilliant")?;
+    let filled = views::filled(&brilliant);
+    let timed: Vec<Timed<'_>> = entries
+        .iter()
+        .map(|entry| Timed {
+            scales: true,
+            ..Timed::new(&filled, Settings { width, height, ..entry.settings.clone() })
+        })
+        .collect();
+    let timings = timing::time(gpu, &timed, options.rounds, &mut |done, total| progress("timing", done, total))?;
+    for (entry, timing) in entries.iter().zip(timings) {
+        report.add_time(entry.counted(&brilliant)?, timing.as_ref());
+        let encode = timing.map(|timing| timing.encode_us);
+        report.rows.push(Row::new(&entry.name, FILLED, "encode", encode, "µs"));
     }
     progress("comparing how rays end", 0, 1);
-    let choices = choices::measure(gpu, &watched)?;
-    let steadiness = steadiness(gpu, &watched)?;
-    let mut small = |done| progress("following small references", done, proxy_sizes::FOLLOWED);
-    let sizes = if options.sizes { proxy_sizes::measure(gpu, &mut small)? } else { Vec::new() };
-    let names = |watched: &[Watched]| watched.iter().map(|watched| watched.view.name.to_owned()).collect();
-    Ok(Report {
-        adapter: gpu.describe(),
-        views: names(&watched),
-        concave: names(&concave),
-        side: views::SIDE,
-        samples: SAMPLES * SAMPLES,
-        frame: options.frame,
-        rungs,
-        colours: colours.concat(),
-        choices,
-        steadiness,
-        sizes,
-        reflections: reflection::measure()?,
-    })
-}
-
-/// Compares every rung in a view, and times it on the same picture.
-fn see<'a>(
-    gpu: &Gpu,
-    options: &Options,
-    watched: &Watched,
-    entries: impl IntoIterator<Item = &'a Entry>,
-    view: Option<usize>,
-) -> Result<Vec<Seen>, CostError> {
-    let settings: Vec<Settings> = entries.into_iter().map(|entry| entry.settings_in(view)).collect();
-    let mut seen = settings.iter().map(|settings| watched.see(gpu, settings)).collect::<Result<Vec<_>, _>>()?;
-    if options.rounds > 0 {
-        let timed = |settings: Settings| Timed {
-            settings,
-            scene: &watched.scene,
-            source: None,
-            displayed: false,
-            scales: false,
-        };
-        let timed: Vec<Timed<'_>> = settings.into_iter().map(timed).collect();
-        let timings = timing::time(gpu, &timed, options.rounds, &mut |_, _| {})?;
-        for (seen, timing) in seen.iter_mut().zip(timings) {
-            seen.ms = Some(timing.ms);
-        }
+    choices::measure(gpu, &watched, &mut report)?;
+    seen::steadiness(gpu, &watched, &mut report)?;
+    report.rows.extend(colours.concat().iter().flat_map(Colours::rows));
+    if options.sizes {
+        let mut small = |done| progress("following small references", done, proxy_sizes::FOLLOWED);
+        proxy_sizes::measure(gpu, &mut report, &mut small)?;
     }
-    Ok(seen)
+    reflection::measure(&mut report)?;
+    Ok(report)
 }
 
-/// Specialises the rung's shaders for the brilliant and counts their SPIR-V instructions.
-fn count(brilliant: &Scene, entry: &Entry) -> Result<RungReport, CostError> {
-    let rung = entry.settings.rung;
-    let source = lapidary_wgsl::recipe_source(rung.recipe());
-    let constants = render::gem_constants(brilliant, &entry.settings);
-    let shader = Shader::new(rung.recipe(), &source, &["gem_vertex", "gem_fragment"], &constants);
-    let counts = shader.map_err(render::RenderError::from)?.counts()?;
-    Ok(RungReport {
-        rung: entry.name.clone(),
-        views: Vec::new(),
-        concave: Vec::new(),
-        timing: None,
-        fragment_instructions: counts.fragment_instructions,
-        vertex_instructions: counts.vertex_instructions,
-        geometry_bytes: render::geometry_bytes(&brilliant.objects[0], rung)?,
-        dominated: false,
-    })
+impl Entry {
+    /// Returns a row with the SPIR-V instructions of the rung's shaders for the brilliant, vertex and
+    /// fragment, and the bytes of its geometry.
+    fn counted(&self, brilliant: &Scene) -> Result<Row, CostError> {
+        let rung = self.settings.rung;
+        let source = lapidary_wgsl::recipe_source(rung.recipe());
+        let constants = render::gem_constants(brilliant, &self.settings);
+        let shader = Shader::new(rung.recipe(), &source, &["gem_vertex", "gem_fragment"], &constants);
+        let counts = shader.map_err(render::RenderError::from)?.counts()?;
+        Ok(Row {
+            bytes: Some(render::geometry_bytes(&brilliant.objects[0], rung)?),
+            instructions: vec![counts.vertex_instructions, counts.fragment_instructions],
+            ..Row::new(&self.name, FILLED, "", None, "")
+        })
+    }
 }

@@ -2,10 +2,9 @@
 
 use crate::snapshot;
 use lapidary_render::Picture;
-use serde::{Deserialize, Serialize};
 
 /// Errors of a picture against its reference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Mean FLIP of the tone-mapped pictures over the pixels that the stone covers, 0 to 1.
     pub flip: f64,
@@ -38,15 +37,5 @@ impl Errors {
             }
         }
         Self { flip: flip / count, rmse: (error / power).sqrt(), energy: sum / reference_sum - 1.0 }
-    }
-
-    /// Returns the magnitude of one error, by index into [`super::MEASURES`]; only the first three
-    /// apply.
-    pub fn of(&self, measure: usize) -> f64 {
-        match measure {
-            0 => self.flip,
-            1 => self.rmse,
-            _ => self.energy.abs(),
-        }
     }
 }

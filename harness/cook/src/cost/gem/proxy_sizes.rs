@@ -2,7 +2,7 @@
 //! exact facets and a black stone, by size, cut and environment.
 
 use super::views::{self, View};
-use super::{CostError, Errors};
+use super::{CostError, Errors, Report, Row};
 use glam::{UVec2, Vec3};
 use lapidary_environment::direction_from_uv;
 use lapidary_gpu::Gpu;
@@ -11,24 +11,6 @@ use lapidary_render as render;
 use lapidary_render::{Picture, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
-use serde::{Deserialize, Serialize};
-
-/// The result for one stone at one size with one rung.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AtSize {
-    /// Name of the built-in scene.
-    pub stone: String,
-    /// Name of the environment that lights it.
-    pub environment: String,
-    /// Width and height of the picture in pixels.
-    pub size: u32,
-    /// The rung's name, or [`BLACK`].
-    pub rung: String,
-    /// Mean radiance divided by the reference's.
-    pub mean: f64,
-    /// RMSE of linear radiance, divided by the reference's root mean square.
-    pub rmse: f64,
-}
 
 /// The baseline: a completely black stone.
 pub const BLACK: &str = "black";
@@ -83,11 +65,11 @@ fn two_lights() -> Environment {
 /// Number of references that are traced.
 pub(super) const FOLLOWED: u64 = (STONES.len() * SIZES.len() * 3) as u64;
 
-/// Measures every stone, size and environment with every rung, at 16 samples per pixel. `progress`
-/// receives the number of references traced so far.
-pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<AtSize>, CostError> {
+/// Adds, for every stone, environment and size by every rung at 16 samples per pixel, the mean
+/// radiance over the reference's and the RMSE. `progress` receives the number of references traced
+/// so far.
+pub(super) fn measure(gpu: &Gpu, report: &mut Report, progress: &mut dyn FnMut(u64)) -> Result<(), CostError> {
     let environments = [("studio", Environment::Studio), ("sun and sky", sun_and_sky()), ("two lights", two_lights())];
-    let mut found = Vec::new();
     let mut done = 0;
     for stone in STONES {
         let scene = Scene::named(stone)?;
@@ -100,14 +82,9 @@ pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<At
                         Err(_) => Picture { linear: vec![[0.0; 4]; reference.linear.len()], ..reference.clone() },
                     };
                     let Errors { rmse, energy, .. } = Errors::between(&picture, reference);
-                    found.push(AtSize {
-                        stone: stone.to_owned(),
-                        environment: (*environment_name).to_owned(),
-                        size: settings.width,
-                        rung: rung.to_owned(),
-                        mean: 1.0 + energy,
-                        rmse,
-                    });
+                    let view = format!("{stone}, {environment_name}, {0} × {0}", settings.width);
+                    report.rows.push(Row::new(rung, &view, "mean", 1.0 + energy, ""));
+                    report.rows.push(Row::new(rung, &view, "rmse", rmse, ""));
                 }
                 Ok(())
             };
@@ -123,7 +100,7 @@ pub(super) fn measure(gpu: &Gpu, progress: &mut dyn FnMut(u64)) -> Result<Vec<At
             }
         }
     }
-    Ok(found)
+    Ok(())
 }
 
 #[cfg(test)]

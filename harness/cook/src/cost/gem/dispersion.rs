@@ -1,8 +1,8 @@
 //! Compares tracked colours with those of separate wavelengths through the same geometry, so that
 //! only the dispersion differs.
 
-use super::CostError;
 use super::views::View;
+use super::{CostError, Row};
 use lapidary_assay::golden_section::golden_section;
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Rung, Spectrum};
@@ -10,7 +10,6 @@ use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::{GemOptions, Picture, Settings};
 use lapidary_scene::Scene;
-use serde::{Deserialize, Serialize};
 
 /// Width and height of the compared pictures; there is one sample per pixel, so that a pixel is one
 /// ray.
@@ -18,8 +17,8 @@ const SIDE: u32 = 256;
 
 /// Difference between the colours of a rung's trackers and those of three separate wavelengths,
 /// where all three meet the same facets.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Colours {
+#[derive(Clone, Debug)]
+pub(super) struct Colours {
     /// The rung's geometry and number of hits.
     pub rung: String,
     /// The view's name.
@@ -38,6 +37,21 @@ pub struct Colours {
     pub fitted_rms: f64,
     /// RMS difference with the exact tracker.
     pub tracker_rms: f64,
+}
+
+impl Colours {
+    /// Names of the measures, in the order of [`Self::rows`].
+    pub(super) const MEASURES: [&str; 6] = ["shared", "undispersed", "paper", "strength", "fitted", "tracker"];
+
+    /// Returns the rows of the geometry and the view.
+    pub(super) fn rows(&self) -> impl Iterator<Item = Row> + '_ {
+        let Self { shared, none_rms, paper_rms, strength, fitted_rms, tracker_rms, .. } = *self;
+        let values = [shared, none_rms, paper_rms, strength.into(), fitted_rms, tracker_rms];
+        Self::MEASURES
+            .into_iter()
+            .zip(values)
+            .map(|(measure, value)| Row::new(&self.rung, &self.view, measure, value, ""))
+    }
 }
 
 fn settings(rung: Rung, strength: f32) -> Settings {

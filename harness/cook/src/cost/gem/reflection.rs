@@ -1,33 +1,29 @@
 //! Total internal reflection at the first hit inside the stone: exact and with the proxy, by how
 //! normals were averaged and how the table was triangulated.
 
-use super::CostError;
+use super::{CostError, Report, Row};
 use lapidary_plan::{Geometry, Rung, Spectrum};
 use lapidary_render::Settings;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_scene::cuts::{BrilliantParameters, round_brilliant};
 use lapidary_scene::polyhedron::Triangulation;
 use lapidary_scene::{Averaging, Scene};
-use serde::{Deserialize, Serialize};
 
 /// Width and height of the grid of rays.
 const SIDE: u32 = 128;
 
-/// The fraction of rays that are totally reflected by the first facet they hit inside the stone.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Reflection {
-    /// `exact`, or how the proxy's mesh was made.
-    pub mesh: String,
-    /// Fraction of the rays that enter through the table, 0 to 1.
-    pub table: f64,
-    /// Fraction of the rays that enter through the crown's other facets, 0 to 1.
-    pub crown: f64,
-}
+/// The parts of the stone that rays enter through.
+pub(super) const PARTS: [&str; 2] = ["table", "crown"];
 
-/// Measures the brilliant, seen face-up.
-pub(super) fn measure() -> Result<Vec<Reflection>, CostError> {
+/// Adds, for the brilliant seen face-up, the fraction of the rays that the first facet they hit
+/// inside reflects totally: exactly, and with the proxy by how its mesh was made.
+pub(super) fn measure(report: &mut Report) -> Result<(), CostError> {
     let scene = Scene::named("brilliant")?.seen_from(0.0, 0.0);
-    let mut found = vec![share(&scene, Geometry::Convex, "exact".to_owned())?];
+    let mut add = |mesh: &str, shares: [f64; 2]| {
+        let rows = PARTS.into_iter().zip(shares).map(|(part, share)| Row::new(mesh, part, "reflected", share, ""));
+        report.rows.extend(rows);
+    };
+    add("exact", shares(&scene, Geometry::Convex)?);
     let stone = round_brilliant(&BrilliantParameters::TOLKOWSKY).map_err(lapidary_scene::SceneError::from)?;
     let averagings = [("angle", Averaging::Angle), ("area", Averaging::Area), ("plain", Averaging::Plain)];
     let triangulations = [
@@ -41,13 +37,14 @@ pub(super) fn measure() -> Result<Vec<Reflection>, CostError> {
             let mut scene = scene.clone();
             scene.objects[0].mesh = stone.to_mesh_with(averaging, triangulation);
             let mesh = format!("proxy, normals by {averaging_name}, table {name}");
-            found.push(share(&scene, Geometry::Proxy, mesh)?);
+            add(&mesh, shares(&scene, Geometry::Proxy)?);
         }
     }
-    Ok(found)
+    Ok(())
 }
 
-fn share(scene: &Scene, geometry: Geometry, mesh: String) -> Result<Reflection, CostError> {
+/// Returns the fractions for [`PARTS`].
+fn shares(scene: &Scene, geometry: Geometry) -> Result<[f64; 2], CostError> {
     let rung = Rung::Inside { geometry, hits: 1, spectrum: Spectrum::One };
     let settings = Settings { rung, samples: 1, ..Settings::of_size(SIDE, SIDE) };
     let object = &scene.objects[0];
@@ -66,6 +63,5 @@ fn share(scene: &Scene, geometry: Geometry, mesh: String) -> Result<Reflection, 
         count[0] += usize::from(event.total != 0);
         count[1] += 1;
     }
-    let [table, crown] = counts.map(|[total, all]| total as f64 / all.max(1) as f64);
-    Ok(Reflection { mesh, table, crown })
+    Ok(counts.map(|[total, all]| total as f64 / all.max(1) as f64))
 }
