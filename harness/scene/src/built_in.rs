@@ -176,16 +176,6 @@ const BRILLIANT_ANGLES: (f32, f32) = (27.0, 11.0);
 /// The bunny of the Stanford 3D Scanning Repository, decimated and closed.
 const BUNNY: &[u8] = include_bytes!("../../assets/bunny.glb");
 
-/// Builds the scene called `name`, taking nothing from a file that can be built without it.
-pub(super) fn make(name: &str) -> Result<Scene, SceneError> {
-    let name = named(name).map_or(name, |scene| scene.name);
-    match name {
-        "figure" => Ok(stone::made_figure(name)),
-        "vitrine" => vitrine::made(name),
-        _ => build(name),
-    }
-}
-
 /// Builds the scene called `name`.
 pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
     let name = named(name).map_or(name, |scene| scene.name);

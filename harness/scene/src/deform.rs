@@ -2,9 +2,9 @@
 //! from 0 to 1.
 
 use super::Mesh;
-use super::implicit::{Grid, surface, union};
-use glam::{DMat3, DVec2, DVec3, dvec3};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use super::surfaces::grid;
+use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Largest rotation of the top, in radians.
 const TURN: f64 = FRAC_PI_2;
@@ -40,22 +40,66 @@ pub fn twisted(mesh: &Mesh, axis: DVec2, base: f64, rate: f64) -> Mesh {
     }
 }
 
+/// Radii of two drops, and the distance between their surfaces below which they blend.
+const RADII: [f64; 2] = [14.0, 10.0];
+const WIDTH: f64 = 9.0;
+
 /// Two drops along x that approach, meet and become one, meshed anew for each `time`: two bodies
-/// until about .4, then one. 50 units wide, in triangles of about 1.2; one drop has a radius of 14,
-/// the other of 10.
+/// until about .4, then one. 50 units wide; one drop has a radius of 14, the other of 10.
+///
+/// The bodies are surfaces of revolution about the x axis: the points where the smooth union of two
+/// balls has the value 0.
 #[must_use]
 pub fn merging(time: f64) -> Mesh {
-    /// Radii, and the distance between surfaces below which they blend.
-    const RADII: [f64; 2] = [14.0, 10.0];
-    const WIDTH: f64 = 9.0;
     let gap = 12.0 - 20.0 * time.clamp(0.0, 1.0);
     let apart = RADII[0] + RADII[1] + gap;
     // The larger drop moves less.
     let centres = [-apart * RADII[1] / (RADII[0] + RADII[1]), apart * RADII[0] / (RADII[0] + RADII[1])];
-    let drop = |k: usize, point: DVec3| point.distance(centres[k] * DVec3::X) - RADII[k];
-    let field = |point: DVec3| union(drop(0, point), drop(1, point), WIDTH);
-    // The same grid at all times, so that only moving parts change.
-    surface(&field, &Grid::uniform(dvec3(-32.0, -17.0, -17.0), dvec3(35.0, 17.0, 17.0), 1.2))
+    // Negative inside; `at` is a place along x and a distance from it.
+    let field = |at: DVec2| {
+        let [a, b] = [0, 1].map(|k: usize| at.distance(dvec2(centres[k], 0.0)) - RADII[k]);
+        let overlap = (WIDTH - (a - b).abs()).max(0.0);
+        a.min(b) - overlap * overlap / (4.0 * WIDTH)
+    };
+    let on_axis = |inside: f64, outside: f64| root(inside, outside, |x| field(dvec2(x, 0.0)));
+    let ends = [on_axis(centres[0], centres[0] - 2.0 * RADII[0]), on_axis(centres[1], centres[1] + 2.0 * RADII[1])];
+    // As far from either drop.
+    let middle = 0.5 * (centres[0] + RADII[0] + centres[1] - RADII[1]);
+    let mut mesh = Mesh::default();
+    if field(dvec2(middle, 0.0)) < 0.0 {
+        mesh.append(&revolved(ends, field));
+    } else {
+        mesh.append(&revolved([ends[0], on_axis(centres[0], middle)], field));
+        mesh.append(&revolved([on_axis(centres[1], middle), ends[1]], field));
+    }
+    Mesh { uvs: Vec::new(), ..mesh }
+}
+
+/// Returns the place between `inside`, where `value` is negative, and `outside` where it is 0.
+fn root(mut inside: f64, mut outside: f64, value: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        *(if value(middle) < 0.0 { &mut inside } else { &mut outside }) = middle;
+    }
+    inside
+}
+
+/// Returns the body of revolution about the x axis between two places on it.
+fn revolved([low, high]: [f64; 2], field: impl Fn(DVec2) -> f64) -> Mesh {
+    const DIFFERENCE: f64 = 1e-5;
+    grid([64, 64], |uv| {
+        // The upper pole is towards +x; exactly on the axis at both poles.
+        let along = 0.5 * (low + high) + 0.5 * (high - low) * (PI * uv.y).cos();
+        let at_pole = uv.y <= 0.0 || uv.y >= 1.0;
+        let radius = if at_pole { 0.0 } else { root(0.0, RADII[0] + WIDTH, |radius| field(dvec2(along, radius))) };
+        let at = dvec2(along, radius);
+        let slope = |axis: DVec2| field(at + DIFFERENCE * axis) - field(at - DIFFERENCE * axis);
+        let normal =
+            if at_pole { dvec2(1.0 - 2.0 * uv.y, 0.0) } else { dvec2(slope(DVec2::X), slope(DVec2::Y)).normalize() };
+        let (sine, cosine) = (TAU * uv.x.fract()).sin_cos();
+        let turned = |at: DVec2| dvec3(at.x, at.y * cosine, at.y * sine);
+        (turned(at), turned(normal))
+    })
 }
 
 #[cfg(test)]

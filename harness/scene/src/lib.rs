@@ -20,11 +20,9 @@ use std::path::Path;
 
 use glam::Vec3;
 
-pub mod atlas;
 mod built_in;
 pub mod bvh;
 mod camera;
-pub mod candle;
 pub mod convex;
 pub mod curvatures;
 pub mod cuts;
@@ -32,10 +30,8 @@ pub mod deform;
 pub mod environment;
 pub mod environment_map;
 mod error;
-pub mod figure;
 pub mod glb;
 pub mod gltf;
-pub mod implicit;
 pub mod layout;
 pub mod light;
 pub mod material;
@@ -159,15 +155,6 @@ impl Scene {
     /// `name`.
     pub fn named(name: &str) -> Result<Self, SceneError> {
         built_in::build(name)
-    }
-
-    /// Returns the same scene as [`Scene::named`], but rebuilds every mesh that this program can
-    /// build instead of reading the stored copies of slow ones.
-    ///
-    /// # Errors
-    /// As [`Scene::named`].
-    pub fn made(name: &str) -> Result<Self, SceneError> {
-        built_in::make(name)
     }
 
     /// Returns the box around all vertices, of zero size at the origin if there are none.

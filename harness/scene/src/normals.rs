@@ -114,7 +114,8 @@ pub fn soft_normals(mesh: &Mesh) -> Cow<'_, [Vec3]> {
 
 /// Returns, for each position, the number of its first exact equal, and how many different ones
 /// there are.
-pub(super) fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
+#[must_use]
+pub fn weld(positions: &[Vec3]) -> (Vec<usize>, usize) {
     let mut seen = HashMap::with_capacity(positions.len());
     let welded = positions
         .iter()

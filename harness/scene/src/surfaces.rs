@@ -75,7 +75,8 @@ pub fn rounded_box(half: DVec3, radius: f64, steps: u32) -> Mesh {
 /// Returns a grid of `columns` × `rows` quadrilaterals over the unit square, u to the right and v
 /// down as seen from outside; `surface` gives position and unit normal. Triangles without area, as
 /// at a pole, are left out.
-pub(super) fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3, DVec3)) -> Mesh {
+#[must_use]
+pub fn grid([columns, rows]: [u32; 2], surface: impl Fn(DVec2) -> (DVec3, DVec3)) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {
         for column in 0..=columns {

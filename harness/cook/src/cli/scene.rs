@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Writes a built-in scene as binary glTF 2.0, with meshes, materials, lights and camera, for use
 /// in other programs.
 #[derive(clap::Args)]
-#[command(after_help = "Example: ./cook scene brilliant --out harness/assets/brilliant.glb")]
+#[command(after_help = "Example: ./cook scene brilliant --out brilliant.glb")]
 pub(super) struct Arguments {
     #[arg(help = format!("one of {}", scene::names()))]
     name: String,
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let bytes = glb::write(&Scene::made(&arguments.name)?)?;
+    let bytes = glb::write(&Scene::named(&arguments.name)?)?;
     file::replace(&arguments.out, &bytes)?;
     output::line(&arguments.out.display().to_string())?;
     Ok(Outcome::Passed)

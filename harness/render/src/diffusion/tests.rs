@@ -6,11 +6,12 @@ use crate::drawing::scene_pass;
 use crate::frame::Executor;
 use glam::{Vec2, Vec3};
 use lapidary_assay::extremum::larger;
+use lapidary_assets::atlas;
 use lapidary_gpu::{AdapterChoice, Gpu};
 use lapidary_plan::{Effect, Effects, Rung};
 use lapidary_scene::solver::Reflectance;
 use lapidary_scene::surfaces::sphere;
-use lapidary_scene::{Light, Mesh, Scene, atlas};
+use lapidary_scene::{Light, Mesh, Scene};
 use std::collections::HashMap;
 
 type Half = exr::prelude::f16;

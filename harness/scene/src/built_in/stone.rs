@@ -12,7 +12,7 @@ use lapidary_veins::VeinsPattern;
 /// The dragon of the Stanford 3D Scanning Repository, the coarsest of its four meshes.
 const DRAGON: &[u8] = include_bytes!("../../../assets/dragon.glb");
 
-/// Stored output of [`crate::figure::mesh`], which takes a second or two.
+/// A winged figure, made by the program in `harness/assets/`.
 const FIGURE: &[u8] = include_bytes!("../../../assets/figure.glb");
 
 /// Marble, from Jensen, Marschner, Levoy and Hanrahan, "A Practical Model for Subsurface Light
@@ -50,16 +50,7 @@ pub(super) fn dragon(name: &str) -> Result<Scene, SceneError> {
 
 /// Builds the winged figure, 117 mm high, with parallel light from behind on the left.
 pub(super) fn figure(name: &str) -> Result<Scene, SceneError> {
-    Ok(figure_of(name, stored(FIGURE)?))
-}
-
-/// Builds the same scene with its mesh generated anew.
-pub(super) fn made_figure(name: &str) -> Scene {
-    figure_of(name, crate::figure::mesh())
-}
-
-fn figure_of(name: &str, mesh: Mesh) -> Scene {
-    stone(name, mesh, marble(), sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), (82.0, 12.0))
+    Ok(stone(name, stored(FIGURE)?, marble(), sun(Vec3::new(-0.8, 0.35, -0.7), 2.0), (82.0, 12.0)))
 }
 
 /// Builds a scene of one body and one light, seen from `polar` degrees off the vertical and

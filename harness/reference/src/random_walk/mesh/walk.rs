@@ -2,19 +2,16 @@
 //!
 //! The two differ only in the targets with which each scattering is connected.
 
-mod general;
+mod follow;
 
-use super::super::isotropic;
 use super::Boundary;
 use crate::spectral::geometry::{Bodies, Geometry, Hit, Place};
-use general::Structure;
+use follow::Structure;
 use glam::DVec3;
 use lapidary_scene::light::Arrival;
 use lapidary_scene::view::{Sight, View};
 use lapidary_scene::{Environment, Light, Medium, Object, Scene};
-use rand::RngExt as _;
 use rand::rngs::Xoshiro256PlusPlus;
-use std::f64::consts::PI;
 
 /// A walk whose strongest channel has less left than this continues with the probability that
 /// compensates for its gain. This constant and the next were chosen for the least product of time
@@ -149,136 +146,10 @@ impl<'scene> Matter<'scene> {
         self.follow(Targets::Eye(eye), ray, hit, random, &mut deposit)
     }
 
-    fn follow(
-        &self,
-        targets: Targets<'_>,
-        ray: Ray,
-        hit: Hit,
-        random: &mut Xoshiro256PlusPlus,
-        deposit: &mut impl FnMut([u32; 2], DVec3),
-    ) -> Outcome {
-        if self.structures.iter().all(Structure::is_plain) {
-            self.follow_plain(targets, ray, hit, random, deposit)
-        } else {
-            self.follow_general(targets, ray, hit, random, deposit)
-        }
-    }
-
     /// Whether a point lies within the bounds of all bodies. Written so that it is false for NaN
     /// and infinity.
     fn holds(&self, position: DVec3) -> bool {
         position.cmpge(self.least).all() && position.cmple(self.greatest).all()
-    }
-
-    /// The walk in uniform media that scatter isotropically, with surfaces that let all light pass.
-    ///
-    /// One walk serves all three channels. At each flight, one channel is chosen in proportion to
-    /// its throughput, and its extinction gives the length. Each channel is then weighted by its
-    /// own density over the mean density of the choice (the balance heuristic: Chiang, Kutz and
-    /// Burley, 2016, "Practical and Controllable Subsurface Scattering for Production Path
-    /// Tracing"). So no channel ever has more than the three had together at the start.
-    fn follow_plain(
-        &self,
-        targets: Targets<'_>,
-        ray: Ray,
-        hit: Hit,
-        random: &mut Xoshiro256PlusPlus,
-        deposit: &mut impl FnMut([u32; 2], DVec3),
-    ) -> Outcome {
-        let mut outcome = Outcome::default();
-        let mut throughput = DVec3::ONE;
-        let Ray { mut position, mut direction } = ray;
-        position += hit.distance * direction;
-        let (mut body, mut left) = (hit.place.body, Some(hit.place.face));
-        loop {
-            let Coefficients { scattering, extinction } = self.coefficients[body];
-            // 1 - [0, 1) is never 0; without extinction, the path is infinite.
-            let depth = -(1.0 - random.random::<f64>()).ln();
-            let chosen = channel(throughput, random.random());
-            let free = if extinction[chosen] > 0.0 { depth / extinction[chosen] } else { f64::INFINITY };
-            if let Some(out) = self.bodies.leave_body(position, direction, body, left, free) {
-                let transmittance = (-out.distance * extinction).exp();
-                throughput = weighted(throughput, transmittance, transmittance);
-                position += out.distance * direction;
-                if let Some(next) = self.bodies.enter(position, direction, Some(out.place)) {
-                    position += next.distance * direction;
-                    (body, left) = (next.place.body, Some(next.place.face));
-                    continue;
-                }
-                match self.environment {
-                    _ if outcome.scatterings == 0 => outcome.straight = throughput,
-                    Some(environment) => {
-                        outcome.radiance += throughput * environment.radiance(direction);
-                    }
-                    None => {}
-                }
-                return outcome;
-            }
-            position += free * direction;
-            let transmittance = (-free * extinction).exp();
-            throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
-            let mut connected = |place, value: DVec3| deposit(place, throughput * value);
-            if !self.holds(position) || self.connect(targets, position, body, random, &mut connected).is_none() {
-                outcome.lost = true;
-                return outcome;
-            }
-            outcome.scatterings += 1;
-            let strongest = throughput.max_element();
-            if strongest < WEAK {
-                if random.random::<f64>() * WEAK >= strongest {
-                    return outcome;
-                }
-                throughput *= WEAK / strongest;
-            }
-            direction = isotropic(random);
-            left = None;
-        }
-    }
-
-    /// Deposits the light that the targets send to a point in `body`, or see of it, times the phase
-    /// function. Returns `None` if a surface has a gap.
-    fn connect(
-        &self,
-        targets: Targets<'_>,
-        position: DVec3,
-        body: usize,
-        random: &mut Xoshiro256PlusPlus,
-        deposit: &mut impl FnMut([u32; 2], DVec3),
-    ) -> Option<()> {
-        let extinction = self.coefficients[body].extinction;
-        let least = extinction.min_element();
-        for target in 0..targets.count() {
-            // A longer way is searched with the probability that compensates for its gain below:
-            // most of the search time goes into paths that contribute almost nothing.
-            let limit = (SURE - (1.0 - random.random::<f64>()).ln()) / least;
-            let Some((Arrival { direction, distance, irradiance }, place)) = targets.at(target, position) else {
-                continue;
-            };
-            let out = self.bodies.leave_body(position, direction, body, None, limit.min(distance));
-            let (way, beyond) = match out {
-                Some(out) => {
-                    let beyond =
-                        self.depth(position + out.distance * direction, direction, out, distance - out.distance)?;
-                    (out.distance, beyond)
-                }
-                // A light inside the body.
-                None if distance < limit => (distance, DVec3::ZERO),
-                None => continue,
-            };
-            let gain = (least * way - SURE).max(0.0).exp();
-            deposit(place, irradiance * (gain / (4.0 * PI)) * (-way * extinction - beyond).exp());
-        }
-        Some(())
-    }
-
-    /// Optical depth of all media along a ray that leaves a body at `out`, as far as `distance`;
-    /// `None` if a surface has a gap.
-    fn depth(&self, position: DVec3, direction: DVec3, out: Hit, distance: f64) -> Option<DVec3> {
-        let mut depth = DVec3::ZERO;
-        self.beyond(position, direction, out, distance, |body, _, length| {
-            depth += length * self.coefficients[body].extinction;
-        })?;
-        Some(depth)
     }
 
     /// Calls `pass` for each body along a ray that leaves one at `out`, as far as `distance`, with

@@ -1,11 +1,13 @@
 use super::*;
-use crate::random_walk::{BINS, Profile, generator, in_disc, profile};
+
+use crate::random_walk::{BINS, Profile, generator, in_disc, isotropic, profile};
 use glam::{DQuat, Vec3};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::surfaces::{sphere, torus};
 use lapidary_scene::{Averaging, Camera, Material, Mesh};
+use rand::RngExt as _;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A box between these two corners.
 pub(super) fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
@@ -71,7 +73,8 @@ pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random:
 /// Light that the lights send to a point in the first body, times the phase function.
 fn direct(matter: &Matter<'_>, from: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
     let mut sum = DVec3::ZERO;
-    matter.connect(Targets::Lights(&matter.lights), from, 0, random, &mut |_, value| sum += value).expect("no gap");
+    let ray = Ray { position: from, direction: DVec3::X };
+    matter.connect(Targets::Lights(&matter.lights), ray, 0, random, &mut |_, value| sum += value).expect("no gap");
     sum
 }
 

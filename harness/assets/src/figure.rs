@@ -3,9 +3,9 @@
 //!
 //! Lengths are in millimetres; y is up, the plinth stands at 0, and the figure looks towards +z.
 
-use super::Mesh;
 use super::implicit::{Grid, difference, ellipsoid, intersection, limb, surface, union};
 use glam::{DQuat, DVec2, DVec3, dvec2, dvec3};
+use lapidary_scene::Mesh;
 
 /// Returns the statue, 117 mm high.
 #[must_use]

@@ -7,15 +7,15 @@
 use glam::{DVec2, DVec3, dvec2};
 use std::f64::consts::{PI, TAU};
 
-use super::Mesh;
-use super::surfaces::grid;
+use lapidary_scene::Mesh;
+use lapidary_scene::surfaces::grid;
 
 /// Number of quadrilaterals around, and along each span of the outline.
 const COLUMNS: u32 = 64;
 const ROWS: u32 = 3;
 
 /// Radius of the side without runs of wax.
-pub(super) const RADIUS: f64 = 15.0;
+const RADIUS: f64 = 15.0;
 
 /// Distance from the axis and height of the control points of the outline, a uniform cubic B-spline
 /// from the centre of the bowl to the centre of the foot. Points are denser where it bends more.

@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap, HashMap};
 
-use super::super::normals::weld;
-use super::super::{Bounds, Mesh};
+use lapidary_scene::normals::weld;
+use lapidary_scene::{Bounds, Mesh};
 
 mod halos;
 

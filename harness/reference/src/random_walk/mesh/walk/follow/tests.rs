@@ -168,35 +168,6 @@ fn white_furnace() {
     }
 }
 
-/// In plain media, the general walk agrees with the plain walk.
-#[test]
-fn plain_matter_is_the_same_both_ways() {
-    let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 1.0));
-    let lamp = Light::Point { position: Vec3::new(0.0, 0.0, 0.5), intensity: Vec3::splat(10.0) };
-    let scene = scene(vec![(torus(4.0, 1.5, 64, 32), medium)], vec![sun(towards(0.3)), lamp]);
-    let matter = Matter::new(&scene, Boundary::Matched, None).expect("media");
-    let start = |random: &mut Xoshiro256PlusPlus| loop {
-        let origin = DVec3::new(12.0 * random.random::<f64>() - 6.0, 12.0 * random.random::<f64>() - 6.0, 20.0);
-        if let Some(hit) = matter.enter(origin, DVec3::NEG_Z) {
-            return (Ray { position: origin, direction: DVec3::NEG_Z }, hit);
-        }
-    };
-    let lights = Targets::Lights(&matter.lights);
-    let plain = estimate(40_000, 1, |random| {
-        let ((ray, hit), mut radiance) = (start(random), DVec3::ZERO);
-        matter.follow_plain(lights, ray, hit, random, &mut |_, value| radiance += value);
-        radiance
-    });
-    let general = estimate(40_000, 2, |random| {
-        let ((ray, hit), mut radiance) = (start(random), DVec3::ZERO);
-        matter.follow_general(lights, ray, hit, random, &mut |_, value| radiance += value);
-        radiance
-    });
-    println!("{} ± {}, {} ± {}", plain.0, plain.1, general.0, general.1);
-    let error = (plain.1 * plain.1 + general.1 * general.1).map(f64::sqrt);
-    assert!((plain.0 - general.0).abs().cmplt(4.0 * error).all() && (error / plain.0).max_element() < 0.03);
-}
-
 /// Behind a boundary that does nothing, a light's disc is as bright as the light itself: a sun
 /// found by chance against a sun found by shadow rays.
 #[test]

@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use glam::{DVec2, Vec2, Vec3};
 
 use super::*;
-use crate::{Averaging, Scene};
+use lapidary_scene::{Averaging, Scene};
 
 /// Number of texels along a side of the square in which drawings are compared.
 const SIDE: usize = 1024;

@@ -1,6 +1,6 @@
 use super::*;
-use crate::Mesh;
 use glam::Vec3;
+use lapidary_scene::Mesh;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 

@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 
-use super::Mesh;
+use lapidary_scene::Mesh;
 
 mod charts;
 mod packing;

@@ -2,8 +2,8 @@
 //! around each grid edge that it crosses.
 
 use super::{Grid, gradient};
-use crate::Mesh;
 use glam::DVec3;
+use lapidary_scene::Mesh;
 use rayon::prelude::*;
 use std::collections::HashMap;
 

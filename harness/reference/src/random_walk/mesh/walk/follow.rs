@@ -1,5 +1,4 @@
-//! Walks in media that are heterogeneous, scatter forwards or backwards, or have a surface that
-//! refracts and reflects light.
+//! The walk itself, in media of any density and phase function, behind any boundary.
 //!
 //! Delta tracking keeps one walk for all three channels: tentative collisions are drawn with the
 //! chosen channel's majorant. The channels share the density, and so the probability that a
@@ -59,11 +58,6 @@ impl Structure {
         })
     }
 
-    /// Whether the walk for uniform, isotropic media without a boundary suffices.
-    pub(super) fn is_plain(&self) -> bool {
-        self.anisotropy == 0.0 && self.density == Density::Uniform && self.index == 1.0
-    }
-
     /// Density divided by the greatest density.
     fn share(&self, position: DVec3) -> f64 {
         if self.most > 0.0 { f64::from(self.density.at(position.as_vec3())) / self.most } else { 0.0 }
@@ -107,8 +101,14 @@ enum Arrival {
 }
 
 impl Matter<'_> {
-    /// [`Matter::follow`] in any medium.
-    pub(super) fn follow_general(
+    /// Follows a ray that meets a body at `hit`, and connects each scattering with the targets.
+    ///
+    /// One walk serves all three channels. At each flight, one channel is chosen in proportion to
+    /// its throughput, and its extinction gives the length. Each channel is then weighted by its
+    /// own density over the mean density of the choice (the balance heuristic: Chiang, Kutz and
+    /// Burley, 2016, "Practical and Controllable Subsurface Scattering for Production Path
+    /// Tracing"). So no channel ever has more than the three had together at the start.
+    pub(super) fn follow(
         &self,
         targets: Targets<'_>,
         mut ray: Ray,
@@ -167,7 +167,7 @@ impl Matter<'_> {
                 }
                 throughput = weighted(throughput, scattering * transmittance, extinction * transmittance);
                 let mut connected = |place, value: DVec3| deposit(place, throughput * value);
-                if self.connect_general(targets, ray, body, random, &mut connected).is_none() {
+                if self.connect(targets, ray, body, random, &mut connected).is_none() {
                     break 'bodies;
                 }
                 outcome.scatterings += 1;
@@ -223,8 +223,9 @@ impl Matter<'_> {
         }
     }
 
-    /// [`Matter::connect`] in any medium; does nothing behind a dielectric boundary.
-    fn connect_general(
+    /// Deposits the light that the targets send to a point in `body`, or see of it, times the phase
+    /// function; nothing behind a dielectric boundary. Returns `None` if a surface has a gap.
+    pub(super) fn connect(
         &self,
         targets: Targets<'_>,
         ray: Ray,

@@ -1,14 +1,13 @@
 use super::*;
-use crate::Bounds;
-use crate::convex::is_closed;
 use glam::{Vec2, Vec3};
 use lapidary_assay::extremum::larger;
+use lapidary_scene::{Bounds, MeshDiagnosis};
 
 #[test]
 fn the_candle_is_closed_smooth_and_right_side_out() {
     let mesh = mesh();
     println!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangle_count());
-    assert!(is_closed(&mesh) && mesh.normals.iter().all(|normal| normal.is_normalized()));
+    assert!(MeshDiagnosis::of(&mesh).is_closed() && mesh.normals.iter().all(|normal| normal.is_normalized()));
     assert_eq!(mesh.uvs.len(), mesh.positions.len());
     let mut widest: f32 = 0.0;
     for triangle in mesh.indices.chunks_exact(3) {

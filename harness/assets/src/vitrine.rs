@@ -1,0 +1,53 @@
+//! The meshes of the scene `vitrine`, placed on its table. Lengths are in millimetres; the top of
+//! the table is at 0.
+
+use crate::{candle, figure};
+use glam::{DQuat, DVec3};
+use lapidary_scene::cuts::{BrilliantParameters, round_brilliant};
+use lapidary_scene::surfaces::rounded_box;
+use lapidary_scene::{Averaging, Bounds, Mesh, Scene, SceneError};
+
+/// Girdle radii of the stones.
+const DIAMOND: f32 = 17.0;
+const RUBY: f32 = 13.5;
+/// Scale of the chain relative to the built-in one: a link is 18 mm wide.
+const CHAIN: f32 = 18.0;
+/// Gap between the table and the bodies on it, so that no two surfaces coincide.
+const GAP: f64 = 0.02;
+
+/// Returns the table, the diamond, the ruby, the candle, the figure and the chain.
+pub(crate) fn meshes() -> Result<Vec<Mesh>, SceneError> {
+    let (half, rounding) = (DVec3::new(150.0, 7.0, 100.0), 2.5);
+    let table = rounded_box(half, rounding, 2).placed(DQuat::IDENTITY, DVec3::NEG_Y * half.y);
+    let brilliant = round_brilliant(&BrilliantParameters::TOLKOWSKY)?.to_mesh(Averaging::default());
+    let chain = Scene::named("prism_chain")?.objects.into_iter().map(|object| object.mesh.scaled(CHAIN));
+    // Its uppermost link extends past the picture's edge.
+    let chain = chain.map(|mesh| mesh.placed(DQuat::IDENTITY, DVec3::new(62.0, 131.0, 6.0)));
+    let bodies = [
+        table,
+        standing(&brilliant.scaled(DIAMOND), lying(18.0), [-14.0, 42.0]),
+        standing(&brilliant.scaled(RUBY), lying(-38.0), [37.0, 36.0]),
+        standing(&candle::mesh(), turned(0.0), [-54.0, 12.0]),
+        standing(&figure::mesh(), turned(8.0), [10.0, -28.0]),
+    ];
+    Ok(bodies.into_iter().chain(chain).collect())
+}
+
+/// Rotation about the vertical, in degrees from +z towards +x.
+fn turned(azimuth: f64) -> DQuat {
+    DQuat::from_rotation_y(azimuth.to_radians())
+}
+
+/// Rotation of a brilliant that rests on one of its pavilion's main facets, as a loose stone does,
+/// with its table facing this azimuth.
+fn lying(azimuth: f64) -> DQuat {
+    // The first of these facets is the one towards +x.
+    let leaning = DQuat::from_rotation_z(-BrilliantParameters::TOLKOWSKY.pavilion_degrees.to_radians());
+    turned(azimuth - 90.0) * leaning
+}
+
+/// Returns the mesh rotated, and moved to this x and z with its lowest point just above the table.
+fn standing(mesh: &Mesh, rotation: DQuat, [x, z]: [f64; 2]) -> Mesh {
+    let lowest = Bounds::of(mesh.placed(rotation, DVec3::ZERO).positions).min.y;
+    mesh.placed(rotation, DVec3::new(x, GAP - f64::from(lowest), z))
+}
