@@ -1,4 +1,4 @@
-//! Lists the folder: a module, recipe, part or release is there once its file is.
+//! Lists the folder: a module, recipe, part or release exists as soon as its file does.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ fn main() -> std::io::Result<()> {
     std::fs::write(out.join("folder.rs"), text)
 }
 
-/// The files of a folder that end so, in the order of their names.
+/// Returns the files of a folder with this extension, sorted by name.
 fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -45,7 +45,7 @@ fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Releases in their order: 0.10.0 comes after 0.9.0.
+/// Sorts releases by version: 0.10.0 comes after 0.9.0.
 fn by_number(mut files: Vec<PathBuf>) -> Vec<PathBuf> {
     files.sort_by_key(|file| stem(file).split('.').map(|part| part.parse().unwrap_or(0)).collect::<Vec<u32>>());
     files
@@ -55,7 +55,7 @@ fn stem(file: &Path) -> &str {
     file.file_stem().and_then(|name| name.to_str()).expect("a name of letters")
 }
 
-/// The file's text, as Rust.
+/// Returns Rust code for the text of the file.
 fn include(file: &Path) -> String {
     format!("include_str!({:?})", file.display().to_string())
 }

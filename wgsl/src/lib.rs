@@ -1,5 +1,6 @@
-//! The cookbook's WGSL, and its composition: for the harness and for Rust engines. `recipe("gem")` has a whole shader in
-//! [`Recipe::compose`]; a module's `source` is pasted as it is.
+//! The cookbook's WGSL and its composition, for the harness and for Rust engines.
+//! [`Recipe::compose`] returns the whole shader of a recipe, such as `recipe("gem")`. A module's
+//! `source` is pasted as it is.
 //!
 //! ```
 //! let shader = lapidary_wgsl::recipe("gem").expect("a recipe").compose();
@@ -10,35 +11,37 @@
 
 include!(concat!(env!("OUT_DIR"), "/folder.rs"));
 
-/// What changed from release to release, by function.
+/// Changes from release to release, by function.
 pub const CHANGELOG: &str = include_str!("../../CHANGELOG.md");
 
-/// A technique: pure functions, no bindings, no entry points.
+/// A technique: pure functions, without bindings and entry points.
 #[derive(Clone, Copy, Debug)]
 pub struct Module {
     /// The technique's name, which prefixes every name in `source`.
     pub name: &'static str,
-    /// WGSL, valid by itself.
+    /// WGSL, valid on its own.
     pub source: &'static str,
-    /// The forms that fail, which follow `source`; empty where there are none.
+    /// The naive forms, which fail; they follow `source`. Empty if there are none.
     pub naive: &'static str,
-    /// Both.
+    /// `source` and `naive`.
     pub whole: &'static str,
-    /// Its doc page in Markdown.
+    /// Documentation page in Markdown.
     pub page: &'static str,
 }
 
-/// A complete shader, written with the functions of the modules that its `// requires:` line names, after the parts that its
-/// `// parts:` line names.
+/// A complete shader, written with the functions of the modules that its `// requires:` line names,
+/// after the parts that its `// parts:` line names.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe {
     /// The recipe's name.
     pub name: &'static str,
-    /// WGSL with entry points and bindings, without the modules and the parts: not valid by itself.
+    /// WGSL with entry points and bindings, without the modules and the parts: not valid on its
+    /// own.
     pub source: &'static str,
 }
 
-/// WGSL that several recipes share: overrides, bindings and functions that belong to none of the modules. Not valid by itself.
+/// WGSL shared by several recipes: overrides, bindings and functions that belong to no module. Not
+/// valid on its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// The part's name.
@@ -47,38 +50,38 @@ pub struct Part {
     pub source: &'static str,
 }
 
-/// The module of that name.
+/// Returns the module with this name.
 #[must_use]
 pub fn module(name: &str) -> Option<&'static Module> {
     MODULES.iter().find(|module| module.name == name)
 }
 
-/// The recipe of that name.
+/// Returns the recipe with this name.
 #[must_use]
 pub fn recipe(name: &str) -> Option<&'static Recipe> {
     RECIPES.iter().find(|recipe| recipe.name == name)
 }
 
-/// The whole shader of a recipe that is known to exist.
+/// Returns the whole shader of a recipe that is known to exist.
 ///
 /// # Panics
-/// Where there is no such recipe.
+/// If there is no such recipe.
 #[must_use]
 pub fn recipe_source(name: &str) -> String {
     recipe(name).unwrap_or_else(|| panic!("no recipe `{name}`")).compose()
 }
 
 impl Recipe {
-    /// The modules that it requires, in order.
+    /// Returns the modules that it requires, in order.
     #[must_use]
     pub fn requires(&self) -> Vec<&'static str> {
         named(self.source, "// requires:")
     }
 
-    /// The parts that it shares with others, in order.
+    /// Returns the parts that it shares with other recipes, in order.
     ///
     /// # Panics
-    /// Where there is no such part: a fault of the cookbook's own.
+    /// If there is no such part, which is a bug in the cookbook.
     #[must_use]
     pub fn parts(&self) -> Vec<&'static Part> {
         let part = |name: &str| {
@@ -88,10 +91,11 @@ impl Recipe {
         named(self.source, "// parts:").into_iter().map(part).collect()
     }
 
-    /// The modules of which the recipe or one of its parts draws a naive form too, to be compared with.
+    /// Returns the modules whose naive form the recipe or one of its parts also draws, for
+    /// comparison.
     ///
     /// # Panics
-    /// Where a part is unknown: a fault of the cookbook's own.
+    /// If a part is unknown, which is a bug in the cookbook.
     #[must_use]
     pub fn compares(&self) -> Vec<&'static str> {
         let mut names: Vec<&str> = self.own_text().into_iter().flat_map(|text| named(text, "// compares:")).collect();
@@ -100,30 +104,31 @@ impl Recipe {
         names
     }
 
-    /// The whole shader: the modules, the naive forms that it compares with, the parts, then the recipe.
+    /// Returns the whole shader: the modules, the naive forms for comparison, the parts, then the
+    /// recipe.
     ///
     /// # Panics
-    /// Where a module or part is unknown: a fault of the cookbook's own.
+    /// If a module or part is unknown, which is a bug in the cookbook.
     #[must_use]
     pub fn compose(&self) -> String {
         let naive = self.compares().into_iter().map(|name| known(name).naive);
         compose(&self.requires(), &naive.chain(self.own_text()).collect::<Vec<_>>().join("\n"))
     }
 
-    /// The recipe's own texts: the parts, then the recipe, without the modules.
+    /// Returns the recipe's own texts: the parts, then the recipe, without the modules.
     ///
     /// # Panics
-    /// Where a part is unknown: a fault of the cookbook's own.
+    /// If a part is unknown, which is a bug in the cookbook.
     #[must_use]
     pub fn own_text(&self) -> Vec<&'static str> {
         self.parts().iter().map(|part| part.source).chain([self.source]).collect()
     }
 }
 
-/// Modules one after another in the order of `names`, then `last`.
+/// Joins the modules in the order of `names`, then `last`.
 ///
 /// # Panics
-/// Where a module is unknown.
+/// If a module is unknown.
 #[must_use]
 pub fn compose(names: &[&str], last: &str) -> String {
     let mut texts: Vec<&str> = names.iter().map(|name| known(name).source).collect();
@@ -137,7 +142,7 @@ fn known(name: &str) -> &'static Module {
     module(name).unwrap_or_else(|| panic!("no module `{name}`"))
 }
 
-/// What the names of a module's functions, structs and consts start with.
+/// Returns the prefixes of the names of a module's functions, structs and consts.
 #[must_use]
 pub fn prefixes(module: &str) -> [String; 3] {
     let camel = module
@@ -147,7 +152,7 @@ pub fn prefixes(module: &str) -> [String; 3] {
     [format!("{module}_"), camel, format!("{}_", module.to_uppercase())]
 }
 
-/// The names on the line that starts with `tag`.
+/// Returns the names on the line that starts with `tag`.
 fn named(source: &'static str, tag: &str) -> Vec<&'static str> {
     let line = source.lines().find_map(|line| line.strip_prefix(tag)).unwrap_or_default();
     line.split(',').map(str::trim).filter(|name| !name.is_empty()).collect()

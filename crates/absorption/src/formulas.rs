@@ -1,4 +1,4 @@
-//! `wgsl/absorption.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/absorption.wgsl`.
 
 mod outside;
 
@@ -12,13 +12,15 @@ const M: &str = "absorption";
 /// A few units in the last place of f32.
 const ROUNDING: f64 = 16.0 / (1 << 24) as f64;
 
-/// Colours and transmittances: anywhere in [0, 1], next to 1 by every magnitude, of every magnitude down to the darkest, out of range.
+/// Draws a colour component or a transmittance: anywhere in [0, 1], close to 1 at every magnitude,
+/// at every magnitude down to the darkest, or out of range.
 fn share(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => draws.pick(&[1.0, 0.0, 1.0f32.next_up(), 1.0f32.next_down(), 2.0, -1.0, ABSORPTION_DARKEST, 1e-40]),
         1 | 2 => 1.0 - draws.magnitude(-24, -2),
         3 => draws.magnitude(-126, -1),
-        // Where the logarithm's reduction changes over: the square root of 1/2, and its double and half.
+        // Around the points at which the reduction of the logarithm switches: the square root of
+        // 1/2, its double and its half.
         4 => draws.between(0.7, 0.715) * draws.pick(&[1.0, 0.5, 2.0]),
         _ => draws.between(0.0, 1.0),
     }
@@ -29,7 +31,8 @@ fn color(draws: &mut Draws<'_>) -> Vec3 {
     if draws.below(2) == 0 { Vec3::splat(first) } else { Vec3::new(first, share(draws), share(draws)) }
 }
 
-/// Attenuation distances: ordinary ones, every magnitude, about the limits, those that mean that nothing is absorbed.
+/// Draws an attenuation distance: ordinary, of every magnitude, around the limits, or one at which
+/// nothing is absorbed.
 fn attenuation_distance(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 0.0, -1.0, -1e-3, ABSORPTION_FARTHEST, 1e38, 1e-37]),
@@ -40,7 +43,8 @@ fn attenuation_distance(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A coefficient and a distance: optical depths of every magnitude, about what is left of f32's range, and 0.
+/// Draws a coefficient and a distance, for optical depths of every magnitude, around the underflow
+/// of f32, and 0.
 fn path(draws: &mut Draws<'_>) -> (Vec3, f32) {
     let distance = match draws.below(8) {
         0 => draws.pick(&[1.0, 0.0, -1.0, -1e-3, -1e6]),
@@ -49,7 +53,7 @@ fn path(draws: &mut Draws<'_>) -> (Vec3, f32) {
     };
     let mut depth = || match draws.below(7) {
         0 => 0.0,
-        // Without rounding, where the distance is 1.
+        // Without rounding if the distance is 1.
         6 => 0.5f32.powi(draws.below(12) as i32),
         1 => draws.magnitude(-40, 7),
         2 => draws.between(80.0, 95.0),
@@ -57,7 +61,7 @@ fn path(draws: &mut Draws<'_>) -> (Vec3, f32) {
     };
     let depths = Vec3::new(depth(), depth(), depth());
     let depths = if draws.below(2) == 0 { Vec3::splat(depths.x) } else { depths };
-    // A path of no length crosses any medium.
+    // A path of length 0 may cross any medium.
     (if distance > 0.0 { depths / distance } else { depths }, distance)
 }
 
@@ -65,7 +69,8 @@ fn benign_color(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(draws.between(0.01, 0.9), draws.between(0.01, 0.9), draws.between(0.01, 0.9))
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -114,7 +119,7 @@ fn functions() -> Vec<Formula> {
             (0..3).try_for_each(|channel| {
                 let wanted = f64::from(color[channel].clamp(ABSORPTION_DARKEST, 1.0));
                 let depth = f64::from(coefficient[channel]) * f64::from(distance);
-                // Of a depth of up to 88, the last places.
+                // The bound covers the last places of a depth of up to 88.
                 near("color", (-depth).exp(), wanted, (1.0 + depth) * ROUNDING * wanted + f64::from(f32::MIN_POSITIVE))
             })
         })
@@ -179,7 +184,7 @@ fn functions() -> Vec<Formula> {
                     (0..3).try_for_each(|channel| {
                         let depth = f64::from(coefficient[channel]) * f64::from(distance.max(0.0));
                         let square = f64::from(once[channel]).powi(2);
-                        // Beyond, the factors themselves may be flushed.
+                        // At larger depths the factors themselves may be flushed to 0.
                         if depth > 80.0 {
                             return Ok(());
                         }

@@ -1,7 +1,8 @@
-//! Mirror of `wgsl/absorption.wgsl`: the share of light that a coloured medium lets through along a path inside, by the law
-//! of Beer and Lambert.
+//! Mirror of `wgsl/absorption.wgsl`: the share of light that a coloured medium transmits along a
+//! path inside it, by the law of Beer and Lambert.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! The WGSL file states the units, domain and accuracy of each function. This file follows it line
+//! by line.
 //!
 //! ```
 //! use glam::Vec3;
@@ -20,17 +21,19 @@ pub mod oracle;
 use glam::Vec3;
 use std::f32::consts::LN_2;
 
-/// Colours below this count as this: 2^-126.
+/// Smallest colour value, 2^-126: darker colours are clamped to it.
 pub const ABSORPTION_DARKEST: f32 = 1.175_494_350_822_287_5e-38;
-/// Attenuation distances from this one on mean that nothing is absorbed.
+/// From this attenuation distance on, nothing is absorbed.
 pub const ABSORPTION_FARTHEST: f32 = 1e30;
 /// Shorter attenuation distances count as this one.
 pub const ABSORPTION_NEAREST: f32 = 1e-30;
 
-/// Optical depth of a medium that lets the share `transmittance` through: -ln(transmittance).
+/// Returns the optical depth of a medium that transmits the share `transmittance`:
+/// -ln(transmittance).
 pub fn optical_depth(transmittance: f32) -> f32 {
     let bits = transmittance.clamp(ABSORPTION_DARKEST, 1.0).to_bits().cast_signed();
-    // 0x3f3504f3 are the bits of the square root of 1/2: m lies between it and its inverse, so |s| is at most 0.1716.
+    // 0x3f3504f3 is the bit pattern of the square root of 1/2. m lies between that root and its
+    // inverse, so |s| is at most 0.1716.
     let exponent = (bits - 0x3f35_04f3) >> 23;
     let mantissa = f32::from_bits((bits - (exponent << 23)).cast_unsigned());
     let s = (mantissa - 1.0) / (mantissa + 1.0);
@@ -39,7 +42,8 @@ pub fn optical_depth(transmittance: f32) -> f32 {
     -exponent as f32 * LN_2 - 2.0 * s * series
 }
 
-/// Absorption coefficient of a medium in which white light has become `attenuation_color` after `attenuation_distance`.
+/// Returns the absorption coefficient of a medium that turns white light into `attenuation_color`
+/// over the distance `attenuation_distance`.
 pub fn coefficient(attenuation_color: Vec3, attenuation_distance: f32) -> Vec3 {
     if attenuation_distance <= 0.0 || attenuation_distance >= ABSORPTION_FARTHEST {
         return Vec3::ZERO;
@@ -52,19 +56,19 @@ pub fn coefficient(attenuation_color: Vec3, attenuation_distance: f32) -> Vec3 {
     depth / attenuation_distance.max(ABSORPTION_NEAREST)
 }
 
-/// The coefficient by the built-in logarithm.
+/// Returns the coefficient, computed with the built-in logarithm.
 pub fn coefficient_naive(attenuation_color: Vec3, attenuation_distance: f32) -> Vec3 {
     -attenuation_color.map(f32::ln) / attenuation_distance
 }
 
-/// Share of light that is left after a path of length `distance` inside.
+/// Returns the share of light that remains after a path of length `distance` inside the medium.
 pub fn transmittance(coefficient: Vec3, distance: f32) -> Vec3 {
     let depth = coefficient * distance.max(0.0);
     let clear = Vec3::ONE;
     Vec3::select(depth.cmpeq(Vec3::ZERO), clear, (-depth).exp().min(clear))
 }
 
-/// The transmittance as KHR_materials_volume prints it.
+/// Returns the transmittance as given in KHR_materials_volume.
 pub fn transmittance_naive(attenuation_color: Vec3, attenuation_distance: f32, distance: f32) -> Vec3 {
     attenuation_color.powf(distance / attenuation_distance)
 }

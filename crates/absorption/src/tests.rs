@@ -1,4 +1,5 @@
-//! Mirror against oracle, the oracle against the standard library, known values and the numbers of docs/absorption.md.
+//! Tests of the mirror against the oracle, and of the oracle against the standard library, known
+//! values and the numbers of docs/absorption.md.
 
 use super::*;
 use glam::DVec3;
@@ -25,7 +26,7 @@ fn optical_depths_keep_their_digits_at_every_magnitude() {
         let exact = oracle::optical_depth(f64::from(transmittance));
         worst = larger(worst, (f64::from(optical_depth(transmittance)) - exact).abs() / ulp_of(exact));
     };
-    // Every float next to 1, then every 997th down to the smallest.
+    // Every float just below 1, then every 997th float down to the smallest normal one.
     (1..100_000).for_each(|steps| check(f32::from_bits(1.0f32.to_bits() - steps)));
     (f32::MIN_POSITIVE.to_bits()..=1.0f32.to_bits()).step_by(997).for_each(|bits| check(f32::from_bits(bits)));
     assert!(worst <= 4.0, "{worst} ulp");

@@ -1,4 +1,5 @@
-//! `wgsl/absorption.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-absorption`.
+//! Device tests of every function of `wgsl/absorption.wgsl` and its naive forms:
+//! `cargo test -p lapidary-absorption`.
 
 use lapidary_absorption::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/bvh_trace.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/bvh_trace.wgsl`.
 
 mod outside;
 
@@ -17,17 +17,17 @@ mirror_struct!(crate, BvhTraceBox { entry, hit });
 mirror_struct!(crate, BvhTraceHit { distance, barycentrics, triangle });
 
 const M: &str = "bvh_trace";
-/// What a component of the direction is replaced by if it is smaller, 2⁻²⁴.
+/// Smaller components of the direction are replaced by this value, 2⁻²⁴.
 const SMALLEST: f32 = 5.960_464_5e-8;
-/// Farther than anything that a ray may meet.
+/// A distance farther than any hit.
 const FAR: f32 = 1e37;
 
-/// What a triangle test takes.
+/// Arguments of a triangle test.
 type Case = (BvhTraceHit, BvhTraceRay, Vec3, Vec3, Vec3, u32, u32);
-/// What a box test takes.
+/// Arguments of a box test.
 type BoxCase = (BvhTraceRay, Vec3, Vec3, f32);
 
-/// A ray's direction: anywhere, along an axis, close to one, and with two components alike.
+/// Draws a ray direction: anywhere, along an axis, close to one, or with two equal components.
 fn direction(draws: &mut Draws<'_>) -> Vec3 {
     match draws.below(4) {
         0 => {
@@ -44,7 +44,7 @@ fn direction(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// The size of a mesh: mostly 1, else of any magnitude.
+/// Draws the size of a mesh: often 1, otherwise of any magnitude.
 fn size(draws: &mut Draws<'_>) -> f64 {
     f64::from(if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-30, 36) })
 }
@@ -68,7 +68,7 @@ fn exact_hit(hit: &BvhTraceHit) -> oracle::BvhTraceHit {
     }
 }
 
-/// A whole number or a half of one, from -3 to 3.
+/// Draws a whole or half number from -3 to 3.
 fn step(draws: &mut Draws<'_>) -> f32 {
     0.5 * (draws.below(13) as f32 - 6.0)
 }
@@ -77,7 +77,8 @@ fn steps(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(step(draws), step(draws), step(draws))
 }
 
-/// Whether all is halves of small whole numbers, along an axis, so that f32 computes it without any rounding.
+/// Returns whether all values are halves of small whole numbers and the ray runs along an axis, so
+/// that f32 computes without any rounding.
 fn on_grid(ray: &BvhTraceRay, points: &[Vec3]) -> bool {
     let whole = |value: f32| (2.0 * value).fract() == 0.0 && value.abs() <= 8.0;
     let reciprocal = |value: f32| [0.5, 1.0, 2.0, 1.0 / SMALLEST].contains(&value.abs());
@@ -88,7 +89,7 @@ fn on_grid(ray: &BvhTraceRay, points: &[Vec3]) -> bool {
         && whole(ray.margin)
 }
 
-/// A ray along an axis from a point of the grid, with a margin of the grid or with none.
+/// Draws a ray along an axis from a grid point, with a margin on the grid or of 0.
 fn grid_ray(draws: &mut Draws<'_>) -> BvhTraceRay {
     let origin = if draws.below(2) == 0 { Vec3::ZERO } else { steps(draws) };
     let along = draws.pick(&[Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y]);
@@ -96,12 +97,12 @@ fn grid_ray(draws: &mut Draws<'_>) -> BvhTraceRay {
     BvhTraceRay { margin, ..mirror::ray(origin, along, origin, origin) }
 }
 
-/// A case of the grid, of numbers so few that every tie happens.
+/// Draws a case on the grid, from a set of numbers so small that every tie occurs.
 fn grid_case(draws: &mut Draws<'_>) -> Case {
     let ray = grid_ray(draws);
-    // Twice a third of a full turn.
+    // Two cyclic permutations are the inverse of one.
     let turn_back = |v: Vec3| mirror::turn(mirror::turn(v, ray.axis), ray.axis);
-    // Corners in the ray's frame, the triangle across the ray in half of the cases.
+    // Corners in the ray's frame; in half of the cases the triangle is perpendicular to the ray.
     let level = step(draws);
     let flat = draws.below(2) == 0;
     let mut corner = || {
@@ -118,8 +119,8 @@ fn grid_case(draws: &mut Draws<'_>) -> Case {
     (hit, ray, a, b, c, draws.below(4), draws.pick(&[BVH_TRACE_NONE, 0, 1, 2, 3]))
 }
 
-/// Weights of the second and third corner at the point that the ray is aimed at: inside, at an edge, at a corner, just
-/// beside, far away.
+/// Draws the weights of the second and third corner at the point at which the ray is aimed: inside,
+/// on an edge, at a corner, just outside, or far away.
 fn aim(draws: &mut Draws<'_>, aside: f64) -> (f64, f64) {
     let inside = |draws: &mut Draws<'_>| {
         let (v, w) = (draws.unit(), draws.unit());
@@ -141,11 +142,13 @@ fn aim(draws: &mut Draws<'_>, aside: f64) -> (f64, f64) {
     }
 }
 
-/// A ray and a triangle that it is aimed at, of every size, from fat to needles, from square to the ray to edge-on.
+/// Draws a ray and a triangle that it is aimed at: of every size, from fat triangles to needles,
+/// from perpendicular to the ray to edge-on.
 fn any_case(draws: &mut Draws<'_>) -> Case {
     let size = size(draws);
     let toward = direction(draws).as_dvec3();
-    // Edge-on, or a needle, but not both: in the ray's frame a triangle is at least 1/32 as thick as long.
+    // Edge-on or a needle, but not both: in the ray's frame a triangle is at least 1/32 as thick as
+    // it is long.
     let shape = draws.below(16);
     let cosine = match shape {
         0..=2 => f64::from(draws.between(1.0 / 16.0, 0.2)),
@@ -169,9 +172,9 @@ fn any_case(draws: &mut Draws<'_>) -> Case {
         2 => -2.0 * size * draws.unit(),
         _ => 2.0 * size * draws.unit(),
     };
-    // At an edge and at the start of the ray the result has a kink: no input that is a few last places off need have
-    // the rounded result. Seen squarely that is within the bounds; not so where a thin outline magnifies it, nor where
-    // both kinks meet.
+    // At an edge and at the start of the ray the result has a kink, so no input within a few last
+    // places need have the rounded result. For a triangle perpendicular to the ray this is within
+    // the bounds. It is not if a thin outline magnifies it, or if both kinks coincide.
     let close = distance.abs() < 0.01 * size;
     let (v, w) = if close || cosine.abs() < 0.5 || shape < 6 {
         let (v, w) = draws.pick(&[(0.3, 0.3), (0.1, 0.5), (0.6, 0.2), (0.2, 0.6), (1.5, -0.2), (-0.3, 0.6)]);
@@ -179,7 +182,8 @@ fn any_case(draws: &mut Draws<'_>) -> Case {
     } else {
         aim(draws, 2f64.powi(-18) * size / extent)
     };
-    // Backward error needs something to be relative to: at distance 0 from an exact 0 there is nothing.
+    // Backward error is relative to the input: at distance 0 from an origin of exactly 0 there is
+    // nothing for it to be relative to.
     let origin = match draws.below(3) {
         0 if !close => DVec3::ZERO,
         1 => 8.0 * size * draws.in_cube().as_dvec3(),
@@ -205,8 +209,8 @@ fn any_case(draws: &mut Draws<'_>) -> Case {
     (hit, ray, a, b, c, number, if draws.below(16) == 0 { number } else { BVH_TRACE_NONE })
 }
 
-/// A needle that the ray, along an axis, meets at its blunt end: positions in the frame are exact there, and the
-/// weights are as exact as two of the corners are near.
+/// Draws a needle that a ray along an axis meets at its blunt end. Positions in the frame are exact
+/// there, and the weights are as exact as two of the corners are near.
 fn straight_case(draws: &mut Draws<'_>) -> Case {
     let along = draws.pick(&[Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y]);
     let (side, up) = (Vec3::new(along.z, along.x, along.y), Vec3::new(along.y, along.z, along.x));
@@ -237,14 +241,14 @@ fn triangle_case(draws: &mut Draws<'_>) -> Case {
     }
 }
 
-/// A case that holds in f64, seen the way that it is meant, without any margin.
+/// Returns the crossing of a case in f64, without any margin.
 fn crossing(case: &Case) -> Option<oracle::Crossing> {
     let (_, ray, a, b, c, triangle, _) = *case;
     oracle::crossing([a, b, c].map(|p| p.as_dvec3()), triangle, ray.origin.as_dvec3(), ray.direction.as_dvec3())
 }
 
-/// Away from edges and from edge-on, and small whole numbers about the epsilon, where Möller and Trumbore's test does
-/// well.
+/// Draws cases in which Möller and Trumbore's test does well: away from edges and from edge-on, or
+/// small whole numbers around the epsilon.
 fn benign_case(draws: &mut Draws<'_>) -> Case {
     let number = draws.below(4);
     let left = draws.pick(&[BVH_TRACE_NONE, BVH_TRACE_NONE, BVH_TRACE_NONE, 0]);
@@ -253,14 +257,15 @@ fn benign_case(draws: &mut Draws<'_>) -> Case {
         let near_epsilon = draws.pick(&[1.0, 0.992, 1.008, 0.5, 2.0]) * epsilon;
         let (distance, area) = if draws.below(2) == 0 { (near_epsilon, 1.0) } else { (1.0, near_epsilon) };
         let distance = if draws.below(8) == 0 { -0.5 } else { distance };
-        // The ray passes inside, outside, at edges and at corners of a triangle that f32 holds exactly.
+        // The ray passes inside, outside, at edges and at corners of a triangle that f32 represents
+        // exactly.
         let (v, w) = (0.25 * (draws.below(7) as f32 - 1.0), 0.25 * (draws.below(7) as f32 - 1.0));
         // Outside by less than 1/64.
         let (v, w) = if draws.below(4) == 0 { (0.507_812_5, 0.5) } else { (v, w) };
         let v = if area == 1.0 { v } else { draws.pick(&[0.3, 0.6, 1.3, -0.3]) };
         let a = Vec3::new(-v * area, -w, distance);
         let (b, c) = (a + Vec3::X * area, a + Vec3::Y);
-        // Seen from the other side too.
+        // Also seen from the other side.
         let (b, c) = if draws.below(8) == 0 { (c, b) } else { (b, c) };
         let before = draws.pick(&[FAR, 1.0, 0.25, epsilon]);
         let hit = BvhTraceHit { distance: before, barycentrics: Vec2::new(0.25, 0.5), triangle: draws.below(4) };
@@ -284,7 +289,7 @@ fn benign_case(draws: &mut Draws<'_>) -> Case {
     (hit, ray, a, b, c, number, left)
 }
 
-/// A ray whose reciprocals are powers of two, and a box, on the grid.
+/// Draws a ray whose reciprocals are powers of two, and a box, both on the grid.
 fn grid_box(draws: &mut Draws<'_>, least: f32) -> BoxCase {
     let ray = grid_ray(draws);
     let mut component = || {
@@ -297,7 +302,8 @@ fn grid_box(draws: &mut Draws<'_>, least: f32) -> BoxCase {
     (BvhTraceRay { reciprocal, direction: 1.0 / reciprocal, ..ray }, one.min(other), one.max(other), nearest)
 }
 
-/// A ray aimed at a box: at its middle, its edges, its corners, and beside; boxes flat and thick.
+/// Draws a ray aimed at a box: at its middle, its edges, its corners, or just outside; boxes are
+/// flat or thick.
 fn any_box(draws: &mut Draws<'_>) -> BoxCase {
     let size = size(draws);
     let toward = direction(draws);
@@ -322,7 +328,8 @@ fn any_box(draws: &mut Draws<'_>) -> BoxCase {
     (mirror::ray(origin, toward, lower.min(origin), upper.max(origin)), lower, upper, nearest)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -333,7 +340,7 @@ fn functions() -> Vec<Formula> {
     all.into_iter().flatten().collect()
 }
 
-/// The rows of a matrix that turns, and scales each axis of the body by itself.
+/// Draws the rows of a matrix that rotates, and scales each axis of the body separately.
 fn rows(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let first = draws.unit_vector().as_dvec3().normalize();
     let second = draws.perpendicular(first);
@@ -414,7 +421,7 @@ fn ray_formulas() -> Vec<Formula> {
             back[(axis + 1) % 3] += f64::from(sheared.x);
             back[(axis + 2) % 3] += f64::from(sheared.y);
             let offset = position.as_dvec3() - ray.origin;
-            // The shear's own rounding, and that of three operations, relative to the offset.
+            // The rounding of the shear and of three operations, relative to the offset.
             near("distance", (back - offset).length(), 0.0, 8.0 * 2f64.powi(-23) * offset.length())
         })
         .build(),
@@ -422,7 +429,7 @@ fn ray_formulas() -> Vec<Formula> {
 }
 
 fn box_formulas() -> Vec<Formula> {
-    // Through the flat box's corner, exactly so in f64.
+    // Through the corner of the flat box, exactly so in f64.
     let toward = Vec3::new(0.895_533_44, -0.199_007_45, 0.398_014_9);
     let (lower, upper) = (Vec3::new(-0.7, -0.2, 0.4), Vec3::new(0.9, 0.7, 0.4));
     let flat = (mirror::ray(Vec3::ZERO, toward, Vec3::new(-0.7, -0.2, 0.0), upper), lower, upper, FAR);
@@ -492,8 +499,8 @@ fn triangle_formulas() -> Vec<Formula> {
         Vec3::new(0.577_350_26, 0.577_350_26, 0.577_350_26),
         [Vec3::new(0.5, -0.8, 0.1), Vec3::splat(0.2), Vec3::new(-0.6, 0.9, 1.0)],
     );
-    // The middle of the edge between b and c, which the ray meets from both sides of the edge, and Möller and
-    // Trumbore's test from neither.
+    // The middle of the edge between b and c. The ray meets it from both sides of the edge; Möller
+    // and Trumbore's test finds a hit from neither.
     let toward = Vec3::new(0.531_890_63, -0.576_214_85, 0.620_539_07);
     let (b, c) = (Vec3::new(0.3, -0.9, 0.7), Vec3::new(0.9, -0.4, 0.7));
     let one = Vec3::new(0.7, -0.1, 0.8);
@@ -579,7 +586,7 @@ fn triangle_formulas() -> Vec<Formula> {
                 let edges = [(q, r), (r, p), (p, q)];
                 let weights = edges.map(|(from, to)| (side * from.perp_dot(to)).max(0.0));
                 let total: f64 = weights.iter().sum();
-                // Two products and a difference, of the edge's own difference.
+                // Two products and a difference, with an edge that is itself a difference.
                 let near = edges.map(|(from, to)| from.length().min(to.length()) * (to - from).length());
                 let bound = 2f64.powi(-21) * (near.iter().sum::<f64>() / total + 1.0);
                 near_weight(found.barycentrics.x, weights[1] / total, bound)?;
@@ -587,7 +594,7 @@ fn triangle_formulas() -> Vec<Formula> {
             })
             .invariant("a hit is ahead, in the triangle", |_, hit: BvhTraceHit| {
                 let [v, w] = hit.barycentrics.to_array();
-                // The weights' sum rounds.
+                // The sum of the weights is rounded.
                 let inside = v >= 0.0 && w >= 0.0 && v + w <= 1.0 + 4.0 * f32::EPSILON;
                 if hit.distance >= 0.0 && inside { Ok(()) } else { Err(format!("{hit:?}")) }
             })
@@ -597,7 +604,8 @@ fn triangle_formulas() -> Vec<Formula> {
                 |(hit, ray, a, b, c, ..), one: BvhTraceHit, other: BvhTraceHit| {
                     let slope = (b - a).cross(c - a).dot(ray.direction);
                     let extent = (b - a).length() * (c - a).length();
-                    // At the margin, at the distance of the one before, and edge-on, rounding decides.
+                    // At the margin, at the distance of the previous hit and edge-on, rounding
+                    // decides.
                     if slope < 1e-2 * extent || hit.triangle != BVH_TRACE_NONE || one.triangle != other.triangle {
                         return Ok(());
                     }
@@ -658,7 +666,7 @@ fn mirror_of(case: &Case) -> BvhTraceHit {
     mirror::triangle(hit, ray, a, b, c, triangle, left)
 }
 
-/// Of the angle between the normal and the ray.
+/// Returns the cosine of the angle between the normal and the ray.
 fn cosine(case: &Case) -> f64 {
     let (_, ray, a, b, c, ..) = *case;
     let [a, b, c] = [a, b, c].map(|p| p.as_dvec3());

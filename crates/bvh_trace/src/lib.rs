@@ -1,8 +1,9 @@
-//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and the boxes of a
-//! bounding volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and Ize 2013.
+//! Mirror of `wgsl/bvh_trace.wgsl`: rays inside a closed mesh of any shape, against triangles and
+//! the boxes of a bounding volume hierarchy, without leaks. After Woop, Benthin and Wald 2013 and
+//! Ize 2013.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
-//! [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
+//! The WGSL file states the units, domain and accuracy of each function. This file follows it line
+//! by line. [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
 //!
 //! ```
 //! use glam::{Vec3, vec3};
@@ -10,7 +11,7 @@
 //!
 //! let (lower, upper) = (Vec3::ZERO, vec3(1.0, 1.0, 1.0));
 //! let ray = ray(vec3(0.25, 0.25, 0.0), Vec3::Z, lower, upper);
-//! // The seventh triangle of a mesh, seen from inside.
+//! // Triangle 7 of a mesh, seen from inside.
 //! let hit = triangle(start(1e30), ray, Vec3::Z, vec3(1.0, 0.0, 1.0), vec3(0.0, 1.0, 1.0), 7, u32::MAX);
 //! assert_eq!((hit.triangle, hit.distance), (7, 1.0));
 //! ```
@@ -25,73 +26,74 @@ mod tests;
 
 use glam::{Vec2, Vec3};
 
-/// The margin relative to the largest distance of the mesh along an axis, 2⁻¹⁸.
+/// Factor of the margin on the mesh's largest distance from the origin along an axis, 2⁻¹⁸.
 pub const BVH_TRACE_MARGIN_REACH: f32 = 3.814697265625e-6;
-/// The margin relative to the largest coordinate of the origin, 2⁻²¹.
+/// Factor of the margin on the origin's largest coordinate, 2⁻²¹.
 pub const BVH_TRACE_MARGIN_ORIGIN: f32 = 4.76837158203125e-7;
 
-/// The epsilon of `triangle_naive`, as one finds it.
+/// The usual epsilon, used by [`triangle_naive`].
 pub const BVH_TRACE_NAIVE_EPSILON: f32 = 1e-6;
 
-/// The triangle of a ray that has met none.
+/// Triangle index that stands for "no hit".
 pub const BVH_TRACE_NONE: u32 = 0xffffffff;
 
-/// What the tests of all boxes and triangles need of a ray.
+/// Ray data shared by all box and triangle tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceRay {
-    /// Where it starts.
+    /// Start of the ray.
     pub origin: Vec3,
     /// Unit direction.
     pub direction: Vec3,
-    /// 1 / direction, at most 2²⁴.
+    /// 1 / direction by component, at most 2²⁴ in magnitude.
     pub reciprocal: Vec3,
-    /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
+    /// (x / z, y / z, 1 / z) of the direction, its components permuted so that the largest is z.
     pub shear: Vec3,
-    /// Which component that is.
+    /// Index of the direction's largest component.
     pub axis: u32,
-    /// By how far along an axis the ray may be off, the origin's own rounding included.
+    /// Bound on the error of the ray along an axis, as a length, including the rounding of the
+    /// origin.
     pub margin: f32,
 }
 
-/// A ray in the coordinates of a body.
+/// A ray in the coordinates of a body (object space).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceObjectRay {
-    /// Where it starts.
+    /// Start of the ray.
     pub origin: Vec3,
     /// Unit direction.
     pub direction: Vec3,
-    /// A distance along the ray in the body's coordinates over the same in the world's.
+    /// Distance along the ray in the body's coordinates, divided by the same distance in the world.
     pub stretch: f32,
 }
 
-/// A ray against a box.
+/// Result of a box test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceBox {
-    /// Distance at which the ray enters the box; 0 from inside.
+    /// Distance at which the ray enters the box; 0 if it starts inside.
     pub entry: f32,
-    /// Whether it meets the box before the nearest hit.
+    /// True if the ray meets the box before the nearest hit.
     pub hit: bool,
 }
 
-/// What a ray has met so far.
+/// Nearest hit of a ray so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceHit {
-    /// Along the ray.
+    /// Distance along the ray.
     pub distance: f32,
-    /// Weights of the second and the third corner.
+    /// Weights of the second and the third corner, in [0, 1].
     pub barycentrics: Vec2,
-    /// [`BVH_TRACE_NONE`] if there is none.
+    /// Index of the triangle; [`BVH_TRACE_NONE`] for no hit.
     pub triangle: u32,
 }
 
-/// A vector's components in a cyclic order that brings the one numbered `axis` to z.
+/// Permutes the components of a vector cyclically so that component `axis` becomes z.
 pub fn turn(vector: Vec3, axis: u32) -> Vec3 {
     let x_or_y =
         if axis == 0 { Vec3::new(vector.y, vector.z, vector.x) } else { Vec3::new(vector.z, vector.x, vector.y) };
     if axis < 2 { x_or_y } else { vector }
 }
 
-/// A ray of the world in the coordinates of a body.
+/// Transforms a ray from world space to the coordinates of a body.
 pub fn to_object(
     origin: Vec3,
     direction: Vec3,
@@ -112,12 +114,12 @@ pub fn to_object(
     }
 }
 
-/// What the tests of all boxes and triangles need of a ray, computed once.
+/// Returns the ray data shared by all box and triangle tests, computed once per ray.
 pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceRay {
     let toward = Vec3::select(direction.cmpge(Vec3::ZERO), Vec3::ONE, Vec3::NEG_ONE);
     let size = direction.abs();
-    // A component below 2⁻²⁴ is replaced by that. Its reciprocal is finite, and the ray moves by less than 2⁻²³ of the
-    // mesh while it crosses the mesh, which the margin holds.
+    // A component below 2⁻²⁴ is replaced by that value, so its reciprocal is finite. The ray then
+    // strays by less than 2⁻²³ of the mesh while crossing it, which the margin covers.
     let reciprocal = toward / size.max(Vec3::splat(5.9604644775390625e-8));
     let largest = size.x.max(size.y.max(size.z));
     let y_or_x = if size.y == largest { 1 } else { 0 };
@@ -131,7 +133,8 @@ pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceR
     BvhTraceRay { origin, direction, reciprocal, shear, axis, margin }
 }
 
-/// Whether a ray meets a box, made larger by the ray's margin on all sides, at a distance in [0, nearest].
+/// Tests whether a ray meets a box, enlarged by the ray's margin on all sides, at a distance in
+/// [0, nearest].
 pub fn r#box(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> BvhTraceBox {
     let first = (lower - ray.origin - ray.margin) * ray.reciprocal;
     let second = (upper - ray.origin + ray.margin) * ray.reciprocal;
@@ -142,7 +145,7 @@ pub fn r#box(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> BvhTra
     BvhTraceBox { entry, hit: entry <= exit }
 }
 
-/// The slab test as one finds it.
+/// Performs the usual slab test.
 pub fn box_naive(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> BvhTraceBox {
     let inverse = 1.0 / ray.direction;
     let first = (lower - ray.origin) * inverse;
@@ -154,18 +157,21 @@ pub fn box_naive(ray: BvhTraceRay, lower: Vec3, upper: Vec3, nearest: f32) -> Bv
     BvhTraceBox { entry, hit: entry <= exit }
 }
 
-/// What a ray has met before its first triangle: nothing up to a distance.
+/// Returns the initial hit record of a ray, before its first triangle: no hit up to the distance
+/// `limit`.
 pub fn start(limit: f32) -> BvhTraceHit {
     BvhTraceHit { distance: limit, barycentrics: Vec2::ZERO, triangle: BVH_TRACE_NONE }
 }
 
-/// A position in the frame of a ray: the ray is its z axis, x and y are two of the coordinate axes.
+/// Returns a position in the frame of a ray: the ray is the z axis, and x and y are two of the
+/// coordinate axes.
 pub fn shear(ray: BvhTraceRay, position: Vec3) -> Vec3 {
     let turned = turn(position - ray.origin, ray.axis);
     (turned.truncate() - ray.shear.truncate() * turned.z).extend(turned.z * ray.shear.z)
 }
 
-/// The nearer of a hit and of the triangle a b c, if the ray leaves the solid through that.
+/// Returns the nearer of `hit` and a hit with the triangle a b c, if the ray leaves the solid
+/// through it.
 pub fn triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -181,8 +187,10 @@ pub fn triangle(
     let qr = r - q;
     let rp = p - r;
     let pq = q - p;
-    // Twice the areas that the origin spans with the edges opposite to a, b, c, from the nearer end of each: the area's
-    // error is that end's distance times the edge. Seen against the ray where its largest component is negative.
+    // Twice the areas spanned by the origin and the edges opposite a, b, c, each computed from the
+    // nearer end of its edge, because the error of an area is the distance of that end times the
+    // edge. If the direction's largest component is negative, the frame is seen against the ray,
+    // and the sign changes.
     let squared =
         Vec3::new(p.truncate().length_squared(), q.truncate().length_squared(), r.truncate().length_squared());
     let on_qr = if squared.z < squared.y { r } else { q };
@@ -194,7 +202,8 @@ pub fn triangle(
     if triangle == left || area.x + area.y + area.z <= 0.0 {
         return hit;
     }
-    // Distance from an edge times the edge, both measured along the axes: the largest and the sum of the components.
+    // Distance from an edge times the length of the edge, both measured along the axes: the
+    // distance as the largest component, the length as the sum of the components.
     let give = ray.margin * Vec3::new(qr.x.abs() + qr.y.abs(), rp.x.abs() + rp.y.abs(), pq.x.abs() + pq.y.abs());
     let lower = p.truncate().min(q.truncate()).min(r.truncate());
     let upper = p.truncate().max(q.truncate()).max(r.truncate());
@@ -206,8 +215,9 @@ pub fn triangle(
     }
     let weight = area.max(Vec3::ZERO);
     let total = weight.x + weight.y + weight.z;
-    // Distance from the plane times its normal, measured like that from an edge. Divided by `total` it is the distance
-    // along the ray, by which a plane close to the origin, met at a shallow angle, may lie far behind.
+    // Distance from the plane times its normal, measured in the same way as the distance from an
+    // edge. Divided by `total` it is the distance along the ray, but measured that way a plane
+    // close to the origin may be far behind it, if the ray meets it at a shallow angle.
     let height = weight.x * p.z + weight.y * q.z + weight.z * r.z;
     let normal = qr.cross(rp).abs();
     let distance = (height / total).max(0.0);
@@ -220,7 +230,7 @@ pub fn triangle(
     BvhTraceHit { distance, barycentrics: Vec2::new(weight.y, weight.z) / total, triangle }
 }
 
-/// The triangle test that one finds: Möller and Trumbore's, with an epsilon.
+/// Performs the usual triangle test, Möller and Trumbore's, with an epsilon.
 pub fn triangle_naive(
     hit: BvhTraceHit,
     ray: BvhTraceRay,

@@ -1,64 +1,65 @@
-//! The truth in f64. A box is met if the ray crosses one of its faces inside that face's rectangle; a triangle is
-//! judged by the signed volumes of tetrahedra and by its plane, without a turned or sheared frame. [`crossings`] is the
-//! whole mesh by brute force, without any margin: what [`crate::traversal::trace`] is compared with.
+//! The oracle in f64. A box is hit if the ray crosses one of its faces inside that face's
+//! rectangle. A triangle is judged by the signed volumes of tetrahedra and by its plane, without a
+//! permuted or sheared frame. [`crossings`] tests the whole mesh by brute force, without any
+//! margin; it is the reference for [`crate::traversal::trace`].
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// What the tests of all boxes and triangles need of a ray.
+/// Ray data shared by all box and triangle tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceRay {
-    /// Where it starts.
+    /// Start of the ray.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// 1 / direction, at most 2²⁴.
+    /// 1 / direction by component, at most 2²⁴ in magnitude.
     pub reciprocal: DVec3,
-    /// With the direction's components turned so that the largest is z: (x / z, y / z, 1 / z).
+    /// (x / z, y / z, 1 / z) of the direction, its components permuted so that the largest is z.
     pub shear: DVec3,
-    /// Which component that is.
+    /// Index of the direction's largest component.
     pub axis: u32,
-    /// By how far along an axis the ray may be off.
+    /// Bound on the error of the ray along an axis, as a length.
     pub margin: f64,
 }
 
-/// A ray in the coordinates of a body.
+/// A ray in the coordinates of a body (object space).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceObjectRay {
-    /// Where it starts.
+    /// Start of the ray.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// A distance along the ray in the body's coordinates over the same in the world's.
+    /// Distance along the ray in the body's coordinates, divided by the same distance in the world.
     pub stretch: f64,
 }
 
-/// A ray against a box.
+/// Result of a box test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceBox {
-    /// Distance at which the ray enters the box; 0 from inside.
+    /// Distance at which the ray enters the box; 0 if it starts inside.
     pub entry: f64,
-    /// Whether it meets the box before the nearest hit.
+    /// True if the ray meets the box before the nearest hit.
     pub hit: bool,
 }
 
-/// What a ray has met so far.
+/// Nearest hit of a ray so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTraceHit {
-    /// Along the ray.
+    /// Distance along the ray.
     pub distance: f64,
-    /// Weights of the second and the third corner.
+    /// Weights of the second and the third corner, in [0, 1].
     pub barycentrics: DVec2,
-    /// [`crate::BVH_TRACE_NONE`] if there is none.
+    /// Index of the triangle; [`crate::BVH_TRACE_NONE`] for no hit.
     pub triangle: u32,
 }
 
-/// The components by index arithmetic.
+/// Permutes the components by index arithmetic.
 pub fn turn(vector: DVec3, axis: u32) -> DVec3 {
     let axis = axis.min(2) as usize;
     DVec3::new(vector[(axis + 1) % 3], vector[(axis + 2) % 3], vector[axis])
 }
 
-/// The inverse of [`turn`], by the index that each component came from.
+/// Inverts [`turn`], from the index at which each component came in.
 fn turn_back(vector: DVec3, axis: u32) -> DVec3 {
     let axis = axis.min(2) as usize;
     let mut result = DVec3::ZERO;
@@ -68,7 +69,8 @@ fn turn_back(vector: DVec3, axis: u32) -> DVec3 {
     result
 }
 
-/// By the matrix's columns, as the world's axes are turned: the sum of each times a component.
+/// Transforms by the columns of the matrix, the images of the world's axes: the sum of each column
+/// times a component.
 pub fn to_object(
     origin: DVec3,
     direction: DVec3,
@@ -84,7 +86,8 @@ pub fn to_object(
     BvhTraceObjectRay { origin: turned(origin) - turned(place), direction: along / stretch, stretch }
 }
 
-/// Shears as tangents of angles, reciprocals by logarithms, the reach over the box's eight corners.
+/// Computes shears as tangents of angles, reciprocals with logarithms, and the reach over the eight
+/// corners of the box.
 pub fn ray(origin: DVec3, direction: DVec3, lower: DVec3, upper: DVec3) -> BvhTraceRay {
     let reciprocal = DVec3::from(direction.to_array().map(|component| {
         let size = component.abs().max(2f64.powi(-24));
@@ -108,8 +111,8 @@ pub fn ray(origin: DVec3, direction: DVec3, lower: DVec3, upper: DVec3) -> BvhTr
     BvhTraceRay { origin, direction, reciprocal, shear, axis, margin }
 }
 
-/// Every face of the enlarged box in turn: is it crossed within its rectangle? `entry` by the middle and half the width
-/// of the slabs.
+/// Tests each face of the enlarged box for a crossing within its rectangle. `entry` is computed
+/// from the middle and half the width of the slabs.
 pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhTraceBox {
     let direction = 1.0 / ray.reciprocal;
     let middle = 0.5 * (lower + upper) - ray.origin;
@@ -126,18 +129,18 @@ pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhT
     BvhTraceBox { entry, hit: inside(0.0, None) || inside(nearest, None) || crosses }
 }
 
-/// Nothing up to a distance.
+/// Returns a record without a hit, up to a distance.
 pub fn start(limit: f64) -> BvhTraceHit {
     BvhTraceHit { distance: limit, barycentrics: DVec2::ZERO, triangle: u32::MAX }
 }
 
-/// The direction that a ray's shear stands for, of the length that makes 1 / shear.z its largest component.
+/// Returns the direction that a ray's shear encodes, with 1 / shear.z as its largest component.
 fn sheared_direction(ray: &BvhTraceRay) -> DVec3 {
     turn_back(DVec3::new(ray.shear.x, ray.shear.y, 1.0) / ray.shear.z, ray.axis)
 }
 
-/// The foot of `position` on the plane through the origin across the ray's axis, along the ray; then how far along it
-/// was.
+/// Projects `position` along the ray onto the plane through the origin perpendicular to the ray's
+/// axis. Returns the foot point, and the distance along the ray.
 pub fn shear(ray: BvhTraceRay, position: DVec3) -> DVec3 {
     let direction = sheared_direction(&ray);
     let axis = ray.axis.min(2) as usize;
@@ -147,8 +150,10 @@ pub fn shear(ray: BvhTraceRay, position: DVec3) -> DVec3 {
     DVec3::new(foot[(axis + 1) % 3], foot[(axis + 2) % 3], along)
 }
 
-/// Signed volumes: the direction with two corners seen from the origin. The distance is that of the triangle's plane,
-/// or where the ray passes beside it, that of the point of the triangle whose weights are those volumes, none below 0.
+/// Computes signed volumes, spanned by the direction and two corners seen from the origin. The
+/// distance is measured to the triangle's plane. If the ray passes beside the triangle, it is
+/// measured to the point of the triangle whose weights are those volumes, with negative volumes
+/// counted as 0.
 pub fn triangle(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -169,7 +174,8 @@ pub fn triangle(
     let volumes: [f64; 3] = std::array::from_fn(|k| {
         direction.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3])) / direction[axis].abs()
     });
-    // A foot's component along the axis is 0, so sums and maxima of components are those of the plane.
+    // The component of a foot along the axis is 0, so sums and maxima of components are those in
+    // the plane.
     for k in 0..3 {
         let mut edge = feet[(k + 2) % 3] - feet[(k + 1) % 3];
         edge[axis] = 0.0;
@@ -186,8 +192,8 @@ pub fn triangle(
     }
     let weights = volumes.map(|volume| volume.max(0.0));
     let total: f64 = weights.iter().sum();
-    // How high the plane stands over the origin, times its normal, and the same at a point of the triangle beside the
-    // ray.
+    // Height of the plane over the origin, times its normal. If the ray passes beside the triangle,
+    // the height at a point of the triangle instead.
     let (height, slope) = if volumes.iter().all(|volume| *volume >= 0.0) {
         (normal.dot(corners[0]), normal.dot(direction))
     } else {
@@ -195,7 +201,8 @@ pub fn triangle(
         (point[axis] * direction[axis].signum(), total * direction[axis].abs())
     };
     let distance = (height / slope).max(0.0);
-    // Along the frame's axes, which are two coordinate axes and the direction, a plane is met at height / slope.
+    // Along the axes of the frame, which are two coordinate axes and the direction, the plane is
+    // met at height / slope.
     let slopes: f64 = (0..3).filter(|other| *other != axis).map(|other| normal[other].abs()).sum();
     if height < -ray.margin * (slopes + normal.dot(direction))
         || distance > hit.distance
@@ -206,8 +213,8 @@ pub fn triangle(
     BvhTraceHit { distance, barycentrics: DVec2::new(weights[1], weights[2]) / total, triangle }
 }
 
-/// The plane of the triangle, and the winding of its edges about the point where the ray meets it; with the epsilon
-/// that the naive form has for the determinant and for the distance.
+/// Intersects the plane of the triangle and tests the winding of its edges around the intersection
+/// point, with the naive form's epsilon for the determinant and for the distance.
 pub fn triangle_naive(
     hit: BvhTraceHit,
     ray: BvhTraceRay,
@@ -233,18 +240,20 @@ pub fn triangle_naive(
     BvhTraceHit { distance, barycentrics: DVec2::new(v, w), triangle }
 }
 
-/// A triangle that the line of a ray leaves the solid through, or passes.
+/// A triangle through which the line of a ray leaves the solid, or which the line passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Its number.
+    /// Index of the triangle.
     pub triangle: u32,
-    /// Where the ray meets its plane.
+    /// Distance along the ray to the triangle's plane.
     pub distance: f64,
-    /// How far inside the triangle's outline, seen along the ray, the ray passes; negative outside of it.
+    /// Distance of the ray from the triangle's outline, seen along the ray; positive inside,
+    /// negative outside.
     pub clearance: f64,
 }
 
-/// The triangle `corners` as the line sees it; none where it is edge-on or the ray enters the solid through it.
+/// Returns the triangle `corners` as the line sees it; `None` if it is edge-on or the ray enters
+/// the solid through it.
 pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DVec3) -> Option<Crossing> {
     let direction = direction.normalize();
     let [a, b, c] = corners;
@@ -259,8 +268,8 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     for k in 0..3 {
         let (from, to) = (across[k], across[(k + 1) % 3]);
         let edge = to - from;
-        // A triangle that the ray leaves through winds counter-clockwise about its direction: left of each edge is
-        // inside.
+        // A triangle through which the ray leaves winds counter-clockwise around the ray's
+        // direction: the inside is to the left of each edge.
         let height = direction.dot(from.cross(to)) / edge.length().max(f64::MIN_POSITIVE);
         inside = inside.min(height);
         let share = (-from.dot(edge) / edge.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -269,8 +278,8 @@ pub fn crossing(corners: [DVec3; 3], triangle: u32, origin: DVec3, direction: DV
     Some(Crossing { triangle, distance, clearance: if inside >= 0.0 { inside } else { -nearest } })
 }
 
-/// Every triangle of a mesh that the line leaves the solid through at a clearance of more than `-bound`, but for
-/// `left`.
+/// Returns every triangle of a mesh, except `left`, through which the line leaves the solid with a
+/// clearance of more than `-bound`.
 pub fn crossings(
     positions: &[DVec3],
     indices: &[u32],

@@ -1,5 +1,5 @@
-//! Whole meshes: no ray gets out between triangles, the hierarchy finds what the loop over all finds, and both find
-//! what f64 finds.
+//! Tests of whole meshes: no ray escapes between triangles, the hierarchy finds the same hits as
+//! the loop over all triangles, and both find the same hits as f64.
 
 use super::*;
 use crate::traversal::{BVH_TRACE_DEPTH, TriangleFn, met, trace, trace_all, trace_with};
@@ -13,7 +13,8 @@ struct Body {
     indices: Vec<u32>,
 }
 
-/// Halves the triangles along the longest side of their box, down to two in a leaf.
+/// Builds a hierarchy: halves the triangles along the longest side of their box, down to two in a
+/// leaf.
 fn body(positions: Vec<Vec3>, indices: &[u32]) -> Body {
     let mut triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
     let mut nodes = vec![[Vec4::ZERO; 2]];
@@ -42,7 +43,8 @@ fn body(positions: Vec<Vec3>, indices: &[u32]) -> Body {
     Body { nodes, positions, indices: triangles.concat() }
 }
 
-/// An icosahedron with every triangle cut into four, `times` over, on a sphere; `radius` moves its vertices in and out.
+/// Builds a sphere from an icosahedron by cutting every triangle into four, `times` times over;
+/// `radius` moves its vertices in and out.
 fn icosphere(times: u32, radius: impl Fn(DVec3) -> f64) -> Body {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut positions = Vec::new();
@@ -50,7 +52,7 @@ fn icosphere(times: u32, radius: impl Fn(DVec3) -> f64) -> Body {
         positions.extend([DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)]);
     }
     let mut positions: Vec<DVec3> = positions.into_iter().map(DVec3::normalize).collect();
-    // The faces are the triples of vertices at the least distance from one another.
+    // The faces are the triples of vertices at the smallest distance from one another.
     let near = |a: usize, b: usize| positions[a].distance(positions[b]) < 1.1;
     let mut faces = Vec::new();
     for a in 0..12 {
@@ -87,18 +89,18 @@ fn sphere() -> Body {
     icosphere(3, |_| 1.0)
 }
 
-/// Concave: dents and bumps, but every point of it is seen from the middle.
+/// Builds a concave body with dents and bumps, every point of which is visible from the middle.
 fn bumpy() -> Body {
     icosphere(4, |p| 1.0 + 0.3 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).cos() * (6.0 * p.z).sin())
 }
 
-/// Few facets, with edges as sharp as a brilliant's at its girdle.
+/// Builds a body of few facets, with edges as sharp as at the girdle of a brilliant.
 fn lens() -> Body {
     let solid = icosphere(0, |_| 1.0);
     body(solid.positions.iter().map(|p| Vec3::new(p.x, 0.2 * p.y, p.z)).collect(), &solid.indices)
 }
 
-/// Rays from about the middle, aimed exactly at a vertex, at a point of an edge, or along an edge's plane.
+/// Draws a ray from near the middle, aimed exactly at a vertex or at a point of an edge.
 fn aimed_ray(random: &mut Draws<'_>, body: &Body) -> (Vec3, Vec3) {
     let origin = (0.1 * random.unit() * random.direction()).as_vec3();
     let origin = if random.below(4) == 0 { Vec3::ZERO } else { origin };
@@ -143,10 +145,12 @@ fn the_naive_test_leaks_there() {
     }
 }
 
-/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up.
+/// Returns a contradiction between the hit and f64 without any margin: a triangle that the ray
+/// clearly meets is missed, or a triangle is hit that the ray does not meet.
 fn faults(body: &Body, origin: Vec3, direction: Vec3, left: u32, hit: &BvhTraceHit) -> Option<String> {
     let ray = ray(origin, direction, body.nodes[0][0].truncate(), body.nodes[0][1].truncate());
-    // The margin is measured along two axes of the ray's frame, and the frame is aslant: at most √3 each way.
+    // The margin is measured along two axes of the ray's frame, which is oblique: at most √3 each
+    // way.
     let bound = 3.0 * f64::from(ray.margin);
     let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3()).collect();
     let all = oracle::crossings(&positions, &body.indices, origin.as_dvec3(), direction.as_dvec3(), left, bound);
@@ -170,7 +174,7 @@ fn the_nearest_triangle_is_that_of_f64() {
         }
         let mut left = BVH_TRACE_NONE;
         if count % 4 == 0 {
-            // From the surface, back inside.
+            // From the surface back inside.
             let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE);
             origin += hit.distance * direction;
             direction = -direction;
@@ -195,8 +199,9 @@ fn the_hierarchy_finds_what_the_loop_finds() {
     }
 }
 
-/// From a facet inwards, to a vertex or an edge of another, where its neighbours know nothing of the reflected
-/// direction, and on by mirror reflections; counts the rays that get out.
+/// Counts the rays that escape. Each starts from a facet inwards, aimed at a vertex or an edge of
+/// another facet, where the neighbouring facets know nothing of the reflected direction, and goes
+/// on by mirror reflections.
 fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
     let mut random = Draws::of_row(4, 0);
     let count = body.indices.len() / 3;
@@ -255,8 +260,9 @@ fn the_tests_own_hierarchy_is_shallow() {
     assert!((bumpy().nodes.len().ilog2() as usize) < BVH_TRACE_DEPTH);
 }
 
-/// A body a million times its size away from the world's origin: there f32 is eighths, so that its mesh is no more what it was. In its own
-/// coordinates the ray meets what f64 finds, as far along as its origin is exact.
+/// A body is a million times its size away from the world's origin. f32 resolves only quarters
+/// to thirty-seconds there, so the mesh loses its shape. In the body's own coordinates the ray hits the same point as
+/// in f64, as far as its origin is exact.
 #[test]
 fn a_body_far_away_is_traced_in_its_own_coordinates() {
     let body = sphere();

@@ -1,15 +1,15 @@
-//! Mirror of the part `wgsl/recipes/parts/trace_nearest.wgsl`: the loops over nodes and over all triangles, line by line, on
-//! the buffers that its recipes bind.
+//! Mirror of the part `wgsl/recipes/parts/trace_nearest.wgsl`, line by line: the loop over the
+//! nodes and the loop over all triangles, on the buffers that its recipes bind.
 
 use crate::{BVH_TRACE_NONE, BvhTraceHit, BvhTraceRay};
 use glam::{Vec3, Vec4};
 
-/// The largest number of nodes between the root and a leaf: what the stack holds.
+/// Largest number of nodes between the root and a leaf, the capacity of the stack.
 pub const BVH_TRACE_DEPTH: usize = 32;
-/// Farther than anything that a ray may meet.
+/// A distance farther than any hit.
 pub const BVH_TRACE_FAR: f32 = 1e37;
 
-/// The box of a node.
+/// Returns the lower corner of a node's box.
 fn lower_of(node: &[Vec4; 2]) -> Vec3 {
     node[0].truncate()
 }
@@ -18,17 +18,17 @@ fn upper_of(node: &[Vec4; 2]) -> Vec3 {
     node[1].truncate()
 }
 
-/// How many triangles a leaf holds; 0 for an inner node.
+/// Returns the number of triangles of a leaf; 0 for an inner node.
 fn count_of(node: &[Vec4; 2]) -> u32 {
     node[0].w.to_bits()
 }
 
-/// A leaf's first triangle; an inner node's first child.
+/// Returns the first triangle of a leaf, or the first child of an inner node.
 fn first_of(node: &[Vec4; 2]) -> u32 {
     node[1].w.to_bits()
 }
 
-/// A test of one triangle: [`crate::triangle`] or [`crate::triangle_naive`].
+/// Test of one triangle: [`crate::triangle`] or [`crate::triangle_naive`].
 pub type TriangleFn = fn(BvhTraceHit, BvhTraceRay, Vec3, Vec3, Vec3, u32, u32) -> BvhTraceHit;
 
 fn test(
@@ -44,9 +44,9 @@ fn test(
     with(hit, ray, corner(0), corner(1), corner(2), triangle, left)
 }
 
-/// The nearest triangle that the ray leaves the solid through, found by the hierarchy. `nodes` are pairs of (lower
-/// corner, count as bits) and (upper corner, first as bits); `indices` are in the order of the leaves; `left` is the
-/// triangle just left, or [`BVH_TRACE_NONE`].
+/// Returns the nearest triangle through which the ray leaves the solid, found with the hierarchy.
+/// `nodes` are pairs of (lower corner, count as bits) and (upper corner, first as bits). `indices`
+/// are in the order of the leaves. `left` is the triangle just left, or [`BVH_TRACE_NONE`].
 pub fn trace(
     nodes: &[[Vec4; 2]],
     positions: &[Vec3],
@@ -58,7 +58,7 @@ pub fn trace(
     trace_with(nodes, positions, indices, origin, direction, left, crate::triangle)
 }
 
-/// [`trace`] with another test of a triangle.
+/// Does the same as [`trace`] with another triangle test.
 pub fn trace_with(
     nodes: &[[Vec4; 2]],
     positions: &[Vec3],
@@ -82,7 +82,7 @@ pub fn trace_with(
             let (one, other) = (&nodes[first as usize], &nodes[first as usize + 1]);
             let box_one = crate::r#box(ray, lower_of(one), upper_of(one), hit.distance);
             let box_other = crate::r#box(ray, lower_of(other), upper_of(other), hit.distance);
-            // The nearer child first: what it finds culls the farther.
+            // The nearer child first: its hits cull the farther child.
             let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
             let near = if other_first { first + 1 } else { first };
             if box_one.hit && box_other.hit {
@@ -98,7 +98,7 @@ pub fn trace_with(
         for triangle in first..first + count {
             hit = test(positions, indices, hit, ray, triangle, left, with);
         }
-        // Back to the last box that may still hold something nearer.
+        // Back to the last box that may still hold a nearer hit.
         let mut found = false;
         while depth > 0 && !found {
             depth -= 1;
@@ -112,7 +112,7 @@ pub fn trace_with(
     hit
 }
 
-/// The same by a loop over all triangles, the paper's comparator.
+/// Returns the same from a loop over all triangles, the paper's comparison.
 pub fn trace_all(
     nodes: &[[Vec4; 2]],
     positions: &[Vec3],
@@ -130,7 +130,7 @@ pub fn trace_all(
     hit
 }
 
-/// Whether a ray met anything.
+/// Returns whether the ray hit a triangle.
 pub fn met(hit: &BvhTraceHit) -> bool {
     hit.triangle != BVH_TRACE_NONE
 }

@@ -1,4 +1,5 @@
-//! `wgsl/bvh_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-bvh_trace`.
+//! Device tests of every function of `wgsl/bvh_trace.wgsl` and its naive forms:
+//! `cargo test -p lapidary-bvh_trace`.
 
 use lapidary_bvh_trace::formulas::formulas;
 

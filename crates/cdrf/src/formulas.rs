@@ -1,4 +1,4 @@
-//! `wgsl/cdrf.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/cdrf.wgsl`.
 
 mod outside;
 
@@ -13,13 +13,14 @@ mirror_struct!(crate, CdrfTexels { lower, upper, weight });
 
 const M: &str = "cdrf";
 
-/// The least share of the largest sigma that a channel of a table may have, besides none.
+/// Smallest share of the largest sigma that a channel of a table may have, except 0.
 const LEAST_TINT: f32 = 1e-20;
 
 /// The smallest positive f32, a subnormal.
 const SUBNORMAL: f32 = f32::from_bits(1);
 
-/// A cosine: the ends, about the terminator at every magnitude, anywhere, out of range by rounding.
+/// Draws a cosine: the ends, around the terminator at every magnitude, anywhere, or out of range by
+/// rounding.
 fn cosine(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => draws.pick(&[0.0, 1.0, -1.0, SUBNORMAL, -SUBNORMAL, 1.0f32.next_up(), -1.5]),
@@ -31,7 +32,7 @@ fn cosine(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A sigma: 0 and every magnitude, about where the forms are switched, and the range of use.
+/// Draws a sigma: 0, every magnitude, around the switches of the forms, or in the range of use.
 fn sigma(draws: &mut Draws<'_>) -> f32 {
     match draws.below(10) {
         0 => draws.pick(&[0.0, SUBNORMAL, 1e-6, 3.0, 8.0, 1e6, 1e19, f32::MAX, -1.0]),
@@ -47,7 +48,8 @@ fn sigma(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Both, in one case of four with the cosine a few sigmas from the terminator, where the blur acts.
+/// Draws both; in one case of four the cosine is a few sigmas from the terminator, where the blur
+/// acts.
 fn shading(draws: &mut Draws<'_>) -> (f32, f32) {
     let sigma = sigma(draws);
     let cosine = if draws.below(4) == 0 && sigma < 1.0 { sigma * draws.between(-6.0, 6.0) } else { cosine(draws) };
@@ -59,12 +61,12 @@ fn narrow(draws: &mut Draws<'_>, widest: f32) -> (f32, f32) {
     if sigma <= widest { (cosine, sigma) } else { (cosine, draws.between(0.0, widest)) }
 }
 
-/// Bits of every kind.
+/// Draws floats of every kind.
 fn any(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => {
             let largest = f32::MAX;
-            // The last two are NaNs with the least payload.
+            // The last two are NaNs with the smallest payload.
             draws.pick(&[
                 0.0,
                 -0.0,
@@ -109,7 +111,8 @@ fn in_unit_range(reflectance: f32) -> Result<(), String> {
     if (0.0..=1.0).contains(&reflectance) { Ok(()) } else { Err(format!("reflectance {reflectance}")) }
 }
 
-/// Exactly Lambert's law where there is no blur, but for what may be flushed.
+/// Checks that the result without blur is exactly Lambert's law, except for values that may be
+/// flushed.
 fn lambert_at_zero((cosine, sigma): (f32, f32), reflectance: f32) -> Result<(), String> {
     if sigma > 0.0 {
         return Ok(());
@@ -117,18 +120,20 @@ fn lambert_at_zero((cosine, sigma): (f32, f32), reflectance: f32) -> Result<(), 
     near("reflectance", reflectance.into(), f64::from(cosine.clamp(0.0, 1.0)), f32::MIN_POSITIVE.into())
 }
 
-/// The cosine of an angle that is `step` further from the light.
+/// Returns the cosine of an angle that is `step` farther from the light.
 fn turned(cosine: f32, step: f64) -> f32 {
     (f64::from(cosine.clamp(-1.0, 1.0)).acos() + step).min(PI).cos() as f32
 }
 
-/// No brighter where the light stands lower; what rounding, of at most `bound` each, allows.
+/// Checks that the reflectance does not rise as the light sinks, except for rounding of at most
+/// `bound` in each value.
 fn darker(reflectance: f32, turned: f32, bound: f64) -> Result<(), String> {
     let rise = f64::from(turned) - f64::from(reflectance);
     if rise <= 2.0 * bound { Ok(()) } else { Err(format!("rises by {rise:e} to {turned}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -253,7 +258,7 @@ fn rungs() -> Vec<Formula> {
         .build(),
         formula(M, "cdrf_quadrature", mirror::quadrature, oracle::quadrature, |draws| {
             let (cosine, sigma) = shading(draws);
-            // The wider the Gaussian the more there is to sum.
+            // The wider the Gaussian, the more there is to sum.
             (cosine, if sigma > 3.0 && draws.below(8) > 0 { draws.between(0.0, 3.0) } else { sigma })
         })
         .edge("no blur", |(_, s)| s == 0.0)
@@ -267,7 +272,7 @@ fn accurate() -> Vec<Formula> {
     const UNWRAPPED: &str = "cdrf_accurate_naive";
     const FIRST_ORDER: &str = "cdrf_edge_naive";
     const ANGLE: &str = "cdrf_angle_naive";
-    /// The accuracy line's bound on lavapipe.
+    /// Bound of the accuracy line on lavapipe.
     const BOUND: f64 = 5e-7;
     // σ φ(0) (1 - σ²/3 + …) at the terminator.
     let terminator = |sigma: f64| oracle::accurate(0.0, sigma);
@@ -312,7 +317,8 @@ fn accurate() -> Vec<Formula> {
                 |(c, s)| (turned(c, 0.01), s),
                 |_, one: f32, other: f32| darker(one, other, BOUND),
             )
-            // The forms meet at the switch: the slope in sigma is the function's own, at most 0.4 there.
+            // The forms meet at the switch. The slope in sigma is the function's own, at most 0.4
+            // there.
             .pair(
                 "no seam",
                 |(c, _)| (c, mirror::CDRF_SWITCH),
@@ -330,7 +336,8 @@ fn accurate() -> Vec<Formula> {
             .hard_case("no blur, facing the light", (1.0, 0.0), (&[1.0], 0.0), (SERIES, 3e-3))
             .hard_case("a subnormal sigma", (0.0, SUBNORMAL), (&[0.0], 1e-38), (SERIES, 0.03))
             .hard_case("sigma 1e-6 at the terminator", (0.0, 1e-6), (&[terminator(1e-6)], 1e-12), (SERIES, 0.03))
-            // cos of 90 degrees, which no f32 is exactly, and of one step less.
+            // No f32 is exactly 90 degrees in radians: the cosine of the nearest one, and of one
+            // step less.
             .hard_case("the f32 nearest to 90 degrees", (-4.371_139e-8, 1e-6), (&[3.774_677e-7], 1e-12), (SERIES, 0.03))
             .hard_case("one step less than 90 degrees", (7.549_790e-8, 1e-6), (&[4.378_277e-7], 1e-12), (SERIES, 0.03))
             .hard_case(
@@ -396,7 +403,7 @@ fn accurate() -> Vec<Formula> {
 }
 
 fn others() -> Vec<Formula> {
-    /// The accuracy line's bound on lavapipe.
+    /// Bound of the accuracy line on lavapipe.
     const BOUND: f64 = 1.8e-6;
     vec![
         formula(M, "cdrf_spherical_edge", mirror::spherical_edge, oracle::spherical_edge, |draws| {

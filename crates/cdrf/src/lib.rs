@@ -1,5 +1,5 @@
-//! Rust mirror of `wgsl/cdrf.wgsl`, line by line: curvature-dependent reflectance. Units, domain and accuracy stand above
-//! the WGSL functions.
+//! Mirror of `wgsl/cdrf.wgsl`, line by line: curvature-dependent reflectance. The WGSL file states
+//! the units, domain and accuracy of each function.
 //!
 //! ```
 //! use lapidary_cdrf::{accurate, lambert, sigma};
@@ -16,23 +16,24 @@ pub mod oracle;
 
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
-/// From this sigma on the Fourier series is summed, below it the form at one edge.
+/// From this sigma on the Fourier series is summed; below it the single-edge form is used.
 pub const CDRF_SWITCH: f32 = 0.3;
-/// The same for the cheap form.
+/// The same switch for the cheap form.
 pub const CDRF_CHEAP_SWITCH: f32 = 0.35;
-/// The same for the spherical form.
+/// The same switch for the spherical form.
 pub const CDRF_SPHERICAL_SWITCH: f32 = 0.1;
 /// Wider Gaussians count as this one.
 pub const CDRF_WIDEST: f32 = 8.0;
-/// Divisors are at least this.
+/// Lower limit of divisors, 2^-126.
 pub const CDRF_SMALLEST: f32 = 1.1754943508222875e-38;
 
-/// WGSL's `sign`: 0 for 0.
+/// Returns the sign as WGSL's `sign` does: 0 for 0.
 fn sign(value: f32) -> f32 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
 
-/// A number from anywhere, made safe to calculate with: NaN is 0, magnitudes end at 1e18.
+/// Makes a number from any source safe to calculate with: a NaN becomes 0, and magnitudes are
+/// limited to 1e18.
 pub fn finite(value: f32) -> f32 {
     let bits = value.to_bits();
     let magnitude = bits & 0x7fff_ffff;
@@ -42,17 +43,18 @@ pub fn finite(value: f32) -> f32 {
     f32::from_bits((bits & 0x8000_0000) | magnitude.min(0x5d5e_0b6b))
 }
 
-/// Width of the Gaussian, in radians, from the material's scattering and the surface's curvature.
+/// Returns the width of the Gaussian, in radians, from the material's scattering and the surface's
+/// curvature.
 pub fn sigma(sigma0: f32, curvature: f32) -> f32 {
     finite(sigma0).max(0.0) * finite(curvature).abs()
 }
 
-/// The product as it stands in the paper, a naive form.
+/// Returns the plain product, as printed in the paper; a naive form.
 pub fn sigma_naive(sigma0: f32, curvature: f32) -> f32 {
     sigma0 * curvature
 }
 
-/// Angle in radians whose sine is given.
+/// Returns the angle in radians from its sine.
 pub fn arcsine(sine: f32) -> f32 {
     let a = sine.abs().min(1.0);
     let outer = a > 0.5;
@@ -67,17 +69,17 @@ pub fn arcsine(sine: f32) -> f32 {
     sign(sine) * angle
 }
 
-/// Distance from the terminator in standard deviations.
+/// Returns the distance from the terminator in standard deviations.
 pub fn deviations(x: f32, sigma: f32) -> f32 {
     (x / sigma.max(CDRF_SMALLEST)).clamp(-12.0, 12.0)
 }
 
-/// Density of the standard normal distribution.
+/// Returns the density of the standard normal distribution.
 pub fn normal_density(u: f32) -> f32 {
     0.3989423 * (-0.5 * u * u).exp()
 }
 
-/// Standard normal distribution: the share of a Gaussian below `u` standard deviations.
+/// Returns the standard normal distribution: the share of a Gaussian below `u` standard deviations.
 pub fn normal_share(u: f32) -> f32 {
     let a = u.abs().min(12.0);
     let t = 1.0 / (1.0 + 0.2316419 * a);
@@ -86,19 +88,20 @@ pub fn normal_share(u: f32) -> f32 {
     0.5 + sign(u) * (0.5 - tail)
 }
 
-/// Lambert's law: no scattering at all.
+/// Returns the reflectance by Lambert's law: no scattering at all.
 pub fn lambert(cosine: f32) -> f32 {
     cosine.clamp(0.0, 1.0)
 }
 
-/// Wrap lighting, scaled so that a sphere receives as much as it did.
+/// Returns the reflectance by wrap lighting, scaled so that a sphere receives as much light as
+/// before.
 pub fn wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = (0.5 * sigma).clamp(0.0, 1.0);
     let spread = 1.0 + wrap;
     ((cosine.min(1.0) + wrap).max(0.0) / (spread * spread)).min(1.0)
 }
 
-/// Fourier series of the convolution, cut off after `terms`.
+/// Returns the Fourier series of the convolution, truncated after `terms` terms.
 pub fn series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
@@ -123,7 +126,7 @@ pub fn series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     0.31830987 + 0.5 * (-0.5 * variance).exp() * c - 0.63661975 * sum
 }
 
-/// The convolution next to one terminator, for sigma up to 0.3.
+/// Returns the convolution near one terminator, for sigma up to 0.3.
 pub fn edge(cosine: f32, sigma: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
@@ -138,13 +141,13 @@ pub fn edge(cosine: f32, sigma: f32) -> f32 {
     (decay * c * normal_share(u) + s * normal_density(u) * carried).clamp(0.0, 1.0)
 }
 
-/// The same to first order, with the quotient as it stands; a naive form.
+/// Returns [`edge`] to first order, with an unguarded quotient; a naive form.
 pub fn edge_naive(cosine: f32, sigma: f32) -> f32 {
     let u = cosine / sigma;
     cosine * normal_share(u) + sigma * normal_density(u)
 }
 
-/// The convolution, accurate.
+/// Returns the accurate convolution.
 pub fn accurate(cosine: f32, sigma: f32) -> f32 {
     if sigma < CDRF_SWITCH {
         return edge(cosine, sigma);
@@ -152,29 +155,30 @@ pub fn accurate(cosine: f32, sigma: f32) -> f32 {
     series(cosine, sigma, 7).max(0.0)
 }
 
-/// Four terms of the series for every sigma; a naive form.
+/// Returns [`series`] with four terms for every sigma; a naive form.
 pub fn series_naive(cosine: f32, sigma: f32) -> f32 {
     series(cosine, sigma, 4)
 }
 
-/// The single edge for every sigma, not wrapped round; a naive form.
+/// Returns the single-edge form for every sigma, not wrapped around; a naive form.
 pub fn accurate_naive(cosine: f32, sigma: f32) -> f32 {
     edge(cosine, sigma)
 }
 
-/// From the angle, as the formula is written; a naive form.
+/// Returns the reflectance computed from the angle, as the formula is written; a naive form.
 pub fn angle_naive(cosine: f32, sigma: f32) -> f32 {
     accurate(cosine.acos().cos(), sigma)
 }
 
-/// The convolution, cheap: no angle, no loop, one exponential and one division.
+/// Returns the cheap convolution: no angle, no loop, one exponential and one division.
 #[rustfmt::skip] // lines of coefficients, as in the shader
 pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     let c = cosine;
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let v = s * s;
     let decay = (-0.5 * v).exp();
-    // |c| / sigma, finite for sigma = 0. The bump ends where its root meets 0, about six standard deviations away, and stays 0 beyond.
+    // |c| / sigma, finite for sigma = 0. The bump ends where its root reaches 0, about six standard
+    // deviations away, and is 0 beyond.
     let u = c.abs() / (s + 1e-7);
     let still = 0.79465324 + u * (-0.24850852 + u * (-0.017153223 + u * (0.0062746328 + u * (0.0022976348 - u * 0.00039362809))));
     let first = -0.063232761 + u * (0.033584461 + u * (0.0047414034 - u * 0.037048171));
@@ -182,7 +186,7 @@ pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     let root = still + v * (first + v * second);
     let root_squared = if root > 0.0 { root * root } else { 0.0 };
     let narrow = decay * (if c > 0.0 { c } else { 0.0 }) + s * root_squared * root_squared;
-    // Weights of the series are powers of this one: 1, 4, 9 and 16.
+    // The weights of the series are powers of this one: 1, 4, 9 and 16.
     let decay_squared = decay * decay;
     let weight = decay_squared * decay_squared;
     let weight_squared = weight * weight;
@@ -198,7 +202,7 @@ pub fn cheap(cosine: f32, sigma: f32) -> f32 {
     (if s < CDRF_CHEAP_SWITCH { narrow } else { wide }).abs().min(1.0)
 }
 
-/// The accurate convolution for a material whose channels scatter differently far.
+/// Returns the accurate convolution for a material whose channels scatter over different distances.
 pub fn rgb(cosine: f32, sigma0: Vec3, curvature: f32) -> Vec3 {
     Vec3::new(
         accurate(cosine, sigma(sigma0.x, curvature)),
@@ -207,7 +211,7 @@ pub fn rgb(cosine: f32, sigma0: Vec3, curvature: f32) -> Vec3 {
     )
 }
 
-/// Sine of an angle in turns, of any size.
+/// Returns the sine of an angle of any size, in turns.
 pub fn sine(turns: f32) -> f32 {
     let wrapped = turns - turns.round_ties_even();
     let folded = wrapped.max(-0.5 - wrapped).min(0.5 - wrapped);
@@ -215,7 +219,7 @@ pub fn sine(turns: f32) -> f32 {
     folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
 }
 
-/// The convolution by numerical quadrature.
+/// Returns the convolution by numerical quadrature.
 pub fn quadrature(cosine: f32, sigma: f32) -> f32 {
     let s = sigma.clamp(7.5231638e-37, CDRF_WIDEST);
     let x = arcsine(cosine);
@@ -240,7 +244,7 @@ pub fn quadrature(cosine: f32, sigma: f32) -> f32 {
     0.3989423 * sum
 }
 
-/// The spherical form's local piece, for sigma up to 0.1.
+/// Returns the local piece of the spherical form, for sigma up to 0.1.
 pub fn spherical_edge(cosine: f32, sigma: f32) -> f32 {
     let c = cosine.clamp(-1.0, 1.0);
     let s = sigma.clamp(0.0, CDRF_WIDEST);
@@ -252,7 +256,7 @@ pub fn spherical_edge(cosine: f32, sigma: f32) -> f32 {
     (decay * c * normal_share(u) + s * normal_density(u) * carried).clamp(0.0, 1.0)
 }
 
-/// The energy-conserving choice: the clamped cosine diffused over the sphere of directions.
+/// Returns the energy-conserving choice: the clamped cosine diffused over the sphere of directions.
 pub fn spherical(cosine: f32, sigma: f32) -> f32 {
     if sigma < CDRF_SPHERICAL_SWITCH {
         return spherical_edge(cosine, sigma);
@@ -281,7 +285,7 @@ pub fn spherical(cosine: f32, sigma: f32) -> f32 {
     sum.max(0.0)
 }
 
-/// How strongly the spherical form answers to degrees 0, 1, 2 and 4 of the light around.
+/// Returns the response of the spherical form to degrees 0, 1, 2 and 4 of the surrounding light.
 pub fn harmonic_weights(sigma: f32) -> Vec4 {
     let s = sigma.clamp(0.0, CDRF_WIDEST);
     let decay = (-s * s).exp();
@@ -289,53 +293,55 @@ pub fn harmonic_weights(sigma: f32) -> Vec4 {
     Vec4::new(3.1415927, 2.0943952 * decay, 0.7853982 * cube, -0.1308997 * cube * cube * cube * decay)
 }
 
-/// Where in the lookup table a reflectance stands, as fractions of the way from its first texel's middle to its last's.
+/// Returns the position of a reflectance in the lookup table, as fractions of the distance from the
+/// centre of the first texel to the centre of the last.
 pub fn table_coordinates(cosine: f32, sigma: f32) -> Vec2 {
     let s = sigma.clamp(0.0, 1e36);
     Vec2::new(0.5 + 0.5 * cosine.clamp(-1.0, 1.0), (s / (1.0 + s)).min(1.0))
 }
 
-/// Value of a texel of the table; `tint` holds each channel's sigma0 as a share of the largest.
+/// Returns the value of a texel of the table; `tint` holds each channel's sigma0 as a share of the
+/// largest.
 pub fn table_texel(texel: UVec2, size: UVec2, tint: Vec3) -> Vec3 {
     let last = size.max(UVec2::splat(2)) - 1;
     let place = texel.min(last).as_vec2();
     let end = last.as_vec2();
     let cosine = (2.0 * place.x - end.x) / end.x;
-    // 1e-30 stands for 0: times the least tint the last row's sigma is at least 1e10; from 8 on the reflectance is that of
-    // infinity.
+    // 1e-30 stands for 0: multiplied by the smallest tint, the sigma of the last row is at least
+    // 1e10, and from 8 on the reflectance is that of infinity.
     let sigma = place.y / (end.y - place.y).max(1e-30);
     Vec3::new(accurate(cosine, tint.x * sigma), accurate(cosine, tint.y * sigma), accurate(cosine, tint.z * sigma))
 }
 
-/// The whole table, row by row: the kernel of `wgsl/recipes/cdrf_table.wgsl`.
+/// Returns the whole table, row by row, like the kernel of `wgsl/recipes/cdrf_table.wgsl`.
 pub fn table(size: UVec2, tint: Vec3) -> Vec<Vec3> {
     let rows = 0..size.y;
     rows.flat_map(|row| (0..size.x).map(move |column| table_texel(UVec2::new(column, row), size, tint))).collect()
 }
 
-/// The sampler's coordinates of a place of the table.
+/// Returns the sampler coordinates of a position in the table.
 pub fn texture_coordinates(coordinates: Vec2, size: UVec2) -> Vec2 {
     let whole = size.as_vec2();
     (coordinates * (whole - 1.0) + 0.5) / whole
 }
 
-/// The same without the half texel, a naive form.
+/// Returns the coordinates without the half texel; a naive form.
 pub fn texture_coordinates_naive(coordinates: Vec2) -> Vec2 {
     coordinates
 }
 
-/// The four texels around a place of the table and how to blend them.
+/// The four texels around a position in the table and their blend weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CdrfTexels {
     /// Column and row of the texel at the lower coordinates.
     pub lower: UVec2,
     /// Column and row of the texel at the higher coordinates.
     pub upper: UVec2,
-    /// Share of `upper` in each direction.
+    /// Share of `upper` in each direction, in [0, 1].
     pub weight: Vec2,
 }
 
-/// Texels and weights of a bilinear lookup.
+/// Returns the texels and weights of a bilinear lookup.
 pub fn texels(coordinates: Vec2, size: UVec2) -> CdrfTexels {
     let at = coordinates.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0);
     let lower = at.as_uvec2();

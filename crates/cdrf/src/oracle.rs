@@ -1,15 +1,16 @@
-//! The truth in f64. The convolution is its definition: an integral over the Gaussian, lit half turn by lit half turn, by
-//! Gauss's quadrature; where the Gaussian is wider than a radian, over the wrapped Gaussian instead. Neither closed form nor
-//! Fourier series of the shader's is used. The spherical form sums Laplace's integral for the Legendre polynomials.
+//! The oracle in f64. The convolution follows its definition, an integral over the Gaussian by
+//! Gaussian quadrature, one lit half turn at a time; if the Gaussian is wider than a radian, the
+//! integral is over the wrapped Gaussian instead. The Fourier series of the shader is not used, and
+//! a closed form only if no terminator is in reach. The spherical form sums Laplace's integral for the Legendre polynomials.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::OnceLock;
 
-/// Half the width of a Gaussian in standard deviations: what lies beyond is 3e-12 of it.
+/// Half the width of a Gaussian in standard deviations: the part beyond is 3e-12 of it.
 const REACH: f64 = 7.0;
 
-/// Gauss's five points on [-1, 1] and their weights.
+/// The five Gauss points on [-1, 1] and their weights.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906179845938664, 0.23692688505618908),
     (-0.5384693101056831, 0.47862867049936647),
@@ -18,7 +19,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906179845938664, 0.23692688505618908),
 ];
 
-/// Integral of `f` over [low, high], in panels of at most `panel`.
+/// Returns the integral of `f` over [low, high], in panels no wider than `panel`.
 fn integral(low: f64, high: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
     if low >= high {
         return 0.0;
@@ -37,7 +38,8 @@ fn density(t: f64) -> f64 {
     (-0.5 * t * t).exp() / TAU.sqrt()
 }
 
-/// The convolution of max(cos θ, 0), read as periodic, with a Gaussian. With x = π/2 - θ it is that of max(sin x, 0).
+/// Returns the convolution of max(cos θ, 0), as a periodic function, with a Gaussian. With
+/// x = π/2 - θ it is the convolution of max(sin x, 0).
 pub fn accurate(cosine: f64, sigma: f64) -> f64 {
     let cosine = cosine.clamp(-1.0, 1.0);
     if sigma <= 0.0 {
@@ -45,11 +47,13 @@ pub fn accurate(cosine: f64, sigma: f64) -> f64 {
     }
     let x = cosine.asin();
     if (x.abs() / sigma).min((PI - x.abs()) / sigma) > REACH {
-        // The Gaussian meets no terminator: all dark, or a plain cosine, whose amplitude it damps.
+        // The Gaussian reaches no terminator: all is dark, or a plain cosine, whose amplitude it
+        // damps.
         return cosine.max(0.0) * (-0.5 * sigma * sigma).exp();
     }
     if sigma < 1.0 {
-        // Over standard deviations t: sin(x - σt) > 0 for t between (x - π)/σ and x/σ, and every period on.
+        // Over standard deviations t: sin(x - σt) > 0 for t between (x - π)/σ and x/σ, and in every
+        // further period.
         (-2..=2)
             .map(|turn| {
                 let shift = TAU * f64::from(turn);
@@ -58,7 +62,8 @@ pub fn accurate(cosine: f64, sigma: f64) -> f64 {
             })
             .sum()
     } else {
-        // Over the lit half turn: the wrapped Gaussian as Jacobi's theta function, which converges fast where it is wide.
+        // Over the lit half turn: the wrapped Gaussian as Jacobi's theta function, which converges
+        // fast for a wide Gaussian.
         let damped: [f64; 8] = std::array::from_fn(|n| (-0.5 * (n as f64 * sigma).powi(2)).exp());
         let wrapped = |d: f64| {
             let cosine = d.cos();
@@ -71,44 +76,44 @@ pub fn accurate(cosine: f64, sigma: f64) -> f64 {
     }
 }
 
-/// The convolution of the clamped cosine read as a single lobe, dark from 90° on in all eternity.
+/// Returns the convolution of the clamped cosine as a single lobe, dark everywhere beyond 90°.
 pub fn single_lobe(cosine: f64, sigma: f64) -> f64 {
     let x = cosine.asin();
     let (low, high) = ((x - PI) / sigma, x / sigma);
     integral(low.max(-REACH), high.min(REACH), 0.5, |t| (x - sigma * t).sin() * density(t))
 }
 
-/// Shared: the same function, for a narrow Gaussian.
+/// Returns [`accurate`]: the same function, for a narrow Gaussian.
 pub fn edge(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// A straight line from the terminator on, convolved.
+/// Returns the convolution of a straight line that starts at the terminator.
 pub fn edge_naive(cosine: f64, sigma: f64) -> f64 {
     integral(-REACH, (cosine / sigma).min(REACH), 0.5, |t| (cosine - sigma * t) * density(t))
 }
 
-/// The series, cut off.
+/// Returns the truncated series.
 pub fn series_naive(cosine: f64, sigma: f64) -> f64 {
     series(cosine, sigma, 4)
 }
 
-/// Shared: the same function, computed badly.
+/// Returns [`accurate`]: the same function, computed badly by the mirror.
 pub fn angle_naive(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// Shared: the same function, in the range where it holds.
+/// Returns [`accurate`]: the same function, in the range in which the naive form holds.
 pub fn accurate_naive(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// Shared: the same function, by quadrature as well, with other nodes and in f64.
+/// Returns [`accurate`]: the same function, also by quadrature, with other nodes and in f64.
 pub fn quadrature(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// The quotient, by its magnitude and its sign.
+/// Returns the quotient, from its magnitude and its sign.
 pub fn deviations(x: f64, sigma: f64) -> f64 {
     if x == 0.0 {
         return 0.0;
@@ -117,18 +122,18 @@ pub fn deviations(x: f64, sigma: f64) -> f64 {
     (x.abs() / sigma).min(12.0).copysign(x)
 }
 
-/// The definition.
+/// Returns the density by its definition.
 pub fn normal_density(u: f64) -> f64 {
     density(u)
 }
 
-/// NaN is 0, magnitudes end at the f32 1e18.
+/// Replaces a NaN by 0 and limits magnitudes to the f32 1e18.
 pub fn finite(value: f64) -> f64 {
     let most = f64::from(1e18f32);
     if value.is_nan() { 0.0 } else { value.clamp(-most, most) }
 }
 
-/// The product of what is valid of both.
+/// Returns the product of the valid parts of both.
 pub fn sigma(sigma0: f64, curvature: f64) -> f64 {
     if sigma0.is_nan() || curvature.is_nan() || sigma0 < 0.0 {
         return 0.0;
@@ -137,23 +142,25 @@ pub fn sigma(sigma0: f64, curvature: f64) -> f64 {
     sigma0.min(most) * curvature.abs().min(most)
 }
 
-/// The plain product, which is right for valid values.
+/// Returns the plain product, which is right for valid values.
 pub fn sigma_naive(sigma0: f64, curvature: f64) -> f64 {
     sigma(sigma0, curvature)
 }
 
-/// The standard library's.
+/// Returns the arcsine of the standard library.
 pub fn arcsine(sine: f64) -> f64 {
     sine.clamp(-1.0, 1.0).asin()
 }
 
-/// Taylor's series of the integral of the density, all terms positive: φ(u) Σ u^(2k+1) / (1·3·…·(2k+1)).
+/// Sums Taylor's series of the integral of the density, whose terms are all positive:
+/// φ(u) Σ u^(2k+1) / (1·3·…·(2k+1)).
 pub fn normal_share(u: f64) -> f64 {
     if u.abs() > 8.0 {
         return if u < 0.0 { 0.0 } else { 1.0 };
     }
     let (mut term, mut sum, mut odd) = (u, u, 1.0);
-    // From here on the terms fall; up to 8 standard deviations the largest is 1e13, so what is left out is 1e-17 of it.
+    // Once `odd` exceeds u² the terms fall. Up to 8 standard deviations the largest is 1e13. The sum
+    // ends at terms of 1e-17 of it.
     while odd < u * u || term.abs() > 1e-17 * sum.abs() {
         odd += 2.0;
         term *= u * u / odd;
@@ -162,19 +169,19 @@ pub fn normal_share(u: f64) -> f64 {
     0.5 + density(u) * sum
 }
 
-/// The mean of the cosine and its magnitude.
+/// Returns the mean of the cosine and its magnitude.
 pub fn lambert(cosine: f64) -> f64 {
     let cosine = cosine.clamp(-1.0, 1.0);
     0.5 * (cosine + cosine.abs())
 }
 
-/// (c + w) / (1 + w)² with both multiplied by 4 where w = σ/2.
+/// Returns (c + w) / (1 + w)² with w = σ/2, its numerator and denominator multiplied by 4.
 pub fn wrap(cosine: f64, sigma: f64) -> f64 {
     let sigma = sigma.clamp(0.0, 2.0);
     (4.0 * cosine.clamp(-1.0, 1.0) + 2.0 * sigma).max(0.0) / (2.0 + sigma).powi(2)
 }
 
-/// Harmonic by harmonic, with angles.
+/// Sums the harmonics one by one, with angles.
 pub fn series(cosine: f64, sigma: f64, terms: u32) -> f64 {
     let theta = cosine.clamp(-1.0, 1.0).acos();
     let sigma = sigma.clamp(0.0, 8.0);
@@ -186,40 +193,42 @@ pub fn series(cosine: f64, sigma: f64, terms: u32) -> f64 {
     1.0 / PI + 0.5 * harmonic(1) + 2.0 / PI * even.sum::<f64>()
 }
 
-/// The convolution, which the cheap form stands for.
+/// Returns [`accurate`], which the cheap form approximates.
 pub fn cheap(cosine: f64, sigma: f64) -> f64 {
     accurate(cosine, sigma)
 }
 
-/// Channel by channel.
+/// Evaluates channel by channel.
 pub fn rgb(cosine: f64, sigma0: DVec3, curvature: f64) -> DVec3 {
     DVec3::from_array(sigma0.to_array().map(|sigma0| accurate(cosine, sigma(sigma0, curvature))))
 }
 
-/// The standard library's, after whole turns are taken off; past a quarter turn by the angle that is left to the half, so that
-/// half turns are exact.
+/// Returns the sine of the standard library, after whole turns are subtracted. Past a quarter turn
+/// it uses the remaining angle to the half turn, so that half turns are exact.
 pub fn sine(turns: f64) -> f64 {
     let turns = turns - turns.round();
     if turns.abs() > 0.25 { (TAU * (0.5 - turns.abs())).sin().copysign(turns) } else { (TAU * turns).sin() }
 }
 
-/// ∫ c P_l(c) dc over [0, 1] times (2l + 1) / 2, for even l ≥ 2: by Legendre's equation -P_l(0) / ((l - 1)(l + 2)), with P_l(0) the
-/// central binomial coefficient over 2^l.
+/// Returns ∫ c P_l(c) dc over [0, 1] times (2l + 1) / 2, for even l ≥ 2. By Legendre's equation the
+/// integral is -P_l(0) / ((l - 1)(l + 2)), with P_l(0) the central binomial coefficient over 2^l
+/// with the sign (-1)^(l/2).
 fn coefficient(l: u32) -> f64 {
     let at_zero = (1..=l / 2).fold(1.0, |product, k| product * (1.0 - 2.0 * f64::from(k)) / (2.0 * f64::from(k)));
     let l = f64::from(l);
     -(l + 0.5) * at_zero / ((l - 1.0) * (l + 2.0))
 }
 
-/// The coefficients of all even degrees that are ever needed.
+/// Returns the coefficients of all even degrees that are ever needed.
 fn coefficients() -> &'static [f64] {
     static COEFFICIENTS: OnceLock<Vec<f64>> = OnceLock::new();
     COEFFICIENTS.get_or_init(|| (0..40).map(|half| if half == 0 { 0.25 } else { coefficient(2 * half) }).collect())
 }
 
-/// The clamped cosine diffused over the sphere. From 0.1 on by Laplace's integral P_l(cos θ) = mean over ψ of
-/// (cos θ + i sin θ cos ψ)^l; from 1e-3 to there by the series with Bonnet's recurrence, since the shader has a closed form there; below,
-/// where sphere and circle differ by e^(-σ²/2) alone, to 1e-9, from the convolution on the circle.
+/// Returns the clamped cosine diffused over the sphere. From sigma = 0.1 on it uses Laplace's
+/// integral: P_l(cos θ) is the mean over ψ of (cos θ + i sin θ cos ψ)^l. From 1e-3 to 0.1 it uses
+/// the series with Bonnet's recurrence, because the shader has a closed form there. Below 1e-3 it
+/// uses the convolution on the circle: sphere and circle differ there only by e^(-σ²/2), to 1e-9.
 pub fn spherical(cosine: f64, sigma: f64) -> f64 {
     let cosine = cosine.clamp(-1.0, 1.0);
     if sigma < 1e-3 {
@@ -235,7 +244,7 @@ pub fn spherical(cosine: f64, sigma: f64) -> f64 {
         let sine_squared = (1.0 - cosine) * (1.0 + cosine);
         let sum: f64 = (0..nodes)
             .map(|node| {
-                // By symmetry half a circle of ψ, and z² alone, suffice; the real part.
+                // By symmetry half a circle of ψ and z² alone suffice; only the real part counts.
                 let psi = PI * (f64::from(node) + 0.5) / f64::from(nodes);
                 let imaginary = psi.cos();
                 let re = cosine * cosine - sine_squared * imaginary * imaginary;
@@ -267,12 +276,13 @@ pub fn spherical(cosine: f64, sigma: f64) -> f64 {
     sum
 }
 
-/// Shared: the same function, for a narrow Gaussian.
+/// Returns [`spherical`]: the same function, for a narrow Gaussian.
 pub fn spherical_edge(cosine: f64, sigma: f64) -> f64 {
     spherical(cosine, sigma)
 }
 
-/// Funk and Hecke: 4π/(2l+1) times the Legendre coefficient of the form, the moments of the cosine integrated over the lit half.
+/// Returns the factors of Funk and Hecke: 4π/(2l+1) times the Legendre coefficient of the form,
+/// from the moments of the cosine integrated over the lit half.
 pub fn harmonic_weights(sigma: f64) -> DVec4 {
     let sigma = sigma.max(0.0);
     DVec4::from_array([0u32, 1, 2, 4].map(|l| {
@@ -281,7 +291,7 @@ pub fn harmonic_weights(sigma: f64) -> DVec4 {
     }))
 }
 
-/// Legendre's polynomial by Bonnet's recurrence.
+/// Returns Legendre's polynomial by Bonnet's recurrence.
 fn legendre(l: u32, x: f64) -> f64 {
     let step = |(before, last): (f64, f64), k: u32| {
         let k = f64::from(k);
@@ -290,14 +300,15 @@ fn legendre(l: u32, x: f64) -> f64 {
     (0..l).fold((0.0, 1.0), step).1
 }
 
-/// The cosine's distance from -1, and 1 - 1 / (1 + σ).
+/// Returns the cosine's distance from -1, and 1 - 1 / (1 + σ).
 pub fn table_coordinates(cosine: f64, sigma: f64) -> DVec2 {
     let sigma = sigma.max(0.0);
     let row = if sigma < 1.0 { sigma / (1.0 + sigma) } else { 1.0 - 1.0 / (1.0 + sigma) };
     DVec2::new((cosine.clamp(-1.0, 1.0) - -1.0) / 2.0, row)
 }
 
-/// The convolution where the texel stands: its column counts cosines up from -1, its row the odds of sigma to 1.
+/// Returns the convolution at a texel's position: the column counts cosines up from -1, the row is
+/// the odds of sigma to 1.
 pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
     let last = (size.max(UVec2::splat(2)) - 1).as_dvec2();
     let at = texel.as_dvec2().min(last) / last;
@@ -305,29 +316,29 @@ pub fn table_texel(texel: UVec2, size: UVec2, tint: DVec3) -> DVec3 {
     DVec3::from_array(tint.to_array().map(|tint| accurate(2.0 * at.x - 1.0, tint * sigma)))
 }
 
-/// Between half a texel from one edge and half a texel from the other.
+/// Interpolates between half a texel from one edge and half a texel from the other.
 pub fn texture_coordinates(coordinates: DVec2, size: UVec2) -> DVec2 {
     let half = 0.5 / size.as_dvec2();
     half + coordinates * (1.0 - 2.0 * half)
 }
 
-/// The coordinates themselves.
+/// Returns the coordinates unchanged.
 pub fn texture_coordinates_naive(coordinates: DVec2) -> DVec2 {
     coordinates
 }
 
-/// The four texels around a place of the table and how to blend them.
+/// The four texels around a position in the table and their blend weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CdrfTexels {
     /// Column and row of the texel at the lower coordinates.
     pub lower: UVec2,
     /// Column and row of the texel at the higher coordinates.
     pub upper: UVec2,
-    /// Share of `upper` in each direction.
+    /// Share of `upper` in each direction, in [0, 1].
     pub weight: DVec2,
 }
 
-/// The whole part and the rest of the distance from the first texel's middle.
+/// Splits the distance from the centre of the first texel into its whole part and the remainder.
 pub fn texels(coordinates: DVec2, size: UVec2) -> CdrfTexels {
     let side = |at: f64, size: u32| {
         let at = at.clamp(0.0, 1.0) * f64::from(size - 1);
@@ -341,7 +352,7 @@ pub fn texels(coordinates: DVec2, size: UVec2) -> CdrfTexels {
     }
 }
 
-/// The four corners by their areas.
+/// Weights the four corners by their areas.
 pub fn blend(weight: DVec2, lower_left: DVec3, lower_right: DVec3, upper_left: DVec3, upper_right: DVec3) -> DVec3 {
     let other = 1.0 - weight;
     other.x * other.y * lower_left
@@ -350,7 +361,7 @@ pub fn blend(weight: DVec2, lower_left: DVec3, lower_right: DVec3, upper_left: D
         + weight.x * weight.y * upper_right
 }
 
-/// The normal distribution of `u` by the definition, for the test of [`normal_share`].
+/// Returns the normal distribution of `u` by its definition, for the test of [`normal_share`].
 pub fn normal_share_by_quadrature(u: f64) -> f64 {
     integral(-10.0, u, 0.25, density)
 }

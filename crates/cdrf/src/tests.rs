@@ -1,15 +1,15 @@
-//! The oracle against other formulas, the claims of docs/cdrf.md, and its table of rungs.
+//! Tests of the oracle against other formulas, and of the claims of docs/cdrf.md.
 
 use super::*;
 use lapidary_assay::extremum::larger;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// Cosines of `count` + 1 angles from 0 to 180°.
+/// Returns the cosines of `count` + 1 angles from 0 to 180°.
 fn cosines(count: u32) -> impl Iterator<Item = f64> {
     (0..=count).map(move |index| (PI * f64::from(index) / f64::from(count)).cos())
 }
 
-/// Largest of `f` over angles.
+/// Returns the largest value of `f` over the angles.
 fn most(f: impl Fn(f64) -> f64) -> f64 {
     cosines(500).map(f).fold(0.0, larger)
 }
@@ -55,11 +55,11 @@ fn forms_wrapped_and_single_lobed_agree_where_they_should() {
     assert!(differ(0.3) < 1e-8, "{:e}", differ(0.3));
     assert!((5e-5..2e-4).contains(&differ(0.5)), "{:e}", differ(0.5));
     assert!((0.02..0.025).contains(&differ(1.0)), "{:e}", differ(1.0));
-    // Where the light is: nothing comes round.
+    // Facing the light, no light comes around.
     assert!((oracle::accurate(1.0, 0.5) - oracle::single_lobe(1.0, 0.5)).abs() < 1e-10);
 }
 
-/// The closed form at one edge in f64, with 1 to 3 corrections, the angle off by `slip`.
+/// Returns the closed form at one edge in f64, with 1 to 3 corrections and the angle off by `slip`.
 fn edge_in_f64(c: f64, sigma: f64, corrections: u32, slip: f64) -> f64 {
     let (x, v) = (c.asin() + slip, sigma * sigma);
     let (u, q) = (x / sigma, x * x);
@@ -99,18 +99,19 @@ fn series_needs_the_terms_that_the_page_says() {
     assert!((0.034..0.036).contains(&error(1e-3, 4)));
 }
 
-/// WGSL's asin is off by 6.8e-5, or by what 4096 ulp of an arctangent are, 4.9e-4.
+/// WGSL's asin is off by 6.8e-5, or by 4096 ulp of an arctangent, which is 4.9e-4.
 #[test]
 fn an_error_of_the_angle_enters_by_an_eighth_of_the_variance() {
     let moved =
         |sigma: f64, slip: f64| most(|c| (edge_in_f64(c, sigma, 3, slip) - edge_in_f64(c, sigma, 3, 0.0)).abs());
     assert!((6e-7..8e-7).contains(&moved(0.3, 6.8e-5)), "{:e}", moved(0.3, 6.8e-5));
     assert!((4e-6..6e-6).contains(&moved(0.3, 4.9e-4)), "{:e}", moved(0.3, 4.9e-4));
-    // Where sigma is smaller than the slip, a point that is lit counts as dark: there it enters whole. At a sharp terminator the
-    // error that WGSL grants is the absolute one.
+    // If sigma is smaller than the slip, a lit point counts as dark, and the slip enters in full.
+    // At a sharp terminator the error that WGSL allows is the absolute one.
     let sharp = |c: f64| edge_in_f64(c, 1e-6, 3, -6.8e-5) - edge_in_f64(c, 1e-6, 3, 0.0);
     assert!((-6.8e-5..-6.0e-5).contains(&sharp(6.4e-5)), "{:e}", sharp(6.4e-5));
-    // Where the cosine, too, is taken from the angle, the whole slope of the function comes in.
+    // If the cosine, too, is taken from the angle, the error enters with the full slope of the
+    // function.
     let turned = |c: f64| {
         let slipped = (c.asin() + 6.8e-5).sin();
         (oracle::accurate(slipped, 0.1) - oracle::accurate(c, 0.1)).abs()
@@ -118,7 +119,8 @@ fn an_error_of_the_angle_enters_by_an_eighth_of_the_variance() {
     assert!((6e-5..6.8e-5).contains(&most(turned)), "{:e}", most(turned));
 }
 
-/// Both forms in f64: what the switch itself makes of value and slope, rounding aside.
+/// Compares both forms in f64: the effect of the switch itself on value and slope, without
+/// rounding.
 #[test]
 fn forms_meet_without_a_seam() {
     let at = f64::from(CDRF_SWITCH);
@@ -140,7 +142,8 @@ fn forms_meet_without_a_seam() {
     assert!(in_angle < 1e-6, "{in_angle:e}");
 }
 
-/// The share that a sphere, evenly covered with normals, receives of what Lambert's law gives it.
+/// Returns the light received by a sphere that is evenly covered with normals, as a share of the
+/// light by Lambert's law.
 fn energy(reflectance: impl Fn(f64) -> f64) -> f64 {
     let count = 20_000;
     let step = PI / f64::from(count);
@@ -174,7 +177,7 @@ fn energy_is_kept_on_the_circle_or_on_the_sphere() {
 
 #[test]
 fn oracle_of_the_sphere_is_one_function() {
-    // Where its ways of calculation meet.
+    // The sigmas at which its methods of calculation meet.
     for (sigma, bound) in [(0.1, 1e-9), (1e-3, 2e-9)] {
         let below = sigma * (1.0 - 1e-12);
         let apart = most(|c| (oracle::spherical(c, sigma) - oracle::spherical(c, below)).abs());
@@ -228,13 +231,13 @@ fn pieces_of_the_spherical_form_are_as_good_as_the_page_says() {
     };
     let error = most(|c| (local(c) - oracle::spherical(c, sigma)).abs());
     assert!((1.1e-6..1.2e-6).contains(&error), "{error:e}");
-    // The next even degree is what is left out, and its coefficient falls as l^(-3/2).
+    // The truncation error is the next even degree, whose coefficient falls as l^(-3/2).
     let left_out = |degree: u32| most(|c| (truncated(c, sigma, degree) - oracle::spherical(c, sigma)).abs());
     assert!((1.3e-6..1.5e-6).contains(&left_out(36)), "{:e}", left_out(36));
     assert!(left_out(44) < 4e-8, "{:e}", left_out(44));
 }
 
-/// The series up to `last`, by Bonnet's recurrence in f64.
+/// Returns the series up to degree `last`, by Bonnet's recurrence in f64.
 fn truncated(c: f64, sigma: f64, last: u32) -> f64 {
     let damped = |l: u32| (-0.5 * f64::from(l * (l + 1)) * sigma * sigma).exp();
     let (mut previous, mut current, mut moment) = (1.0, c, 0.125);

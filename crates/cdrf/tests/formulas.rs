@@ -1,4 +1,5 @@
-//! `wgsl/cdrf.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-cdrf`.
+//! Device tests of every function of `wgsl/cdrf.wgsl` and its naive forms:
+//! `cargo test -p lapidary-cdrf`.
 
 use lapidary_cdrf::formulas::formulas;
 

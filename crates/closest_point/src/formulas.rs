@@ -1,4 +1,4 @@
-//! `wgsl/closest_point.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/closest_point.wgsl`.
 
 mod outside;
 
@@ -9,16 +9,16 @@ use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "closest_point";
 
-/// A triangle with a normal at each vertex, as the module's functions take them.
+/// A triangle with a normal at each vertex, in the argument order of the module's functions.
 type Corners = (Vec3, Vec3, Vec3, Vec3, Vec3, Vec3);
 
-/// A unit normal at `angle` radians from `axis`, in any azimuth.
+/// Returns a unit normal at `angle` radians from `axis`, at any azimuth.
 fn tilted(draws: &mut Draws<'_>, axis: DVec3, angle: f64) -> DVec3 {
     let across = draws.perpendicular(axis);
     (angle.cos() * axis + angle.sin() * across).normalize()
 }
 
-/// Two lines: at every angle down to equal normals, at every distance, sometimes meeting.
+/// Draws two lines: at every angle down to equal normals, at every distance, sometimes meeting.
 fn two_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let normal_i = draws.unit_vector();
     let axis = normal_i.as_dvec3().normalize();
@@ -43,7 +43,8 @@ fn two_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     (origin_i.as_vec3(), normal_i, (origin_i + size * apart).as_vec3(), normal_j)
 }
 
-/// A triangle: fat, thin about the limit of a sliver, a needle at the origin, degenerate in every way, of every size.
+/// Draws a triangle of any size: fat, thin around the limit of a sliver, a needle at the origin, or
+/// degenerate in every way.
 fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let size = f64::from(if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-64, 61) });
     let first = draws.unit_vector().as_dvec3().normalize();
@@ -69,7 +70,8 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     [corner, corner + b, corner + c].map(|vertex| (size * vertex).as_vec3())
 }
 
-/// Three normals at most 120 degrees apart: parallel, nearly so, about the angle at which the regularisation takes over, wide.
+/// Draws three normals at most 120 degrees apart: parallel, nearly parallel, around the angle at
+/// which the regularisation takes over, or wide.
 fn normals(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let axis = draws.unit_vector();
     let middle = axis.as_dvec3().normalize();
@@ -92,13 +94,14 @@ fn corners(draws: &mut Draws<'_>) -> Corners {
     (a, n_a, b, n_b, c, n_c)
 }
 
-/// Corners whose normals are 0.3 to 2.8 radians apart, away from the origin so that no component of the result is near 0.
+/// Draws corners whose normals are 0.3 to 2.8 radians apart, away from the origin so that no
+/// component of the result is near 0.
 fn benign_corners(draws: &mut Draws<'_>) -> Corners {
     let place = |draws: &mut Draws<'_>| Vec3::splat(3.0) + draws.in_cube();
     let axis = draws.direction();
     let first = draws.perpendicular(axis);
     let second = axis.cross(first);
-    // A third of a turn apart about the axis, at 35 to 70 degrees from it.
+    // A third of a turn apart around the axis, at 35 to 70 degrees from it.
     let normal = |draws: &mut Draws<'_>, third: f64| {
         let (polar, azimuth) = (0.6 + 0.6 * draws.unit(), std::f64::consts::TAU * (third + 0.1 * draws.unit()) / 3.0);
         (polar.cos() * axis + polar.sin() * (azimuth.cos() * first + azimuth.sin() * second)).as_vec3()
@@ -106,9 +109,11 @@ fn benign_corners(draws: &mut Draws<'_>) -> Corners {
     (place(draws), normal(draws, 0.0), place(draws), normal(draws, 1.0), place(draws), normal(draws, 2.0))
 }
 
-/// Two lines at 0.5 to 2.6 radians, at most 1 apart, whose closest points lie 0.5 to 2 from the origins: parameters much smaller than the way between the
-/// origins would be what rounding leaves of it. With e = 2^-24: that way is 5 at most, so that numerators of products of dot products are off by 75 e, the
-/// determinant, at least 0.23, by 15 e; of parameters of which one is 0.5 or more that makes 720 e, 4.3e-5. Crosses take fewer steps.
+/// Draws two lines at an angle of 0.5 to 2.6 radians, at most 1 apart, whose closest points lie 0.5
+/// to 2 from the origins: parameters much smaller than the separation of the origins would be
+/// mostly rounding. With e = 2^-24: the separation is at most 5, so numerators of products of dot
+/// products are off by 75 e, and the determinant, at least 0.23, by 15 e. As one of the parameters
+/// is 0.5 or more, this makes 720 e, 4.3e-5. Cross products take fewer steps.
 fn benign_lines(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let normal_i = draws.direction();
     let angle = 0.5 + 2.1 * draws.unit();
@@ -130,7 +135,8 @@ fn extent(vertices: [Vec3; 3]) -> f64 {
     (b - a).length().max((c - a).length()).max((c - b).length())
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -187,7 +193,8 @@ fn vector_formulas() -> Vec<Formula> {
 
 fn line_formulas() -> Vec<Formula> {
     const NAIVE: &str = "closest_point_parameters_dot";
-    // Lines at a small angle `s`: n_i = (.6, 0, .8), n_j = normalize(.6, s, .8), from 0 and (.3, 1, -.2).
+    // Lines at a small angle `s`: n_i = (.6, 0, .8), n_j = normalize(.6, s, .8), from 0 and
+    // (.3, 1, -.2).
     let at_angle = |n_j: [f32; 3]| (Vec3::ZERO, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.3, 1.0, -0.2), Vec3::from(n_j));
     vec![
         formula(M, "closest_point_parameters", mirror::parameters, oracle::parameters, two_lines)
@@ -271,7 +278,7 @@ fn fallback_formulas() -> Vec<Formula> {
     let right_angled = |size: f32| (Vec3::ZERO, Vec3::X * size, Vec3::Y * size);
     let below = |size: f64| {
         let third = size / 3.0;
-        // √2 of the longest edge, less what the fading takes of it.
+        // The longest edge, √2 times the size, less the fade.
         let depth =
             std::f64::consts::SQRT_2 * size / (1.0 + (2.0 * f64::from(crate::CLOSEST_POINT_SLIVER)).powi(2)).sqrt();
         [third, third, -depth]
@@ -344,7 +351,7 @@ fn centre_formulas() -> Vec<Formula> {
     let (a, b, c) = (Vec3::new(0.5, 0.0, 0.0), Vec3::new(-0.25, 0.4375, 0.0), Vec3::new(-0.25, -0.4375, 0.0));
     let with = |n_a: Vec3, n_b: Vec3, n_c: Vec3| (a, n_a, b, n_b, c, n_c);
     let up = Vec3::Z;
-    // Three normals a third of a turn apart, `angle` radians off the vertical, and their centre by the oracle.
+    // Three normals 2 radians apart about the vertical, and `angle` radians off it.
     let inwards = |angle: f32| {
         let lean = |turn: f32| Vec3::new(angle * turn.cos(), angle * turn.sin(), 1.0).normalize();
         with(lean(0.0), lean(2.0), lean(4.0))
@@ -386,7 +393,7 @@ fn centre_formulas() -> Vec<Formula> {
             )
             .pair("the order of the corners does not matter", |(a, n_a, b, n_b, c, n_c)| (b, n_b, c, n_c, a, n_a), {
                 |(a, n_a, b, n_b, c, n_c), o: Vec3, other: Vec3| {
-                    // The sum's conditioning: the inverse of the angle's square, or of the regularisation.
+                    // Conditioning of the sum: the inverse of the angle, or of the regularisation.
                     let angle = angle_between(n_a, n_b).max(angle_between(n_a, n_c));
                     let scale = extent([a, b, c]) + a.as_dvec3().length();
                     let amplified = 1.0 / angle.clamp(0.016, 1.0);
@@ -397,8 +404,8 @@ fn centre_formulas() -> Vec<Formula> {
                 "continuous: a normal moved by an ulp moves the centre by no more than the regularisation lets it",
                 |(a, n_a, b, n_b, c, n_c)| (a, Vec3::new(n_a.x.next_up(), n_a.y, n_a.z), b, n_b, c, n_c),
                 |(a, _, b, _, c, _), o: Vec3, moved: Vec3| {
-                    // The matrix's inverse is at most 1 / regularisation; matrix and right-hand side move by two ulp; the
-                    // centre reaches as far as 32 extents.
+                    // The inverse of the matrix is at most 1 / regularisation. Matrix and
+                    // right-hand side move by two ulp, and the centre lies within 32 extents.
                     let ulps = 4.0 * f64::from(f32::EPSILON) / f64::from(CLOSEST_POINT_REGULARISATION);
                     let most = ulps * 33.0 * extent([a, b, c]);
                     near("distance", o.as_dvec3().distance(moved.as_dvec3()), 0.0, most + 1e-5 * a.as_dvec3().length())
@@ -448,7 +455,7 @@ fn paper_formulas() -> Vec<Formula> {
     vec![
         formula(M, "closest_point_centre_paper", mirror::centre_paper, oracle::centre_paper, |draws| {
             if draws.below(16) == 0 {
-                // All parallel: the weights' sum is 0, and the fallback stands in.
+                // All normals parallel: the sum of the weights is 0, and the fallback is used.
                 let (a, n, b, _, c, _) = benign_corners(draws);
                 (a, Vec3::Z * n.z.signum(), b, Vec3::Z * n.z.signum(), c, Vec3::Z * n.z.signum())
             } else {

@@ -1,5 +1,6 @@
-//! Rust mirror of `wgsl/closest_point.wgsl`, line by line: the centre of a gem's proxy sphere, from the closest points
-//! of the lines along a triangle's vertex normals. Units, domain and accuracy stand above the WGSL functions.
+//! Mirror of `wgsl/closest_point.wgsl`, line by line: the centre of a gem's proxy sphere, from the
+//! closest points of the lines along a triangle's vertex normals. The WGSL file states the units,
+//! domain and accuracy of each function.
 //!
 //! ```
 //! use glam::Vec3;
@@ -18,19 +19,20 @@ use glam::{Vec2, Vec3};
 pub mod formulas;
 pub mod oracle;
 
-/// Weight of the fallback point against the three lines in [`centre`], 2^-12.
+/// Weight of the fallback point relative to the three lines in [`centre`], 2^-12.
 pub const CLOSEST_POINT_REGULARISATION: f32 = 0.000244140625;
 
-/// Altitude of a triangle, relative to its longest edge, at which [`fallback`] gives up the face normal, 2^-10.
+/// Altitude of a triangle, relative to its longest edge, at which [`fallback`] abandons the face
+/// normal, 2^-10.
 pub const CLOSEST_POINT_SLIVER: f32 = 0.0009765625;
 
-/// Largest magnitude of a vector's components.
+/// Returns the largest magnitude of a vector's components.
 pub fn largest_component(vector: Vec3) -> f32 {
     let magnitude = vector.abs();
     magnitude.x.max(magnitude.y.max(magnitude.z))
 }
 
-/// Direction of a vector of any size; 0 for the zero vector.
+/// Returns the direction of a vector of any size; 0 for the zero vector.
 pub fn direction(vector: Vec3) -> Vec3 {
     let size = largest_component(vector);
     if size < f32::MIN_POSITIVE {
@@ -40,16 +42,17 @@ pub fn direction(vector: Vec3) -> Vec3 {
     scaled / scaled.length()
 }
 
-/// The direction by the built-in function.
+/// Returns the direction from the built-in `normalize`.
 pub fn direction_naive(vector: Vec3) -> Vec3 {
     vector.normalize()
 }
 
-/// Parameters (t_i, t_j) of the closest points of two lines, eq. (A.6); (0, 0) for parallel normals.
+/// Returns the parameters (t_i, t_j) of the closest points of two lines, eq. (A.6); (0, 0) for
+/// parallel normals.
 pub fn parameters(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3) -> Vec2 {
     let across = (normal_i + normal_j).cross(normal_j - normal_i);
     let across_squared = across.dot(across);
-    // A subnormal may be flushed where it is divided by.
+    // A subnormal divisor may be flushed to 0.
     if across_squared < 1.2e-38 {
         return Vec2::splat(0.0);
     }
@@ -58,7 +61,7 @@ pub fn parameters(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3
     2.0 * t / across_squared
 }
 
-/// The same parameters by dot products, eq. (A.4), a naive form.
+/// Returns the parameters from dot products, eq. (A.4); a naive form.
 pub fn parameters_dot(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3) -> Vec2 {
     let x = origin_j - origin_i;
     let ii = normal_i.dot(normal_i);
@@ -69,7 +72,7 @@ pub fn parameters_dot(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: 
     Vec2::new(jj * xi - ij * xj, ij * xi - ii * xj) / (ii * jj - ij * ij)
 }
 
-/// The parameters by eq. (3) as it is printed, which swaps them.
+/// Returns the parameters from eq. (3) as printed, which swaps them.
 pub fn parameters_literal(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal_j: Vec3) -> Vec2 {
     let x = origin_j - origin_i;
     let across = normal_i.cross(normal_j);
@@ -77,7 +80,8 @@ pub fn parameters_literal(origin_i: Vec3, normal_i: Vec3, origin_j: Vec3, normal
     t / normal_i.dot(normal_j.cross(across))
 }
 
-/// Where the centre is taken to be if the normals do not say: behind the counter-clockwise face by its longest edge.
+/// Returns the stand-in for the centre if the normals do not determine it: behind the
+/// counter-clockwise face, at a depth equal to its longest edge.
 pub fn fallback(position_a: Vec3, position_b: Vec3, position_c: Vec3) -> Vec3 {
     let edge_b = position_b - position_a;
     let edge_c = position_c - position_a;
@@ -95,7 +99,7 @@ pub fn fallback(position_a: Vec3, position_b: Vec3, position_c: Vec3) -> Vec3 {
     position_a + size * ((b + c) / 3.0 - depth * area_normal)
 }
 
-/// The same point as one writes it first, a naive form.
+/// Returns the straightforward form of [`fallback`]; a naive form.
 pub fn fallback_naive(position_a: Vec3, position_b: Vec3, position_c: Vec3) -> Vec3 {
     let edge_b = position_b - position_a;
     let edge_c = position_c - position_a;
@@ -104,8 +108,8 @@ pub fn fallback_naive(position_a: Vec3, position_b: Vec3, position_c: Vec3) -> V
     (position_a + position_b + position_c) / 3.0 - longest * (area_normal / area_normal.length())
 }
 
-/// Centre of the proxy sphere: the point closest to the three normal lines, by least squares with a pull towards
-/// [`fallback`].
+/// Returns the centre of the proxy sphere: the point closest to the three normal lines, by least
+/// squares with a pull towards [`fallback`].
 pub fn centre(
     position_a: Vec3,
     normal_a: Vec3,
@@ -161,7 +165,8 @@ pub fn centre(
     fallback + size * (at_axis + depth * (axis - drift))
 }
 
-/// The paper's centre, eq. (4), (5), with eq. (3) corrected, a naive form; [`fallback`] for three parallel normals.
+/// Returns the paper's centre, eq. (4), (5), with eq. (3) corrected, a naive form; [`fallback`] if
+/// all three normals are parallel.
 pub fn centre_paper(
     position_a: Vec3,
     normal_a: Vec3,
@@ -185,7 +190,7 @@ pub fn centre_paper(
     (weight.x * point_a + weight.y * point_b + weight.z * point_c) / total
 }
 
-/// The paper's centre with eq. (3) as printed, a naive form.
+/// Returns the paper's centre with eq. (3) as printed; a naive form.
 pub fn centre_literal(
     position_a: Vec3,
     normal_a: Vec3,

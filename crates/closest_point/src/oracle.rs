@@ -1,26 +1,31 @@
-//! The truth in f64: orthogonal projections for two lines, the altitude on the longest edge for the fallback point, and
-//! for the centre a stacked least-squares problem solved by Householder reflections. A line has the direction of its
-//! normal, whatever that vector's length: its parameter counts in units of the vector as it is given.
+//! The oracle in f64: orthogonal projections for two lines, the altitude on the longest edge for
+//! the fallback point, and for the centre a stacked least-squares problem solved by Householder
+//! reflections. A line has the direction of its normal, whatever the length of that vector; its
+//! parameter counts in units of the vector as given.
 
 use glam::{DVec2, DVec3};
 
-// The module's two constants, written out again: a slip in theirs must not carry over to the truth.
+// The two constants of the module, written out again so that an error in the module does not carry
+// over to the oracle.
 const REGULARISATION: f64 = 1.0 / 4096.0;
 const SLIVER: f64 = 1.0 / 1024.0;
 
-/// Largest magnitude of a vector's components: the norm for p = infinity.
+/// Returns the largest magnitude of a vector's components: the norm for p = infinity.
 pub fn largest_component(vector: DVec3) -> f64 {
     vector.to_array().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
-/// Unit direction of a vector, 0 for 0: squares of f32 values neither under- nor overflow in f64.
+/// Returns the unit direction of a vector, 0 for the zero vector: squares of f32 values neither
+/// underflow nor overflow in f64.
 pub fn direction(vector: DVec3) -> DVec3 {
     vector.normalize_or_zero()
 }
 
-/// Parameters of the closest points of two lines. In s = (t_i + t_j) / 2 and d = t_i - t_j the separation is
-/// x - s (n_i - n_j) - d (n_i + n_j) / 2, whose two directions are nearly orthogonal at every angle: x is projected on
-/// one, then on the rest of the other. Parallel normals, whose f64 cross product of f32 values is exactly 0, give (0, 0).
+/// Returns the parameters of the closest points of two lines. With s = (t_i + t_j) / 2 and
+/// d = t_i - t_j the separation is x - s (n_i - n_j) - d (n_i + n_j) / 2, whose two directions are
+/// nearly orthogonal at every angle. x is projected onto one direction, then onto the remainder of
+/// the other. Parallel normals, whose cross product is exactly 0 in f64 for f32 values, give
+/// (0, 0).
 pub fn parameters(origin_i: DVec3, normal_i: DVec3, origin_j: DVec3, normal_j: DVec3) -> DVec2 {
     if normal_i.cross(normal_j) == DVec3::ZERO {
         return DVec2::ZERO;
@@ -35,18 +40,18 @@ pub fn parameters(origin_i: DVec3, normal_i: DVec3, origin_j: DVec3, normal_j: D
     DVec2::new(s + 0.5 * d, s - 0.5 * d)
 }
 
-/// Shared with [`parameters`]: the same function, computed badly.
+/// Returns [`parameters`]: the same function, computed badly by the mirror.
 pub fn parameters_dot(origin_i: DVec3, normal_i: DVec3, origin_j: DVec3, normal_j: DVec3) -> DVec2 {
     parameters(origin_i, normal_i, origin_j, normal_j)
 }
 
-/// What eq. (3) as printed comes to: the two parameters, swapped.
+/// Returns the result of eq. (3) as printed: the two parameters, swapped.
 pub fn parameters_literal(origin_i: DVec3, normal_i: DVec3, origin_j: DVec3, normal_j: DVec3) -> DVec2 {
     let t = parameters(origin_i, normal_i, origin_j, normal_j);
     DVec2::new(t.y, t.x)
 }
 
-/// The triangle turned so that its longest edge comes first: the edge's start, the edge, and the altitude on it.
+/// Returns the triangle's longest edge and the altitude on it.
 fn longest_edge_and_altitude(position_a: DVec3, position_b: DVec3, position_c: DVec3) -> (DVec3, DVec3) {
     let turns = [
         (position_a, position_b, position_c),
@@ -59,8 +64,9 @@ fn longest_edge_and_altitude(position_a: DVec3, position_b: DVec3, position_c: D
     (edge, (apex - start).reject_from(edge))
 }
 
-/// The fallback point: from the centroid along -(edge × altitude), as far as the longest edge, times the sine of the
-/// angle whose tangent is the altitude over 1/1024 of the longest edge.
+/// Returns the fallback point: from the centroid along -(edge × altitude), at a distance equal to
+/// the longest edge, times the sine of the angle whose tangent is the altitude divided by 1/1024 of
+/// the longest edge.
 pub fn fallback(position_a: DVec3, position_b: DVec3, position_c: DVec3) -> DVec3 {
     let centroid = (position_a + position_b + position_c) / 3.0;
     if position_a == position_b && position_b == position_c {
@@ -71,14 +77,15 @@ pub fn fallback(position_a: DVec3, position_b: DVec3, position_c: DVec3) -> DVec
     centroid - fade * edge.cross(altitude.normalize_or_zero())
 }
 
-/// The fallback point without the fade: it differs from [`fallback`] for slivers.
+/// Returns the fallback point without the fade; it differs from [`fallback`] for slivers.
 pub fn fallback_naive(position_a: DVec3, position_b: DVec3, position_c: DVec3) -> DVec3 {
     let (edge, altitude) = longest_edge_and_altitude(position_a, position_b, position_c);
     (position_a + position_b + position_c) / 3.0 - edge.cross(altitude.normalize())
 }
 
-/// The centre, as the least-squares solution of the twelve equations (I - n nᵀ)(o - x) = 0 and √λ (o - p) = 0. The
-/// smallest singular value is √λ, so the condition number is 111 where that of the normal equations is its square.
+/// Returns the centre, as the least-squares solution of the twelve equations (I - n nᵀ)(o - x) = 0
+/// and √λ (o - p) = 0. The smallest singular value is √λ, so the condition number is 111; for the
+/// normal equations it would be the square of 111.
 pub fn centre(
     position_a: DVec3,
     normal_a: DVec3,
@@ -102,7 +109,8 @@ pub fn centre(
     fallback + least_squares(rows)
 }
 
-/// Least-squares solution of rows `[a_x, a_y, a_z | b]` of full rank, by Householder reflections.
+/// Returns the least-squares solution of rows `[a_x, a_y, a_z | b]` of full rank, by Householder
+/// reflections.
 fn least_squares(mut rows: Vec<[f64; 4]>) -> DVec3 {
     for k in 0..3 {
         let norm = rows[k..].iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt();
@@ -122,7 +130,8 @@ fn least_squares(mut rows: Vec<[f64; 4]>) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Eq. (4), (5) with the closest points of one pair of lines per vertex, and weights |n_i| |n_k| sin(angle).
+/// Evaluates eq. (4), (5) with the closest points of one pair of lines per vertex, and weights
+/// |n_i| |n_k| sin(angle).
 fn weighted_points(parameters: fn(DVec3, DVec3, DVec3, DVec3) -> DVec2, lines: [(DVec3, DVec3); 3]) -> Option<DVec3> {
     let mut total = 0.0;
     let mut sum = DVec3::ZERO;
@@ -136,7 +145,7 @@ fn weighted_points(parameters: fn(DVec3, DVec3, DVec3, DVec3) -> DVec2, lines: [
     (total > 0.0).then(|| sum / total)
 }
 
-/// The paper's centre with eq. (3) corrected.
+/// Returns the paper's centre with eq. (3) corrected.
 pub fn centre_paper(
     position_a: DVec3,
     normal_a: DVec3,
@@ -149,7 +158,7 @@ pub fn centre_paper(
         .unwrap_or_else(|| fallback(position_a, position_b, position_c))
 }
 
-/// The paper's centre with eq. (3) as printed; defined where no two normals are parallel.
+/// Returns the paper's centre with eq. (3) as printed; defined unless all normals are parallel.
 pub fn centre_literal(
     position_a: DVec3,
     normal_a: DVec3,

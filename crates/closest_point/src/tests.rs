@@ -1,4 +1,5 @@
-//! Mirror against oracle at all magnitudes, the facts that the paper's erratum rests on, and where naive forms fail.
+//! Tests of the mirror against the oracle at all magnitudes, of the facts behind the paper's
+//! erratum, and of the failures of the naive forms.
 
 use super::*;
 use glam::{DVec2, DVec3};
@@ -10,7 +11,8 @@ fn largest(vector: DVec3) -> f64 {
     oracle::largest_component(vector)
 }
 
-/// Error in ulp of `value`, less what an input error of `backward` ulp moves the truth to first order.
+/// Returns the error in ulp of `value`, less the first-order change of the truth for an input error
+/// of `backward` ulp.
 fn excess<const N: usize>(value: DVec3, truth: impl Fn([DVec3; N]) -> DVec3, inputs: [DVec3; N], backward: f64) -> f64 {
     assert!(value.is_finite(), "{value} for {inputs:?}");
     let exact = truth(inputs);
@@ -65,7 +67,8 @@ fn pair(random: &mut Draws<'_>, angle: f64) -> [Vec3; 4] {
     single([shift, n, shift + x, (n * angle.cos() + side * angle.sin()).normalize()])
 }
 
-/// A triangle of any shape, sometimes degenerate, with normals about one axis at an angle, at most 120° apart.
+/// Draws a triangle of any shape, sometimes degenerate, with normals at an angle around one axis,
+/// at most 120° apart.
 fn triangle(random: &mut Draws<'_>, angle: f64) -> [Vec3; 6] {
     let size = 10f64.powf(39.0 * random.unit() - 20.0);
     let shift = random.in_cube().as_dvec3() * [0.0, 1.0, 10.0, 0.1][random.below(4) as usize];
@@ -97,7 +100,8 @@ fn triangle(random: &mut Draws<'_>, angle: f64) -> [Vec3; 6] {
     single(inputs)
 }
 
-/// Runs `trial` many times and returns the worst error in ulp beyond the accuracy's `backward` term.
+/// Runs `trial` many times and returns the worst error in ulp beyond the `backward` term of the
+/// accuracy.
 fn worst(seed: u64, trials: usize, mut trial: impl FnMut(&mut Draws<'_>) -> f64) -> f64 {
     let mut random = Draws::of_row(seed, 0);
     let worst = (0..trials).map(|_| trial(&mut random)).fold(0.0, larger);
@@ -118,7 +122,8 @@ fn parameters_are_accurate() {
 
 #[test]
 fn parameters_keep_their_digits_at_every_angle() {
-    // The separation has no share along the normals here, so nothing but the cross product can lose digits.
+    // The separation has no component along the normals here, so only the cross product can lose
+    // digits.
     for exponent in 1..30 {
         let angle = 10f32.powf(-0.25 * exponent as f32);
         let v = [Vec3::ZERO, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.8, 1.0, 0.6), Vec3::new(0.6, angle, 0.8)];
@@ -210,7 +215,8 @@ fn naive_forms_are_those_formulas() {
     assert!(largest(naive - oracle::fallback_naive(a, b, c)) < 1e-6);
 }
 
-/// The table of docs/closest_point.md: three normals tilted from the z axis, one only or all towards the middle.
+/// Checks the table of docs/closest_point.md: three normals tilted from the z axis, only one or all
+/// of them away from the middle.
 #[test]
 fn table_is_current() {
     let corners = [Vec3::new(0.5, 0.0, 0.0), Vec3::new(-0.25, 0.4375, 0.0), Vec3::new(-0.25, -0.4375, 0.0)];

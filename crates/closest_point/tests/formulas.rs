@@ -1,4 +1,5 @@
-//! `wgsl/closest_point.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-closest_point`.
+//! Device tests of every function of `wgsl/closest_point.wgsl` and its naive forms:
+//! `cargo test -p lapidary-closest_point`.
 
 use lapidary_closest_point::formulas::formulas;
 

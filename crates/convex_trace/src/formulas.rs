@@ -1,4 +1,4 @@
-//! `wgsl/convex_trace.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/convex_trace.wgsl`.
 
 mod outside;
 
@@ -15,17 +15,18 @@ const M: &str = "convex_trace";
 /// The rounding unit of f32.
 const ULP: f64 = 1.0 / (1 << 23) as f64;
 
-/// What an implementation may flush to zero.
+/// Magnitude below which an implementation may flush to zero.
 const FLUSHED: f64 = f32::MIN_POSITIVE as f64;
 
 type Step = (ConvexTraceHit, Vec3, Vec3, Vec4, u32, u32);
 
-/// Sizes of stones: 1 in half of the cases, else from 1e-4 to 1e4.
+/// Draws the size of a stone: 1 in half of the cases, otherwise from 1e-4 to 1e4.
 fn size(draws: &mut Draws<'_>) -> f32 {
     if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-13, 13) }
 }
 
-/// A plane, a start on its inner side, on it or a few ulp outside, and a direction: towards it, away, parallel to the last ulp.
+/// Draws a plane, a start on its inner side, on the plane or a few ulp outside, and a direction:
+/// towards the plane, away from it, or parallel to the last ulp.
 fn start_and_plane(draws: &mut Draws<'_>, size: f32) -> (Vec3, Vec3, Vec4) {
     let normal = draws.unit_vector();
     let axis = normal.as_dvec3().normalize();
@@ -48,7 +49,8 @@ fn start_and_plane(draws: &mut Draws<'_>, size: f32) -> (Vec3, Vec3, Vec4) {
     (position, direction, normal.extend(offset))
 }
 
-/// A step: no hit so far, one that is far nearer or farther, one at nearly the same distance, one at the very same.
+/// Draws a step: no hit so far, a much nearer or farther one, one at nearly the same distance, or
+/// one at exactly the same distance.
 fn step(draws: &mut Draws<'_>) -> Step {
     let size = size(draws);
     let (position, direction, plane) = start_and_plane(draws, size);
@@ -69,8 +71,8 @@ fn step(draws: &mut Draws<'_>) -> Step {
     (hit, position, direction, plane, face, left)
 }
 
-/// Height and slope of the plane in f64, and whether f32 has them without rounding, whatever the order: one component of the normal
-/// counts.
+/// Returns height and slope of the plane in f64, and whether f32 computes them without rounding in
+/// any order of operations: only one component of the normal counts.
 fn height_and_slope((_, position, direction, plane, ..): Step) -> (f64, f64, bool) {
     let (normal, position, direction) = (plane.xyz().as_dvec3(), position.as_dvec3(), direction.as_dvec3());
     let height = f64::from(plane.w) - normal.dot(position);
@@ -78,7 +80,7 @@ fn height_and_slope((_, position, direction, plane, ..): Step) -> (f64, f64, boo
     (height, normal.dot(direction), along_an_axis && f64::from(height as f32) == height)
 }
 
-/// Which plane is met, where f32 computes the distance without rounding.
+/// Checks which plane is met, if f32 computes the distance without rounding.
 fn exact_choice(arguments: Step, result: ConvexTraceHit) -> Result<(), String> {
     let (hit, _, _, _, face, left) = arguments;
     let (height, slope, exact) = height_and_slope(arguments);
@@ -97,7 +99,8 @@ fn step_formula() -> Formula {
     let right = |offset: f32| Vec3::X.extend(offset);
     let (oblique, grazing) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(1e-6, 1.0, 0.0));
     let (beside, inside, outside) = (Vec3::X * (1.0 - 1e-5), Vec3::X * 1.0f32.next_down(), Vec3::X * 1.0f32.next_up());
-    // A point under the plane x = 1 of a stone of size 1, once in its own coordinates and once 1e4 units away.
+    // A point under the plane x = 1 of a stone of size 1, in the stone's own coordinates and 1e4
+    // units away.
     let (here, there) = (Vec3::new(0.7504, 0.1, -0.2), Vec3::splat(1e4));
     formula(M, "convex_trace_step", mirror::step, oracle::step, step)
         .edge("nothing hit so far", |(hit, ..)| hit.face == CONVEX_TRACE_NONE && hit.distance == CONVEX_TRACE_FAR)
@@ -136,7 +139,8 @@ fn step_formula() -> Formula {
                 return if result == hit { Ok(()) } else { Err(format!("it is {result:?}")) };
             }
             let (height, slope, _) = height_and_slope(arguments);
-            // Height and slope are three products and three sums each, off by up to a whole last place.
+            // Height and slope are three products and at most three sums each, each off by up to a
+            // whole last place.
             let magnitude = f64::from(plane.xyz().abs().dot(position.abs()) + plane.w.abs());
             let distance = f64::from(result.distance);
             let bound = 4.0 * ULP * (magnitude + distance) + FLUSHED;
@@ -176,8 +180,8 @@ fn step_formula() -> Formula {
         .build()
 }
 
-/// A plane well ahead or behind, or about the epsilon from the origin, where its distance is exact to a thousandth; a hit so far that is
-/// nearer, farther, or the same.
+/// Draws a plane well ahead or behind, or around the epsilon from the origin, where its distance is
+/// exact to a thousandth, and a hit so far that is nearer, farther, or at the same distance.
 fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32) {
     let face = draws.below(73);
     if draws.below(4) == 0 {
@@ -200,7 +204,8 @@ fn benign_step(draws: &mut Draws<'_>) -> (ConvexTraceHit, Vec3, Vec3, Vec4, u32)
     (hit, position, direction, plane, face)
 }
 
-/// A ray to a plane and the distance there, of every slope from 1e-6 on; or a start on a plane as interpolation leaves it, and no way to go.
+/// Draws a ray to a plane and the distance there, for every slope from 1e-6 on; or a start on a
+/// plane as interpolation leaves it, with a distance of 0.
 fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
     let size = size(draws);
     let (position, direction, plane) = start_and_plane(draws, size);
@@ -210,7 +215,8 @@ fn way_to_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, Vec4) {
     (position, direction, distance, plane)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -242,7 +248,8 @@ fn functions() -> Vec<Formula> {
             .edge("a stone of size 1e4", |(position, ..)| (5e3..5e4).contains(&position.length()))
             .invariant("it lies on the plane", |(position, direction, distance, plane), point: Vec3| {
                 let height = plane.xyz().as_dvec3().dot(point.as_dvec3()) - f64::from(plane.w);
-                // The rounding of the height along the ray, and of a normal's length where there is far to go.
+                // The rounding of the height along the ray and, over a long distance, of the
+                // normal's length.
                 let far = position.abs() + distance * direction.abs();
                 let magnitude = f64::from(plane.xyz().abs().dot(far) + plane.w.abs());
                 near("height", height, 0.0, 4.0 * ULP * magnitude + FLUSHED)
@@ -255,7 +262,8 @@ fn functions() -> Vec<Formula> {
             )
             .build(),
         formula(M, "convex_trace_point_naive", mirror::point_naive, oracle::point_naive, |draws| {
-            // Outwards: a way back to where the position's components are small cancels their digits.
+            // Outwards, because on the way back to small components the digits of a position
+            // cancel.
             let (position, direction) = (draws.in_cube(), draws.unit_vector());
             let outwards = if position.dot(direction) < 0.0 { -direction } else { direction };
             (position, outwards, draws.between(0.5, 2.0))

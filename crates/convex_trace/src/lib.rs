@@ -1,7 +1,9 @@
-//! Mirror of `wgsl/convex_trace.wgsl`: where a ray inside a convex stone meets its surface, from the planes of its facets.
-//! Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7.
+//! Mirror of `wgsl/convex_trace.wgsl`: the point at which a ray inside a convex stone meets its
+//! surface, from the planes of its facets. Imagire, "Proxy Geometry Gem Rendering", section 5,
+//! fig. 7.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! The WGSL file states the units, domain and accuracy of each function. This file follows it line
+//! by line.
 //!
 //! ```
 //! use glam::{Vec3, vec4};
@@ -20,30 +22,31 @@ pub mod oracle;
 
 use glam::{Vec3, Vec4, Vec4Swizzles as _};
 
-/// The nearest plane so far.
+/// The hit on the nearest plane so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvexTraceHit {
-    /// Along the ray, at least 0; the limit while none is hit.
+    /// Distance along the ray, at least 0; the limit while no plane is hit.
     pub distance: f32,
-    /// The plane's number; `CONVEX_TRACE_NONE` while none is hit.
+    /// Index of the plane; `CONVEX_TRACE_NONE` while no plane is hit.
     pub face: u32,
 }
 
-/// No face.
+/// No face: the value of `left` for a ray that starts inside the stone, and of `face` if nothing is
+/// hit.
 pub const CONVEX_TRACE_NONE: u32 = 0xffff_ffff;
-/// A limit on the distance that no ray in a stone reaches.
+/// A limit on the distance, beyond the length of any ray inside a stone.
 pub const CONVEX_TRACE_FAR: f32 = 1e30;
 
-/// The hit to start from: none, nearer than which a plane must be.
+/// Returns the initial hit: no face yet, and a limit that a plane must be nearer than.
 pub fn start(limit: f32) -> ConvexTraceHit {
     ConvexTraceHit { distance: limit.min(CONVEX_TRACE_FAR), face: CONVEX_TRACE_NONE }
 }
 
-/// Takes one plane into account.
+/// Updates the hit with one plane.
 pub fn step(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, face: u32, left: u32) -> ConvexTraceHit {
     let height = plane.w - plane.xyz().dot(position);
     let slope = plane.xyz().dot(direction);
-    // Where the slope is 0 this is not looked at.
+    // The quotient is ignored if the slope is 0.
     let distance = height.max(0.0) / slope;
     if slope > 0.0 && distance < hit.distance && face != left {
         return ConvexTraceHit { distance, face };
@@ -51,7 +54,8 @@ pub fn step(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, f
     hit
 }
 
-/// The same with an epsilon against meeting the face that was left.
+/// Updates the hit with one plane, with an epsilon to avoid hitting the face that the ray has just
+/// left.
 pub fn step_naive(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: Vec4, face: u32) -> ConvexTraceHit {
     let distance = (plane.w - plane.xyz().dot(position)) / plane.xyz().dot(direction);
     if distance > 1e-4 && distance < hit.distance {
@@ -60,19 +64,20 @@ pub fn step_naive(hit: ConvexTraceHit, position: Vec3, direction: Vec3, plane: V
     hit
 }
 
-/// Where a ray meets a plane, put back onto the plane.
+/// Returns the point at which a ray meets a plane, moved back onto the plane.
 pub fn point(position: Vec3, direction: Vec3, distance: f32, plane: Vec4) -> Vec3 {
     let point = position + distance * direction;
     point - (plane.xyz().dot(point) - plane.w) * plane.xyz()
 }
 
-/// The point along the ray, left where rounding puts it.
+/// Returns the point along the ray, not corrected for rounding.
 pub fn point_naive(position: Vec3, direction: Vec3, distance: f32) -> Vec3 {
     position + distance * direction
 }
 
-/// The whole loop that the WGSL file's header shows, as a recipe runs it for each hit: the plane by which a ray leaves the stone.
-/// `left` is the face that it starts on, or [`CONVEX_TRACE_NONE`].
+/// Runs the whole loop that the WGSL file's header shows, as a recipe does for each hit. Returns
+/// the plane through which a ray leaves the stone. `left` is the face on which the ray starts, or
+/// [`CONVEX_TRACE_NONE`].
 pub fn trace(planes: &[Vec4], position: Vec3, direction: Vec3, left: u32) -> ConvexTraceHit {
     let mut hit = start(CONVEX_TRACE_FAR);
     for (face, plane) in (0..).zip(planes) {

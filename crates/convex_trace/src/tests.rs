@@ -1,5 +1,6 @@
-//! Whole paths of 64 reflections in a round brilliant, f32 against f64, and where paths are hard: vertices, edges, grazing
-//! incidence, stones of every size and far from the origin. The numbers of docs/convex_trace.md are asserted here.
+//! Tests of whole paths of 64 reflections in a round brilliant, f32 against f64, and of difficult
+//! paths: vertices, edges, grazing incidence, stones of every size and far from the origin. The
+//! numbers of docs/convex_trace.md are asserted here.
 
 use super::*;
 use glam::{DVec3, DVec4};
@@ -8,36 +9,37 @@ use lapidary_assay::extremum::larger;
 use std::f64::consts::PI;
 
 const BOUNCES: usize = 64;
-/// How far a path must stay inside of all planes but the one that it meets, in units of the girdle's radius, for its
-/// facets to be told alike in f32 and in f64. A direction is off by up to 1e-6 after 64 reflections, and the ways add up.
+/// Distance that a path must keep inside all planes except the one that it meets, in units of the
+/// girdle's radius, for its facets to be the same in f32 and in f64. A direction is off by up to
+/// 2e-6 after 64 reflections, and the distances add up.
 const CLEARANCE: f64 = 2e-5;
 
-/// Cylinder coordinates.
+/// Returns the point with these cylindrical coordinates.
 fn at(radius: f64, azimuth: f64, z: f64) -> DVec3 {
     DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z)
 }
 
-/// The plane through a point.
+/// Returns the plane through a point.
 fn plane_at(point: DVec3, normal: DVec3) -> DVec4 {
     let normal = normal.normalize();
     normal.extend(normal.dot(point))
 }
 
-/// The plane through three points, the origin inside.
+/// Returns the plane through three points, with the origin inside.
 fn plane_through(points: [DVec3; 3]) -> DVec4 {
     let normal = (points[1] - points[0]).cross(points[2] - points[0]);
     plane_at(points[0], normal * normal.dot(points[0]).signum())
 }
 
-/// The 73 planes of Tolkowsky's round brilliant, girdle radius 1: table 0.53, crown 34.5°, pavilion 40.75°, stars 0.5, lower halves
-/// 0.77, girdle 0.04 thick.
+/// Returns the 73 planes of Tolkowsky's round brilliant, girdle radius 1: table 0.53, crown 34.5°,
+/// pavilion 40.75°, stars 0.5, lower halves 0.77, girdle 0.04 thick.
 fn brilliant() -> Vec<DVec4> {
     let a = PI / 8.0;
     let (table, girdle) = (0.53, 0.02);
     let [crown, pavilion] = [34.5f64, 40.75].map(|angle| angle.to_radians().tan());
     let table_height = girdle + (1.0 - table) * crown;
     let star_radius = 0.5 * (table * a.cos() + 1.0);
-    // Tips of stars and lower halves lie on the bezels and on the mains.
+    // The tips of stars and lower halves lie on the bezels and on the mains.
     let star_height = girdle + (1.0 - star_radius * a.cos()) * crown;
     let lower_radius = 1.0 - 0.77;
     let lower_height = -girdle - (1.0 - lower_radius * a.cos()) * pavilion;
@@ -59,7 +61,7 @@ fn brilliant() -> Vec<DVec4> {
     planes
 }
 
-/// The corners of a solid with the planes that meet there.
+/// Returns the corners of a solid with the planes that meet there.
 fn vertices(planes: &[DVec4]) -> Vec<(DVec3, Vec<usize>)> {
     let mut found: Vec<(DVec3, Vec<usize>)> = Vec::new();
     for i in 0..planes.len() {
@@ -82,7 +84,7 @@ fn vertices(planes: &[DVec4]) -> Vec<(DVec3, Vec<usize>)> {
     found
 }
 
-/// A stone of a size, away from the origin, in f32; and the very same planes in f64.
+/// A stone of a given size, away from the origin, in f32, and exactly the same planes in f64.
 struct Stone {
     planes: Vec<Vec4>,
     exact: Vec<DVec4>,
@@ -98,19 +100,19 @@ impl Stone {
         Self { planes, exact, size, centre }
     }
 
-    /// How far a point lies outside, over the size.
+    /// Returns the distance of a point outside the stone, divided by the size.
     fn outside(&self, point: DVec3) -> f64 {
         self.exact.iter().map(|plane| plane.xyz().dot(point) - plane.w).fold(f64::NEG_INFINITY, f64::max) / self.size
     }
 
-    /// How far a point lies inside of all planes but one, over the size.
+    /// Returns the distance of a point inside all planes except one, divided by the size.
     fn clearance(&self, point: DVec3, face: u32) -> f64 {
         let others = (0..).zip(&self.exact).filter(|(index, _)| *index != face);
         others.map(|(_, plane)| plane.w - plane.xyz().dot(point)).fold(f64::INFINITY, f64::min) / self.size
     }
 }
 
-/// A ray on its way.
+/// State of a ray between two facets.
 #[derive(Clone, Copy)]
 struct Ray<V> {
     position: V,
@@ -119,7 +121,8 @@ struct Ray<V> {
 }
 
 impl Ray<Vec3> {
-    /// To the next facet and reflected there; none where it escapes.
+    /// Moves to the next facet and reflects there. Returns the distance, or `None` if the ray
+    /// escapes.
     fn bounce(&mut self, planes: &[Vec4], point: fn(Vec3, Vec3, f32, Vec4) -> Vec3) -> Option<f32> {
         let hit = trace(planes, self.position, self.direction, self.left);
         let plane = *planes.get(hit.face as usize)?;
@@ -145,26 +148,26 @@ impl Ray<DVec3> {
     }
 }
 
-/// What paths of 64 reflections did.
+/// Statistics of paths of 64 reflections.
 #[derive(Debug, Default)]
 struct Paths {
-    /// Of how many rays.
+    /// Number of rays.
     rays: usize,
-    /// How many met the same facets as in f64.
+    /// Number of paths that met the same facets as in f64.
     same: usize,
-    /// How many escaped.
+    /// Number of rays that escaped.
     escaped: usize,
-    /// The largest clearance of a path that met other facets.
+    /// Largest clearance of a path that met other facets.
     clearance: f64,
-    /// The largest difference of the last direction, of those that met the same.
+    /// Largest difference of the last direction, over the paths that met the same facets.
     direction: f64,
-    /// The largest distance from the plane that was met, over the size.
+    /// Largest distance from the plane that was met, divided by the size.
     residual: f64,
-    /// The sum of those distances over the first and over the last eight reflections.
+    /// Sums of those distances over the first and over the last eight reflections.
     early_and_late: [f64; 2],
 }
 
-/// Rays from all over the inside into all directions.
+/// Traces rays in all directions from a sphere of 0.3 of the radius about the centre.
 fn paths(stone: &Stone, rays: usize, point: fn(Vec3, Vec3, f32, Vec4) -> Vec3) -> Paths {
     let mut random = Draws::of_row(1, 0);
     let mut paths = Paths { rays, ..Paths::default() };
@@ -211,7 +214,7 @@ fn the_brilliant_is_the_brilliant() {
     let planes = brilliant();
     let corners = vertices(&planes);
     assert_eq!((planes.len(), corners.len()), (73, 57));
-    // Euler: each corner of k facets ends k edges.
+    // Euler: a corner of k facets is an end of k edges.
     let ends: usize = corners.iter().map(|(_, meeting)| meeting.len()).sum();
     assert_eq!(ends, 2 * 128);
 }
@@ -244,8 +247,8 @@ fn far_from_the_origin_facets_are_lost_unless_the_stone_keeps_its_own_coordinate
     let far = paths(&Stone::brilliant(1.0, centre), 1_000, point);
     assert_eq!(far.escaped, 0);
     assert!((far.same as f64) < 0.5 * far.rays as f64, "{far:?}");
-    // The same rays, their starts given in world coordinates and taken into the stone's: the start moves by its own
-    // rounding, and everything after keeps its digits.
+    // The same rays, with starts given in world coordinates and transformed to the stone's: the
+    // start moves by its own rounding, and everything after it keeps its digits.
     let stone = Stone::brilliant(1.0, DVec3::ZERO);
     let mut random = Draws::of_row(1, 0);
     let (mut same, mut clearest) = (0, 0.0);
@@ -281,7 +284,8 @@ fn stays_inside(stone: &Stone, mut ray: Ray<Vec3>) {
         assert!(step.is_finite() && step >= 0.0 && f64::from(step) < 3.0 * stone.size, "{context}: {step:e}");
         way += f64::from(step) / stone.size;
         let outside = stone.outside(ray.position.as_dvec3());
-        // Units in the last place: of the position, of d, and of the distance along a facet of shallow slope.
+        // Units in the last place of the position, of d, and of the distance along a facet of
+        // shallow slope.
         assert!(outside < 4e-7, "{context} is outside by {outside:e}");
     }
     assert!(way > 1.0, "from {:?} along {:?} it goes {way:e}", start.position, start.direction);
@@ -323,7 +327,7 @@ fn rays_that_enter_along_an_edge_stay_inside() {
                     continue;
                 }
                 edges += 1;
-                // From the middle along the edge, and from there inwards.
+                // From the middle of the edge, along the edge and inwards.
                 for towards in [*end - *corner, 0.3 * random.direction() - 0.5 * (*corner + *end)] {
                     stays_inside(
                         &stone,
@@ -347,7 +351,7 @@ fn at_grazing_incidence_to_the_last_ulp_the_face_that_was_left_is_not_met() {
     for size in [1.0, 1e-4, 1e4] {
         let stone = Stone::brilliant(size, DVec3::ZERO);
         for (face, plane) in (0..).zip(&stone.exact) {
-            // From the foot point of a point inside that lies over the facet.
+            // From the foot point of an inner point that lies over the facet.
             let over = (0..).map(|_| oracle::point(0.5 * size * random.direction(), DVec3::ZERO, 0.0, *plane));
             let foot = over.into_iter().find(|foot| stone.clearance(*foot, face) > 1e-3).expect("facets have a middle");
             for _ in 0..64 {
@@ -359,7 +363,7 @@ fn at_grazing_incidence_to_the_last_ulp_the_face_that_was_left_is_not_met() {
                 let hit = trace(&stone.planes, foot.as_vec3(), direction, face);
                 let (way, truth) = oracle::trace(&stone.exact, foot.as_vec3().as_dvec3(), direction.as_dvec3(), face);
                 assert_ne!(hit.face, face);
-                // On the edge, two neighbours may be met at one distance.
+                // At an edge, two neighbours may be met at the same distance.
                 let off = (f64::from(hit.distance) - way).abs() / size;
                 assert!(hit.face == truth || off < 1e-6, "face {face}: {} for {truth}, {off:e} apart", hit.face);
                 stays_inside(&stone, Ray { position: foot.as_vec3(), direction, left: face });
@@ -369,7 +373,7 @@ fn at_grazing_incidence_to_the_last_ulp_the_face_that_was_left_is_not_met() {
     assert!(towards_it > 1_000, "{towards_it}");
 }
 
-/// The unit cube, ±x, ±y, ±z.
+/// Returns the planes of a cube of side 2: ±x, ±y, ±z.
 fn cube() -> Vec<Vec4> {
     [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].map(|normal| normal.extend(1.0)).to_vec()
 }
@@ -380,7 +384,7 @@ fn parallel_to_planes_after_each_bounce() {
     for bounce in 0..BOUNCES {
         assert_eq!(ray.bounce(&cube(), point), Some(2.0));
         assert_eq!(ray.left, (bounce % 2) as u32);
-        // Between ±x within +z itself: parallel to it, and on it.
+        // Between ±x within the plane +z itself: parallel to it, and on it.
         assert_eq!((ray.position.y, ray.position.z), (0.25, 1.0));
     }
 }
@@ -398,7 +402,7 @@ fn outside_by_rounding_and_going_out_it_is_met_at_once() {
     let outside = Vec3::new(1.0f32.next_up(), 0.0, 0.0);
     let hit = trace(&cube(), outside, Vec3::new(0.6, 0.8, 0.0), 2);
     assert_eq!((hit.face, hit.distance), (0, 0.0));
-    // Going in it is not.
+    // A ray that runs inwards does not meet it.
     let hit = trace(&cube(), outside, Vec3::new(-0.6, 0.8, 0.0), CONVEX_TRACE_NONE);
     assert_eq!(hit.face, 2);
 }

@@ -1,4 +1,5 @@
-//! `wgsl/convex_trace.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-convex_trace`.
+//! Device tests of every function of `wgsl/convex_trace.wgsl` and its naive forms:
+//! `cargo test -p lapidary-convex_trace`.
 
 use lapidary_convex_trace::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/curvature.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/curvature.wgsl`.
 
 mod outside;
 
@@ -16,7 +16,7 @@ const M: &str = "curvature";
 
 /// Derivatives of position and normal along both screen axes.
 type Derivatives = (Vec3, Vec3, Vec3, Vec3);
-/// The same with a light.
+/// Derivatives with a light.
 type Lit = (Vec3, Vec3, Vec3, Vec3, Vec3);
 
 /// A surface at a pixel: unit normal, principal directions, principal curvatures.
@@ -28,7 +28,8 @@ struct Surface {
 }
 
 impl Surface {
-    /// Sphere, cylinder, saddle, plane or anything, with its larger curvature `size`.
+    /// Draws a sphere, a cylinder, a saddle, a plane or a general surface, with `size` as the
+    /// larger curvature.
     fn draw(draws: &mut Draws<'_>, size: f64) -> Surface {
         let normal = draws.unit_vector().as_dvec3().normalize();
         let first = draws.perpendicular(normal);
@@ -44,14 +45,15 @@ impl Surface {
         Surface { normal, first, second: normal.cross(first), principal: principal.map(|k| sign * k) }
     }
 
-    /// The normal's derivative along a tangent.
+    /// Returns the derivative of the normal along a tangent.
     fn bend(&self, tangent: DVec3) -> DVec3 {
         let [one, two] = self.principal;
         one * tangent.dot(self.first) * self.first + two * tangent.dot(self.second) * self.second
     }
 }
 
-/// Sine of the angle between the position derivatives: wide, at every magnitude, about the limit of what counts as edge-on, parallel.
+/// Draws the sine of the angle between the position derivatives: wide, at every magnitude, around
+/// the limit of edge-on, or parallel.
 fn sine(draws: &mut Draws<'_>) -> f64 {
     match draws.below(8) {
         0 | 1 => f64::from(draws.magnitude(-26, -1)),
@@ -61,8 +63,8 @@ fn sine(draws: &mut Draws<'_>) -> f64 {
     }
 }
 
-/// Derivatives on a surface, of all sizes and angles; degenerate; with the asymmetry and the part along the normal that
-/// interpolation leaves.
+/// Draws derivatives on a surface, of all sizes and angles: regular, degenerate, or with the
+/// asymmetry and the component along the normal that interpolation leaves.
 fn derivatives(draws: &mut Draws<'_>) -> (Derivatives, Surface) {
     let width = f64::from(if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-70, 70) });
     let height = width * f64::from(draws.magnitude(-8, 8));
@@ -80,21 +82,21 @@ fn derivatives(draws: &mut Draws<'_>) -> (Derivatives, Surface) {
         1 => p_y = DVec3::ZERO,
         2 => (p_x, p_y) = (DVec3::ZERO, DVec3::ZERO),
         3 => p_y = -2.0 * p_x,
-        // About the least size, and below it, where the result fades: seen at a wide angle.
+        // Around the smallest size and below it, where the result fades: seen at a wide angle.
         4 => p_x = f64::from(CURVATURE_SMALLEST * draws.magnitude(-20, 2)) * right,
         5 => p_y = f64::from(CURVATURE_SMALLEST * draws.magnitude(-20, 2)) * up,
         _ => {}
     }
     let (mut n_x, mut n_y) = (surface.bend(p_x), surface.bend(p_y));
     if draws.below(4) == 0 {
-        // Half as large as the derivatives themselves.
+        // Up to a quarter of the derivatives' length along each axis.
         n_x += 0.25 * n_x.length() * draws.in_cube().as_dvec3();
         n_y += 0.25 * n_y.length() * draws.in_cube().as_dvec3();
     }
     ((p_x.as_vec3(), p_y.as_vec3(), n_x.as_vec3(), n_y.as_vec3()), surface)
 }
 
-/// The same with a light anywhere, along the surface, or near the zenith at every angle.
+/// Draws derivatives with a light anywhere, along the surface, or near the zenith at every angle.
 fn lit(draws: &mut Draws<'_>) -> Lit {
     let ((p_x, p_y, n_x, n_y), surface) = derivatives(draws);
     let across = draws.perpendicular(surface.normal);
@@ -111,7 +113,8 @@ fn lit(draws: &mut Draws<'_>) -> Lit {
     (p_x, p_y, n_x, n_y, light.as_vec3())
 }
 
-/// Where the textbook does well: a surface whose curvatures have one sign, seen not too obliquely, about as large as 1.
+/// Draws a case in which the textbook form does well: a surface whose curvatures have the same
+/// sign, seen not too obliquely, with a size of about 1.
 fn benign(draws: &mut Draws<'_>) -> Lit {
     let normal = draws.direction();
     let first = draws.perpendicular(normal);
@@ -139,45 +142,48 @@ fn benign_derivatives(draws: &mut Draws<'_>) -> Derivatives {
     (p_x, p_y, n_x, n_y)
 }
 
-/// The sine of the angle between two derivatives; 0 where one is 0.
+/// Returns the sine of the angle between two derivatives; 0 if one is 0.
 fn sine_between(p_x: Vec3, p_y: Vec3) -> f64 {
     let (p_x, p_y) = (p_x.as_dvec3(), p_y.as_dvec3());
     let lengths = p_x.length() * p_y.length();
     if lengths == 0.0 { 0.0 } else { p_x.cross(p_y).length() / lengths }
 }
 
-/// How large curvatures may be that come of these derivatives: |n_x| / |p_x| + |n_y| / |p_y|, with the sizes that fade.
+/// Returns a bound on the curvatures from these derivatives: |n_x| / |p_x| + |n_y| / |p_y|, with
+/// denominators of at least CURVATURE_SMALLEST.
 fn steepest((p_x, p_y, n_x, n_y): Derivatives) -> f64 {
     let one = |p: Vec3, n: Vec3| n.as_dvec3().length() / p.as_dvec3().length().max(f64::from(CURVATURE_SMALLEST));
     one(p_x, n_x) + one(p_y, n_y)
 }
 
-/// Rounding of a curvature that `steepest` bounds, through the sine.
+/// Returns the rounding error of a curvature bounded by `steepest`, divided by the sine.
 fn rounding(inputs: Derivatives) -> f64 {
     let least = f64::from(CURVATURE_EDGE_ON).sqrt();
-    // Derivatives below the least size count with that, where the result fades as it does edge-on.
+    // Derivatives below the smallest size count with that sine, because the result fades there as
+    // it does edge-on.
     let tiny = inputs.0.length().min(inputs.1.length()) < CURVATURE_SMALLEST;
     let sine = if tiny { least } else { sine_between(inputs.0, inputs.1).max(least) };
     64.0 * 2f64.powi(-24) * steepest(inputs) / sine + 1e-30
 }
 
-/// A surface with these curvatures along p_x and across it, seen at a sine of 1.04e-3: just not edge-on.
+/// Returns a surface with these curvatures along p_x and across it, seen at a sine of 1.04e-3: just
+/// not edge-on.
 fn aslant(principal: [f32; 2]) -> Derivatives {
     let p_x = Vec3::new(0.6, 0.3, 0.7);
     let p_y = p_x + 1.5e-3 * ACROSS;
-    // The difference is exact, as the product was not.
+    // The difference is exact; the product was not.
     (p_x, p_y, principal[0] * p_x, principal[0] * p_x + principal[1] * (p_y - p_x))
 }
 
-/// Perpendicular to p_x of [`aslant`].
+/// Vector perpendicular to p_x of [`aslant`].
 const ACROSS: Vec3 = Vec3::new(0.3, -0.6, 0.0);
 
-/// A surface with principal curvatures along x and y, seen from straight above.
+/// Returns a surface with principal curvatures along x and y, seen from straight above.
 fn square(principal: [f32; 2]) -> Derivatives {
     (Vec3::X, Vec3::Y, principal[0] * Vec3::X, principal[1] * Vec3::Y)
 }
 
-/// A sphere of this radius, with pixels of this size.
+/// Returns a sphere of this radius, with pixels of this size.
 fn ball(pixel: f32, radius: f32) -> Derivatives {
     (pixel * Vec3::X, pixel * Vec3::Y, pixel / radius * Vec3::X, pixel / radius * Vec3::Y)
 }
@@ -186,7 +192,8 @@ fn lit_by((p_x, p_y, n_x, n_y): Derivatives, light: Vec3) -> Lit {
     (p_x, p_y, n_x, n_y, light)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -255,7 +262,7 @@ fn input_formulas() -> Vec<Formula> {
         .edge("degenerate", |(x, _)| x != Vec3::ZERO && x.length() < 0.5)
         .invariant_at_nearest("an orthonormal frame, or none", |_, frame: CurvatureFrame| {
             let [first, second] = [frame.first, frame.second].map(|vector| vector.as_dvec3());
-            // The lengths' rounding, 4 ulp of each component.
+            // The rounding of the lengths, 4 ulp of each component.
             let bound = 16.0 * 2f64.powi(-24);
             let whole = [(first, frame.width > 0.0), (second, frame.rise >= CURVATURE_SMALLEST)];
             for (vector, _) in whole.into_iter().filter(|(_, is_whole)| *is_whole) {
@@ -285,8 +292,10 @@ fn input_formulas() -> Vec<Formula> {
         })
         .invariant("perpendicular to the normal", |(normal, derivative), turned: Vec3| {
             let along = normal.as_dvec3().normalize_or_zero().dot(turned.as_dvec3());
-            // With e = 2^-23: the quotient is off by 2.5 e of the result, and a cross product by 2.4 e of its factors' lengths. Of the outer one these make the
-            // result, and what rounding leaves of the inner one where the derivative runs along the normal.
+            // With e = 2^-23: the quotient is off by 2.5 e of the result, and a cross product by
+            // 2.4 e of its factors' lengths. The error of the outer product is relative to the
+            // result, and to the rounding that remains of the inner product if the derivative runs
+            // along the normal.
             let e = 2f64.powi(-23);
             let left = 2.4 * e * derivative.as_dvec3().length() / normal.as_dvec3().length().max(1e-20);
             near("part along the normal", along, 0.0, e * (8.0 * turned.as_dvec3().length() + 2.4 * left) + 1e-37)
@@ -331,7 +340,7 @@ fn input_formulas() -> Vec<Formula> {
     ]
 }
 
-/// The edges of what a pixel may show, degenerate or not.
+/// Adds the edges of pixels, degenerate or not.
 fn on_pixels<R: Value + 'static>(builder: Builder<Derivatives, R>) -> Builder<Derivatives, R> {
     builder
         .edge("edge-on", |(x, y, ..)| (1e-9..9e-4).contains(&sine_between(x, y)))
@@ -365,7 +374,7 @@ fn mean_formulas() -> Vec<Formula> {
             })
             .pair("the screen may be sheared", |(x, y, n, m)| (x, 0.5 * x + y, n, 0.5 * n + m), {
                 |(x, y, n, m), mean: f32, sheared: f32| {
-                    // A sheared pixel is edge-on, or tiny, elsewhere.
+                    // A sheared pixel is edge-on or tiny for other inputs.
                     let tiny = x.length().min(y.length()) < 4.0 * CURVATURE_SMALLEST;
                     if tiny || sine_between(x, y) < 4e-3 || sine_between(x, 0.5 * x + y) < 4e-3 {
                         return Ok(());
@@ -417,7 +426,8 @@ fn gaussian_formulas() -> Vec<Formula> {
             })
             .invariant("at most the square of the mean", |(x, y, n, m), gaussian: f32| {
                 let mean = oracle::mean(x.as_dvec3(), y.as_dvec3(), n.as_dvec3(), m.as_dvec3());
-                // Where both principal curvatures are alike K is H², and rounding may take it over; it enters twice, each time times a curvature.
+                // If both principal curvatures are equal, K is H², and rounding may lift it above;
+                // it enters twice, each time multiplied by a curvature.
                 let bound = 2.0 * rounding((x, y, n, m)) * (rounding((x, y, n, m)) * 2f64.powi(20)) + 1e-30;
                 near("excess", (f64::from(gaussian) - mean * mean).max(0.0), 0.0, bound)
             })
@@ -465,13 +475,13 @@ fn towards_formulas() -> Vec<Formula> {
             })
             .invariant("between the principal curvatures", |(x, y, n, m, _), towards: f32| {
                 if sine_between(x, y) < 4e-3 || x.length().min(y.length()) < CURVATURE_SMALLEST {
-                    // What fades has the rounding of what has not faded.
+                    // A faded result has the rounding of the result before the fade.
                     return Ok(());
                 }
                 let [x, y, n, m] = [x, y, n, m].map(|v| v.as_dvec3());
                 let (mean, gaussian) = (oracle::mean(x, y, n, m), oracle::gaussian(x, y, n, m));
                 let reach = (mean * mean - gaussian).max(0.0).sqrt();
-                // What may be flushed, as the `Accuracy:` line derives it.
+                // Values that may be flushed, as derived in the module.
                 let bound = rounding((x.as_vec3(), y.as_vec3(), n.as_vec3(), m.as_vec3())) + 2e-28;
                 near("excess", ((f64::from(towards) - mean).abs() - reach).max(0.0), 0.0, bound)
             })

@@ -1,27 +1,27 @@
-//! Surfaces of known curvature, seen from many views: differentials and finite pixels, f32 and f64. The tables of
-//! docs/curvature.md are made here.
+//! Tests on surfaces of known curvature, seen from many views: differentials and finite pixels, f32
+//! and f64. The tables of docs/curvature.md are made here.
 
 use super::*;
 use glam::{DMat3, DVec3, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::extremum::larger;
 
-/// A surface as the zeros of a function, with its curvatures in closed form.
+/// A surface as the zero set of a function, with its curvatures in closed form.
 #[derive(Clone, Copy, Debug)]
 enum Surface {
-    /// Of this radius.
+    /// Sphere of this radius.
     Sphere(f64),
-    /// Of this radius, along z.
+    /// Cylinder of this radius, along z.
     Cylinder(f64),
-    /// Of these radii, about z.
+    /// Torus of these radii, around z.
     Torus(f64, f64),
     /// z = (x² - y²) / 2.
     Saddle,
-    /// With these half axes: a sphere under a non-uniform scale.
+    /// Ellipsoid with these half axes: a sphere under a non-uniform scale.
     Ellipsoid(DVec3),
 }
 
-/// The surfaces of the tests, about as large as 1.
+/// Surfaces of the tests, with a size of about 1.
 const SURFACES: [(&str, Surface); 5] = [
     ("sphere", Surface::Sphere(0.3)),
     ("cylinder", Surface::Cylinder(0.7)),
@@ -62,7 +62,7 @@ impl Surface {
             Surface::Torus(large, _) => {
                 let radius = p.x.hypot(p.y);
                 let across = DVec3::new(p.y, -p.x, 0.0) / radius;
-                // 1 - R / ρ around the axis, 1 along the other two.
+                // 1 - R / ρ around the axis, 1 along the other two directions.
                 let outer = DMat3::from_cols(across.x * across, across.y * across, across.z * across);
                 DMat3::IDENTITY - large / radius * outer
             }
@@ -75,14 +75,15 @@ impl Surface {
         self.gradient(p).normalize()
     }
 
-    /// The unit normal's derivative along a tangent.
+    /// Returns the derivative of the unit normal along a tangent.
     fn bend(self, p: DVec3, tangent: DVec3) -> DVec3 {
         let gradient = self.gradient(p);
         let change = self.hessian(p) * tangent;
         change.reject_from(gradient) / gradient.length()
     }
 
-    /// Mean and Gaussian curvature as geometry books list them; positive where the surface bends away from the normal.
+    /// Returns mean and Gaussian curvature as listed in geometry books; positive if the surface
+    /// bends away from the normal.
     fn curvature(self, p: DVec3) -> (f64, f64) {
         match self {
             Surface::Sphere(radius) => (1.0 / radius, 1.0 / (radius * radius)),
@@ -105,7 +106,8 @@ impl Surface {
         }
     }
 
-    /// Normal curvature along a direction, by the second derivative of the function along it.
+    /// Returns the normal curvature along a direction, from the second derivative of the function
+    /// along it.
     fn towards(self, p: DVec3, light: DVec3) -> f64 {
         let tangent = light.reject_from(self.gradient(p)).normalize();
         tangent.dot(self.hessian(p) * tangent) / self.gradient(p).length()
@@ -132,7 +134,8 @@ impl Surface {
     }
 }
 
-/// A perspective camera that looks at a point: the ray of screen coordinates (x, y), in radians, is eye + t (ahead + x right + y up).
+/// A perspective camera that looks at a point. The ray of screen coordinates (x, y), in radians, is
+/// eye + t (ahead + x right + y up).
 #[derive(Clone, Copy, Debug)]
 struct View {
     eye: DVec3,
@@ -142,7 +145,8 @@ struct View {
 }
 
 impl View {
-    /// From `distance` away, with the surface's normal at the given cosine to the line of sight, at any roll.
+    /// Draws a view from `distance` away, with the surface's normal at the given cosine to the line
+    /// of sight, at any roll.
     fn of(random: &mut Draws<'_>, point: DVec3, normal: DVec3, cosine: f64, distance: f64) -> View {
         let side = random.direction().reject_from(normal).normalize();
         let back = (cosine * normal + (1.0 - cosine * cosine).sqrt() * side).normalize();
@@ -150,7 +154,8 @@ impl View {
         View { eye: point + distance * back, ahead: -back, right, up: right.cross(-back) }
     }
 
-    /// Derivatives of position and normal at `point`, in the centre of the view, per radian: the ray's, on the tangent plane.
+    /// Returns the derivatives of position and normal at `point`, in the centre of the view, per
+    /// radian: those of the ray's position on the tangent plane.
     fn differentials(&self, surface: Surface, point: DVec3) -> [DVec3; 4] {
         let normal = surface.normal(point);
         let distance = (point - self.eye).dot(self.ahead);
@@ -159,7 +164,7 @@ impl View {
         [p_x, p_y, surface.bend(point, p_x), surface.bend(point, p_y)]
     }
 
-    /// Where the ray of a pixel meets the surface, by Newton's method from `start`.
+    /// Returns the intersection of a pixel's ray with the surface, by Newton's method from `start`.
     fn hit(&self, surface: Surface, x: f64, y: f64, start: DVec3) -> DVec3 {
         let ray = self.ahead + x * self.right + y * self.up;
         let mut distance = (start - self.eye).dot(self.ahead);
@@ -170,7 +175,8 @@ impl View {
         self.eye + distance * ray
     }
 
-    /// What a quad of pixels of `size` radians differences: positions relative to the eye and unit normals, rounded to f32 if so asked.
+    /// Returns the differences within a quad of pixels of `size` radians: positions relative to the
+    /// eye and unit normals, rounded to f32 if `single`.
     fn quad(&self, surface: Surface, point: DVec3, size: f64, single: bool) -> [DVec3; 4] {
         let round = |v: DVec3| if single { v.as_vec3().as_dvec3() } else { v };
         let [here, beside, above] = [(0.0, 0.0), (size, 0.0), (0.0, size)].map(|(x, y)| {
@@ -185,14 +191,16 @@ fn sine(x: DVec3, y: DVec3) -> f64 {
     x.cross(y).length() / (x.length() * y.length())
 }
 
-/// How far rounding its inputs may move a curvature: |n_x| / |p_x| + |n_y| / |p_y|, over the sine of the angle between p_x and p_y.
+/// Returns the sensitivity of a curvature to rounding of its inputs: |n_x| / |p_x| + |n_y| / |p_y|,
+/// divided by the sine of the angle between p_x and p_y.
 fn condition([p_x, p_y, n_x, n_y]: [DVec3; 4]) -> f64 {
     (n_x.length() / p_x.length() + n_y.length() / p_y.length()) / sine(p_x, p_y)
 }
 
 const UNIT: f64 = 1.0 / (1 << 24) as f64;
 
-/// The invariant form is the known curvature from every view, down to a cosine of 0.02 and at scales of 1e-4, 1 and 1e4.
+/// Checks that the invariant form gives the known curvature from every view, down to a cosine of
+/// 0.02 and at scales of 1e-4, 1 and 1e4.
 #[test]
 fn known_curvatures_come_out_at_every_view() {
     let mut random = Draws::of_row(1, 0);
@@ -218,26 +226,29 @@ fn known_curvatures_come_out_at_every_view() {
                 if tangent > 0.2 {
                     let found = f64::from(towards(p_x, p_y, n_x, n_y, light.as_vec3()));
                     let exact = surface.towards(point, light) / scale;
-                    // The mean's share near the zenith, then rounding; the light's own is magnified near the zenith.
+                    // The share of the mean near the zenith first, then rounding; the rounding of
+                    // the light is magnified near the zenith.
                     let mixed = f64::from(CURVATURE_ZENITH) / (tangent * tangent) * (exact - mean / scale).abs();
                     worst[2] = larger(worst[2], ((found - exact).abs() - mixed) * tangent / condition);
                 }
             }
         }
         println!("{name}: off by {:?} units of rounding times the condition", worst.map(|error| error / UNIT));
-        // Each of the 12 inputs is rounded by half an ulp, and each of some 10 operations on the longest way from input to result.
+        // Each of the 12 inputs is rounded by half an ulp, and so is each of about 10 operations on
+        // the longest path from input to result.
         assert!(worst.iter().all(|error| *error <= 16.0 * UNIT), "{name} {worst:?}");
     }
 }
 
-/// Smallest and largest of |dN| / |dP| over the larger principal curvature, and the largest relative error of the mean curvature in f32.
+/// Smallest and largest |dN| / |dP| relative to the larger principal curvature, and the largest
+/// relative error of the mean curvature in f32.
 struct Row {
     low: f64,
     high: f64,
     error: f64,
 }
 
-/// One point of a surface, at a 1000 views with a cosine of at least 1/4.
+/// Evaluates one point of a surface from 1000 views with a cosine of at least 1/4.
 fn row(surface: Surface, point: DVec3, seed: u64) -> Row {
     let mut random = Draws::of_row(seed, 0);
     let (mean, gaussian) = surface.curvature(point);
@@ -255,7 +266,7 @@ fn row(surface: Surface, point: DVec3, seed: u64) -> Row {
     row
 }
 
-/// A point of each surface that is not special.
+/// Returns a generic point of each surface.
 fn places() -> [(&'static str, Surface, DVec3); 5] {
     let torus = Surface::Torus(1.0, 0.4);
     let Surface::Ellipsoid(axes) = SURFACES[4].1 else { unreachable!("the fifth is the ellipsoid") };
@@ -268,7 +279,7 @@ fn places() -> [(&'static str, Surface, DVec3); 5] {
     ]
 }
 
-/// The first table of docs/curvature.md.
+/// Checks the first table of docs/curvature.md.
 #[test]
 fn the_usual_form_depends_on_the_view_and_the_invariant_one_does_not() {
     let mut table = String::new();
@@ -288,7 +299,8 @@ fn the_usual_form_depends_on_the_view_and_the_invariant_one_does_not() {
     assert!(page.contains(&table), "docs/curvature.md should hold:\n{table}");
 }
 
-/// A cylinder seen squarely to its axis: between 1/√2 and 1 of the curvature, as the angle around it goes.
+/// Checks a cylinder seen perpendicular to its axis: between 1/√2 and 1 of the curvature, depending
+/// on the angle around it.
 #[test]
 fn around_an_upright_cylinder_the_usual_form_gives_071_to_1() {
     let surface = Surface::Cylinder(1.0);
@@ -296,11 +308,12 @@ fn around_an_upright_cylinder_the_usual_form_gives_071_to_1() {
         let point = DVec3::new(cosine, (1.0 - cosine * cosine).sqrt(), 0.0);
         let view = View { eye: point + 100.0 * DVec3::X, ahead: DVec3::NEG_X, right: DVec3::Y, up: DVec3::Z };
         let [p_x, p_y, n_x, n_y] = view.differentials(surface, point).map(|v| (1e-3 * v).as_vec3());
-        // fwidth adds magnitudes per component: √(|p_x|² + |p_y|²) here, since the two lie along different axes.
+        // fwidth adds magnitudes per component: √(|p_x|² + |p_y|²) here, because the two lie along
+        // different axes.
         assert!((f64::from(naive(p_x, p_y, n_x, n_y)) - expected).abs() < 1e-5, "{cosine}");
         assert!((super::mean(p_x, p_y, n_x, n_y) - 0.5).abs() < 1e-5);
     }
-    // Along the axis nothing bends: seen at a slant, the usual form falls as far as one likes.
+    // Nothing bends along the axis: seen at a slant, the usual form becomes arbitrarily small.
     let point = DVec3::X;
     let slanted = DVec3::new(0.1, 0.0, (1.0f64 - 0.01).sqrt());
     let right = DVec3::Y;
@@ -310,24 +323,25 @@ fn around_an_upright_cylinder_the_usual_form_gives_071_to_1() {
     assert!((super::mean(p_x, p_y, n_x, n_y) - 0.5).abs() < 1e-5);
 }
 
-/// The median of many numbers.
+/// Returns the median of the values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// The second table of docs/curvature.md. Pixels have a size: the difference of two neighbours is off by its first order, and halves with it,
-/// until what rounding leaves of positions and normals, 2⁻²⁴ over the size, takes over.
+/// Checks the second table of docs/curvature.md. Pixels have a size: the difference of two
+/// neighbours has a first-order error, which halves with the size, until the rounding of positions
+/// and normals, 2⁻²⁴ divided by the size, takes over.
 #[test]
 fn finite_pixels_cost_their_size() {
     let mut table = String::new();
     let mut last = f64::INFINITY;
     for pixels in [128, 512, 2048, 8192, 32768] {
-        // As many pixels to 1 radian, from 4 away.
+        // That many pixels per radian, from a distance of 4.
         let size = 1.0 / f64::from(pixels);
         let mut errors = [Vec::new(), Vec::new()];
         let mut random = Draws::of_row(3, 0);
-        // On the sphere positions and normals differ by a factor only, and no pixel is too large.
+        // On the sphere, positions and normals differ only by a factor, and no pixel is too large.
         for (_, surface) in &SURFACES[1..] {
             for _ in 0..400 {
                 let point = surface.point(&mut random);
@@ -349,7 +363,7 @@ fn finite_pixels_cost_their_size() {
         }
         let [exact, single] = errors.map(median);
         table += &format!("| {pixels} | {:.3} % | {:.3} % |\n", 100.0 * exact, 100.0 * single);
-        // First order: a pixel of a quarter has a quarter of the error.
+        // First order: a quarter of the pixel size gives a quarter of the error.
         assert!(last.is_infinite() || (3.6..5.0).contains(&(last / exact)), "{pixels}: {last} {exact}");
         last = exact;
     }
@@ -358,8 +372,9 @@ fn finite_pixels_cost_their_size() {
     assert!(page.contains(&table), "docs/curvature.md should hold:\n{table}");
 }
 
-/// A unit sphere under a non-uniform scale: positions scaled, normals by the inverse transpose. Normalised, by way of `normal_derivative`, they
-/// give the ellipsoid's curvature; as they are, or with the sphere's normals, they do not.
+/// Checks a unit sphere under a non-uniform scale: positions are scaled, normals are transformed by
+/// the inverse transpose. Renormalised by `normal_derivative`, they give the ellipsoid's curvature;
+/// as they are, or with the sphere's normals, they do not.
 #[test]
 fn non_uniform_scale_is_right_with_renormalised_normals() {
     let mut random = Draws::of_row(4, 0);
@@ -372,7 +387,7 @@ fn non_uniform_scale_is_right_with_renormalised_normals() {
             let cosine = random.between_f64(0.1, 1.0);
             let view = View::of(&mut random, point, ellipsoid.normal(point), cosine, 4.0 * axes.max_element());
             let [p_x, p_y, ..] = view.differentials(ellipsoid, point).map(|v| 1e-3 * v);
-            // The sphere's normal is its position; both move along with the ellipsoid's point.
+            // The normal of the sphere is its position; both move with the point of the ellipsoid.
             let [s_x, s_y] = [p_x / axes, p_y / axes];
             let normal = (unit / axes).as_vec3();
             let n_x = normal_derivative(normal, (s_x / axes).as_vec3());
@@ -394,7 +409,8 @@ fn non_uniform_scale_is_right_with_renormalised_normals() {
     }
 }
 
-/// Facets, points, needles and nonsense: always a number, and 0 where there is no surface or no bend.
+/// Checks facets, points, needles and nonsense: the result is always a number, and 0 if there is no
+/// surface or no bend.
 #[test]
 fn degenerate_pixels_are_finite() {
     let lengths = [0.0, 1e-45, 1e-38, 1e-30, 1e-18, 1e-15, 1e-4, 1.0, 1e4, 1e15, 1e30, 1e38];
@@ -422,7 +438,8 @@ fn degenerate_pixels_are_finite() {
     }
 }
 
-/// Towards the silhouette the mean curvature holds until the pixel is edge-on, then falls to 0 without a jump.
+/// Checks that towards the silhouette the mean curvature holds until the pixel is edge-on, then
+/// falls to 0 without a jump.
 #[test]
 fn edge_on_the_curvature_fades() {
     let mut last = 1f32;
@@ -441,7 +458,7 @@ fn edge_on_the_curvature_fades() {
     assert!(last < 1e-6, "{last}");
 }
 
-/// The textbook's determinant there is a difference of nearly equal products.
+/// Edge-on, the determinant of the textbook form is a difference of nearly equal products.
 #[test]
 fn the_textbook_fails_edge_on() {
     let mut random = Draws::of_row(5, 0);
@@ -457,7 +474,8 @@ fn the_textbook_fails_edge_on() {
     assert!(textbook > 0.01 && stable < 1e-4, "{textbook} {stable}");
 }
 
-/// A light at the zenith sees the mean curvature, and as it sinks the normal curvature takes over.
+/// Checks that a light at the zenith gets the mean curvature, and that the normal curvature takes
+/// over as it sinks.
 #[test]
 fn at_the_zenith_the_mean_takes_over() {
     let (p_x, p_y, n_x, n_y) = (Vec3::X, Vec3::Y, Vec3::X, Vec3::ZERO);

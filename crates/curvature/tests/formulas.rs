@@ -1,4 +1,5 @@
-//! `wgsl/curvature.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-curvature`.
+//! Device tests of every function of `wgsl/curvature.wgsl` and its naive forms:
+//! `cargo test -p lapidary-curvature`.
 
 use lapidary_curvature::formulas::formulas;
 

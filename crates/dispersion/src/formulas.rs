@@ -1,4 +1,4 @@
-//! `wgsl/dispersion.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/dispersion.wgsl`.
 
 mod outside;
 
@@ -13,14 +13,15 @@ mirror_struct!(crate, DispersionSellmeier { constant, strengths, resonances });
 
 const M: &str = "dispersion";
 
-/// Error of a length that three squares, two sums and the inputs' own rounding leave: 2⁻²⁴ each, with room for the
-/// portable bounds.
+/// Error of a unit vector's length after three squares, two sums and the rounding of the inputs,
+/// 2⁻²⁴ each, with room for the portable bounds.
 const UNIT: f64 = 16.0 / (1 << 24) as f64;
 
 /// Diamond's index at the d line.
 const DIAMOND: f32 = 2.41749;
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -46,7 +47,7 @@ fn functions() -> Vec<Formula> {
     ]
 }
 
-/// Visible wavelengths.
+/// Draws a visible wavelength in nm.
 fn wavelength(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => draws.pick(&[587.6, 380.0, 780.0, mirror::DISPERSION_RED, mirror::DISPERSION_BLUE]),
@@ -54,7 +55,7 @@ fn wavelength(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A material of the module, or any with resonances on both sides of the visible.
+/// Draws a material of the module, or any with resonances on both sides of the visible range.
 fn material(draws: &mut Draws<'_>) -> DispersionSellmeier {
     if draws.below(3) == 0 {
         return draws.pick(&[
@@ -68,7 +69,8 @@ fn material(draws: &mut Draws<'_>) -> DispersionSellmeier {
         ]);
     }
     if draws.below(64) == 0 {
-        // The strongest of all beside the visible: what is under the root is negative.
+        // The greatest strengths at the resonances next to the visible range make the radicand
+        // negative.
         return DispersionSellmeier { constant: 0.0, strengths: Vec3::splat(40.0), resonances: Vec3::splat(50.0) };
     }
     // Without ultraviolet resonances the formula falls below 1.
@@ -106,7 +108,7 @@ fn sellmeier() -> Formula {
     .edge("held at 1", |(material, _)| material.constant == 0.0 && material.resonances.min_element() > 1.0)
     .edge("an end of the visible", |(_, wavelength)| wavelength == 380.0)
     .invariant("at least 1", |_, index: f32| near("lack", (1.0 - f64::from(index)).max(0.0), 0.0, 0.0))
-    // Between resonances every term falls with the wavelength: normal dispersion.
+    // Between resonances every term decreases with the wavelength: normal dispersion.
     .pair(
         "a shorter wavelength has a higher index",
         |(material, wavelength)| (material, 0.9 * wavelength),
@@ -178,13 +180,13 @@ fn incident(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     (direction, normal, index)
 }
 
-/// The squared root n² cos² θ_t, negative under total internal reflection.
+/// Returns n² cos² θ_t, negative under total internal reflection.
 fn radicand(direction: Vec3, normal: Vec3, index: f32) -> f64 {
     let cosine = (-direction.as_dvec3().dot(normal.as_dvec3())).max(0.0);
     (f64::from(index) - 1.0) * (f64::from(index) + 1.0) + cosine * cosine
 }
 
-/// Where the ray goes: refracted, or reflected.
+/// Returns the refracted ray, or the reflected ray under total internal reflection.
 fn onwards(direction: Vec3, normal: Vec3, index: f32) -> DVec3 {
     let squared = radicand(direction, normal, index);
     let [direction, normal] = [direction, normal].map(|v| v.as_dvec3());
@@ -196,11 +198,11 @@ fn onwards(direction: Vec3, normal: Vec3, index: f32) -> DVec3 {
     }
 }
 
-/// A gradient stays perpendicular to its ray. The ray's own angle of refraction is known to about an ulp of its squared cosine, which `scale` and
-/// the root turn into an angle.
+/// Checks that a gradient is perpendicular to its ray. The ray's own angle of refraction is known
+/// to about an ulp of its squared cosine, which `scale` and the root convert to an angle.
 fn perpendicular(gradient: Vec3, ray: (Vec3, Vec3, f32), scale: f64) -> Result<(), String> {
     let squared = radicand(ray.0, ray.1, ray.2);
-    // Either branch may be right there, or the root is held.
+    // Here either branch may be right, or the root is clamped.
     if squared.abs() < 1e-5 || (0.0..0.004).contains(&squared) {
         return Ok(());
     }
@@ -208,7 +210,8 @@ fn perpendicular(gradient: Vec3, ray: (Vec3, Vec3, f32), scale: f64) -> Result<(
     near("part along the ray", along, 0.0, 2e-6 * scale / squared.abs().sqrt())
 }
 
-/// In the plane of incidence, with the normal along +z: the ray at `cosine`, and the derivative of a ray by its angle.
+/// Returns the ray at `cosine` in the plane of incidence, with the normal along +z, and its
+/// derivative with respect to its angle.
 fn in_plane(cosine: f64) -> [DVec3; 2] {
     let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
     [DVec3::new(sine, 0.0, -cosine), DVec3::new(cosine, 0.0, sine)]
@@ -261,7 +264,8 @@ fn enter() -> Formula {
 
 type Refraction = (Vec3, Vec3, Vec3, f32, f32);
 
-/// A ray with any gradient, on the way in, on the way out, or with any slope; some leave a parallel slab.
+/// Draws a ray with any gradient, on the way in, on the way out, or with any slope. Some rays leave
+/// a parallel slab.
 fn refraction(draws: &mut Draws<'_>) -> Refraction {
     if draws.below(8) == 0 {
         let index = draws.between(1.05, 4.0);
@@ -286,13 +290,14 @@ fn refraction(draws: &mut Draws<'_>) -> Refraction {
     (direction, (f64::from(length) * across).as_vec3(), normal, index, slope)
 }
 
-/// The bound that the module states.
+/// Returns the module's bound on the length of the gradient.
 fn most(gradient: Vec3, index: f32, slope: f32) -> f64 {
     let index = f64::from(index);
     17.0 / index * (gradient.as_dvec3().length() + f64::from(slope).abs() / index)
 }
 
-/// The arguments for a ray at `cosine` to +z that turns at `rate`, in f32, and the right gradient.
+/// Returns the f32 arguments for a ray at `cosine` to +z that turns at `rate`, and the exact
+/// gradient.
 fn refraction_case(cosine: f32, rate: f64, index: f32, slope: f32) -> (Refraction, [f64; 3]) {
     let [ray, turning] = in_plane(cosine.into());
     let arguments = (ray.as_vec3(), (rate * turning).as_vec3(), Vec3::Z, index, slope);
@@ -308,7 +313,7 @@ fn refract() -> Formula {
     let out = 1.0 / DIAMOND;
     let out_slope = -out * out;
     let [ray, turning] = in_plane(0.5);
-    // 60 degrees inside, where all is reflected, and what is reflected turns the other way.
+    // 60 degrees inside: all light is reflected, and the reflected ray turns the other way.
     let total: Refraction = (ray.as_vec3(), (0.2 * turning).as_vec3(), Vec3::Z, out, out_slope);
     let reflected = 0.2 * DVec3::new(turning.x, 0.0, -turning.z);
     let critical = (1.0 - f64::from(out) * f64::from(out)).sqrt() as f32;
@@ -323,7 +328,8 @@ fn refract() -> Formula {
     let gradient = oracle::enter(ray, DVec3::Z, DIAMOND.into());
     let slab = (entered.as_vec3(), gradient.as_vec3(), Vec3::Z, out, out_slope);
     let paper = (slab.0, gradient.normalize().as_vec3(), Vec3::Z, out, mirror::DISPERSION_PAPER_EPSILON);
-    // What is left of the gradient along the surface is a thousandth of it: 0.55 n_x n_z along z, and -0.55 n_z^2 along x.
+    // The part of the gradient along the surface is a thousandth of it: 0.55 n_x n_z along z, and
+    // -0.55 n_z^2 along x.
     let tilted = DVec3::new((1.0 - 2f64.powi(-20)).sqrt(), 0.0, 2f64.powi(-10)).as_vec3();
     let upright = (Vec3::NEG_Y, Vec3::new(-0.55, 0.0, 0.0), tilted, 1.0625, 0.0);
     let upright_limit = {
@@ -389,8 +395,9 @@ fn refract_naive() -> Formula {
         let least = (0.09 - (index - 1.0) * (index + 1.0)).max(0.04).sqrt();
         let cosine = draws.between(least, 1.0);
         let (direction, normal) = incidence(draws, cosine);
-        // Across the ray, and at most half a right angle off the plane of incidence's normal: what lies in the plane may cancel against the
-        // index's slope, what lies across it cannot.
+        // Perpendicular to the ray, and at most half a right angle from the normal of the plane of
+        // incidence: the part in the plane may cancel against the slope of the index, the part
+        // across it cannot.
         let ray = direction.as_dvec3().normalize();
         let out = ray.cross(normal.as_dvec3()).try_normalize().unwrap_or_else(|| draws.perpendicular(ray));
         let turn = std::f64::consts::FRAC_PI_4 * (2.0 * draws.unit() - 1.0);
@@ -398,15 +405,17 @@ fn refract_naive() -> Formula {
         let slope = draws.pick(&[1.0, -1.0]) * draws.between(0.5, 1.0);
         (direction, draws.between(6.0, 9.0) * across, normal, index, slope)
     })
-    // With e = 2^-24, g the gradient's length and eta / g at most 0.42. The result's largest component is at least 0.41 eta g, cos 45 degrees over the
-    // root of 3, across the plane. The radicand is off by (8 eta^2 + 5) e where it is at least 0.09 eta^2, its root by 62 e of itself, and the
-    // root's slope is at most 1.18 eta g + 3.3 eta^2: 390 e of the result. Of the slope's numerator come 20 eta g e and 17 eta^2 e: 66 e; of the two
-    // first terms 9 e, of the cosine's slope 8 e, of product and sums 19 e. 492 e.
+    // With e = 2^-24, g the gradient's length and eta / g at most 0.42: the largest component of
+    // the result is at least 0.41 eta g, cos 45 degrees over the root of 3, across the plane. The
+    // radicand is at least 0.09 eta^2 and off by (8 eta^2 + 5) e, so its root is off by 62 e of
+    // itself. The slope of the root is at most 1.18 eta g + 3.3 eta^2, which adds 390 e of the
+    // result. The numerator of the slope adds 20 eta g e and 17 eta^2 e, which is 66 e; the first
+    // two terms add 9 e, the cosine's slope 8 e, product and sums 19 e. The sum is 492 e.
     .benign(3e-5)
     .build()
 }
 
-/// A vector of any length, in any direction.
+/// Draws a vector of any length and direction.
 fn vector(draws: &mut Draws<'_>) -> Vec3 {
     let length = match draws.below(8) {
         0 => draws.pick(&[0.0, 1e37]),
@@ -535,7 +544,8 @@ fn paper_enter_naive() -> Formula {
     .build()
 }
 
-/// A unit spread, perpendicular to the ray or, with `leaning`, as far from that as a chord may be.
+/// Draws a unit spread, perpendicular to the ray or, with `leaning`, as far from perpendicular as a
+/// chord may be.
 fn spread(draws: &mut Draws<'_>, direction: Vec3, leaning: bool) -> Vec3 {
     let direction = direction.as_dvec3().normalize();
     let across = draws.perpendicular(direction);
@@ -545,7 +555,8 @@ fn spread(draws: &mut Draws<'_>, direction: Vec3, leaning: bool) -> Vec3 {
 
 type Shifted = (Vec3, Vec3, Vec3, f32, f32);
 
-/// Refractions at which a finite difference in f32 does well: n cos θ_t and c / (n cos θ_t) are not small.
+/// Draws a refraction for which a finite difference in f32 is accurate: n cos θ_t and
+/// c / (n cos θ_t) are not small.
 fn benign_shifted(draws: &mut Draws<'_>, leaning: bool) -> Shifted {
     let (index, cosine) = if draws.below(2) == 0 {
         (draws.between(1.2, 2.5), draws.between(0.5, 1.0))
@@ -562,7 +573,7 @@ fn paper_refract() -> Formula {
     let epsilon = mirror::DISPERSION_PAPER_EPSILON;
     let out = 1.0 / DIAMOND;
     let [oblique, _] = in_plane(0.6);
-    // n cos θ_t = 0.01: turned by epsilon, the ray is past the critical angle.
+    // At n cos θ_t = 0.01, a ray turned by epsilon is past the critical angle.
     let cosine = (1.0 - f64::from(out).powi(2) + 1e-4).sqrt();
     let [ray, turning] = in_plane(cosine);
     let shifted = (ray + f64::from(epsilon) * turning).normalize();
@@ -577,14 +588,15 @@ fn paper_refract() -> Formula {
                 (direction, Vec3::ZERO, normal, index, epsilon)
             }
             1 => {
-                // Both are totally reflected.
+                // Both rays are totally reflected.
                 let index = draws.between(0.3, 0.6);
                 let cosine = draws.between(0.2, 0.7);
                 let (direction, normal) = incidence(draws, cosine);
                 (direction, spread(draws, direction, true), normal, index, draws.between(2e-4, 1e-3))
             }
             2 => {
-                // Only the second is, where the spread leads to the surface.
+                // Only the second ray is totally reflected, because the spread turns it towards the
+                // surface.
                 let index = draws.between(0.4, 0.6);
                 let root = draws.between(0.005, 0.015);
                 let (direction, normal) = incidence(draws, (1.0 - index * index + root * root).sqrt());
@@ -601,7 +613,7 @@ fn paper_refract() -> Formula {
         let shifted = (r.as_dvec3() + f64::from(epsilon) * spread.as_dvec3()).normalize().as_vec3();
         radicand(r, n, index) > 0.0 && radicand(shifted, n, index) < 0.0
     })
-    // The two rays are off by some four roundings each, 2e-7; over the least difference, 2e-4 · 0.7 · 0.2.
+    // Each ray is off by about four roundings, 2e-7; the smallest difference is 2e-4 · 0.7 · 0.2.
     .benign(2e-2)
     .hard_case(
         "no spread, as after normal incidence",
@@ -645,7 +657,7 @@ fn paper_reflect() -> Formula {
         let spread = if draws.below(8) == 0 { Vec3::ZERO } else { spread(draws, direction, true) };
         (direction, spread, normal, draws.between(2e-4, 1e-3))
     })
-    // Some three roundings of each ray, 1.8e-7, over the least difference, 2e-4 · 0.7.
+    // Each ray is off by about three roundings, 1.8e-7; the smallest difference is 2e-4 · 0.7.
     .benign(5e-3)
     .build()
 }

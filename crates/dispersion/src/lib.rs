@@ -1,7 +1,9 @@
-//! Mirror of `wgsl/dispersion.wgsl`: refractive indices by wavelength, and one traced ray that carries the directions of all
-//! wavelengths. Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12), and the exact derivative of Snell's law.
+//! Mirror of `wgsl/dispersion.wgsl`: refractive indices by wavelength, and one traced ray that
+//! carries the directions of all wavelengths. Imagire, "Proxy Geometry Gem Rendering",
+//! eq. (10)-(12), and the exact derivative of Snell's law.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! The WGSL file states the units, domain and accuracy of each function. This file follows it line
+//! by line.
 //!
 //! ```
 //! use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_DIAMOND, DISPERSION_RED, sellmeier};
@@ -16,14 +18,15 @@ pub mod oracle;
 
 use glam::{Vec3, vec3};
 
-/// A material's index of refraction: n² - 1 = constant + Σ strengths w² / (w² - resonances), w the wavelength in µm.
+/// A material's index of refraction: n² - 1 = constant + Σ strengths w² / (w² - resonances), with
+/// the wavelength w in µm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DispersionSellmeier {
-    /// The constant term, 0 for most.
+    /// Constant term; 0 for most materials.
     pub constant: f32,
-    /// The strengths of up to three resonances.
+    /// Strengths of up to three resonances.
     pub strengths: Vec3,
-    /// Squares of the resonances' wavelengths, in µm².
+    /// Squares of the resonance wavelengths, in µm².
     pub resonances: Vec3,
 }
 
@@ -45,7 +48,7 @@ pub const DISPERSION_QUARTZ: DispersionSellmeier = DispersionSellmeier {
     strengths: vec3(1.07044083, 1.10202242, 0.0),
     resonances: vec3(0.0100585997, 100.0, 0.0),
 };
-/// N-BK7, the usual optical crown, Schott.
+/// N-BK7, the common optical crown glass, Schott.
 pub const DISPERSION_CROWN_GLASS: DispersionSellmeier = DispersionSellmeier {
     constant: 0.0,
     strengths: vec3(1.03961212, 0.231792344, 1.01046945),
@@ -70,37 +73,38 @@ pub const DISPERSION_STRONTIUM_TITANATE: DispersionSellmeier = DispersionSellmei
     resonances: vec3(0.0217828671, 0.0872071692, 1101.31458),
 };
 
-/// Fraunhofer's line B, in nm.
+/// Wavelength of the Fraunhofer line B, in nm.
 pub const DISPERSION_LINE_B: f32 = 686.7;
-/// Fraunhofer's line C, in nm.
+/// Wavelength of the Fraunhofer line C, in nm.
 pub const DISPERSION_LINE_C: f32 = 656.3;
-/// The line d of helium, in nm, at which an index without a wavelength is given.
+/// Wavelength of the d line of helium, in nm. An index given without a wavelength is the index at
+/// this line.
 pub const DISPERSION_LINE_D: f32 = 587.6;
-/// Fraunhofer's line F, in nm.
+/// Wavelength of the Fraunhofer line F, in nm.
 pub const DISPERSION_LINE_F: f32 = 486.1;
-/// Fraunhofer's line G, in nm.
+/// Wavelength of the Fraunhofer line G, in nm.
 pub const DISPERSION_LINE_G: f32 = 430.8;
 
-/// The wavelength in nm that stands for the red channel.
+/// Wavelength in nm that represents the red channel.
 pub const DISPERSION_RED: f32 = 609.0;
-/// The wavelength in nm that stands for the green channel.
+/// Wavelength in nm that represents the green channel.
 pub const DISPERSION_GREEN: f32 = 539.0;
-/// The wavelength in nm that stands for the blue channel.
+/// Wavelength in nm that represents the blue channel.
 pub const DISPERSION_BLUE: f32 = 453.0;
 
-/// The paper's green channel, as a frequency over red's.
+/// The paper's green channel, as a frequency relative to red.
 pub const DISPERSION_PAPER_GREEN: f32 = DISPERSION_RED / DISPERSION_GREEN;
-/// The paper's blue channel, as a frequency over red's.
+/// The paper's blue channel, as a frequency relative to red.
 pub const DISPERSION_PAPER_BLUE: f32 = DISPERSION_RED / DISPERSION_BLUE;
 
 /// The paper's small number.
 pub const DISPERSION_PAPER_EPSILON: f32 = 2e-4;
-/// The square of the shortest chord that is more than noise, 2⁻²⁰.
+/// Square of 2⁻²⁰. Shorter chords are noise.
 pub const DISPERSION_PAPER_CHORD: f32 = 9.094947017729282e-13;
-/// Least n cos(angle of refraction) by which a gradient is divided.
+/// Smallest n cos(angle of refraction) by which a gradient is divided.
 pub const DISPERSION_CRITICAL: f32 = 0.0625;
 
-/// Index of refraction by Sellmeier's formula; wavelength in nm.
+/// Returns the index of refraction by Sellmeier's formula; wavelength in nm.
 pub fn sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
     // From nm² to µm².
     let squared = wavelength * wavelength * 1e-6;
@@ -108,25 +112,27 @@ pub fn sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
     (1.0 + material.constant + material.strengths.dot(terms)).max(1.0).sqrt().max(1.0)
 }
 
-/// Index of refraction by Cauchy's formula; wavelength in nm, coefficients for µm.
+/// Returns the index of refraction by Cauchy's formula; wavelength in nm, coefficients in 1, µm²,
+/// µm⁴.
 pub fn cauchy(coefficients: Vec3, wavelength: f32) -> f32 {
     // From nm² to µm².
     let squared = wavelength * wavelength * 1e-6;
     coefficients.x + (coefficients.y + coefficients.z / squared) / squared
 }
 
-/// Index of refraction as glTF has it (KHR_materials_dispersion), `dispersion` being 20 / V_d.
+/// Returns the index of refraction as defined by glTF (KHR_materials_dispersion); `dispersion` is
+/// 20 / V_d.
 pub fn abbe(index: f32, dispersion: f32, wavelength: f32) -> f32 {
     let spread = (index - 1.0) * dispersion / 20.0;
     (index + spread * (523655.0 / (wavelength * wavelength) - 1.5168)).max(1.0)
 }
 
-/// Abbe's number V_d from the indices at Fraunhofer's lines.
+/// Returns the Abbe number V_d from the indices at Fraunhofer lines.
 pub fn abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
     (index_d - 1.0) / (index_f - index_c).max(1e-12)
 }
 
-/// The gradient after a ray enters the gem.
+/// Returns the gradient after a ray enters the gem.
 pub fn enter(direction: Vec3, normal: Vec3, relative_index: f32) -> Vec3 {
     let cosine = (-normal.dot(direction)).max(0.0);
     let radicand = (relative_index - 1.0) * (relative_index + 1.0) + cosine * cosine;
@@ -135,7 +141,7 @@ pub fn enter(direction: Vec3, normal: Vec3, relative_index: f32) -> Vec3 {
     (tangent + across * normal) / (-relative_index * relative_index)
 }
 
-/// The gradient after a refraction, or after the total internal reflection in its place.
+/// Returns the gradient after a refraction, or after total internal reflection.
 pub fn refract(direction: Vec3, gradient: Vec3, normal: Vec3, relative_index: f32, relative_index_slope: f32) -> Vec3 {
     let cosine = (-normal.dot(direction)).max(0.0);
     let cosine_slope = -normal.dot(gradient);
@@ -146,14 +152,14 @@ pub fn refract(direction: Vec3, gradient: Vec3, normal: Vec3, relative_index: f3
     let tangent = direction + cosine * normal;
     let bending = relative_index_slope / relative_index;
     let leaning = gradient + cosine_slope * normal - bending * tangent;
-    // Where the gradient lies along the normal, what its rounding leaves there is more than what is left along the surface: taken
-    // off once more.
+    // If the gradient lies along the normal, rounding leaves a larger part along the normal than
+    // remains along the surface. The normal part is therefore removed a second time.
     let along = leaning - normal.dot(leaning) * normal;
     let across = (bending * tangent.dot(tangent) + cosine * cosine_slope) / radicand.sqrt().max(DISPERSION_CRITICAL);
     (along - across * normal) / relative_index
 }
 
-/// The derivative of refraction as one writes it from eq. (6), with eta = 1 / n.
+/// Computes the derivative of refraction in its usual form from eq. (6), with eta = 1 / n.
 pub fn refract_naive(
     direction: Vec3,
     gradient: Vec3,
@@ -171,17 +177,18 @@ pub fn refract_naive(
     eta * gradient + eta_slope * direction + (eta_slope * cosine + eta * cosine_slope - root_slope) * normal
 }
 
-/// The gradient after a reflection, which is linear.
+/// Returns the gradient after a reflection, which is linear.
 pub fn reflect(gradient: Vec3, normal: Vec3) -> Vec3 {
     gradient - 2.0 * normal.dot(gradient) * normal
 }
 
-/// The direction at a wavelength whose index is `index_offset` above that of `direction`.
+/// Returns the direction at the wavelength whose index exceeds that of `direction` by
+/// `index_offset`.
 pub fn direction(direction: Vec3, gradient: Vec3, index_offset: f32) -> Vec3 {
     (direction + index_offset * gradient).normalize()
 }
 
-/// Eq. (10): the direction in which a ray spreads as it enters; 0 where it is not bent.
+/// Returns the direction in which a ray spreads on entry, eq. (10); 0 if the ray is not bent.
 pub fn paper_enter(direction: Vec3, refracted: Vec3) -> Vec3 {
     let chord = refracted - direction;
     let squared = chord.dot(chord);
@@ -191,12 +198,12 @@ pub fn paper_enter(direction: Vec3, refracted: Vec3) -> Vec3 {
     chord / squared.sqrt()
 }
 
-/// Eq. (10) as printed.
+/// Computes eq. (10) as printed.
 pub fn paper_enter_naive(direction: Vec3, refracted: Vec3) -> Vec3 {
     (refracted - direction).normalize()
 }
 
-/// Eq. (11) for a refraction, by the difference of two refracted rays.
+/// Computes eq. (11) for a refraction from the difference of two refracted rays.
 pub fn paper_refract(direction: Vec3, spread: Vec3, normal: Vec3, relative_index: f32, epsilon: f32) -> Vec3 {
     let shifted = direction + epsilon * (spread - direction.dot(spread) * direction);
     let cosine = -normal.dot(direction);
@@ -217,13 +224,13 @@ pub fn paper_refract(direction: Vec3, spread: Vec3, normal: Vec3, relative_index
     difference / squared.sqrt()
 }
 
-/// Eq. (11) for a refraction as printed, with the built-in `refract` for eq. (6).
+/// Computes eq. (11) for a refraction as printed, with the built-in `refract` for eq. (6).
 pub fn paper_refract_naive(direction: Vec3, spread: Vec3, normal: Vec3, relative_index: f32, epsilon: f32) -> Vec3 {
     let eta = 1.0 / relative_index;
     ((direction + epsilon * spread).refract(normal, eta) - direction.refract(normal, eta)).normalize()
 }
 
-/// Eq. (11) for a reflection, by the difference of two reflected rays.
+/// Computes eq. (11) for a reflection from the difference of two reflected rays.
 pub fn paper_reflect(direction: Vec3, spread: Vec3, normal: Vec3, epsilon: f32) -> Vec3 {
     let shifted = direction + epsilon * (spread - direction.dot(spread) * direction);
     let difference = shifted.reflect(normal) - direction.reflect(normal);
@@ -234,7 +241,8 @@ pub fn paper_reflect(direction: Vec3, spread: Vec3, normal: Vec3, epsilon: f32) 
     difference / squared.sqrt()
 }
 
-/// Eq. (12): the direction at another frequency, with a strength of our own; 1 is the paper's.
+/// Returns the direction at another frequency, eq. (12). `strength` is our addition: 1 is the
+/// paper's value.
 pub fn paper_direction(direction: Vec3, spread: Vec3, distance: f32, frequency_ratio: f32, strength: f32) -> Vec3 {
     (direction + strength * distance * (frequency_ratio - 1.0) * spread).normalize()
 }

@@ -1,5 +1,5 @@
-//! What no single function shows: whole paths through a stone against paths traced anew at every index, and the figures of
-//! docs/dispersion.md.
+//! Tests beyond single functions: whole paths through a stone against paths traced anew at every
+//! index, and the figures of docs/dispersion.md.
 
 use super::*;
 use glam::DVec3;
@@ -14,37 +14,37 @@ const MATERIALS: [(&str, DispersionSellmeier, oracle::DispersionSellmeier); 5] =
     ("cubic zirconia", DISPERSION_CUBIC_ZIRCONIA, oracle::DISPERSION_CUBIC_ZIRCONIA),
 ];
 
-/// Those that only the indices are tested of.
+/// Materials of which only the indices are tested.
 const FURTHER: [(&str, DispersionSellmeier, oracle::DispersionSellmeier); 2] = [
     ("rutile", DISPERSION_RUTILE, oracle::DISPERSION_RUTILE),
     ("strontium titanate", DISPERSION_STRONTIUM_TITANATE, oracle::DISPERSION_STRONTIUM_TITANATE),
 ];
 
-/// Snell's law as vectors; none under total internal reflection.
+/// Refracts by Snell's law in vectors; `None` under total internal reflection.
 fn snell(ray: DVec3, normal: DVec3, relative_index: f64) -> Option<DVec3> {
     let cosine = -normal.dot(ray);
     let radicand = relative_index * relative_index - 1.0 + cosine * cosine;
     (radicand >= 0.0).then(|| (ray + (cosine - radicand.sqrt()) * normal) / relative_index)
 }
 
-/// A unit normal at `cosine` to the ray that it faces.
+/// Draws a unit normal that faces the ray, at `cosine` to it.
 fn facing(random: &mut Draws<'_>, ray: DVec3, cosine: f64) -> DVec3 {
     let tangent = random.direction().cross(ray).normalize();
     -cosine * ray + (1.0 - cosine * cosine).sqrt() * tangent
 }
 
-/// A way through a stone: in, some reflections, out. Each normal faces the ray.
+/// A path through a stone: entry, some reflections, exit. Each normal faces the ray.
 struct Path {
     ray: DVec3,
     entry: DVec3,
     mirrors: Vec<DVec3>,
     exit: DVec3,
-    /// Length inside.
+    /// Length of the path inside.
     distance: f64,
 }
 
 impl Path {
-    /// With `count` reflections; the way out at `n cos θ_t` of at least `root`.
+    /// Draws a path with `count` reflections and an `n cos θ_t` of at least `root` at the exit.
     fn random(random: &mut Draws<'_>, index: f64, count: usize, root: f64) -> Path {
         let ray = random.direction();
         let cosine = random.between_f64(0.1, 1.0);
@@ -63,18 +63,18 @@ impl Path {
         Path { ray, entry, mirrors, exit, distance: random.between_f64(0.5, 2.0) }
     }
 
-    /// The ray inside, before the way out, at an index.
+    /// Returns the ray inside, before the exit, at an index.
     fn inside(&self, index: f64) -> DVec3 {
         let entered = snell(self.ray, self.entry, index).expect("a denser medium");
         self.mirrors.iter().fold(entered, |ray, normal| ray - 2.0 * normal.dot(ray) * *normal)
     }
 
-    /// The ray outside, at an index; none where it does not leave.
+    /// Returns the ray outside, at an index; `None` if it does not leave.
     fn out(&self, index: f64) -> Option<DVec3> {
         snell(self.inside(index), self.exit, 1.0 / index)
     }
 
-    /// Direction inside and its gradient, from the mirror.
+    /// Returns the direction inside and its gradient, from the mirror.
     fn tracked_inside(&self, index: f32) -> (Vec3, Vec3) {
         let [ray, entry] = [self.ray, self.entry].map(|v| v.as_vec3());
         let entered = snell(ray.as_dvec3(), entry.as_dvec3(), index.into()).expect("a denser medium").as_vec3();
@@ -85,7 +85,7 @@ impl Path {
             .fold(start, |(ray, gradient), normal| (ray - 2.0 * normal.dot(ray) * normal, reflect(gradient, normal)))
     }
 
-    /// Direction outside and its gradient, from the mirror.
+    /// Returns the direction outside and its gradient, from the mirror.
     fn tracked(&self, index: f32) -> (Vec3, Vec3) {
         let (ray, gradient) = self.tracked_inside(index);
         let exit = self.exit.as_vec3();
@@ -93,7 +93,7 @@ impl Path {
         (out, refract(ray, gradient, exit, 1.0 / index, -1.0 / (index * index)))
     }
 
-    /// The gradient outside, from the oracle.
+    /// Returns the gradient outside, from the oracle.
     fn exact(&self, index: f64) -> DVec3 {
         let mut ray = snell(self.ray, self.entry, index).expect("a denser medium");
         let mut gradient = oracle::enter(self.ray, self.entry, index);
@@ -104,7 +104,7 @@ impl Path {
         oracle::refract(ray, gradient, self.exit, 1.0 / index, -1.0 / (index * index))
     }
 
-    /// Direction outside and its spread, by the paper, from the mirror.
+    /// Returns the direction outside and its spread by the paper's equations, from the mirror.
     fn paper(&self, index: f32) -> (Vec3, Vec3) {
         let [mut ray, entry, exit] = [self.ray, self.entry, self.exit].map(|v| v.as_vec3());
         let entered = snell(ray.as_dvec3(), entry.as_dvec3(), index.into()).expect("a denser medium").as_vec3();
@@ -153,7 +153,8 @@ fn materials_have_their_known_indices() {
     }
 }
 
-/// Rutile's and strontium titanate's indices as handbooks of gemmology have them, at sodium's line.
+/// Checks the indices of rutile and strontium titanate at the sodium line against handbooks of
+/// gemmology.
 #[test]
 fn the_stones_that_disperse_most_have_their_known_indices() {
     for ((name, mirror, exact), (index, spread)) in FURTHER.into_iter().zip([(2.613, 0.33), (2.409, 0.19)]) {
@@ -182,7 +183,7 @@ fn the_shader_has_the_mirrors_constants() {
     for (name, (_, mirror, exact)) in written.into_iter().zip(MATERIALS.into_iter().chain(FURTHER)) {
         let [strengths, resonances] = [mirror.strengths, mirror.resonances].map(|v| v.to_array());
         let wanted: Vec<f32> = [mirror.constant].into_iter().chain(strengths).chain(resonances).collect();
-        // vec3f ends in a number too: 3 is no coefficient.
+        // The 3 of vec3f is not a coefficient.
         let found: Vec<f32> = value(&format!("DISPERSION_{name}")).into_iter().filter(|value| *value != 3.0).collect();
         assert_eq!(found, wanted, "{name}");
         assert_eq!(mirror.strengths, exact.strengths.as_vec3(), "{name}");
@@ -212,7 +213,8 @@ fn the_shader_has_the_mirrors_constants() {
     }
 }
 
-/// CIE 1931 colour matching functions x, y, z and the illuminant D65 (CIE 15), from 380 nm in steps of 10 nm.
+/// CIE 1931 colour matching functions x, y, z and the illuminant D65 (CIE 15), from 380 nm in steps
+/// of 10 nm.
 const OBSERVER: [[f64; 4]; 41] = [
     [0.001368, 0.000039, 0.00645, 49.9755],
     [0.004243, 0.00012, 0.02005, 54.6482],
@@ -265,7 +267,7 @@ fn channels_stand_at_the_centroids_of_their_matching_functions() {
         let response: Vec<f64> =
             OBSERVER.iter().map(|[x, y, z, light]| (row[0] * x + row[1] * y + row[2] * z) * light).collect();
         let peak = (0..response.len()).max_by(|a, b| response[*a].total_cmp(&response[*b])).expect("not empty");
-        // The lobe of the peak: red has another, small one in violet.
+        // The lobe of the peak only: red has a second, small lobe in violet.
         let first = (0..peak).rev().find(|index| response[*index] <= 0.0).map_or(0, |index| index + 1);
         let end = (peak..response.len()).find(|index| response[*index] <= 0.0).unwrap_or(response.len());
         let moments = (first..end).fold((0.0, 0.0), |(sum, moment), index| {
@@ -282,7 +284,8 @@ fn oracle_and_mirror_follow_central_differences_over_whole_paths() {
     for step in 0..20_000 {
         let index = f64::from(random.between_f64(1.3, 2.8) as f32);
         let path = Path::random(&mut random, index, step % 4, 0.1);
-        // Richardson: central differences at two widths, without their error of second order.
+        // Richardson extrapolation of central differences at two widths removes their second-order
+        // error.
         let central = |width: f64| {
             let [above, below] = [1.0, -1.0].map(|sign| path.out(index + sign * width).expect("it leaves"));
             (above - below) / (2.0 * width)
@@ -293,7 +296,7 @@ fn oracle_and_mirror_follow_central_differences_over_whole_paths() {
         worst_single = larger(worst_single, (path.tracked(index as f32).1.as_dvec3() - reference).length() / scale);
     }
     println!("oracle {worst:e}, mirror {worst_single:e}");
-    // What Richardson leaves is a fifth derivative, largest near the critical angle.
+    // The remaining error is a fifth derivative, largest near the critical angle.
     assert!(worst < 5e-7);
     // n cos θ_t of 0.1 magnifies its own rounding, 2⁻²⁴ / 0.1², by twice that.
     assert!(worst_single < 1e-4);
@@ -307,7 +310,7 @@ fn entering_is_refracting_without_a_gradient() {
         let cosine = random.unit();
         let (normal, ray) = (facing(&mut random, ray, cosine).as_vec3(), ray.as_vec3());
         let [one, other] = [enter(ray, normal, index), refract(ray, Vec3::ZERO, normal, index, 1.0)];
-        // Divided by n² in one step or in two.
+        // One divides by n² in one step, the other in two.
         assert!((one - other).length() <= 1e-5 * one.length().max(1.0), "{one} {other}");
     }
 }
@@ -327,7 +330,7 @@ fn reflection_is_linear() {
     }
 }
 
-/// A parallel slab in air sends every wavelength on as it came.
+/// Checks that a parallel slab in air leaves the direction of every wavelength unchanged.
 #[test]
 fn a_slab_does_not_disperse_and_the_paper_says_that_it_does() {
     let mut random = Draws::of_row(4, 0);
@@ -345,13 +348,14 @@ fn a_slab_does_not_disperse_and_the_paper_says_that_it_does() {
         let blue = sellmeier(material, DISPERSION_BLUE);
         let colour = direction(out, gradient, blue - index).as_dvec3();
         assert!(angle(colour, out.as_dvec3()) < 1e-6);
-        // A unit spread, whatever the stone: (12) turns the ray by atan(0.34 d).
+        // The spread has unit length for every stone, so (12) turns the ray by atan(0.34 d).
         let paper = slab.paper_at(index, 1.0, 1.0).as_dvec3();
         assert!((angle(paper, ray) - f64::from(DISPERSION_PAPER_BLUE - 1.0).atan()).abs() < 0.05);
     }
     println!("slab: {worst:e}");
     assert!(worst < 4e-6);
-    // Diamond at 0.6 rad: (11) unnormalised, over the change of index that its epsilon stands for at the entry.
+    // Diamond at 0.6 rad: (11) without normalization, over the change of index that its epsilon
+    // represents at the entry.
     let index = oracle::sellmeier(oracle::DISPERSION_DIAMOND, 587.6);
     let ray = DVec3::new(0.6f64.sin(), 0.0, -0.6f64.cos());
     let inside = snell(ray, DVec3::Z, index).expect("a denser medium");
@@ -364,7 +368,8 @@ fn a_slab_does_not_disperse_and_the_paper_says_that_it_does() {
     assert!((reported - 0.28).abs() < 0.005);
 }
 
-/// The order of the colours: the shorter the wavelength, the more a ray bends, in the exact indices and as tracked.
+/// Checks the order of the colours: the shorter the wavelength, the more a ray bends, with the
+/// exact indices and as tracked.
 #[test]
 fn blue_bends_more() {
     let mut random = Draws::of_row(5, 0);
@@ -388,17 +393,18 @@ fn blue_bends_more() {
             }
         }
     }
-    // Eq. (10) points the way that a rising index turns the ray: with wavelengths the sign would be wrong.
+    // Eq. (10) points in the direction in which a rising index turns the ray. With wavelengths the
+    // sign would be wrong.
     let ray = DVec3::new(0.8, 0.0, -0.6);
     let inside = snell(ray, DVec3::Z, 2.4).expect("a denser medium");
     let spread = paper_enter(ray.as_vec3(), inside.as_vec3()).as_dvec3();
     let gradient = oracle::enter(ray, DVec3::Z, 2.4);
     assert!(spread.dot(gradient) > 0.0);
-    // The chord is off by half the deviation.
+    // The chord is off by half the angle of deviation.
     assert!((angle(spread, gradient) - 0.5 * angle(ray, inside)).abs() < 1e-6);
 }
 
-/// The same stone in other units: its light does not know.
+/// Checks that the units of the model do not affect the exact tracker.
 #[test]
 fn the_size_of_a_model_does_not_matter_and_to_the_paper_it_does() {
     let mut random = Draws::of_row(6, 0);
@@ -406,7 +412,7 @@ fn the_size_of_a_model_does_not_matter_and_to_the_paper_it_does() {
     let offset = sellmeier(DISPERSION_DIAMOND, DISPERSION_BLUE) - index;
     for _ in 0..1000 {
         let path = Path::random(&mut random, index.into(), 1, 0.3);
-        // No length enters the exact tracker: there is nothing to scale.
+        // The exact tracker contains no length, so there is nothing to scale.
         let (out, gradient) = path.tracked(index);
         let truth = path.out(f64::from(index + offset)).expect("it leaves");
         assert!(angle(direction(out, gradient, offset).as_dvec3(), truth) < 0.05);
@@ -416,8 +422,9 @@ fn the_size_of_a_model_does_not_matter_and_to_the_paper_it_does() {
     }
 }
 
-/// Near the critical angle one wavelength leaves where its neighbour is totally reflected. Tracked inside and refracted at
-/// each wavelength's own index, nearly every ray is told right.
+/// Checks reflection near the critical angle, where one wavelength may leave while its neighbour is
+/// totally reflected. Tracked inside and refracted at each wavelength's own index, nearly every ray
+/// is decided correctly.
 #[test]
 fn each_wavelength_has_its_own_total_internal_reflection() {
     let mut random = Draws::of_row(7, 0);
@@ -450,8 +457,8 @@ fn each_wavelength_has_its_own_total_internal_reflection() {
     assert!(50 * wrong < wrong_alone);
 }
 
-/// The choice of epsilon: median and 99th percentile of eq. (11)'s error in f32 over refractions out of a stone, against the
-/// derivative's direction.
+/// Checks the choice of epsilon: median and 99th percentile of the error of eq. (11) in f32 over
+/// refractions out of a stone, against the direction of the derivative.
 #[test]
 fn the_papers_epsilon_is_near_its_best() {
     let errors = |epsilon: f32| -> [f64; 2] {
@@ -464,7 +471,7 @@ fn the_papers_epsilon_is_near_its_best() {
                 let normal = facing(&mut random, ray, cosine).as_vec3();
                 let spread = random.direction().cross(ray).normalize().as_vec3();
                 let ray = ray.as_vec3();
-                // With no slope, the derivative along the spread.
+                // Without a slope, this is the derivative along the spread.
                 let exact = oracle::refract(ray.into(), spread.into(), normal.into(), index.into(), 0.0);
                 angle(paper_refract(ray, spread, normal, index, epsilon).as_dvec3(), exact)
             })
@@ -482,8 +489,8 @@ fn the_papers_epsilon_is_near_its_best() {
     }
 }
 
-/// The table of docs/dispersion.md: errors of the direction at blue, over random ways through a stone with one reflection, against the way traced
-/// at blue's own index.
+/// Checks the table of docs/dispersion.md: errors of the direction at blue, over random paths
+/// through a stone with one reflection, against the path traced at blue's own index.
 #[test]
 fn table_is_current() {
     let mut table = String::new();

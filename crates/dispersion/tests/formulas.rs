@@ -1,4 +1,5 @@
-//! `wgsl/dispersion.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-dispersion`.
+//! Device tests of every function of `wgsl/dispersion.wgsl` and its naive forms:
+//! `cargo test -p lapidary-dispersion`.
 
 use lapidary_dispersion::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/environment.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/environment.wgsl`.
 
 mod outside;
 
@@ -14,10 +14,10 @@ mirror_struct!(crate, EnvironmentHarmonics { zeroth, first, second, fourth });
 
 const M: &str = "environment";
 
-/// Error of the length of a direction made of sines and cosines that are each 5 ulp off.
+/// Error of the length of a direction computed from sines and cosines that are each 5 ulp off.
 const UNIT: f64 = 32.0 / (1 << 24) as f64;
 
-/// A coordinate of any normal magnitude, or zero.
+/// Draws a coordinate of any normal magnitude, or zero.
 fn coordinate(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => 0.0,
@@ -26,7 +26,8 @@ fn coordinate(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Any direction: all over the sphere, near the poles, about the seam, along the axes, of every length.
+/// Draws any direction: all over the sphere, near the poles, near the seam, along the axes, of
+/// every length.
 fn direction(draws: &mut Draws<'_>) -> Vec3 {
     let near_axis = |draws: &mut Draws<'_>| draws.signed(-30, -1);
     match draws.below(8) {
@@ -39,11 +40,12 @@ fn direction(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// A light's axis, its up and a direction aimed at its edges, or anywhere.
+/// Draws a light, with its axis and up vector, and a direction aimed at its edges or anywhere.
 fn softbox_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2, f32) {
     let axis = draws.unit_vector().as_dvec3().normalize();
     let up = draws.perpendicular(axis);
-    // Twice, since one short cross product leaves them an ulp or more from perpendicular.
+    // Orthogonalized twice, because one short cross product leaves them an ulp or more from
+    // perpendicular.
     let up = (up - up.dot(axis) * axis).normalize();
     let softness = match draws.below(4) {
         0 => draws.pick(&[1.0, 1.0 / 256.0]),
@@ -60,7 +62,7 @@ fn softbox_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2, f32) {
     (direction.as_vec3(), axis.as_vec3(), up.as_vec3(), half_size, softness)
 }
 
-/// A unit direction into the rectangle of a light, or a fifth beyond its edges.
+/// Draws a unit direction into the rectangle of a light, or up to a fifth beyond its edges.
 fn aimed(draws: &mut Draws<'_>, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> Vec3 {
     let (axis, up) = (axis.as_dvec3(), up.as_dvec3());
     let reach = 1.2 * (half_size.as_dvec2() + f64::from(softness));
@@ -68,10 +70,10 @@ fn aimed(draws: &mut Draws<'_>, axis: Vec3, up: Vec3, half_size: Vec2, softness:
     (axis + at.x * up.cross(axis) + at.y * up).normalize().as_vec3()
 }
 
-/// Axis, up, half size, softness.
+/// A light's axis, up vector, half size and softness.
 type Light = ([f32; 3], [f32; 3], [f32; 2], f32);
 
-/// The studio's lights, to aim at, as in the WGSL.
+/// Lights of the studio, as in the WGSL, at which directions are aimed.
 const LIGHTS: [Light; 9] = [
     ([-2.0, 6.0, 3.0], [6.0, 3.0, -2.0], [0.28, 0.28], 0.05),
     ([0.0, 24.0, -7.0], [0.0, 7.0, 24.0], [0.70, 0.06], 0.03),
@@ -96,7 +98,7 @@ fn studio_direction(draws: &mut Draws<'_>) -> (Vec3,) {
     (direction,)
 }
 
-/// A map's size and a point of it: on texel edges and middles, at the borders, anywhere.
+/// Draws a point of a map and the map's size: on texel edges, at the borders, anywhere.
 fn texel_inputs(draws: &mut Draws<'_>) -> (Vec2, UVec2) {
     let side = |draws: &mut Draws<'_>| match draws.below(3) {
         0 => 1 + draws.below(8),
@@ -123,7 +125,8 @@ fn within(what: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(format!("{what} is {value}, outside [{low}, {high}]")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -230,7 +233,8 @@ fn coordinate_formulas() -> Vec<Formula> {
             "environment_uv_from_direction_naive",
             mirror::uv_from_direction_naive,
             oracle::uv_from_direction,
-            // WGSL grants acos 6.8e-5, and atan2 on lavapipe is a polynomial of like quality.
+            // WGSL allows acos an error of 6.8e-5, and atan2 on lavapipe is a polynomial of similar
+            // accuracy.
             |draws| {
                 let d = draws.direction();
                 let d = if d.y.abs() > 0.99 || (d.x < 0.0 && d.z.abs() < 1e-3) {
@@ -286,7 +290,8 @@ fn texel_formulas() -> Vec<Formula> {
             .build(),
         formula(M, "environment_texels_naive", mirror::texels_naive, oracle::texels, |draws| {
             let size = UVec2::new(4 + draws.below(60), 4 + draws.below(60));
-            // Well inside a cell of texel middles, so that rounding does not decide on the column.
+            // Well inside a cell between texel centres, so that rounding does not decide the
+            // column.
             let at = |draws: &mut Draws<'_>, side: u32| {
                 (0.6 + draws.below(side - 1) as f32 + draws.between(0.0, 0.8)) / side as f32
             };
@@ -313,7 +318,8 @@ fn light_formulas() -> Vec<Formula> {
                 "as much to the left as to the right",
                 |(d, axis, up, half_size, softness)| (mirrored(d, up.cross(axis)), axis, up, half_size, softness),
                 |(.., softness), coverage: f32, other: f32| {
-                    // The slope of the smoothstep is 3/4 over the softness; the direction moves by an ulp or two, at a tangent of 8.
+                    // The slope of the smoothstep is 3/4 over the softness; the direction moves by
+                    // an ulp or two, at a tangent of 8.
                     near("difference", f64::from(coverage - other), 0.0, 64.0 * UNIT / f64::from(softness))
                 },
             )
@@ -329,7 +335,8 @@ fn light_formulas() -> Vec<Formula> {
             let up = draws.perpendicular(axis);
             let softness = draws.between(0.25, 1.0);
             let half_size = Vec2::splat(softness) + Vec2::new(draws.between(0.0, 1.0), draws.between(0.0, 1.0));
-            // In the middle or in the inner half of the soft edge, where the value is not nearly 0, or well beyond the edge.
+            // In the middle, in the inner half of the soft edge, which keeps the value away from 0,
+            // or well beyond the edge.
             let reach = if draws.below(8) == 0 {
                 2.0 * half_size.as_dvec2() + DVec2::ONE
             } else {
@@ -372,7 +379,7 @@ fn light_formulas() -> Vec<Formula> {
     ]
 }
 
-/// `d` mirrored at the plane through the origin with the unit normal `normal`.
+/// Reflects `d` in the plane through the origin with the unit normal `normal`.
 fn mirrored(d: Vec3, normal: Vec3) -> Vec3 {
     let (d, normal) = (d.as_dvec3(), normal.as_dvec3().normalize());
     (d - 2.0 * d.dot(normal) * normal).as_vec3()

@@ -1,5 +1,5 @@
-//! Mirror of `wgsl/environment.wgsl`: coordinates and texels of a latitude-longitude map, and a procedural studio. The
-//! shader's comments hold the reasons, domains and accuracies.
+//! Mirror of `wgsl/environment.wgsl`: coordinates and texels of a latitude-longitude map, and a
+//! procedural studio. The WGSL file states the reasons, domains and accuracies.
 //!
 //! ```
 //! use glam::Vec3;
@@ -16,7 +16,7 @@ pub mod oracle;
 
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _};
 
-/// Angle of the point (x, y) in turns, counterclockwise from +x, in [-1/2, 1/2].
+/// Returns the angle of the point (x, y) in turns, counterclockwise from +x, in [-1/2, 1/2].
 #[rustfmt::skip] // two lines of coefficients, as in the shader
 pub fn turns(y: f32, x: f32) -> f32 {
     let longer = x.abs().max(y.abs());
@@ -34,14 +34,14 @@ pub fn turns(y: f32, x: f32) -> f32 {
     if y < 0.0 { -turns } else { turns }
 }
 
-/// Length of the vector (a, b), safe from overflow and underflow of the squares.
+/// Returns the length of the vector (a, b). The squares can neither overflow nor underflow.
 pub fn hypot(a: f32, b: f32) -> f32 {
     let longer = a.abs().max(b.abs());
     let ratio = a.abs().min(b.abs()) / longer.max(f32::MIN_POSITIVE);
     longer * (1.0 + ratio * ratio).sqrt()
 }
 
-/// Sine of an angle in turns, of any size.
+/// Returns the sine of an angle in turns, of any size.
 pub fn sine(turns: f32) -> f32 {
     let wrapped = turns - turns.round_ties_even();
     let folded = wrapped.clamp(-0.5 - wrapped, 0.5 - wrapped);
@@ -49,20 +49,20 @@ pub fn sine(turns: f32) -> f32 {
     folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
 }
 
-/// Latitude-longitude coordinates of a direction of any length.
+/// Returns the latitude-longitude coordinates of a direction of any length.
 pub fn uv_from_direction(direction: Vec3) -> Vec2 {
     let u = 0.5 + turns(direction.z, direction.x);
     let v = 2.0 * turns(hypot(direction.x, direction.z), direction.y);
     Vec2::new(u, v)
 }
 
-/// The same by normalize and acos.
+/// Computes the same coordinates with normalize and acos.
 pub fn uv_from_direction_naive(direction: Vec3) -> Vec2 {
     let unit = direction / direction.length();
     Vec2::new(0.5 + unit.z.atan2(unit.x) * 0.15915494, unit.y.acos() * 0.31830987)
 }
 
-/// Unit direction of latitude-longitude coordinates.
+/// Returns the unit direction of latitude-longitude coordinates.
 pub fn direction_from_uv(uv: Vec2) -> Vec3 {
     let polar = 0.5 * uv.y;
     let sin_polar = sine(polar);
@@ -72,23 +72,24 @@ pub fn direction_from_uv(uv: Vec2) -> Vec3 {
     Vec3::new(sin_polar * cos_azimuth, cos_polar, sin_polar * sin_azimuth)
 }
 
-/// The four texels around a point of the map and how to blend them.
+/// The four texels around a point of the map, and their blend weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentTexels {
     /// Column and row of the texel at the lower coordinates.
     pub lower: UVec2,
     /// Column and row of the texel at the higher coordinates.
     pub upper: UVec2,
-    /// Share of `upper` in each direction.
+    /// Blend weight of `upper` along each axis.
     pub weight: Vec2,
 }
 
-/// Texels and weights of a bilinear lookup: columns wrap, rows are clamped.
+/// Returns the texels and weights of a bilinear lookup: columns wrap, rows are clamped.
 pub fn texels(uv: Vec2, size: UVec2) -> EnvironmentTexels {
-    // A texel's value sits in its middle, half a texel from its edge.
+    // The value of a texel is at its centre, half a texel from its edge.
     let column = (uv.x - uv.x.floor()) * size.x as f32 - 0.5;
     let row = (uv.y.clamp(0.0, 1.0) * size.y as f32 - 0.5).clamp(0.0, size.y as f32 - 1.0);
-    // Left of the first middle the column is -1: one width more makes it the last.
+    // To the left of the first centre the column is -1; adding the width turns it into the last
+    // column.
     let left = (column.floor() + size.x as f32) as u32 % size.x;
     let top = row.floor() as u32;
     let lower = UVec2::new(left, top);
@@ -96,7 +97,7 @@ pub fn texels(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     EnvironmentTexels { lower, upper, weight: Vec2::new(column - column.floor(), row - row.floor()) }
 }
 
-/// The same with both coordinates clamped.
+/// Computes the same with both coordinates clamped.
 pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     let corner = uv * size.as_vec2() - 0.5;
     let lower = corner.floor().max(Vec2::ZERO).as_uvec2();
@@ -104,20 +105,22 @@ pub fn texels_naive(uv: Vec2, size: UVec2) -> EnvironmentTexels {
     EnvironmentTexels { lower, upper, weight: corner - corner.floor() }
 }
 
-/// The real spherical harmonics of a direction, orthonormal over the sphere, in each degree by order from -l to l.
+/// The real spherical harmonics of a direction, orthonormal over the sphere. Within each degree,
+/// the order runs from -l to l.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentHarmonics {
-    /// Of degree 0: the same everywhere.
+    /// Degree 0: constant.
     pub zeroth: f32,
-    /// Of degree 1: y, z, x.
+    /// Degree 1, in the order y, z, x.
     pub first: Vec3,
-    /// Of degree 2.
+    /// Degree 2.
     pub second: [f32; 5],
-    /// Of degree 4.
+    /// Degree 4.
     pub fourth: [f32; 9],
 }
 
-/// Spherical harmonics as polynomials of the direction's components, z being the axis of their orders.
+/// Computes spherical harmonics as polynomials in the direction's components, with z as the polar
+/// axis.
 pub fn harmonics(direction: Vec3) -> EnvironmentHarmonics {
     let x = direction.x;
     let y = direction.y;
@@ -147,15 +150,17 @@ pub fn harmonics(direction: Vec3) -> EnvironmentHarmonics {
     EnvironmentHarmonics { zeroth: 0.28209478, first, second, fourth }
 }
 
-/// How much of a rectangular, soft-edged light a direction meets, in [0, 1].
+/// Returns the coverage of a direction by a rectangular light with soft edges, in [0, 1].
 pub fn softbox(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
     let depth = direction.dot(axis);
-    // The projection knows no sign: -axis would land in the middle of the light. The least normal number still has a reciprocal.
+    // The projection ignores the sign of the depth: without this test, -axis would hit the middle
+    // of the light. The smallest normal number still has a finite reciprocal.
     if depth < f32::MIN_POSITIVE {
         return 0.0;
     }
     let right = up.cross(axis);
-    // Reciprocals: a division costs several multiplications, and that by a constant softness is none at all.
+    // Reciprocals are used because a division costs as much as several multiplications; the
+    // division by a constant softness costs nothing at all.
     let position = Vec2::new(direction.dot(right), direction.dot(up)) * (1.0 / depth);
     let inside = (half_size + softness - position.abs()) * (0.5 / softness);
     let t = inside.clamp(Vec2::ZERO, Vec2::ONE);
@@ -163,7 +168,7 @@ pub fn softbox(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness:
     coverage.x * coverage.y
 }
 
-/// The same without a look at the sign of the depth.
+/// Computes the same without the test of the depth's sign.
 pub fn softbox_naive(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, softness: f32) -> f32 {
     let depth = direction.dot(axis);
     let right = up.cross(axis);
@@ -174,37 +179,43 @@ pub fn softbox_naive(direction: Vec3, axis: Vec3, up: Vec3, half_size: Vec2, sof
     coverage.x * coverage.y
 }
 
-/// Radiance of a dome that runs from `ground` straight below to `zenith` straight above.
+/// Returns the radiance of a dome that changes from `ground` at the nadir to `zenith` at the
+/// zenith.
 pub fn dome(direction: Vec3, ground: Vec3, zenith: Vec3) -> Vec3 {
     let height = 0.5 + 0.5 * direction.y;
     let weight = height * height;
     ground * (1.0 - weight) + zenith * weight
 }
 
-/// A jeweller's studio: a dim tent over dark paper, with few, small, bright lights.
+/// Returns the radiance of a jeweller's studio: a dim tent over dark paper, with a few small,
+/// bright lights.
 #[rustfmt::skip] // a light is two lines, as in the shader
 pub fn studio(direction: Vec3) -> Vec3 {
-    // Surround: dark paper below, a dim and slightly blue tent above.
+    // Surround: dark paper below, a dim, slightly blue tent above.
     let surround = dome(direction, Vec3::new(0.025, 0.024, 0.026), Vec3::new(0.26, 0.30, 0.38));
-    // Key: a square softbox, high at the front left, slightly warm.
+    // Key light: a square softbox at the front left, high and slightly warm.
     let key = Vec3::new(9.0, 8.4, 7.2) * softbox(direction,
         Vec3::new(-2.0, 6.0, 3.0) / 7.0, Vec3::new(6.0, 3.0, -2.0) / 7.0, Vec2::new(0.28, 0.28), 0.05);
-    // Overhead: a long neutral strip just behind the zenith; the table and the upper halves mirror it.
+    // Overhead: a long neutral strip just behind the zenith, which the table and the upper halves
+    // reflect.
     let overhead = Vec3::new(13.0, 13.0, 13.0) * softbox(direction,
         Vec3::new(0.0, 24.0, -7.0) / 25.0, Vec3::new(0.0, 7.0, 24.0) / 25.0, Vec2::new(0.70, 0.06), 0.03);
-    // Two upright strips, cool from the right and warm from the back left: the bezels' sides differ in colour.
+    // Two upright strips, cool from the right and warm from the back left, give the two sides of
+    // the bezels different colours.
     let cool_strip = Vec3::new(7.0, 8.6, 10.0) * softbox(direction,
         Vec3::new(6.0, 3.0, 2.0) / 7.0, Vec3::new(-2.0, 6.0, -3.0) / 7.0, Vec2::new(0.08, 0.45), 0.04);
     let warm_strip = Vec3::new(9.0, 7.2, 5.0) * softbox(direction,
         Vec3::new(-2.0, 1.0, -2.0) / 3.0, Vec3::new(2.0, 2.0, -1.0) / 3.0, Vec2::new(0.09, 0.40), 0.04);
-    // Three sparks: too small to light the stone, bright enough for dispersion to draw them out into colours.
+    // Three sparks, too small to light the stone but bright enough for dispersion to spread them
+    // into colours.
     let back_spark = Vec3::new(20.0, 19.0, 17.0) * softbox(direction,
         Vec3::new(4.0, 7.0, -4.0) / 9.0, Vec3::new(1.0, 4.0, 8.0) / 9.0, Vec2::new(0.08, 0.08), 0.03);
     let front_spark = Vec3::new(15.0, 16.0, 18.0) * softbox(direction,
         Vec3::new(1.0, 2.0, 2.0) / 3.0, Vec3::new(-2.0, 2.0, -1.0) / 3.0, Vec2::new(0.07, 0.07), 0.03);
     let low_spark = Vec3::new(16.0, 16.0, 16.0) * softbox(direction,
         Vec3::new(2.0, 3.0, -6.0) / 7.0, Vec3::new(6.0, 2.0, 3.0) / 7.0, Vec2::new(0.06, 0.06), 0.03);
-    // Two cards from below, as a jeweller holds white paper: the pavilion is not dead when the stone is tilted.
+    // Two cards from below, like the white paper that a jeweller holds there: they keep the
+    // pavilion from going dark when the stone is tilted.
     let back_card = Vec3::new(2.6, 2.75, 2.9) * softbox(direction,
         Vec3::new(0.0, -3.0, -4.0) / 5.0, Vec3::new(0.0, 4.0, -3.0) / 5.0, Vec2::new(0.60, 0.20), 0.10);
     let front_card = Vec3::new(2.0, 1.85, 1.7) * softbox(direction,

@@ -1,9 +1,10 @@
-//! The truth for `environment`, in f64 and from other formulas than the mirror's.
+//! Exact results for `environment`, in f64 and by other formulas than the mirror's.
 
 use glam::{DMat3, DVec2, DVec3, UVec2};
 use std::f64::consts::{PI, TAU};
 
-/// Half-angle formula, atan(y / (r + |x|)), which never meets the quadrants' borders.
+/// Computes the angle by the half-angle formula, atan(y / (r + |x|)), which never meets the borders
+/// of the quadrants.
 pub fn turns(y: f64, x: f64) -> f64 {
     let radius = (x * x + y * y).sqrt();
     if radius == 0.0 {
@@ -17,26 +18,30 @@ pub fn turns(y: f64, x: f64) -> f64 {
     }
 }
 
-/// Straight from Pythagoras: the square of an f32 neither over- nor underflows in f64.
+/// Applies Pythagoras' theorem directly: the square of an f32 neither overflows nor underflows in
+/// f64.
 pub fn hypot(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }
 
-/// The library's sine, the angle first brought to the nearest half turn, whose parity is the sign.
+/// Computes the library's sine of the angle, reduced by the nearest half turn, whose parity is the
+/// sign.
 pub fn sine(turns: f64) -> f64 {
     let half_turns = (2.0 * turns).round();
     let sign = if half_turns.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
     sign * (TAU * (turns - 0.5 * half_turns)).sin()
 }
 
-/// The polar angle by Kahan's formula, 2 atan(|d - |d| y| / |d + |d| y|) with y the zenith.
+/// Computes the polar angle by Kahan's formula, 2 atan(|d - |d| y| / |d + |d| y|) with y the
+/// zenith.
 pub fn uv_from_direction(direction: DVec3) -> DVec2 {
     let zenith = direction.length() * DVec3::Y;
     let polar = 2.0 * (direction - zenith).length().atan2((direction + zenith).length());
     DVec2::new(0.5 + turns(direction.z, direction.x), polar / PI)
 }
 
-/// Two rotations of the zenith: down towards +x by the polar angle, then about the vertical by the azimuth.
+/// Rotates the zenith twice: down towards +x by the polar angle, then about the vertical by the
+/// azimuth.
 pub fn direction_from_uv(uv: DVec2) -> DVec3 {
     DMat3::from_rotation_y(-TAU * (uv.x - 0.5)) * (DMat3::from_rotation_z(-PI * uv.y) * DVec3::Y)
 }
@@ -48,17 +53,18 @@ pub struct EnvironmentTexels {
     pub lower: UVec2,
     /// Column and row of the texel at the higher coordinates.
     pub upper: UVec2,
-    /// Share of `upper` in each direction.
+    /// Blend weight of `upper` along each axis.
     pub weight: DVec2,
 }
 
-/// From the edge between two texels that lies nearest: one texel is on either side of it, on a ring of columns and a
-/// ladder of rows, and the distance from the edge tells the share.
+/// Finds the nearest edge between two texels, on a ring of columns and a ladder of rows. The texels
+/// on its two sides are the result, and the distance from the edge gives the weight.
 pub fn texels(uv: DVec2, size: UVec2) -> EnvironmentTexels {
     let rows = f64::from(size.y);
     let u = uv.x.rem_euclid(1.0) * f64::from(size.x);
     let v = (uv.y * rows).max(0.5).min(rows - 0.5);
-    // Halfway between two edges the higher one counts: a point on a middle is the lower texel of its pair.
+    // Halfway between two edges the higher one counts: a point at a centre is in the lower texel of
+    // its pair.
     let nearest = |x: f64| (x + 0.5).floor();
     let (edge_u, edge_v) = (nearest(u), nearest(v));
     let column = |edge: f64| edge.rem_euclid(f64::from(size.x)) as u32;
@@ -73,17 +79,17 @@ pub fn texels(uv: DVec2, size: UVec2) -> EnvironmentTexels {
 /// The mirror's struct in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentHarmonics {
-    /// Of degree 0.
+    /// Degree 0: constant.
     pub zeroth: f64,
-    /// Of degree 1: y, z, x.
+    /// Degree 1, in the order y, z, x.
     pub first: DVec3,
-    /// Of degree 2, by order from -2 to 2.
+    /// Degree 2, by order from -2 to 2.
     pub second: [f64; 5],
-    /// Of degree 4, by order from -4 to 4.
+    /// Degree 4, by order from -4 to 4.
     pub fourth: [f64; 9],
 }
 
-/// By angles, degree by degree.
+/// Computes the harmonics from angles, degree by degree.
 pub fn harmonics(direction: DVec3) -> EnvironmentHarmonics {
     EnvironmentHarmonics {
         zeroth: harmonic(0, 0, direction),
@@ -93,8 +99,8 @@ pub fn harmonics(direction: DVec3) -> EnvironmentHarmonics {
     }
 }
 
-/// The associated Legendre function of the polar angle, by its recurrence over the degree, without the sign of Condon and Shortley, times the
-/// cosine or sine of a multiple of the azimuth.
+/// Returns the associated Legendre function of the polar angle, by its recurrence over the degree
+/// and without the Condon-Shortley sign, times the cosine or sine of a multiple of the azimuth.
 fn harmonic(l: u32, m: i32, direction: DVec3) -> f64 {
     let order = m.unsigned_abs();
     let across = direction.truncate().length();
@@ -117,8 +123,8 @@ fn harmonic(l: u32, m: i32, direction: DVec3) -> f64 {
     norm * legendre * around
 }
 
-/// The ray meets the light's plane, whose point nearest to the origin is `axis`; each smoothstep is the area under 6 x (1 - x), by
-/// Simpson's rule, which is exact for it.
+/// Intersects the ray with the light's plane, whose point nearest to the origin is `axis`. Each
+/// smoothstep is the area under 6 x (1 - x), by Simpson's rule, which is exact for it.
 pub fn softbox(direction: DVec3, axis: DVec3, up: DVec3, half_size: DVec2, softness: f64) -> f64 {
     let along = axis.length_squared() / direction.dot(axis);
     if direction.dot(axis) <= 0.0 {
@@ -133,14 +139,14 @@ pub fn softbox(direction: DVec3, axis: DVec3, up: DVec3, half_size: DVec2, softn
     edge(on_plane.dot(up.cross(axis)), half_size.x) * edge(on_plane.dot(up), half_size.y)
 }
 
-/// The weight is cos^4 of half the angle to the zenith.
+/// Computes the weight as cos^4 of half the angle to the zenith.
 pub fn dome(direction: DVec3, ground: DVec3, zenith: DVec3) -> DVec3 {
     let polar = direction.y.clamp(-1.0, 1.0).acos();
     ground.lerp(zenith, (0.5 * polar).cos().powi(4))
 }
 
-/// The dome and the brightest light: no two lights overlap, so that a maximum does for the sum. A light is (tint, axis and up as
-/// integer vectors, their common length, half size, softness).
+/// Adds the brightest light to the dome: no two lights overlap, so the maximum replaces the sum. A
+/// light is (tint, axis and up as integer vectors, their common length, half size, softness).
 pub fn studio(direction: DVec3) -> DVec3 {
     type Light = ([f64; 3], [f64; 3], [f64; 3], f64, [f64; 2], f64);
     const LIGHTS: [Light; 9] = [

@@ -1,4 +1,4 @@
-//! Mirror against oracle: what f32 costs, and where the naive forms break.
+//! Compares the mirror with the oracle: the errors of f32, and the failures of the naive forms.
 
 use super::*;
 use glam::{DVec2, DVec3};
@@ -12,7 +12,8 @@ fn report(what: &str, worst: f64, bound: f64) {
     assert!(worst <= bound, "{what}: {worst:e} > {bound:e}");
 }
 
-/// How far `f` moves when each component of `input` moves by `ulps` of the largest: what `ulps` backward allow.
+/// Returns the change of `f` when each component of `input` changes by `ulps` of the largest one:
+/// the allowance for `ulps` of backward error.
 fn backward(ulps: f64, input: Vec3, f: impl Fn(DVec3) -> DVec3) -> f64 {
     let (exact, step) = (f(input.as_dvec3()), ulps * ulp_of(f64::from(input.abs().max_element())));
     DVec3::AXES
@@ -160,7 +161,7 @@ fn texels_match_the_oracle() {
         assert!(got.weight.min_element() >= 0.0 && got.weight.max_element() <= 1.0);
         let exact = oracle::texels(uv.as_dvec2(), size);
         if (got.lower, got.upper) != (exact.lower, exact.upper) {
-            // Right for an input two ulp off.
+            // The result must be right for an input that is two ulp off.
             let step = 2.0 * ulp_of(f64::from(uv.max_element()));
             let near = [-1.0, 0.0, 1.0].iter().any(|x| {
                 [-1.0, 0.0, 1.0].iter().any(|y| {
@@ -198,12 +199,12 @@ fn softbox_matches_the_oracle() {
     let (mut worst, mut naive_differs, mut lit) = (0.0f64, 0.0f32, 0);
     for i in 0..1_000_000 {
         let axis = rng.direction().as_vec3();
-        // Twice, since a short cross product is not orthogonal to its last digits.
+        // Twice, because a short cross product is not orthogonal to its last digits.
         let sideways = axis.cross(rng.direction().as_vec3()).normalize();
         let up = axis.cross(sideways).normalize();
         let half_size = Vec2::new(0.02 + 2.0 * (rng.unit() as f32), 0.02 + 2.0 * (rng.unit() as f32));
         let softness = (0.004 + (rng.unit() as f32) * 0.5).min(half_size.min_element());
-        // Around the edges, where everything happens.
+        // Directions around the edges, where the coverage varies.
         let reach = (half_size + softness) * 1.2;
         let mut direction =
             (axis + reach.x * rng.between(-1.0, 1.0) * up.cross(axis) + reach.y * rng.between(-1.0, 1.0) * up)

@@ -1,4 +1,5 @@
-//! `wgsl/environment.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-environment`.
+//! Device tests of every function of `wgsl/environment.wgsl` and its naive forms:
+//! `cargo test -p lapidary-environment`.
 
 use lapidary_environment::formulas::formulas;
 

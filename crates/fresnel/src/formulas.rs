@@ -1,4 +1,4 @@
-//! `wgsl/fresnel.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/fresnel.wgsl`.
 
 mod outside;
 
@@ -8,10 +8,10 @@ use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "fresnel";
 
-/// What 16 ulp, the accuracy line's forward term, are just below 1.
+/// Size of 16 ulp just below 1.
 const AT_ONE: f64 = 16.0 / (1 << 24) as f64;
 
-/// Relative indices in [1/4, 4]: anywhere, and 1 ± every magnitude down to the last place.
+/// Draws a relative index in [1/4, 4]: anywhere, or 1 ± every magnitude down to the last place.
 fn relative_index(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 4.0, 0.25, 2.41749, 1.0 / 2.41749]),
@@ -23,7 +23,8 @@ fn relative_index(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Cosine and index: every magnitude of the cosine, its ends, out of range, and near the critical angle on both sides.
+/// Draws a cosine and an index: every magnitude of the cosine, its ends, out of range, and both
+/// sides of the critical angle.
 fn incidence(draws: &mut Draws<'_>) -> (f32, f32) {
     let index = relative_index(draws);
     let critical = if index < 1.0 {
@@ -42,7 +43,7 @@ fn incidence(draws: &mut Draws<'_>) -> (f32, f32) {
     (cosine, index)
 }
 
-/// Whether the interface reflects everything.
+/// Returns whether the interface reflects all light.
 fn total(cosine: f32, index: f32) -> bool {
     let (cosine, index) = (f64::from(cosine).clamp(0.0, 1.0), f64::from(index));
     (index - 1.0) * (index + 1.0) + cosine * cosine < 0.0
@@ -52,7 +53,8 @@ fn in_unit_range(reflectance: f32) -> Result<(), String> {
     if (0.0..=1.0).contains(&reflectance) { Ok(()) } else { Err(format!("reflectance {reflectance}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -91,10 +93,11 @@ fn exact() -> Formula {
                 Ok(())
             }
         })
-        // Helmholtz reciprocity: the same ray backwards is reflected as strongly.
+        // Helmholtz reciprocity: the reversed ray has the same reflectance.
         .pair("reciprocity", reversed, |(c, n), reflectance: f32, backwards: f32| {
             let well_conditioned = (n - 1.0).abs() > 0.05 && (0.05..=1.0).contains(&c) && !total(c * 0.95, n);
-            // The reversed cosine is rounded, and near its critical angle the reflectance changes as 1 / c² with it.
+            // The reversed cosine is rounded, and near its critical angle the reflectance varies
+            // with it as 1 / c².
             let slack = 2e-6 + 2e-7 / f64::from(c).powi(2);
             if well_conditioned { near("difference", f64::from(reflectance - backwards), 0.0, slack) } else { Ok(()) }
         })
@@ -170,7 +173,7 @@ fn exact() -> Formula {
         .build()
 }
 
-/// The ray that retraces the refracted one: its cosine and its index.
+/// Returns the cosine and the index of the reversed refracted ray.
 fn reversed((cosine, index): (f32, f32)) -> (f32, f32) {
     let (c, n) = (f64::from(cosine).clamp(0.0, 1.0), f64::from(index));
     let transmitted = ((n - 1.0) * (n + 1.0) + c * c).max(0.0).sqrt() / n;
@@ -200,7 +203,7 @@ fn normal_incidence() -> Formula {
         "the same from both sides",
         |(n,)| (1.0 / n,),
         |(n,), one: f32, other: f32| {
-            // 1 / n is rounded, which the difference n - 1 magnifies.
+            // The difference n - 1 magnifies the rounding of 1 / n.
             let slack = 4.0 / (1 << 24) as f64 / (f64::from(n) - 1.0).abs().max(1e-7) + 1e-5;
             near("difference", f64::from(one - other), 0.0, f64::from(one) * slack + 1e-13)
         },

@@ -1,5 +1,6 @@
-//! Rust mirror of `wgsl/fresnel.wgsl`, line by line: the share of unpolarised light that an interface between two
-//! dielectrics reflects. Units, domain and accuracy stand above the WGSL functions.
+//! Mirror of `wgsl/fresnel.wgsl`: the share of unpolarised light that an interface between two
+//! dielectrics reflects. The WGSL file states the units, domain and accuracy of each function. This
+//! file follows it line by line.
 //!
 //! ```
 //! use lapidary_fresnel::{dielectric, normal_incidence};
@@ -15,8 +16,9 @@
 pub mod formulas;
 pub mod oracle;
 
-/// Reflectance of a dielectric interface, exact for unpolarised light, with total internal reflection.
-/// `cosine` is that of the angle of incidence, `relative_index` is n_transmitted / n_incident.
+/// Returns the reflectance of a dielectric interface, exact for unpolarised light, with total
+/// internal reflection. `cosine` is the cosine of the angle of incidence, `relative_index` is
+/// n_transmitted / n_incident.
 pub fn dielectric(cosine: f32, relative_index: f32) -> f32 {
     let m = (relative_index - 1.0) * (relative_index + 1.0);
     if m == 0.0 {
@@ -35,7 +37,7 @@ pub fn dielectric(cosine: f32, relative_index: f32) -> f32 {
     (0.5 * (s * s + p * p)).min(1.0)
 }
 
-/// The same reflectance as textbooks write it, a naive form: quotients of cosines.
+/// Computes the same reflectance as in textbooks, a naive form: quotients of cosines.
 pub fn dielectric_textbook(cosine: f32, relative_index: f32) -> f32 {
     let eta = 1.0 / relative_index;
     let cosine_transmitted = (1.0 - eta * eta * (1.0 - cosine * cosine)).max(0.0).sqrt();
@@ -44,13 +46,14 @@ pub fn dielectric_textbook(cosine: f32, relative_index: f32) -> f32 {
     0.5 * (s * s + p * p)
 }
 
-/// Reflectance at normal incidence, the F0 of shading models.
+/// Returns the reflectance at normal incidence, the F0 of shading models.
 pub fn normal_incidence(relative_index: f32) -> f32 {
     let amplitude = (relative_index - 1.0) / (relative_index + 1.0);
     (amplitude * amplitude).min(1.0)
 }
 
-/// Schlick's approximation, the cheap rung, in the cosine of the optically thinner medium.
+/// Computes Schlick's approximation, the cheap rung, with the cosine in the optically thinner
+/// medium.
 pub fn schlick(cosine: f32, relative_index: f32) -> f32 {
     let m = (relative_index - 1.0) * (relative_index + 1.0);
     let c = cosine.clamp(0.0, 1.0);

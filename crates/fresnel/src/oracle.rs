@@ -1,22 +1,24 @@
-//! The truth in f64, by angles: Snell's law for the angle of refraction, then Fresnel's sine and tangent laws. No
-//! formula here is a rearrangement of the shader's in cosines.
+//! Exact results in f64, from angles: Snell's law for the angle of refraction, then Fresnel's sine
+//! and tangent laws. No formula here is a rearrangement of the shader's formulas in cosines.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// What the sine and tangent laws need of the angles of incidence and refraction.
+/// Sum and difference of the angles of incidence and refraction, for the sine and tangent laws.
 struct Angles {
-    /// Sum of the two angles of the rays, from the normal or from the surface.
+    /// Sum of the angles of the two rays, from the normal or from the surface.
     sum: f64,
-    /// Their difference.
+    /// Angle of the incident ray minus the angle of the refracted ray.
     difference: f64,
 }
 
-/// The angles of the incident and the refracted ray for `cosine` in [0, 1], or `None` under total internal reflection.
+/// Returns the angles of the incident and the refracted ray for `cosine` in [0, 1], or `None` under
+/// total internal reflection.
 ///
-/// Towards the normal they are measured from the normal, sin θt = sin θi / n; towards the surface from the surface,
-/// where Snell's law cos αi = n cos αt reads sin²(αt/2) = ((n - 1)/2 + sin²(αi/2)) / n. Each keeps the small angle small,
-/// so that sum and difference have a relative error of about 1e-16 / |n - 1|, 2e-9 at the smallest f32 step from n = 1.
-/// Signs drop out: only squares of the laws' quotients are used.
+/// Close to the normal the angles are measured from the normal: sin θt = sin θi / n. Close to the
+/// surface they are measured from the surface, and Snell's law cos αi = n cos αt becomes
+/// sin²(αt/2) = ((n - 1)/2 + sin²(αi/2)) / n. Each form keeps the small angle small, so that sum
+/// and difference have a relative error of about 1e-16 / |n - 1|, 2e-9 at the smallest f32 step
+/// from n = 1. Signs do not matter, because only squares of the laws' quotients are used.
 fn angles(cosine: f64, relative_index: f64) -> Option<Angles> {
     let incidence = cosine.acos();
     let sine_refracted = incidence.sin() / relative_index;
@@ -35,7 +37,8 @@ fn angles(cosine: f64, relative_index: f64) -> Option<Angles> {
     }
 }
 
-/// Reflectance by r_s = sin(θi - θt) / sin(θi + θt) and r_p = tan(θi - θt) / tan(θi + θt); 0 for an index of 1.
+/// Computes the reflectance from r_s = sin(θi - θt) / sin(θi + θt) and r_p = tan(θi - θt) /
+/// tan(θi + θt); 0 for an index of 1.
 pub fn dielectric(cosine: f64, relative_index: f64) -> f64 {
     if relative_index == 1.0 {
         return 0.0;
@@ -54,18 +57,20 @@ pub fn dielectric(cosine: f64, relative_index: f64) -> f64 {
     }
 }
 
-/// Shared with [`dielectric`]: the same function, computed badly.
+/// Calls [`dielectric`]: the naive form is the same function, computed badly.
 pub fn dielectric_textbook(cosine: f64, relative_index: f64) -> f64 {
     dielectric(cosine, relative_index)
 }
 
-/// Reflectance at normal incidence as tanh²(ln(n) / 2): the interface as a rapidity, whose inverse is its negative.
+/// Computes the reflectance at normal incidence as tanh²(ln(n) / 2): ln(n) is a rapidity, and the
+/// inverse interface has its negative.
 pub fn normal_incidence(relative_index: f64) -> f64 {
     let amplitude = (0.5 * (relative_index - 1.0).ln_1p()).tanh();
     amplitude * amplitude
 }
 
-/// Schlick's approximation in the angle θ of the thinner medium: 1 - cos θ = 2 sin²(θ/2), and 1 beyond the critical angle.
+/// Computes Schlick's approximation from the angle θ in the thinner medium: 1 - cos θ = 2
+/// sin²(θ/2), and 1 beyond the critical angle.
 pub fn schlick(cosine: f64, relative_index: f64) -> f64 {
     let incidence = cosine.clamp(0.0, 1.0).acos();
     let sine = incidence.sin() / relative_index.min(1.0);

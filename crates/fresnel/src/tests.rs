@@ -1,4 +1,5 @@
-//! Mirror against oracle at all magnitudes, known values, and the tables of docs/fresnel.md.
+//! Compares the mirror with the oracle at all magnitudes, and checks known values and the table of
+//! docs/fresnel.md.
 
 use super::*;
 use lapidary_assay::draws::Draws;
@@ -9,7 +10,8 @@ fn step(value: f32, steps: i32) -> f32 {
     f32::from_bits((value.to_bits() as i32 + steps) as u32)
 }
 
-/// An input of the domain: every magnitude of cosine, index - 1, and distance from the critical angle.
+/// Draws an input of the domain: every magnitude of cosine, index - 1, and distance from the
+/// critical angle.
 fn input(random: &mut Draws<'_>) -> (f32, f32) {
     let relative_index = match random.below(4) {
         0 => (1.0 + 2f64.powf(-24.0 * random.unit()) * 0.75 * (random.unit() - 0.5).signum()) as f32,
@@ -31,7 +33,7 @@ fn input(random: &mut Draws<'_>) -> (f32, f32) {
     (cosine, relative_index)
 }
 
-/// The error of `mirror` in ulp that remains after an input error of `backward` ulp is allowed for.
+/// Returns the error of `mirror` in ulp beyond the allowance for an input error of `backward` ulp.
 fn excess(mirror: fn(f32, f32) -> f32, oracle: fn(f64, f64) -> f64, (cosine, index): (f32, f32), backward: f64) -> f64 {
     let exact = oracle(f64::from(cosine), f64::from(index));
     let (mut low, mut high) = (exact, exact);
@@ -67,7 +69,8 @@ fn worst(mirror: fn(f32, f32) -> f32, oracle: fn(f64, f64) -> f64, backward: f64
 #[test]
 fn dielectric_is_accurate() {
     assert!(worst(dielectric, oracle::dielectric, 0.75, |_, _| true) <= 16.0);
-    // Entering a denser medium the problem is well-conditioned: no allowance for the input.
+    // For light that enters a denser medium the problem is well-conditioned: no allowance for the
+    // input.
     assert!(worst(dielectric, oracle::dielectric, 0.0, |_, n| n >= 1.0) <= 16.0);
 }
 
@@ -79,7 +82,8 @@ fn cheap_rungs_are_accurate() {
 
 #[test]
 fn known_values() {
-    // Normal incidence from the Sellmeier indices at 587.6 nm, and Brewster's angle, where r_p = 0.
+    // Normal incidence with the Sellmeier indices at 587.6 nm, and Brewster's angle, at which
+    // r_p = 0.
     for (relative_index, reflectance) in [(2.41749, 0.1720), (1.76817, 0.0770), (1.54428, 0.0458), (1.5168, 0.0422)] {
         assert!((dielectric(1.0, relative_index) - reflectance).abs() < 5e-5);
         assert!((normal_incidence(relative_index) - reflectance).abs() < 5e-5);
@@ -118,7 +122,7 @@ fn textbook_form_is_that_formula() {
     }
 }
 
-/// The table of docs/fresnel.md: what Schlick's approximation is off by, from the f64 oracle.
+/// Checks the table of docs/fresnel.md: the error of Schlick's approximation, from the f64 oracle.
 #[test]
 fn table_is_current() {
     let mut table = String::new();

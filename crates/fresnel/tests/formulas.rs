@@ -1,4 +1,5 @@
-//! `wgsl/fresnel.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-fresnel`.
+//! Device tests of every function of `wgsl/fresnel.wgsl` and its naive forms:
+//! `cargo test -p lapidary-fresnel`.
 
 use lapidary_fresnel::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/microfacet.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/microfacet.wgsl`.
 
 mod outside;
 
@@ -10,13 +10,15 @@ use std::f64::consts::PI;
 
 const M: &str = "microfacet";
 
-/// Error of a length that three squares, two sums and the inputs' own rounding leave, with room for the portable bounds.
+/// Error of a unit vector's length after three squares, two sums and the rounding of the inputs,
+/// with room for the portable bounds.
 const UNIT: f64 = 16.0 / (1 << 24) as f64;
 
-/// What is left of a bound on a product when each of its parts is rounded, with room for the portable bounds.
+/// Factor on the bound of a product for the rounding of each of its parts, with room for the
+/// portable bounds.
 const ROUNDED: f64 = 1.0 + 2e-5;
 
-/// Every magnitude down to the clamp and below it, the ends, and beyond.
+/// Draws an alpha: every magnitude down to the clamp and below it, the ends, and beyond.
 fn alpha(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 0.001, 0.0, -0.5, 2.0, 1.0f32.next_down()]),
@@ -25,12 +27,13 @@ fn alpha(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// The alpha that counts.
+/// Returns the clamped alpha.
 fn width(alpha: f32) -> f64 {
     f64::from(alpha.clamp(0.001, 1.0))
 }
 
-/// Angles between a facet's normal and the surface's: some alphas, every magnitude, and any.
+/// Draws an angle between the normals of a facet and the surface: multiples of alpha, every
+/// magnitude, and any angle.
 fn tilt(draws: &mut Draws<'_>, alpha: f32) -> f64 {
     match draws.below(4) {
         0 => f64::from(draws.magnitude(-30, 0)),
@@ -39,7 +42,7 @@ fn tilt(draws: &mut Draws<'_>, alpha: f32) -> f64 {
     }
 }
 
-/// Cosines: every magnitude, the ends, and out of range.
+/// Draws a cosine: every magnitude, the ends, and out of range.
 fn cosine(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => draws.pick(&[1.0, 0.0, -0.5, 1.5, f32::MIN_POSITIVE]),
@@ -49,7 +52,8 @@ fn cosine(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// The surface's normal, a facet's, and alpha; of other lengths than 1 in one case of eight.
+/// Draws the normals of the surface and of a facet, and alpha. In one case of eight, the lengths
+/// are not 1.
 fn facet(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     let normal = draws.unit_vector();
     let alpha = alpha(draws);
@@ -69,7 +73,8 @@ fn facet(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     }
 }
 
-/// Directions towards light and eye: anywhere, equal, opposite, and opposite but for every magnitude.
+/// Draws directions towards light and eye: any, equal, opposite, and opposite up to a deviation of
+/// every magnitude.
 fn directions(draws: &mut Draws<'_>) -> (Vec3, Vec3) {
     let light = draws.unit_vector();
     let axis = light.as_dvec3().normalize();
@@ -82,7 +87,8 @@ fn directions(draws: &mut Draws<'_>) -> (Vec3, Vec3) {
     (light, eye)
 }
 
-/// Normal, light, eye, alpha and Fresnel's share: mostly the light where a facet near the normal reflects it into the eye.
+/// Draws normal, light, eye, alpha and Fresnel reflectance, mostly with a facet near the normal
+/// that reflects the light into the eye.
 fn lit(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, f32, f32) {
     let normal = draws.unit_vector();
     let alpha = alpha(draws);
@@ -117,7 +123,8 @@ fn within(what: &str, value: f32, most: f64) -> Result<(), String> {
     if (0.0..=most * ROUNDED).contains(&f64::from(value)) { Ok(()) } else { Err(format!("{what} {value} of {most}")) }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -129,7 +136,8 @@ fn functions() -> Vec<Formula> {
 
 fn distribution() -> Formula {
     const NAIVE: &str = "microfacet_distribution_naive";
-    // A facet whose normal has this part along x beside a surface along z, and the mathematics there.
+    // A facet whose normal has the x component `sine`, on a surface with normal +z, and its exact
+    // distribution.
     let tilted = |sine: f32| Vec3::new(sine, 0.0, (1.0 - f64::from(sine).powi(2)).sqrt() as f32);
     let exact = |facet: Vec3, alpha: f64| {
         let tangent = f64::from(facet.x) / f64::from(facet.z);
@@ -307,7 +315,7 @@ fn reflectance() -> Formula {
                 if dark { near("reflectance", value.into(), 0.0, 0.0) } else { Ok(()) }
             },
         )
-        // Helmholtz reciprocity, of the BRDF: without the light's cosine.
+        // Helmholtz reciprocity of the BRDF, without the cosine of the light.
         .pair(
             "light and eye may change places",
             |(normal, light, eye, alpha, fresnel)| (normal, eye, light, alpha, fresnel),
@@ -317,7 +325,7 @@ fn reflectance() -> Formula {
                     return Ok(());
                 }
                 let (there, back) = (f64::from(there) * eye, f64::from(back) * light);
-                // Each cosine is off by 2e-7 at most, of 0.01.
+                // Each cosine is at least 0.01 and off by at most 2e-7.
                 near("difference", there - back, 0.0, 1e-4 * there)
             },
         )

@@ -1,5 +1,5 @@
-//! Rust mirror of `wgsl/microfacet.wgsl`, line by line: the highlight of a rough dielectric surface. Units, domain and
-//! accuracy stand above the WGSL functions.
+//! Mirror of `wgsl/microfacet.wgsl`: the highlight of a rough dielectric surface. The WGSL file
+//! states the units, domain and accuracy of each function. This file follows it line by line.
 //!
 //! ```
 //! use glam::Vec3;
@@ -17,14 +17,15 @@ pub mod oracle;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Smoother surfaces count as this one.
+/// Smallest alpha; smaller values count as this one.
 pub const MICROFACET_SMOOTHEST: f32 = 0.001;
-/// The divisor of the visibility is at least this.
+/// Lower limit of the divisor of the visibility.
 pub const MICROFACET_GRAZING: f32 = 1e-24;
-/// The squared sum of two unit vectors that counts as the least.
+/// Lower limit of the squared length of the sum of two unit vectors.
 pub const MICROFACET_OPPOSITE: f32 = 1e-30;
 
-/// Distribution of the facets' normals by Trowbridge and Reitz, 1/sr, with the squared sine by Lagrange's identity.
+/// Returns the distribution of the facets' normals by Trowbridge and Reitz in 1/sr, with the
+/// squared sine by Lagrange's identity.
 pub fn distribution(normal: Vec3, half: Vec3, alpha: f32) -> f32 {
     let a = alpha.clamp(MICROFACET_SMOOTHEST, 1.0);
     let cosine = normal.dot(half);
@@ -32,7 +33,7 @@ pub fn distribution(normal: Vec3, half: Vec3, alpha: f32) -> f32 {
     let cosine_squared = cosine * cosine;
     let sine_squared = across.dot(across);
     let spread = a * a * cosine_squared + sine_squared;
-    // A subnormal may be flushed where it is divided by.
+    // A subnormal divisor may be flushed to zero.
     if spread < 1.2e-38 {
         return 0.0;
     }
@@ -40,14 +41,14 @@ pub fn distribution(normal: Vec3, half: Vec3, alpha: f32) -> f32 {
     FRAC_1_PI * quotient * quotient
 }
 
-/// The distribution from the cosine alone, a naive form.
+/// Computes the distribution from the cosine alone, a naive form.
 pub fn distribution_naive(cosine: f32, alpha: f32) -> f32 {
     let squared = alpha * alpha;
     let spread = cosine * cosine * (squared - 1.0) + 1.0;
     squared / (PI * spread * spread)
 }
 
-/// Smith's height-correlated masking and shadowing over 4 (n . l) (n . v).
+/// Returns Smith's height-correlated masking and shadowing, divided by 4 (n . l) (n . v).
 pub fn visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     let a = alpha.clamp(MICROFACET_SMOOTHEST, 1.0);
     let l = cosine_light.clamp(0.0, 1.0);
@@ -59,7 +60,7 @@ pub fn visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     0.5 / (shadowing + masking).max(MICROFACET_GRAZING)
 }
 
-/// The same quotient, numerator and divisor each by itself, a naive form.
+/// Computes the same quotient with a separate numerator and divisor, a naive form.
 pub fn visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     let squared = alpha * alpha;
     let tangent_light = 1.0 / (cosine_light * cosine_light) - 1.0;
@@ -69,18 +70,18 @@ pub fn visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     1.0 / (1.0 + lambda_light + lambda_eye) / (4.0 * cosine_light * cosine_eye)
 }
 
-/// Normal of the facets that reflect the light into the eye; 0 for opposite directions.
+/// Returns the normal of the facets that reflect the light into the eye; 0 for opposite directions.
 pub fn half(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
     let sum = toward_light + toward_eye;
     sum / sum.dot(sum).max(MICROFACET_OPPOSITE).sqrt()
 }
 
-/// The sum normalized, a naive form.
+/// Normalizes the sum, a naive form.
 pub fn half_naive(toward_light: Vec3, toward_eye: Vec3) -> Vec3 {
     (toward_light + toward_eye).normalize()
 }
 
-/// BRDF times n . l, in 1/sr, for the facets' share `fresnel` of reflected light.
+/// Returns the BRDF times n . l, in 1/sr; `fresnel` is the share of light that a facet reflects.
 pub fn reflectance(normal: Vec3, toward_light: Vec3, toward_eye: Vec3, alpha: f32, fresnel: f32) -> f32 {
     let half = half(toward_light, toward_eye);
     let cosine_light = normal.dot(toward_light).max(0.0);

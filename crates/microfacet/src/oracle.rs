@@ -1,15 +1,17 @@
-//! The truth in f64: the distribution by the slope of the facets, from an angle; masking by the length of a stretched direction; the half
-//! vector by its azimuth and elevation. The mirror has neither an angle nor a slope.
+//! Exact results in f64: the distribution from the slope of the facets, by an angle; masking from
+//! the length of a stretched direction; the half vector from its azimuth and elevation. The mirror
+//! uses neither angles nor slopes.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-// The module's constants, written out again: a slip in theirs must not carry over to the truth.
+// The module's constants, repeated so that an error in them does not carry over to the oracle.
 const SMOOTHEST: f64 = 1e-3;
 const GRAZING: f64 = 1e-24;
 const OPPOSITE: f64 = 1e-15;
 
-/// Density of slopes, α² / (π (α² + tan²)²), over cos⁴, which takes slopes to directions; beyond 45° by the cotangent.
+/// Returns the density of slopes, α² / (π (α² + tan²)²), over cos⁴, which converts slopes to
+/// directions; beyond 45° from the cotangent.
 fn by_slope(angle: f64, alpha: f64) -> f64 {
     let tangent = angle.tan();
     let root = if tangent.abs() <= 1.0 {
@@ -21,7 +23,8 @@ fn by_slope(angle: f64, alpha: f64) -> f64 {
     root * root / PI
 }
 
-/// By the slope of facets at Kahan's angle between the vectors, 2 atan(|a - b| / |a + b|).
+/// Computes the distribution from the slope of facets at Kahan's angle between the vectors,
+/// 2 atan(|a - b| / |a + b|).
 pub fn distribution(normal: DVec3, half: DVec3, alpha: f64) -> f64 {
     if normal == DVec3::ZERO || half == DVec3::ZERO {
         return 0.0;
@@ -31,34 +34,37 @@ pub fn distribution(normal: DVec3, half: DVec3, alpha: f64) -> f64 {
     by_slope(angle, alpha.clamp(SMOOTHEST, 1.0))
 }
 
-/// The same by the angle of the cosine, whose alpha is not clamped.
+/// Computes the same from the angle of the cosine, with an alpha that is not clamped.
 pub fn distribution_naive(cosine: f64, alpha: f64) -> f64 {
     by_slope(cosine.acos(), alpha)
 }
 
-/// Length of a unit direction whose part along the surface is shrunk by `alpha`: cos θ (1 + 2 Λ).
+/// Returns the length of a unit direction whose part along the surface is multiplied by `alpha`:
+/// cos θ (1 + 2 Λ).
 fn stretched(cosine: f64, alpha: f64) -> f64 {
     let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
     (alpha * sine).hypot(cosine)
 }
 
-/// 4 l v (1 + Λ(l) + Λ(v)) is twice the sum of each cosine times the other's stretched length.
+/// Returns 4 l v (1 + Λ(l) + Λ(v)), twice the sum of each cosine times the stretched length of the
+/// other.
 fn masked(light: f64, eye: f64, alpha: f64) -> f64 {
     2.0 * (eye * stretched(light, alpha) + light * stretched(eye, alpha))
 }
 
-/// By stretched lengths.
+/// Computes the visibility from stretched lengths.
 pub fn visibility(cosine_light: f64, cosine_eye: f64, alpha: f64) -> f64 {
     let [light, eye] = [cosine_light, cosine_eye].map(|cosine| cosine.clamp(0.0, 1.0));
     masked(light, eye, alpha.clamp(SMOOTHEST, 1.0)).max(2.0 * GRAZING).recip()
 }
 
-/// The same function, but for clamps that are not there.
+/// Computes the same function without the clamps.
 pub fn visibility_naive(cosine_light: f64, cosine_eye: f64, alpha: f64) -> f64 {
     masked(cosine_light, cosine_eye, alpha).recip()
 }
 
-/// By the azimuth and the elevation of the sum. Sums shorter than the least fade with their length.
+/// Computes the half vector from the azimuth and the elevation of the sum. Sums shorter than the
+/// limit fade with their length.
 pub fn half(toward_light: DVec3, toward_eye: DVec3) -> DVec3 {
     let sum = toward_light + toward_eye;
     let azimuth = sum.y.atan2(sum.x);
@@ -68,12 +74,12 @@ pub fn half(toward_light: DVec3, toward_eye: DVec3) -> DVec3 {
     fade * DVec3::new(elevation.cos() * azimuth.cos(), elevation.cos() * azimuth.sin(), elevation.sin())
 }
 
-/// Shared with [`half`]: the same function, computed badly.
+/// Calls [`half`]: the naive form is the same function, computed badly.
 pub fn half_naive(toward_light: DVec3, toward_eye: DVec3) -> DVec3 {
     half(toward_light, toward_eye)
 }
 
-/// The product of the parts, each by the formula above.
+/// Multiplies the parts, each by the formula above.
 pub fn reflectance(normal: DVec3, toward_light: DVec3, toward_eye: DVec3, alpha: f64, fresnel: f64) -> f64 {
     let [light, eye] = [toward_light, toward_eye].map(|toward| normal.dot(toward));
     let density = distribution(normal, half(toward_light, toward_eye), alpha);

@@ -1,4 +1,5 @@
-//! What the distribution and the masking must make together: areas, energy, reciprocity; and the tables of docs/microfacet.md.
+//! Joint properties of the distribution and the masking: areas, energy, reciprocity; and the tables
+//! of docs/microfacet.md.
 
 use super::*;
 use glam::DVec3;
@@ -7,9 +8,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 const ALPHAS: [f64; 6] = [0.001, 0.01, 0.1, 0.25, 0.5, 1.0];
 
-/// A distribution, from normal, half and alpha.
+/// A distribution as a function of normal, half vector and alpha.
 type Distribution = fn(DVec3, DVec3, f64) -> f64;
-/// A visibility, from both cosines and alpha.
+/// A visibility as a function of both cosines and alpha.
 type Visibility = fn(f64, f64, f64) -> f64;
 
 const ORACLE: (Distribution, Visibility) = (oracle::distribution, oracle::visibility);
@@ -18,14 +19,16 @@ const MIRROR: (Distribution, Visibility) = (
     |light, eye, alpha| visibility(light as f32, eye as f32, alpha as f32).into(),
 );
 
-/// A direction towards an eye of this cosine to +z.
+/// Returns a direction towards an eye at this cosine to +z.
 fn eye(cosine: f64) -> DVec3 {
     DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
 }
 
-/// Integral over all facet normals above the surface, by midpoints: `count` azimuths of half a turn, for functions even in y, and
-/// as many angles to the normal. The share u = tan² / (α² + tan²) of facets below an angle is taken as w² (3 - 2 w), w uniform in [0, 1]:
-/// so the angles lie close together near `alpha`, and ever closer towards either end. The midpoints of du / dw itself are off by step² / 2.
+/// Integrates over all facet normals above the surface by midpoints: `count` azimuths of half a
+/// turn, for functions even in y, and as many angles to the normal. The share u = tan² /
+/// (α² + tan²) of facets below an angle is taken as w² (3 - 2 w), with w uniform in [0, 1], so that
+/// the angles lie close together near `alpha`, and ever closer towards either end. The midpoints of
+/// du / dw itself are off by step² / 2.
 fn over_facets(alpha: f64, count: u32, integrand: impl Fn(DVec3) -> f64) -> f64 {
     let step = 1.0 / f64::from(count);
     let midpoints = || (0..count).map(|index| (f64::from(index) + 0.5) * step);
@@ -33,7 +36,7 @@ fn over_facets(alpha: f64, count: u32, integrand: impl Fn(DVec3) -> f64) -> f64 
         let (below, above) = (w * w * (3.0 - 2.0 * w), (1.0 - w) * (1.0 - w) * (1.0 + 2.0 * w));
         let tangent = alpha * (below / above).sqrt();
         let angle = tangent.atan();
-        // dangle / du, then du / dw.
+        // d(angle) / du, then du / dw.
         let stretch = (alpha * angle.cos() / above).powi(2) / (2.0 * tangent) * 6.0 * w * (1.0 - w);
         let at = |azimuth: f64| DVec3::new(angle.sin() * azimuth.cos(), angle.sin() * azimuth.sin(), angle.cos());
         stretch * angle.sin() * midpoints().map(|turn| integrand(at(PI * turn))).sum::<f64>()
@@ -41,8 +44,9 @@ fn over_facets(alpha: f64, count: u32, integrand: impl Fn(DVec3) -> f64) -> f64 
     2.0 * PI * step * step * midpoints().map(ring).sum::<f64>()
 }
 
-/// The share of light from the eye's direction that facets which reflect everything send anywhere above the surface: the integral of
-/// D V n.l over directions of light, each reflected by its facet, of solid angle 4 (v . h) times the facet's.
+/// Returns the share of light from the eye's direction that perfectly reflecting facets send
+/// anywhere above the surface: the integral of D V n.l over directions of light. Each direction is
+/// reflected by its facet and has the solid angle 4 (v . h) times the facet's.
 fn albedo((distribution, visibility): (Distribution, Visibility), cosine: f64, alpha: f64, count: u32) -> f64 {
     let eye = eye(cosine);
     over_facets(alpha, count, |facet| {
@@ -65,9 +69,10 @@ fn facets_cover_the_surface_that_they_are_on() {
     }
 }
 
-/// The weak white furnace (Heitz 2014, section 5.2): facets seen from any direction, less those hidden, cover what the surface covers. It ties
-/// the masking to the distribution: no other masking of this kind passes. A light above the normal is hidden by nothing, so
-/// there the visibility is the eye's masking alone, over 4 n . v.
+/// Checks the weak white furnace (Heitz 2014, section 5.2): from any direction, the visible facets
+/// cover the same area as the surface. It ties the masking to the distribution: no other masking of
+/// this kind passes. Nothing hides a light along the normal, so its visibility is the masking of
+/// the eye alone, over 4 n . v.
 #[test]
 fn masking_leaves_the_facets_that_are_seen() {
     for alpha in ALPHAS {
@@ -83,7 +88,8 @@ fn masking_leaves_the_facets_that_are_seen() {
     }
 }
 
-/// 1 / G2 = 1 / G1(l) + 1 / G1(v) - 1 is what sets height-correlated masking apart from the product G1(l) G1(v).
+/// Checks 1 / G2 = 1 / G1(l) + 1 / G1(v) - 1, which distinguishes height-correlated masking from
+/// the product G1(l) G1(v).
 #[test]
 fn masking_and_shadowing_are_correlated_by_height() {
     let inverse = |light: f64, eye: f64, alpha| 1.0 / (4.0 * light * eye * oracle::visibility(light, eye, alpha));
@@ -106,7 +112,8 @@ fn no_more_light_leaves_than_came() {
             }
         }
     }
-    // Single scattering misses what a second facet reflects, ever less of it on smoother surfaces.
+    // Single scattering misses the light that a second facet reflects, and misses less on smoother
+    // surfaces.
     for cosine in [1.0, 0.7, 0.3] {
         let missing: Vec<f64> =
             [0.25, 0.1, 0.01, 0.001].iter().map(|alpha| 1.0 - albedo(ORACLE, cosine, *alpha, 600)).collect();
@@ -119,7 +126,8 @@ fn no_more_light_leaves_than_came() {
 fn light_and_eye_may_change_places() {
     let mut count = 0;
     for index in 0..20_000u32 {
-        // Two directions and a width, spread by the golden ratio and its like (Roberts' sequence in five dimensions).
+        // Two directions and a width from Roberts' sequence in five dimensions, which generalizes
+        // the golden ratio.
         let at = |power: i32| (f64::from(index) * 1.167_304_f64.powi(-power)).fract();
         let toward = |turn: f64, cosine: f64| {
             let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
@@ -135,7 +143,8 @@ fn light_and_eye_may_change_places() {
     assert!(count > 15_000, "{count}");
 }
 
-/// A smooth surface reflects a point light from one place only: all of the highlight's light is within a few alpha of it.
+/// Checks that a smooth surface reflects a point light from one place only: all light of the
+/// highlight is within a few alpha of it.
 #[test]
 fn highlight_narrows_with_alpha() {
     let within = |alpha: f64, angle: f64| -> f64 {
@@ -171,7 +180,8 @@ fn naive_forms_are_those_formulas() {
     }
 }
 
-/// The first table of docs/microfacet.md: what facets of reflectance 1 give back, and so what single scattering loses.
+/// Checks the first table of docs/microfacet.md: the light that facets of reflectance 1 give back,
+/// and so the loss of single scattering.
 #[test]
 fn table_of_albedos_is_current() {
     let mut table = String::new();
@@ -186,7 +196,8 @@ fn table_of_albedos_is_current() {
     assert!(page.contains(&table), "docs/microfacet.md should hold:\n{table}");
 }
 
-/// The second: the largest relative error of each form in f32 within five alpha of a normal along z.
+/// Checks the second table: the largest relative error of each form in f32 within five alpha of a
+/// normal along z.
 #[test]
 fn table_of_errors_is_current() {
     let mut table = String::new();

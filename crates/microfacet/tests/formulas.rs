@@ -1,4 +1,5 @@
-//! `wgsl/microfacet.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-microfacet`.
+//! Device tests of every function of `wgsl/microfacet.wgsl` and its naive forms:
+//! `cargo test -p lapidary-microfacet`.
 
 use lapidary_microfacet::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/optical_path.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/optical_path.wgsl`.
 
 mod outside;
 
@@ -12,7 +12,7 @@ const M: &str = "optical_path";
 /// A few units in the last place of f32.
 const ROUNDING: f64 = 16.0 / (1 << 24) as f64;
 
-/// Costs: ordinary ones, 0, every magnitude, about unreached, unreached, and above it.
+/// Draws a cost: ordinary, 0, every magnitude, near unreached, unreached, and above it.
 fn cost(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => draws.pick(&[0.0, OPTICAL_PATH_UNREACHED, 3e38, OPTICAL_PATH_UNREACHED.next_down()]),
@@ -22,7 +22,7 @@ fn cost(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Extinctions: ordinary ones, none, every magnitude.
+/// Draws an extinction: ordinary, 0, every magnitude.
 fn extinction(draws: &mut Draws<'_>) -> f32 {
     match draws.below(5) {
         0 => draws.pick(&[0.0, 1e-8, 1e8, 1e15]),
@@ -31,7 +31,7 @@ fn extinction(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Lengths and offsets, 0 among them.
+/// Draws a length or an offset, including 0.
 fn length(draws: &mut Draws<'_>) -> f32 {
     match draws.below(5) {
         0 => draws.pick(&[1.0, 0.0, 1e14]),
@@ -40,7 +40,7 @@ fn length(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Shares of irradiance: anywhere in [0, 1], next to 1 and next to nothing, out of range.
+/// Draws a share of irradiance: anywhere in [0, 1], next to 1, next to 0, and out of range.
 fn share(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 0.0, -1.0, 2.0, 1e-40, OPTICAL_PATH_DARKEST, 1.0f32.next_up(), 1.0f32.next_down()]),
@@ -51,8 +51,9 @@ fn share(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// The least neighbours on three axes and the slowness: neighbours apart by about the slowness, by every magnitude, alike, unreached; on top of
-/// costs from none to ones that swallow the slowness; in every order.
+/// Draws the least neighbours on three axes, and the slowness. The neighbours differ by about the
+/// slowness, by every magnitude, or not at all, or are unreached, in every order. They are on top
+/// of costs from 0 to values that swallow the slowness.
 fn upwind(draws: &mut Draws<'_>) -> (Vec3, f32) {
     let slowness = match draws.below(6) {
         0 => draws.pick(&[1.0, 0.0, 1e-30, 1e15]),
@@ -71,7 +72,7 @@ fn upwind(draws: &mut Draws<'_>) -> (Vec3, f32) {
         0 => 0.0,
         1 => OPTICAL_PATH_UNREACHED,
         2 => slowness * draws.magnitude(-20, 4),
-        // About where an axis begins to count.
+        // Near the rise at which an axis begins to count.
         3 => slowness * draws.between(0.69, 0.72),
         4 => slowness * draws.between(0.98, 1.02),
         _ => slowness * draws.between(0.0, 1.2),
@@ -82,12 +83,13 @@ fn upwind(draws: &mut Draws<'_>) -> (Vec3, f32) {
     (if draws.below(16) == 0 { Vec3::splat(OPTICAL_PATH_UNREACHED) } else { Vec3::from(least) }, slowness)
 }
 
-/// Where the quadratic formula does well.
+/// Draws an input for which the quadratic formula is accurate.
 fn benign_upwind(draws: &mut Draws<'_>) -> (Vec3, f32) {
     (2.0 * Vec3::new(draws.unit() as f32, draws.unit() as f32, draws.unit() as f32), draws.between(0.5, 2.0))
 }
 
-/// How much of the slowness the update adds to the least neighbour: 1, 1/√2 and 1/√3 with one, two and three alike.
+/// Checks the share of the slowness that the update adds to the least neighbour: 1, 1/√2 and 1/√3
+/// for one, two and three equal neighbours.
 fn rise_within_bounds((least, slowness): (Vec3, f32), cost: f32) -> Result<(), String> {
     let first = f64::from(least.min_element());
     let (slowness, cost) = (f64::from(slowness), f64::from(cost));
@@ -102,7 +104,8 @@ fn rise_within_bounds((least, slowness): (Vec3, f32), cost: f32) -> Result<(), S
     }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -112,7 +115,7 @@ fn functions() -> Vec<Formula> {
     [on_graphs(), on_grids(), of_light()].into_iter().flatten().collect()
 }
 
-/// Edges, relaxation, encoding.
+/// Returns the formulas for edges, relaxation and encoding.
 fn on_graphs() -> Vec<Formula> {
     vec![
         formula(M, "optical_path_edge", mirror::edge, oracle::edge, |draws| {
@@ -173,7 +176,7 @@ fn on_graphs() -> Vec<Formula> {
                     -f32::NAN,
                     -1.0,
                     f32::MIN,
-                    // The last NaN without a sign, and the first with one.
+                    // The last NaN without a sign bit, and the first with one.
                     f32::from_bits(0x7fff_ffff),
                     f32::from_bits(0xff80_0001),
                 ]),
@@ -214,7 +217,7 @@ fn on_graphs() -> Vec<Formula> {
     ]
 }
 
-/// Godunov's update.
+/// Returns the formulas for Godunov's update.
 fn on_grids() -> Vec<Formula> {
     let f = 0.01f32;
     let alike = |cost: f32, count: f64| [f64::from(cost) + f64::from(f) / count.sqrt()];
@@ -248,7 +251,7 @@ fn on_grids() -> Vec<Formula> {
                 "four times as far at four times the cost",
                 |(least, slowness)| (4.0 * least, 4.0 * slowness),
                 |(least, slowness), once: f32, four: f32| {
-                    // Unreached stays what it is; so small a slowness is rounded otherwise.
+                    // Unreached does not scale, and a slowness this small rounds differently.
                     if least.max_element() > 1e29 || slowness < 1e-35 {
                         return Ok(());
                     }
@@ -270,7 +273,8 @@ fn on_grids() -> Vec<Formula> {
             .hard_case(
                 "a radicand that rounding makes negative",
                 (Vec3::new(1000.1, 1000.1625, OPTICAL_PATH_UNREACHED), 0.125),
-                // With d = 1/16 between them, half of d + √(2 slowness² - d²) above the lesser.
+                // With d = 1/16 between the two, the cost is half of d + √(2 slowness² - d²) above
+                // the lesser.
                 (&[f64::from(1000.1f32) + 0.5 * (0.0625 + (2.0 * 0.125f64.powi(2) - 0.0625f64.powi(2)).sqrt())], 7e-5),
                 ("optical_path_godunov_naive", f64::INFINITY),
             )
@@ -287,7 +291,7 @@ fn on_grids() -> Vec<Formula> {
     ]
 }
 
-/// What enters, what is looked up, what is seen.
+/// Returns the formulas for light that enters, for the lookup and for luminance.
 fn of_light() -> Vec<Formula> {
     vec![
         formula(M, "optical_path_seed", mirror::seed, oracle::seed, |draws| {

@@ -3,21 +3,21 @@
 use crate::{OPTICAL_PATH_UNREACHED, decode, edge, edge_paper, encode, godunov, relax};
 use glam::{IVec3, UVec3, Vec3};
 
-/// A cube of voxels with its matter. Voxel (x, y, z) has the number x + cells (y + cells z).
+/// A cube of voxels and its matter. Voxel (x, y, z) has the index x + cells (y + cells z).
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
-    /// Voxels along an edge.
+    /// Number of voxels along an edge of the cube.
     pub cells: u32,
-    /// A voxel's edge.
+    /// Edge length of a voxel.
     pub spacing: f32,
-    /// Whether there is matter, by voxel.
+    /// Whether there is matter, for each voxel.
     pub matter: &'a [bool],
-    /// At least 0, in the inverse of the spacing's unit, by voxel.
+    /// Extinction of each voxel, at least 0, in the inverse of the spacing's unit.
     pub extinction: &'a [f32],
 }
 
 impl Body<'_> {
-    /// The voxel's number, where it lies in the cube and holds matter.
+    /// Returns the index of a voxel; `None` if it lies outside of the cube or holds no matter.
     pub fn node(&self, voxel: IVec3) -> Option<usize> {
         let cells = self.cells as i32;
         let inside = voxel.cmpge(IVec3::ZERO).all() && voxel.cmplt(IVec3::splat(cells)).all();
@@ -25,13 +25,14 @@ impl Body<'_> {
         index.filter(|index| self.matter[*index])
     }
 
-    /// The voxel with this number.
+    /// Returns the voxel with this index.
     pub fn voxel(&self, index: usize) -> IVec3 {
         let (index, cells) = (index as u32, self.cells);
         UVec3::new(index % cells, index / cells % cells, index / cells / cells).as_ivec3()
     }
 
-    /// The neighbours of a voxel by its stencil of 6, 18 or 26, with the lengths of the edges to them.
+    /// Returns the neighbours of a voxel in a stencil of 6, 18 or 26, with the lengths of the edges
+    /// to them.
     pub fn neighbours(&self, index: usize, stencil: u32) -> impl Iterator<Item = (usize, f32)> + '_ {
         let voxel = self.voxel(index);
         (0..27).filter_map(move |place: i32| {
@@ -44,13 +45,13 @@ impl Body<'_> {
     }
 }
 
-/// What a solve begins from: nothing but costs, and those in matter alone.
+/// Returns the costs from which a solve begins: valid ones in matter, unreached elsewhere.
 pub fn seeded(body: &Body<'_>, seeds: &[f32]) -> Vec<f32> {
     let costs = seeds.iter().zip(body.matter);
     costs.map(|(seed, matter)| if *matter { decode(encode(*seed)) } else { OPTICAL_PATH_UNREACHED }).collect()
 }
 
-/// One pass in which every voxel takes the least that its neighbours offer.
+/// Runs one pass in which every voxel takes the least cost that its neighbours offer.
 pub fn pull(body: &Body<'_>, stencil: u32, costs: &[f32]) -> Vec<f32> {
     let node = |(index, cost): (usize, &f32)| {
         if !body.matter[index] {
@@ -64,7 +65,8 @@ pub fn pull(body: &Body<'_>, stencil: u32, costs: &[f32]) -> Vec<f32> {
     costs.iter().enumerate().map(node).collect()
 }
 
-/// One pass of the paper's: the voxels in `written` offer their costs; returned are those that took an offer.
+/// Runs one pass of the paper's method: the voxels in `written` offer their costs. Returns the
+/// voxels that took an offer.
 pub fn push(body: &Body<'_>, costs: &mut [f32], written: &[usize]) -> Vec<usize> {
     let mut lowered = Vec::new();
     for &index in written {
@@ -82,8 +84,9 @@ pub fn push(body: &Body<'_>, costs: &mut [f32], written: &[usize]) -> Vec<usize>
     lowered
 }
 
-/// One pass of Godunov's update over all voxels, each from what those before it have become, in order of their numbers or in reverse.
-/// Returns the largest change, in units of the cost where that is above 1.
+/// Runs one pass of Godunov's update over all voxels, in the order of their indices or in reverse.
+/// Each voxel uses the new costs of those before it. Returns the largest change, in units of the
+/// cost if the cost is above 1.
 pub fn upwind(body: &Body<'_>, costs: &mut [f32], reversed: bool) -> f32 {
     let mut change: f32 = 0.0;
     for step in 0..costs.len() {

@@ -1,5 +1,6 @@
-//! Rust mirror of `wgsl/optical_path.wgsl`, line by line: the path of least optical depth from the light to every voxel of a
-//! body. Units, domain and accuracy stand above the WGSL functions.
+//! Mirror of `wgsl/optical_path.wgsl`: the path of least optical depth from the light to every
+//! voxel of a body. The WGSL file states the units, domain and accuracy of each function. This file
+//! follows it line by line.
 //!
 //! ```
 //! use glam::Vec3;
@@ -20,28 +21,28 @@ use glam::Vec3;
 
 /// Cost of a node that no light has reached.
 pub const OPTICAL_PATH_UNREACHED: f32 = 1e30;
-/// Shares below this count as none.
+/// Least share of irradiance; smaller ones count as 0.
 pub const OPTICAL_PATH_DARKEST: f32 = 1.1754943508222875e-38;
-/// From this cost on luminance is 0.
+/// Cost from which luminance is 0.
 pub const OPTICAL_PATH_DEEPEST: f32 = 87.3;
 
-/// Cost of the edge between two nodes: the mean of their extinctions times its length.
+/// Returns the cost of the edge between two nodes: the mean of their extinctions times its length.
 pub fn edge(extinction_a: f32, extinction_b: f32, length: f32) -> f32 {
     0.5 * (extinction_a + extinction_b) * length
 }
 
-/// Cost of an edge as it stands in the paper: the extinction, whatever the edge's length.
+/// Returns the cost of an edge as in the paper: the extinction, whatever the edge's length.
 pub fn edge_paper(extinction_a: f32, extinction_b: f32) -> f32 {
     0.5 * (extinction_a + extinction_b)
 }
 
-/// Cost of a node once the way through one neighbour is known.
+/// Returns the cost of a node once the path through one neighbour is known.
 pub fn relax(cost: f32, neighbour: f32, edge: f32) -> f32 {
     let through = if neighbour < OPTICAL_PATH_UNREACHED { neighbour + edge } else { OPTICAL_PATH_UNREACHED };
     if through < cost { through } else { cost }
 }
 
-/// Cost of a node as the Eikonal equation has it, by Godunov's upwind differences.
+/// Returns the cost of a node by the Eikonal equation, with Godunov's upwind differences.
 pub fn godunov(least: Vec3, slowness: f32) -> f32 {
     let low = least.x.min(least.y);
     let high = least.x.max(least.y);
@@ -57,7 +58,7 @@ pub fn godunov(least: Vec3, slowness: f32) -> f32 {
     (first + slowness * three).min(OPTICAL_PATH_UNREACHED)
 }
 
-/// The same by the quadratic formula in T itself, case by case.
+/// Computes the same by the quadratic formula in T itself, case by case.
 pub fn godunov_naive(least: Vec3, slowness: f32) -> f32 {
     let low = least.x.min(least.y);
     let high = least.x.max(least.y);
@@ -79,7 +80,7 @@ pub fn godunov_naive(least: Vec3, slowness: f32) -> f32 {
     (sum + (sum * sum - 3.0 * (squares - slowness * slowness)).sqrt()) / 3.0
 }
 
-/// A cost as bits that are ordered as costs are.
+/// Returns a cost as bits that are ordered as costs are.
 pub fn encode(cost: f32) -> u32 {
     let bits = cost.to_bits();
     let reached = bits.min(0x7149_f2ca);
@@ -87,12 +88,12 @@ pub fn encode(cost: f32) -> u32 {
     if negative { 0 } else { reached }
 }
 
-/// The cost that was encoded.
+/// Returns the cost that was encoded.
 pub fn decode(bits: u32) -> f32 {
     f32::from_bits(bits.min(0x7149_f2ca))
 }
 
-/// Cost of a node that light enters near.
+/// Returns the cost of a node near which light enters.
 pub fn seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
     if irradiance_share < OPTICAL_PATH_DARKEST {
         return OPTICAL_PATH_UNREACHED;
@@ -100,17 +101,17 @@ pub fn seed(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
     (-irradiance_share.ln()).max(0.0) + extinction * offset
 }
 
-/// The same as one writes it.
+/// Computes the same as usually written.
 pub fn seed_naive(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
     -irradiance_share.ln() + extinction * offset
 }
 
-/// Cost of a point by way of a node.
+/// Returns the cost of a point reached through a node.
 pub fn through(cost: f32, extinction: f32, offset: f32) -> f32 {
     (cost.min(OPTICAL_PATH_UNREACHED) + extinction * offset).min(OPTICAL_PATH_UNREACHED)
 }
 
-/// Light that comes along the path, as a share of the largest irradiance.
+/// Returns the light that arrives along the path, as a share of the largest irradiance.
 pub fn luminance(cost: f32) -> f32 {
     if cost <= 0.0 {
         return 1.0;

@@ -1,5 +1,6 @@
-//! The truth in f64. Godunov's update is found by bisection of its defining equation; a cost's bits by its exponent and mantissa. Shortest
-//! paths are Dijkstra's, with a heap, in any precision; the ball's are a search over the points where light may enter.
+//! Exact results in f64. Godunov's update comes from a bisection of its defining equation, the bits
+//! of a cost from its exponent and mantissa. Shortest paths come from Dijkstra's algorithm with a
+//! heap, in any precision; on the ball, from a search over the points where light may enter.
 
 use crate::kernels::Body;
 use glam::DVec3;
@@ -8,30 +9,30 @@ use std::collections::BinaryHeap;
 
 const UNREACHED: f64 = crate::OPTICAL_PATH_UNREACHED as f64;
 
-/// The trapezoidal rule for the extinction along the edge.
+/// Integrates the extinction along the edge by the trapezoidal rule.
 pub fn edge(extinction_a: f64, extinction_b: f64, length: f64) -> f64 {
     extinction_a * length / 2.0 + extinction_b * length / 2.0
 }
 
-/// The mean.
+/// Returns the mean of the extinctions.
 pub fn edge_paper(extinction_a: f64, extinction_b: f64) -> f64 {
     extinction_a / 2.0 + extinction_b / 2.0
 }
 
-/// The least of what is possible.
+/// Returns the least possible cost.
 pub fn relax(cost: f64, neighbour: f64, edge: f64) -> f64 {
     let offers = [cost, if neighbour < UNREACHED { neighbour + edge } else { UNREACHED }];
     offers.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The root of Σ max(w - rise, 0)² = slowness², by bisection, over the least of the costs.
+/// Adds the root of Σ max(w - rise, 0)² = slowness², found by bisection, to the least cost.
 pub fn godunov(least: DVec3, slowness: f64) -> f64 {
     let first = least.min_element();
     let rises = least - first;
     let (mut low, mut high) = (0.0, slowness);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        // In units of the slowness, so that no square leaves f64's range.
+        // In units of the slowness, so that no square leaves the range of f64.
         let sum = rises.map(|rise| ((middle - rise) / slowness).max(0.0).powi(2)).element_sum();
         if sum < 1.0 {
             low = middle;
@@ -42,7 +43,7 @@ pub fn godunov(least: DVec3, slowness: f64) -> f64 {
     (first + high).min(UNREACHED)
 }
 
-/// The exponent and the mantissa, put together.
+/// Combines the exponent and the mantissa.
 pub fn encode(cost: f64) -> u32 {
     if cost.is_nan() || cost >= UNREACHED {
         return encode(UNREACHED.next_down());
@@ -54,33 +55,34 @@ pub fn encode(cost: f64) -> u32 {
     while cost >= 2f64.powi(exponent + 1) {
         exponent += 1;
     }
-    // Below 2⁻¹²⁶ the exponent's bits are 0, and so is the mantissa's leading one.
+    // Below 2⁻¹²⁶ the exponent bits are 0, and so is the leading bit of the mantissa.
     ((exponent + 126) << 23) as u32 + (cost / 2f64.powi(exponent - 23)).round() as u32
 }
 
-/// The number that the bits stand for.
+/// Returns the number that the bits represent.
 pub fn decode(bits: u32) -> f64 {
     let cost = f64::from(f32::from_bits(bits));
     if cost.is_sign_negative() { UNREACHED } else { cost.min(UNREACHED) }
 }
 
-/// -ln of the share, and the way.
+/// Returns -ln of the share plus the optical depth of the path.
 pub fn seed(irradiance_share: f64, extinction: f64, offset: f64) -> f64 {
     if irradiance_share < f64::from(f32::MIN_POSITIVE) {
         return UNREACHED;
     }
-    // In two halves, and near 1 from what is missing to it, so that no digit is lost.
+    // The logarithm is computed in two halves, and near 1 from the difference to 1, so that no
+    // digit is lost.
     let root = irradiance_share.min(1.0).sqrt();
     let half = if root > 0.5 { (root - 1.0).ln_1p() } else { root.ln() };
     extinction * offset - 2.0 * half
 }
 
-/// The sum, as far as light reaches.
+/// Returns the sum, at most unreached.
 pub fn through(cost: f64, extinction: f64, offset: f64) -> f64 {
     if cost >= UNREACHED { UNREACHED } else { (cost + extinction * offset).min(UNREACHED) }
 }
 
-/// The exponential, by equal layers.
+/// Computes the exponential in equal layers.
 pub fn luminance(cost: f64) -> f64 {
     if cost >= f64::from(crate::OPTICAL_PATH_DEEPEST) {
         return 0.0;
@@ -88,11 +90,11 @@ pub fn luminance(cost: f64) -> f64 {
     (-cost.max(0.0) / 128.0).exp().powi(128)
 }
 
-/// A number that paths' costs are added up in.
+/// A number type in which the costs of paths are summed.
 pub trait Number: Copy + PartialOrd {
-    /// What no path reaches.
+    /// Returns the cost of a node that no path reaches.
     fn unreached() -> Self;
-    /// The cost after an edge between nodes of these extinctions, `length` long.
+    /// Returns the cost after an edge of this `length` between nodes of these extinctions.
     fn after(self, extinctions: [f32; 2], length: f32) -> Self;
 }
 
@@ -115,7 +117,7 @@ impl Number for f64 {
     }
 }
 
-/// A cost in the heap; none is a NaN.
+/// A cost in the heap, never a NaN.
 struct Ordered<N>(N, usize);
 
 impl<N: PartialOrd> PartialEq for Ordered<N> {
@@ -135,7 +137,8 @@ impl<N: PartialOrd> Ord for Ordered<N> {
     }
 }
 
-/// Dijkstra's algorithm on the graph of a body: the least cost of every voxel, from its seeds, along edges of the stencil.
+/// Runs Dijkstra's algorithm on the graph of a body: returns the least cost of every voxel, from
+/// its seeds, along edges of the stencil.
 pub fn dijkstra<N: Number>(body: &Body<'_>, stencil: u32, seeds: &[N]) -> Vec<N> {
     let mut costs: Vec<N> = vec![N::unreached(); seeds.len()];
     let mut heap = BinaryHeap::new();
@@ -160,14 +163,16 @@ pub fn dijkstra<N: Number>(body: &Body<'_>, stencil: u32, seeds: &[N]) -> Vec<N>
     costs
 }
 
-/// Least cost at a point of a homogeneous ball of optical radius `radius` under parallel light, `distance` optical depths from the
-/// centre and at the angle `angle` in radians from the light: light enters at the angle α, at the cost of -ln cos α.
+/// Returns the least cost at a point of a homogeneous ball of optical radius `radius` under
+/// parallel light, `distance` optical depths from the centre and at the angle `angle` in radians
+/// from the light. Light enters at the angle α, at the cost -ln cos α.
 pub fn ball(radius: f64, distance: f64, angle: f64) -> f64 {
     let cost = |alpha: f64| {
         let chord = (radius - distance).hypot(2.0 * (radius * distance).sqrt() * (0.5 * (angle - alpha)).sin());
         chord - alpha.cos().ln()
     };
-    // A few hundred places, then the best of them made finer: the function may have two minima.
+    // Tries a thousand places, then refines the best of them, because the function may have two
+    // minima.
     let end = std::f64::consts::FRAC_PI_2;
     let step = end / 512.0;
     let places = (0..1024).map(|place| -end + step * (f64::from(place) + 0.5));
@@ -175,7 +180,7 @@ pub fn ball(radius: f64, distance: f64, angle: f64) -> f64 {
     let (mut low, mut high) = (best - step, best + step);
     for _ in 0..60 {
         let (left, right) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-        // Beyond the terminator the logarithm has no value; what is not less is not taken.
+        // Beyond the terminator the logarithm has no value, and such a place is not taken.
         if cost(left) < cost(right) || cost(right).is_nan() { high = right } else { low = left }
     }
     cost(0.5 * (low + high)).min(cost(best))

@@ -1,10 +1,11 @@
-//! The oracles against each other and against known values, and the whole buffers' mirrors.
+//! Compares the oracles with each other and with known values, and tests the mirrors of whole
+//! buffers.
 
 use super::kernels::{self, Body};
 use super::*;
 use lapidary_assay::extremum::larger;
 
-/// A cube full of matter, one spacing and extinction throughout.
+/// Returns the matter and the extinction of a cube full of uniform matter.
 fn whole(cells: u32) -> (Vec<bool>, Vec<f32>) {
     let count = (cells as usize).pow(3);
     (vec![true; count], vec![1.0; count])
@@ -44,12 +45,12 @@ fn the_ball_is_as_deep_as_it_is_wide_up_to_an_optical_radius_of_two() {
     for radius in [0.1, 1.0, 2.0] {
         assert!((oracle::ball(radius, radius, PI) - 2.0 * radius).abs() < 1e-9, "{radius}");
     }
-    // Beyond, light that enters aside has less of a way.
+    // Beyond that radius, light that enters at the side has a shorter path.
     assert!(oracle::ball(8.0, 8.0, PI) < 16.0 - 1.0);
-    // Where light falls in square, and in the middle.
+    // At normal incidence, and in the centre.
     assert!(oracle::ball(8.0, 8.0, 0.0).abs() < 1e-9);
     assert!((oracle::ball(8.0, 0.0, 1.0) - 8.0).abs() < 1e-9);
-    // As written for the surface: T(θ) = min over α of [2τ sin(|θ-α|/2) - ln cos α].
+    // The formula for the surface: T(θ) = min over α of [2τ sin(|θ-α|/2) - ln cos α].
     for angle in [0.3, 1.2, 2.0, 3.0] {
         let direct = (0..200_000)
             .map(|place| {
@@ -57,7 +58,7 @@ fn the_ball_is_as_deep_as_it_is_wide_up_to_an_optical_radius_of_two() {
                 16.0 * (0.5 * (angle - alpha).abs()).sin() - alpha.cos().ln()
             })
             .fold(f64::INFINITY, f64::min);
-        // At the kink, half a step beside which the nearest place may lie, the slope is τ.
+        // The slope at the kink is τ, and the nearest place may be half a step away from it.
         let above = direct - oracle::ball(8.0, 8.0, angle);
         assert!((-1e-9..7e-5).contains(&above), "{angle}: {above:e}");
     }
@@ -104,11 +105,12 @@ fn the_kernels_end_where_dijkstra_does() {
     while !written.is_empty() {
         written = kernels::push(&body, &mut costs, &written);
     }
-    // An edge one long costs what the paper's does.
+    // An edge of length 1 costs as much as in the paper.
     assert_eq!(costs, oracle::dijkstra(&Body { spacing: 1.0, ..body }, 6, &seeds));
 }
 
-/// A plane front is linear, and of a linear function upwind differences are exact; along edges no path has its direction.
+/// Checks that upwind differences carry a plane front exactly, because it is linear, and that edges
+/// do not, because no path along them has its direction.
 #[test]
 fn godunov_carries_a_plane_front_exactly_and_edges_do_not() {
     let cells = 24;
@@ -119,10 +121,10 @@ fn godunov_carries_a_plane_front_exactly_and_edges_do_not() {
     let seed = |index| if body.voxel(index).min_element() == 0 { front(index) } else { OPTICAL_PATH_UNREACHED };
     let seeds: Vec<f32> = (0..matter.len()).map(seed).collect();
     let mut costs = seeds.clone();
-    // In the order of the voxels' numbers the front has passed all that a voxel asks.
+    // In the order of the voxel indices, the front has passed all neighbours that a voxel uses.
     kernels::upwind(&body, &mut costs, false);
     let worst = |costs: &[f32]| (0..costs.len()).map(|index| (costs[index] - front(index)).abs()).fold(0.0, larger);
-    // Each of 69 steps to the far corner may round thrice.
+    // Each of the 69 steps to the far corner may round three times.
     assert!(worst(&costs) < 200.0 * 2f32.powi(-24) * 50.0, "{}", worst(&costs));
     assert_eq!(kernels::upwind(&body, &mut costs, true), 0.0, "one sweep is enough");
     for (stencil, least) in [(6, 3.0), (18, 1.0), (26, 0.5)] {

@@ -1,4 +1,5 @@
-//! `wgsl/optical_path.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-optical_path`.
+//! Device tests of every function of `wgsl/optical_path.wgsl` and its naive forms:
+//! `cargo test -p lapidary-optical_path`.
 
 use lapidary_optical_path::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/proxy_geometry.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/proxy_geometry.wgsl`.
 
 mod outside;
 
@@ -18,20 +18,23 @@ mirror_struct!(crate, ProxyGeometryFacet { vertex_first, vertex_second, vertex_t
 
 const M: &str = "proxy_geometry";
 
-/// Error that a unit vector's length may have: the sum of three squares and the inputs' rounding, 2⁻²⁴ each.
+/// Error of a unit vector's length: the sum of three squares and the rounding of the inputs, 2⁻²⁴
+/// each.
 const UNIT: f64 = 16.0 / (1 << 24) as f64;
 
-/// The scales of a model: 1 in half of the cases, else any magnitude in which positions and their sums stay finite.
+/// Draws the scale of a model: 1 in half of the cases, otherwise any magnitude in which positions
+/// and their sums stay finite.
 fn size(draws: &mut Draws<'_>, low: i32, high: i32) -> f32 {
     if draws.below(2) == 0 { 1.0 } else { draws.magnitude(low, high) }
 }
 
-/// Positions about the origin, of every size.
+/// Draws a position around the origin, of every size.
 fn position(draws: &mut Draws<'_>) -> Vec3 {
     size(draws, -110, 119) * draws.in_cube()
 }
 
-/// Two edges from one vertex: any angle down to `thinnest` (a sine), lengths up to `ratio` apart, sometimes along the axes.
+/// Draws two edges from one vertex: any angle with a sine down to 2^`thinnest`, lengths up to a
+/// factor of 2^`ratio` apart, sometimes along the axes.
 fn edges(draws: &mut Draws<'_>, thinnest: i32, ratio: i32) -> (DVec3, DVec3) {
     let first = draws.unit_vector().as_dvec3().normalize();
     let across = draws.perpendicular(first);
@@ -44,14 +47,14 @@ fn edges(draws: &mut Draws<'_>, thinnest: i32, ratio: i32) -> (DVec3, DVec3) {
     (first, length * (cosine * first + sine * across))
 }
 
-/// A triangle of any size, thin and fat, not degenerate.
+/// Draws a triangle of any size, thin or fat, not degenerate.
 fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let size = f64::from(size(draws, -95, 95));
     let (first, second) = edges(draws, -19, 6);
     let corner = if draws.below(2) == 0 { DVec3::ZERO } else { draws.in_cube().as_dvec3() };
     let at = |corner: DVec3| [corner, corner + first, corner + second].map(|vertex| (size * vertex).as_vec3());
-    // Away from the origin, rounding of the positions can turn a thin triangle about its long side, or flatten it: kept
-    // where it turns it by less than a hundredth of a radian.
+    // Away from the origin, rounding of the positions can turn a thin triangle about its long side,
+    // or flatten it. Such a triangle is kept if it turns by less than a hundredth of a radian.
     let shifted = at(corner);
     let farthest = shifted.map(|vertex| f64::from(vertex.abs().max_element())).into_iter().fold(0.0, f64::max);
     let shortest = shifted[0]
@@ -62,8 +65,8 @@ fn triangle(draws: &mut Draws<'_>) -> [Vec3; 3] {
     if turn < 0.01 { shifted } else { at(DVec3::ZERO) }
 }
 
-/// A triangle of two corners that are close together and near the origin, and one that is far from both, in any order: the two long edges are
-/// rounded by far more than the short one is long.
+/// Draws a triangle with two corners close together and near the origin, and one far from both, in
+/// any order. The rounding of the two long edges is far larger than the short edge.
 fn far_corner(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let size = size(draws, -60, 60);
     let close = size * draws.magnitude(-30, -2);
@@ -72,11 +75,11 @@ fn far_corner(draws: &mut Draws<'_>) -> [Vec3; 3] {
     let turn = draws.below(3) as usize;
     let mut triangle = [size * far, close * first, close * draws.between(0.0, 1.0) * second];
     triangle.rotate_right(turn);
-    // Where the short edge points at the far corner, or is none, the triangle is too thin.
+    // If the short edge points at the far corner or has length 0, the triangle is too thin.
     if widest_sine(triangle) > 2e-6 { triangle } else { [Vec3::ZERO, Vec3::X * size, Vec3::Y * size] }
 }
 
-/// Sine of the angle between the two shortest edges, in f64.
+/// Returns the sine of the angle between the two shortest edges, in f64.
 fn widest_sine([a, b, c]: [Vec3; 3]) -> f64 {
     let sines = [[a, b, c], [b, c, a], [c, a, b]].map(|[at, next, last]| {
         let opposite = next.as_dvec3().distance(last.as_dvec3());
@@ -90,15 +93,16 @@ fn widest_sine([a, b, c]: [Vec3; 3]) -> f64 {
     sine
 }
 
-/// The shortest edge over the largest coordinate.
+/// Returns the shortest edge over the largest coordinate.
 fn closeness([a, b, c]: [Vec3; 3]) -> f64 {
     let shortest = [(a, b), (b, c), (c, a)].map(|(one, other)| one.as_dvec3().distance(other.as_dvec3()));
     let farthest = [a, b, c].map(|corner| f64::from(corner.abs().max_element())).into_iter().fold(0.0, f64::max);
     shortest.into_iter().fold(f64::INFINITY, f64::min) / farthest
 }
 
-/// How far a triangle's plane tilts at most where each component of its corners is off by `ulps` of the corner's largest: the sum of what
-/// each corner moves by over its height above the opposite edge.
+/// Returns the largest tilt of a triangle's plane if each component of its corners is off by `ulps`
+/// of the corner's largest component: the sum of each corner's movement over its height above the
+/// opposite edge.
 fn tilt(corners: [Vec3; 3], ulps: f64) -> f64 {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
     let doubled_area = (b - a).cross(c - a).length();
@@ -109,14 +113,15 @@ fn tilt(corners: [Vec3; 3], ulps: f64) -> f64 {
     if doubled_area == 0.0 { f64::INFINITY } else { of_corner(a, b, c) + of_corner(b, c, a) + of_corner(c, a, b) }
 }
 
-/// Sine of the angle at the first vertex, in f64.
+/// Returns the sine of the angle at the first vertex, in f64.
 fn thinness([first, second, third]: [Vec3; 3]) -> f64 {
     let [a, b, c] = [first, second, third].map(|vertex| vertex.as_dvec3());
     (b - a).cross(c - a).length() / ((b - a).length() * (c - a).length())
 }
 
-/// A lattice, a point in its plane that is up to a hundred cells away, on an edge or a vertex in half of the cases, but for
-/// thin lattices, where a point's own rounding moves it by more than a cell is wide.
+/// Draws a lattice and a point in its plane, up to a hundred cells away. In half of the cases the
+/// point is on an edge or a vertex, except for thin lattices, in which its own rounding moves it by
+/// more than the width of a cell.
 fn lattice_point(draws: &mut Draws<'_>) -> (ProxyGeometryPlane, Vec3) {
     let size = f64::from(size(draws, -90, 90));
     let (first, second) = edges(draws, -9, 3);
@@ -147,7 +152,8 @@ fn lattice_point(draws: &mut Draws<'_>) -> (ProxyGeometryPlane, Vec3) {
     (plane, point.as_vec3())
 }
 
-/// A ray and a plane: ahead, behind, through the start, parallel, and at the limit of what counts as parallel.
+/// Draws a ray and a plane: ahead, behind, through the start, parallel, and at the limit of
+/// parallel.
 fn ray_and_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let size = size(draws, -60, 60);
     let normal = draws.unit_vector();
@@ -170,7 +176,7 @@ fn ray_and_plane(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     (position, direction, plane_point, normal)
 }
 
-/// A stone's centre, a tile and the ray that meets it.
+/// Draws a stone's centre, a tile and the ray that meets it.
 fn tile_and_ray(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3, Vec3) {
     let [first, second, third] = triangle(draws);
     let centroid = (first.as_dvec3() + second.as_dvec3() + third.as_dvec3()) / 3.0;
@@ -183,7 +189,7 @@ fn tile_and_ray(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3, Vec3) {
     (centre, first, second, third, draws.unit_vector())
 }
 
-/// Tiles of ordinary size, where the squares that the usual form takes stay in range.
+/// Draws a tile of ordinary size, for which the squares of the usual form stay in range.
 fn ordinary_tile(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let vertex = |draws: &mut Draws<'_>| draws.in_cube();
     let tile = (vertex(draws), vertex(draws), vertex(draws));
@@ -191,7 +197,8 @@ fn ordinary_tile(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     (centre, tile.0, tile.1, tile.2)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -252,7 +259,7 @@ fn plane_formulas() -> Vec<Formula> {
     ]
 }
 
-/// The normal of a triangle whose edges f64 holds, as one writes it.
+/// Computes the straightforward form of the normal of a triangle whose edges are exact in f64.
 fn far_normal(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     (b - a).cross(c - a).normalize().to_array()
@@ -292,8 +299,9 @@ fn normal_formulas() -> Vec<Formula> {
         .pair(
             "the other winding turns it round",
             |(a, b, c)| (a, c, b),
-            // Of two longest edges that are as long as each other either may be left out: each normal then has roundings of its own, 6 ulp of
-            // each corner by the accuracy line besides those of its length.
+            // If the two longest edges are equally long, either may be left out. Each normal then
+            // has its own rounding errors: 6 ulp of each corner by the accuracy line, in addition
+            // to the error of its length.
             |(a, b, c), normal: Vec3, other: Vec3| {
                 let mut sizes = [a - b, b - c, c - a].map(|edge| edge.abs().max_element());
                 sizes.sort_by(f32::total_cmp);
@@ -471,10 +479,10 @@ fn lattice_formulas() -> Vec<Formula> {
             match draws.below(16) {
                 0 => (point, plane.origin, Vec3::ZERO, Vec3::ZERO),
                 1 => (point, plane.origin, plane.edge_first, plane.edge_first),
-                // Degenerate in a way that no rounding of the input mends.
+                // Degenerate under every rounding of the input.
                 3 => (point, plane.origin, plane.edge_first, Vec3::ZERO),
                 2 => {
-                    // About the limit of what counts as degenerate, |e1 × e2| = 2⁻¹⁸.
+                    // Near the limit of degenerate triangles, |e1 × e2| = 2⁻¹⁸.
                     let thin = 2f32.powi(-18) * draws.between(0.95, 1.05);
                     (Vec3::new(0.5, 0.25 * thin, 0.0), Vec3::ZERO, Vec3::X, Vec3::new(0.0, thin, 0.0))
                 }
@@ -551,7 +559,8 @@ fn lattice_formulas() -> Vec<Formula> {
         )
         .build(),
         formula(M, "proxy_geometry_cell_naive", mirror::cell_naive, oracle::cell, |draws| {
-            // Within a half of a cell, at a hundredth of the cell or more from its edges, or on the diagonal where f32 holds it.
+            // Inside one half of a cell, at least a 400th of the cell from its edges, or on the
+            // diagonal at points that f32 holds exactly.
             let whole = Vec2::new(draws.below(41) as f32 - 20.0, draws.below(41) as f32 - 20.0);
             let (first, share) = (draws.between(0.02, 0.95), draws.between(0.05, 0.9));
             if draws.below(8) == 0 {
@@ -565,7 +574,7 @@ fn lattice_formulas() -> Vec<Formula> {
         .build(),
         formula(M, "proxy_geometry_facet", mirror::facet, oracle::facet, |draws| {
             let (plane, _) = lattice_point(draws);
-            // Next to the image in a part of the cases, so that every run meets the image itself.
+            // Next to the image in some of the cases, so that every run draws the image itself.
             let most = draws.pick(&[1, 100, 100, 100]);
             let step = |draws: &mut Draws<'_>| draws.below(2 * most + 1) as i32 - most as i32;
             (plane, ProxyGeometryCell { steps: IVec2::new(step(draws), step(draws)), turned: draws.below(2) == 1 })

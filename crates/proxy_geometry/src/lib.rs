@@ -1,7 +1,8 @@
-//! Mirror of `wgsl/proxy_geometry.wgsl`: the inside of a gem guessed from the one triangle that a ray enters by. Imagire,
-//! "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9).
+//! Mirror of `wgsl/proxy_geometry.wgsl`: the inside of a gem guessed from the one triangle that a
+//! ray enters by. Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9).
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! The WGSL file states the units, domain and accuracy of each function. This file follows it line
+//! by line.
 //!
 //! ```
 //! use glam::{Vec3, vec3};
@@ -17,34 +18,34 @@ pub mod oracle;
 
 use glam::{IVec2, Vec2, Vec3};
 
-/// A triangle's image through the centre: one tile of plane P, and the lattice of all tiles.
+/// The image of a triangle through the centre: one tile of plane P, and the lattice of all tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryPlane {
     /// Image of the triangle's first vertex.
     pub origin: Vec3,
-    /// From there to the image of the second vertex.
+    /// Edge from `origin` to the image of the second vertex.
     pub edge_first: Vec3,
-    /// And to the image of the third.
+    /// Edge from `origin` to the image of the third vertex.
     pub edge_second: Vec3,
 }
 
-/// Where a ray meets a plane.
+/// Intersection of a ray with a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryHit {
-    /// Where the ray meets the plane; where it started, on a miss.
+    /// Intersection of the ray with the plane; on a miss, the start of the ray.
     pub point: Vec3,
-    /// Along the ray, in units of its direction's length; 0 on a miss.
+    /// Distance along the ray, in units of its direction's length; 0 on a miss.
     pub distance: f32,
-    /// False where the plane is behind the ray, through its start, or parallel to it.
+    /// False if the plane is behind the ray, passes through its start, or is parallel to it.
     pub hit: bool,
 }
 
-/// Which tile of plane P.
+/// Position of a tile in the lattice of plane P.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProxyGeometryCell {
     /// Whole lattice steps along the two edges.
     pub steps: IVec2,
-    /// Whether it is the cell's other half: the image turned by a half turn.
+    /// True for the other half of the cell: the image rotated by half a turn.
     pub turned: bool,
 }
 
@@ -59,15 +60,15 @@ pub struct ProxyGeometryFacet {
     pub vertex_third: Vec3,
 }
 
-/// A ray nearer than this to parallel (the sine of its angle to the plane) misses.
+/// Sine of the angle between ray and plane up to which the ray counts as parallel and misses.
 pub const PROXY_GEOMETRY_PARALLEL: f32 = 9.536_743_164_062_5e-7;
 
-/// Image of a point through the centre of the proxy.
+/// Returns the image of a point through the centre of the proxy.
 pub fn image(centre: Vec3, position: Vec3) -> Vec3 {
     2.0 * centre - position
 }
 
-/// Plane P and its lattice from a triangle and the centre.
+/// Returns plane P and its lattice, from a triangle and the centre.
 pub fn plane(centre: Vec3, position_first: Vec3, position_second: Vec3, position_third: Vec3) -> ProxyGeometryPlane {
     ProxyGeometryPlane {
         origin: image(centre, position_first),
@@ -76,7 +77,7 @@ pub fn plane(centre: Vec3, position_first: Vec3, position_second: Vec3, position
     }
 }
 
-/// Unit normal of a triangle, zero for a degenerate one.
+/// Returns the unit normal of a triangle; zero for a degenerate triangle.
 pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
     let edge_first = position_second - position_first;
     let edge_second = position_third - position_second;
@@ -84,11 +85,12 @@ pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: 
     let size_first = edge_first.x.abs().max(edge_first.y.abs()).max(edge_first.z.abs());
     let size_second = edge_second.x.abs().max(edge_second.y.abs()).max(edge_second.z.abs());
     let size_third = edge_third.x.abs().max(edge_third.y.abs()).max(edge_third.z.abs());
-    // A subnormal may be flushed where it is divided by.
+    // A subnormal divisor may be flushed to 0.
     if size_first.min(size_second).min(size_third) < 1.2e-38 {
         return Vec3::ZERO;
     }
-    // The two edges in turn that follow the longest: the cross product of any two in turn is the same.
+    // The two edges that follow the longest one in cyclic order. The cross product of any two
+    // consecutive edges is the same.
     let mut first = edge_first / size_first;
     let mut second = edge_second / size_second;
     if size_first >= size_second.max(size_third) {
@@ -106,12 +108,12 @@ pub fn face_normal(position_first: Vec3, position_second: Vec3, position_third: 
     perpendicular / squared.sqrt()
 }
 
-/// The normal as one writes it.
+/// Computes the straightforward form of the normal: normalize(cross).
 pub fn face_normal_naive(position_first: Vec3, position_second: Vec3, position_third: Vec3) -> Vec3 {
     (position_second - position_first).cross(position_third - position_first).normalize()
 }
 
-/// Where a ray meets the plane through `plane_point` with unit normal `normal`.
+/// Intersects a ray with the plane through `plane_point` with unit normal `normal`.
 pub fn intersect(position: Vec3, direction: Vec3, plane_point: Vec3, normal: Vec3) -> ProxyGeometryHit {
     let slope = normal.dot(direction);
     let height = normal.dot(plane_point - position);
@@ -122,13 +124,13 @@ pub fn intersect(position: Vec3, direction: Vec3, plane_point: Vec3, normal: Vec
     ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
 }
 
-/// The intersection without its cases.
+/// Computes the intersection without the special cases.
 pub fn intersect_naive(position: Vec3, direction: Vec3, plane_point: Vec3, normal: Vec3) -> ProxyGeometryHit {
     let distance = normal.dot(plane_point - position) / normal.dot(direction);
     ProxyGeometryHit { point: position + distance * direction, distance, hit: true }
 }
 
-/// Coordinates of a point of plane P on the lattice.
+/// Returns the lattice coordinates of a point of plane P.
 pub fn coordinates(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec3) -> Vec2 {
     let extent = edge_first.abs().max(edge_second.abs());
     let size = extent.x.max(extent.y).max(extent.z);
@@ -140,14 +142,15 @@ pub fn coordinates(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec
     let second = edge_second / size;
     let perpendicular = first.cross(second);
     let squared = perpendicular.dot(perpendicular);
-    // 2^-36, the square of the limit stated above: what rounding leaves of two edges that are one is less.
+    // 2^-36, the square of the limit that the WGSL states. If the two edges lie on one line,
+    // rounding leaves less than this.
     if squared < 1.455_191_522_836_685_2e-11 {
         return Vec2::ZERO;
     }
     Vec2::new(offset.cross(second).dot(perpendicular), first.cross(offset).dot(perpendicular)) / squared
 }
 
-/// The coordinates by the Gram matrix of the edges.
+/// Computes the coordinates from the Gram matrix of the edges.
 pub fn coordinates_naive(point: Vec3, origin: Vec3, edge_first: Vec3, edge_second: Vec3) -> Vec2 {
     let offset = point - origin;
     let first_first = edge_first.dot(edge_first);
@@ -161,25 +164,25 @@ pub fn coordinates_naive(point: Vec3, origin: Vec3, edge_first: Vec3, edge_secon
     ) / (first_first * second_second - first_second * first_second)
 }
 
-/// The tile that holds a point of plane P.
+/// Returns the tile that contains a point of plane P.
 pub fn cell(coordinates: Vec2) -> ProxyGeometryCell {
     let corner = coordinates.floor();
     let within = coordinates - corner;
     let short = (corner + 1.0) - coordinates;
-    // within.x + within.y > 1, twice: near a vertex one of the two sides rounds to 1, and the other way round keeps its digits: the one whose
-    // sides are smaller.
+    // within.x + within.y > 1, in two forms. Near a vertex a side of one form rounds to 1, and the
+    // other form keeps its digits: the one with the smaller sides.
     let turned = if within.y + short.x < within.x + short.y { within.y > short.x } else { within.x > short.y };
     ProxyGeometryCell { steps: corner.as_ivec2(), turned }
 }
 
-/// The tile by the sum of the fractions, as one writes it.
+/// Computes the tile from the sum of the fractions, the straightforward form.
 pub fn cell_naive(coordinates: Vec2) -> ProxyGeometryCell {
     let corner = coordinates.floor();
     let within = coordinates - corner;
     ProxyGeometryCell { steps: corner.as_ivec2(), turned: within.x + within.y > 1.0 }
 }
 
-/// The vertices of a tile, each from its own place on the lattice.
+/// Returns the vertices of a tile, each computed from its own lattice position.
 pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     // The turned half starts at the far corner of the cell and runs backwards along both edges.
     let corner = cell.steps.as_vec2() + if cell.turned { 1.0 } else { 0.0 };
@@ -191,7 +194,7 @@ pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometr
     }
 }
 
-/// Normal of a tile, eq. (8) and (9), turned so that it faces the ray.
+/// Returns the normal of a tile, eq. (8) and (9), flipped if necessary to face the ray.
 pub fn facet_normal(
     centre: Vec3,
     vertex_first: Vec3,
@@ -209,12 +212,12 @@ pub fn facet_normal(
     if normal.dot(direction) > 0.0 { -normal } else { normal }
 }
 
-/// Eq. (8) and (9) as they stand.
+/// Computes eq. (8) and (9) exactly as written.
 pub fn facet_normal_naive(centre: Vec3, vertex_first: Vec3, vertex_second: Vec3, vertex_third: Vec3) -> Vec3 {
     (centre - (vertex_first + vertex_second + vertex_third) / 3.0).normalize()
 }
 
-/// The plane that a ray meets after it was reflected at a tile.
+/// Returns the plane that a ray meets after reflection at a tile.
 pub fn next_plane(centre: Vec3, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
     plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third)
 }

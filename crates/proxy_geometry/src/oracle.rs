@@ -1,37 +1,38 @@
-//! The truth in f64, by other geometry than the mirror's: the point reflection as a midpoint, normals by Gram and Schmidt,
-//! the intersection by bisection of the signed height, lattice coordinates by Cramer's rule in an orthonormal frame of the
-//! plane, the tile by a search over the lattice.
+//! Exact results in f64, by other geometry than the mirror's: the point reflection as a midpoint,
+//! normals by the Gram-Schmidt process, the intersection by bisection of the signed height, lattice
+//! coordinates by Cramer's rule in an orthonormal frame of the plane, the tile by a search over the
+//! lattice.
 
 use glam::{DMat2, DMat3, DVec2, DVec3, IVec2};
 
-/// A triangle's image through the centre.
+/// The image of a triangle through the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryPlane {
     /// Image of the triangle's first vertex.
     pub origin: DVec3,
-    /// From there to the image of the second vertex.
+    /// Edge from `origin` to the image of the second vertex.
     pub edge_first: DVec3,
-    /// And to the image of the third.
+    /// Edge from `origin` to the image of the third vertex.
     pub edge_second: DVec3,
 }
 
-/// Where a ray meets a plane.
+/// Intersection of a ray with a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyGeometryHit {
-    /// Where, or the start on a miss.
+    /// Intersection of the ray with the plane; on a miss, the start of the ray.
     pub point: DVec3,
-    /// Along the ray; 0 on a miss.
+    /// Distance along the ray; 0 on a miss.
     pub distance: f64,
-    /// Whether it does.
+    /// True if the ray meets the plane.
     pub hit: bool,
 }
 
-/// Which tile of plane P.
+/// Position of a tile in the lattice of plane P.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProxyGeometryCell {
     /// Whole lattice steps along the two edges.
     pub steps: IVec2,
-    /// Whether it is the cell's other half.
+    /// True for the other half of the cell.
     pub turned: bool,
 }
 
@@ -46,12 +47,12 @@ pub struct ProxyGeometryFacet {
     pub vertex_third: DVec3,
 }
 
-/// The point of which `centre` is the midpoint with `position`.
+/// Returns the point whose midpoint with `position` is `centre`.
 pub fn image(centre: DVec3, position: DVec3) -> DVec3 {
     centre + (centre - position)
 }
 
-/// Edges as differences of images.
+/// Computes the edges as differences of images.
 pub fn plane(
     centre: DVec3,
     position_first: DVec3,
@@ -63,7 +64,8 @@ pub fn plane(
     ProxyGeometryPlane { origin: first + position_first, edge_first: second - first, edge_second: third - first }
 }
 
-/// At the corner with the largest angle, one edge made perpendicular to the other (Gram and Schmidt), then completed to a right-handed frame.
+/// Makes one edge perpendicular to the other at the corner with the largest angle (Gram-Schmidt),
+/// then completes a right-handed frame.
 pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third: DVec3) -> DVec3 {
     let corners = [position_first, position_second, position_third];
     let edges = |at: usize| [1, 2].map(|step| (corners[(at + step) % 3] - corners[at]).normalize_or_zero());
@@ -74,24 +76,25 @@ pub fn face_normal(position_first: DVec3, position_second: DVec3, position_third
     let widest = (0..3).min_by(|one, other| cosine(*one).total_cmp(&cosine(*other))).unwrap_or(0);
     let [first, second] = edges(widest);
     let mut across = second - second.dot(first) * first;
-    // Once more: twice is enough, for what cancelled in the first round (Kahan).
+    // A second pass removes the cancellation of the first; two are enough (Kahan).
     across -= across.dot(first) * first;
-    // Below f64's own rounding the edges are parallel, and the triangle is degenerate.
+    // Below the rounding of f64 the edges are parallel, and the triangle is degenerate.
     if across.length() < 1e-13 { DVec3::ZERO } else { first.cross(across.normalize()).normalize_or_zero() }
 }
 
-/// The parameter at which the ray's height over the plane changes its sign, by bisection.
+/// Finds the parameter at which the ray's height over the plane changes its sign, by bisection.
 pub fn intersect(position: DVec3, direction: DVec3, plane_point: DVec3, normal: DVec3) -> ProxyGeometryHit {
     let miss = ProxyGeometryHit { point: position, distance: 0.0, hit: false };
     let height = |distance: f64| (position - plane_point).dot(normal) + distance * direction.dot(normal);
-    // A ray that descends by 2^-20 of its length or less counts as parallel: it must come down within 2^20 heights.
+    // A ray that descends by 2^-20 of its length or less counts as parallel: it must reach the
+    // plane within 2^20 heights.
     let start = height(0.0);
     let mut far = start.abs() * 2f64.powi(20);
     if start == 0.0 || height(far) * start >= 0.0 {
         return miss;
     }
     let mut near = 0.0;
-    // Until the two are neighbours in f64.
+    // Repeats until the two are neighbours in f64.
     loop {
         let middle = 0.5 * (near + far);
         if middle <= near || middle >= far {
@@ -102,14 +105,14 @@ pub fn intersect(position: DVec3, direction: DVec3, plane_point: DVec3, normal: 
     ProxyGeometryHit { point: position + far * direction, distance: far, hit: true }
 }
 
-/// Cramer's rule on two components, in an orthonormal frame of the plane.
+/// Applies Cramer's rule to two components, in an orthonormal frame of the plane.
 pub fn coordinates(point: DVec3, origin: DVec3, edge_first: DVec3, edge_second: DVec3) -> DVec2 {
     let size = edge_first.abs().max(edge_second.abs()).max_element();
     if size == 0.0 {
         return DVec2::ZERO;
     }
     let (first, second, offset) = (edge_first / size, edge_second / size, (point - origin) / size);
-    // The frame is laid along the longer edge, so that a zero edge does no harm.
+    // The frame lies along the longer edge, so that a zero edge does no harm.
     let along = if first.length() > second.length() { first } else { second }.normalize();
     let other = if first.length() > second.length() { second } else { first };
     let across = other - other.dot(along) * along;
@@ -127,12 +130,14 @@ pub fn coordinates(point: DVec3, origin: DVec3, edge_first: DVec3, edge_second: 
     ) / area
 }
 
-/// The tile among those about the rounded coordinates that holds the point, by its half-open inequalities.
+/// Finds the tile that contains the point, among those around the rounded coordinates, by its
+/// half-open inequalities.
 pub fn cell(coordinates: DVec2) -> ProxyGeometryCell {
     let near = coordinates.round();
     for (dx, dy) in [(-1.0, -1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0)] {
         let cell = near + DVec2::new(dx, dy);
-        // Compared, not subtracted: a difference from a tiny negative coordinate would round to the next cell.
+        // Compared, not subtracted: the difference to a tiny negative coordinate would round to the
+        // next cell.
         if coordinates.cmplt(cell).any() || coordinates.cmpge(cell + DVec2::ONE).any() {
             continue;
         }
@@ -142,7 +147,8 @@ pub fn cell(coordinates: DVec2) -> ProxyGeometryCell {
     unreachable!("the four cells about the nearest lattice point hold the point")
 }
 
-/// The corners of the tile in homogeneous lattice coordinates, by the lattice's matrix.
+/// Computes the corners of the tile in homogeneous lattice coordinates, with the matrix of the
+/// lattice.
 pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometryFacet {
     let corners = if cell.turned {
         [DVec2::new(1.0, 1.0), DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0)]
@@ -155,7 +161,8 @@ pub fn facet(plane: ProxyGeometryPlane, cell: ProxyGeometryCell) -> ProxyGeometr
     ProxyGeometryFacet { vertex_first, vertex_second, vertex_third }
 }
 
-/// The direction from the centroid, found vertex by vertex, to the centre; the larger of its angles to the ray.
+/// Returns the direction from the centroid, summed vertex by vertex, to the centre, with the sign
+/// of the larger angle to the ray.
 pub fn facet_normal(
     centre: DVec3,
     vertex_first: DVec3,
@@ -172,12 +179,12 @@ pub fn facet_normal(
     if normal.angle_between(direction) < std::f64::consts::FRAC_PI_2 { -normal } else { normal }
 }
 
-/// As `facet_normal`, whichever way it points.
+/// Returns the same as `facet_normal`, without the flip towards the ray.
 pub fn facet_normal_naive(centre: DVec3, vertex_first: DVec3, vertex_second: DVec3, vertex_third: DVec3) -> DVec3 {
     facet_normal(centre, vertex_first, vertex_second, vertex_third, DVec3::ZERO)
 }
 
-/// The plane of the tile's image.
+/// Returns the plane of the tile's image.
 pub fn next_plane(centre: DVec3, facet: ProxyGeometryFacet) -> ProxyGeometryPlane {
     plane(centre, facet.vertex_first, facet.vertex_second, facet.vertex_third)
 }

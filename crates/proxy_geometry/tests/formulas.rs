@@ -1,4 +1,5 @@
-//! `wgsl/proxy_geometry.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-proxy_geometry`.
+//! Device tests of every function of `wgsl/proxy_geometry.wgsl` and its naive forms:
+//! `cargo test -p lapidary-proxy_geometry`.
 
 use lapidary_proxy_geometry::formulas::formulas;
 

@@ -1,4 +1,4 @@
-//! `wgsl/random_walk.wgsl`.
+//! Test inputs, edges, invariants and hard cases of `wgsl/random_walk.wgsl`.
 
 mod outside;
 
@@ -14,10 +14,10 @@ mirror_struct!(crate, RandomWalkCrossing { direction, crosses });
 
 const M: &str = "random_walk";
 
-/// What three squares, two sums and the inputs' own rounding leave of a unit length.
+/// Error of a unit vector's length after three squares, two sums and the rounding of the inputs.
 const UNIT: f64 = 24.0 / (1 << 24) as f64;
 
-/// A random number as the module makes them: the ends, near either, anywhere.
+/// Draws a random number as the module makes it: the ends, near either end, anywhere.
 fn uniform(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[0.0, 1.0 - f32::EPSILON / 2.0, 0.5, f32::EPSILON / 2.0]),
@@ -27,12 +27,12 @@ fn uniform(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// The same and what lies out of range.
+/// Draws the same, or a number out of range.
 fn clamped(draws: &mut Draws<'_>) -> f32 {
     if draws.below(8) == 0 { draws.pick(&[1.0, -0.25, 1.25]) } else { uniform(draws) }
 }
 
-/// Every magnitude, the ends, near them, out of range.
+/// Draws an anisotropy: every magnitude, the ends, near them, out of range.
 fn anisotropy(draws: &mut Draws<'_>) -> f32 {
     let limit = mirror::RANDOM_WALK_STRAIGHTEST;
     match draws.below(6) {
@@ -64,7 +64,8 @@ fn turns(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Unit vectors, some near the poles and some near the equator, where the basis changes its side.
+/// Draws a unit vector, sometimes near the poles or near the equator, where the basis changes its
+/// side.
 fn normal(draws: &mut Draws<'_>) -> Vec3 {
     let tilt = f64::from(draws.signed(-40, -3));
     match draws.below(4) {
@@ -77,13 +78,13 @@ fn normal(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// Cosine and sine of any angle.
+/// Draws the cosine and sine of any angle.
 fn unit_pair(draws: &mut Draws<'_>) -> Vec2 {
     let angle = if draws.below(3) == 0 { f64::from(draws.signed(-30, 0)) } else { TAU * draws.unit() };
     Vec2::new(angle.cos() as f32, angle.sin() as f32)
 }
 
-/// Light, normal, relative index and number at a boundary.
+/// Draws light, normal, relative index and random number at a boundary.
 fn crossing(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, f32) {
     let normal = draws.unit_vector();
     let axis = normal.as_dvec3().normalize();
@@ -96,7 +97,7 @@ fn crossing(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32, f32) {
     let up = match draws.below(5) {
         0 => f64::from(draws.pick(&[0.0f32, 1.0])),
         1 => f64::from(draws.magnitude(-24, -1)),
-        // About the critical angle.
+        // Near the critical angle.
         2 if index < 1.0 => (1.0 - f64::from(index).powi(2)).sqrt() * (1.0 + f64::from(draws.signed(-20, -3))),
         _ => draws.unit(),
     };
@@ -113,7 +114,8 @@ fn unit(vector: Vec3) -> Result<(), String> {
     near("length", vector.as_dvec3().length(), 1.0, UNIT)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module with its mirror, its oracle and its promises outside its
+/// domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -358,7 +360,8 @@ fn surfaces() -> Vec<Formula> {
                 u == 1.0 - f32::EPSILON / 2.0 && n < 1.0 && dot(i, normal).powi(2) < 0.9 * (1.0 - f64::from(n * n))
             })
             .edge("the least number", |(_, _, n, u)| u == 0.0 && n != 1.0)
-            // Refraction into a thinner medium stretches the part along the surface, with its rounding.
+            // Refraction into a thinner medium stretches the part along the surface, and its
+            // rounding.
             .invariant("unit length", |(.., n, _), crossing: RandomWalkCrossing| {
                 let stretch = f64::from(n).min(1.0).powi(-2);
                 near("length", crossing.direction.as_dvec3().length(), 1.0, UNIT * stretch)

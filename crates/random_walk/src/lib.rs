@@ -1,5 +1,6 @@
-//! Rust mirror of `wgsl/random_walk.wgsl`, line by line: light followed through scattering matter by chance. Units, domain and
-//! accuracy stand above the WGSL functions. [`slab`] mirrors the recipe `random_walk_slab`.
+//! Mirror of `wgsl/random_walk.wgsl`: random walks of light through scattering matter. The WGSL
+//! file states the units, domain and accuracy of each function. This file follows it line by line.
+//! [`slab`] mirrors the recipe `random_walk_slab`.
 //!
 //! ```
 //! use glam::UVec4;
@@ -19,36 +20,36 @@ pub mod slab;
 
 use glam::{UVec4, Vec2, Vec3, Vec4};
 
-/// A tentative collision scatters the light.
+/// Outcome of a tentative collision: the light is scattered.
 pub const RANDOM_WALK_SCATTERED: u32 = 0;
-/// It absorbs the light.
+/// Outcome of a tentative collision: the light is absorbed.
 pub const RANDOM_WALK_ABSORBED: u32 = 1;
-/// There is no collision.
+/// Outcome of a tentative collision: the light passes.
 pub const RANDOM_WALK_PASSED: u32 = 2;
-/// A majorant counts as at least this.
+/// Least majorant; smaller ones count as this.
 pub const RANDOM_WALK_THINNEST: f32 = 1e-30;
-/// The anisotropy counts as at most this, of either sign.
+/// Largest magnitude of the anisotropy.
 pub const RANDOM_WALK_STRAIGHTEST: f32 = 0.999999;
 
-/// Two unit vectors that make a right-handed basis with a normal as third.
+/// Two unit vectors that form a right-handed basis with a normal as the third.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RandomWalkBasis {
-    /// At right angles to the normal.
+    /// Unit vector at right angles to the normal.
     pub tangent: Vec3,
-    /// normal x tangent.
+    /// Cross product normal x tangent.
     pub bitangent: Vec3,
 }
 
-/// What becomes of light at a boundary.
+/// Light after a boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RandomWalkCrossing {
     /// Unit direction, refracted or reflected.
     pub direction: Vec3,
-    /// Whether the light crosses the boundary.
+    /// True if the light crosses the boundary.
     pub crosses: bool,
 }
 
-/// Random bits of a counter, by pcg4d.
+/// Returns the random bits of a counter, by pcg4d.
 pub fn bits(counter: UVec4) -> UVec4 {
     let mut v = counter.wrapping_mul(UVec4::splat(1664525)).wrapping_add(UVec4::splat(1013904223));
     v.x = v.x.wrapping_add(v.y.wrapping_mul(v.w));
@@ -63,12 +64,12 @@ pub fn bits(counter: UVec4) -> UVec4 {
     v
 }
 
-/// Four numbers in [0, 1), on the multiples of 2⁻²⁴.
+/// Returns four numbers in [0, 1), multiples of 2⁻²⁴.
 pub fn random(counter: UVec4) -> Vec4 {
     (bits(counter) >> UVec4::splat(8)).as_vec4() * 5.9604645e-8
 }
 
-/// Way to the next tentative collision.
+/// Returns the distance to the next tentative collision.
 pub fn free_path(u: f32, majorant: f32) -> f32 {
     let v = u.clamp(0.0, 0.99999994);
     let bits = (1.0 - v).to_bits().cast_signed();
@@ -82,12 +83,12 @@ pub fn free_path(u: f32, majorant: f32) -> f32 {
     depth / majorant.max(RANDOM_WALK_THINNEST)
 }
 
-/// The same by the built-in logarithm, a naive form.
+/// Computes the free path by the built-in logarithm, a naive form.
 pub fn free_path_naive(u: f32, majorant: f32) -> f32 {
     -(1.0 - u).ln() / majorant
 }
 
-/// What happens at a tentative collision: delta tracking.
+/// Returns the outcome of a tentative collision (delta tracking).
 pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
     let sum = scattering + absorption;
@@ -97,18 +98,18 @@ pub fn collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32
     if place >= scattering && absorption > 0.0 { RANDOM_WALK_ABSORBED } else { RANDOM_WALK_SCATTERED }
 }
 
-/// What a tentative collision leaves of a transmittance: ratio tracking.
+/// Returns a transmittance after a tentative collision (ratio tracking).
 pub fn ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
     let most = majorant.max(RANDOM_WALK_THINNEST);
     transmittance * ((most - density).max(0.0) / most)
 }
 
-/// The same with the quotient taken first, a naive form.
+/// Computes the same with the quotient taken first, a naive form.
 pub fn ratio_naive(transmittance: f32, density: f32, majorant: f32) -> f32 {
     transmittance * (1.0 - density / majorant)
 }
 
-/// Henyey and Greenstein's phase function, 1/sr.
+/// Returns Henyey and Greenstein's phase function, in 1/sr.
 pub fn phase(cosine: f32, g: f32) -> f32 {
     let a = g.abs().min(RANDOM_WALK_STRAIGHTEST);
     let c = (sign(g) * cosine).clamp(-1.0, 1.0);
@@ -117,17 +118,17 @@ pub fn phase(cosine: f32, g: f32) -> f32 {
     0.07957747 * rest * (1.0 + a) / (squared * squared.sqrt())
 }
 
-/// WGSL's: 0 for 0.
+/// Returns the sign as in WGSL: 0 for 0.
 fn sign(value: f32) -> f32 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
 
-/// The phase function as it is printed, a naive form.
+/// Computes the phase function as printed in the literature, a naive form.
 pub fn phase_naive(cosine: f32, g: f32) -> f32 {
     0.07957747 * (1.0 - g * g) / (1.0 + g * g - 2.0 * g * cosine).powf(1.5)
 }
 
-/// Cosine and sine of the deflection from a uniform number.
+/// Returns the cosine and sine of a deflection, sampled by a uniform number.
 pub fn deflection(u: f32, g: f32) -> Vec2 {
     let a = g.clamp(-RANDOM_WALK_STRAIGHTEST, RANDOM_WALK_STRAIGHTEST);
     let v = u.clamp(0.0, 1.0);
@@ -140,14 +141,14 @@ pub fn deflection(u: f32, g: f32) -> Vec2 {
     Vec2::new(0.5 * (above - below), (above * below).sqrt())
 }
 
-/// The deflection as it is printed, a naive form.
+/// Computes the deflection as printed in the literature, a naive form.
 pub fn deflection_naive(u: f32, g: f32) -> Vec2 {
     let root = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
     let cosine = (1.0 + g * g - root * root) / (2.0 * g);
     Vec2::new(cosine, (1.0 - cosine * cosine).max(0.0).sqrt())
 }
 
-/// Cosine and sine of an angle in turns.
+/// Returns the cosine and sine of an angle in turns.
 pub fn azimuth(turns: f32) -> Vec2 {
     let wrapped = turns - turns.round_ties_even();
     let folded = Vec2::new(0.25 - wrapped.abs(), wrapped.max(-0.5 - wrapped).min(0.5 - wrapped));
@@ -155,7 +156,7 @@ pub fn azimuth(turns: f32) -> Vec2 {
     folded * (6.2831855 - s * (41.34168 - s * (81.602234 - s * (76.57499 - s * 39.710918))))
 }
 
-/// Two unit vectors at right angles to a normal and to each other.
+/// Returns two unit vectors at right angles to a normal and to each other.
 pub fn basis(normal: Vec3) -> RandomWalkBasis {
     let side = if normal.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (side + normal.z);
@@ -166,7 +167,7 @@ pub fn basis(normal: Vec3) -> RandomWalkBasis {
     }
 }
 
-/// The basis without the branch, a naive form.
+/// Computes the basis without the branch, a naive form.
 pub fn basis_naive(normal: Vec3) -> RandomWalkBasis {
     let a = 1.0 / (1.0 + normal.z);
     let b = -normal.x * normal.y * a;
@@ -176,7 +177,7 @@ pub fn basis_naive(normal: Vec3) -> RandomWalkBasis {
     }
 }
 
-/// Direction after a scattering.
+/// Returns the direction after a scattering event.
 pub fn turn(direction: Vec3, deflection: Vec2, azimuth: Vec2) -> Vec3 {
     let basis = basis(direction);
     let aside = azimuth.x * basis.tangent + azimuth.y * basis.bitangent;
@@ -184,7 +185,7 @@ pub fn turn(direction: Vec3, deflection: Vec2, azimuth: Vec2) -> Vec3 {
     turned * (1.5 - 0.5 * turned.dot(turned))
 }
 
-/// Direction from all alike.
+/// Returns a uniformly distributed direction.
 pub fn isotropic(u: Vec2) -> Vec3 {
     let v = u.x.clamp(0.0, 1.0);
     let radius = 2.0 * (v * (1.0 - v)).sqrt();
@@ -192,7 +193,7 @@ pub fn isotropic(u: Vec2) -> Vec3 {
     Vec3::new(radius * around.x, radius * around.y, 1.0 - 2.0 * v)
 }
 
-/// Light at a smooth dielectric boundary, reflected or refracted by chance.
+/// Reflects or refracts light at a smooth dielectric boundary, by chance.
 pub fn boundary(incident: Vec3, normal: Vec3, relative_index: f32, u: f32) -> RandomWalkCrossing {
     let m = (relative_index - 1.0) * (relative_index + 1.0);
     if m == 0.0 {

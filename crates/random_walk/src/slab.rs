@@ -1,58 +1,60 @@
-//! Mirror of the recipe `random_walk_slab`: whole walks through a slab. The recipe says what each member means.
+//! Mirror of the recipe `random_walk_slab`: whole walks through a slab. The recipe describes each
+//! member.
 
 use crate::{
     RANDOM_WALK_ABSORBED, RANDOM_WALK_SCATTERED, azimuth, boundary, collision, deflection, free_path, random, turn,
 };
 use glam::{UVec4, Vec3, Vec3Swizzles as _};
 
-/// How a walk ended: absorbed.
+/// Outcome of a walk: absorbed.
 pub const ABSORBED: u32 = 0;
-/// Through the face by which it came, or reflected there.
+/// Outcome of a walk: left through the face of entry, or reflected there.
 pub const REFLECTED: u32 = 1;
-/// Through the other face.
+/// Outcome of a walk: left through the other face.
 pub const TRANSMITTED: u32 = 2;
-/// After too many steps.
+/// Outcome of a walk: stopped after too many steps.
 pub const UNFINISHED: u32 = 3;
 
-/// A slab below z = 0, and the light that falls on it.
+/// A slab below z = 0, and the incident light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slab {
-    /// Of the angle to the normal under which light comes in.
+    /// Cosine of the angle between the incoming light and the normal.
     pub entry_cosine: f32,
-    /// A length.
+    /// Thickness, a length.
     pub thickness: f32,
-    /// Per unit of length, at density 1.
+    /// Scattering coefficient per unit of length, at density 1.
     pub scattering: f32,
-    /// Per unit of length, at density 1.
+    /// Absorption coefficient per unit of length, at density 1.
     pub absorption: f32,
     /// Henyey and Greenstein's g.
     pub anisotropy: f32,
-    /// Of the stone to what is about it.
+    /// Refractive index of the stone relative to its surroundings.
     pub relative_index: f32,
-    /// The most tentative collisions of a walk.
+    /// Largest number of tentative collisions of a walk.
     pub most: u32,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u32,
-    /// The greatest density.
+    /// Greatest density.
     pub greatest: f32,
 }
 
-/// How a walk ended.
+/// End of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabExit {
-    /// [`ABSORBED`] to [`UNFINISHED`].
+    /// Outcome, [`ABSORBED`] to [`UNFINISHED`].
     pub outcome: u32,
-    /// Real ones.
+    /// Number of real collisions that scattered the light.
     pub scatterings: u32,
-    /// Of the direction outside.
+    /// Cosine of the angle between the direction outside and the normal of the face.
     pub cosine: f32,
-    /// x of the place where light left.
+    /// x of the point where light left.
     pub place: f32,
 }
 
-/// A walk, and whether it is sure: whether each of its decisions stands if the numbers compared are moved by `slack`.
+/// Runs a walk. Returns its end, and whether it is sure: each of its decisions stands if the
+/// compared numbers are moved by `slack`.
 pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -> (SlabExit, bool) {
-    // Whether a boundary does the same for a number that is moved.
+    // Whether a boundary makes the same decision for moved numbers.
     let firm = |direction: Vec3, normal: Vec3, index: f32, u: f32| {
         let crosses = |u: f32| boundary(direction, normal, index, u).crosses;
         crosses((u - slack).max(0.0)) == crosses((u + slack).min(1.0 - f32::EPSILON))
@@ -77,7 +79,7 @@ pub fn walk(walk: u32, slab: &Slab, density: impl Fn(Vec3) -> f32, slack: f32) -
         let face = if upwards { 0.0 } else { -slab.thickness };
         let way = ((face - position.z) / if upwards { direction.z } else { direction.z.min(-1e-20) }).max(0.0);
         let free = free_path(u.x, majorant);
-        // A direction that is level may lead to either face.
+        // A horizontal direction may lead to either face.
         apart = apart.min((free - way).abs() * majorant).min(direction.z.abs());
         if free >= way {
             position = (position.xy() + way * direction.xy()).extend(face);

@@ -1,10 +1,10 @@
-//! The oracle against what defines it, and the module's statistics.
+//! Checks the oracle against its definitions, and the statistics of the module.
 
 use super::*;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// The mean of a function over [0, 1] by the middles of `count` steps.
+/// Returns the mean of a function over [0, 1] by the midpoints of `count` steps.
 fn mean(count: u32, function: impl Fn(f64) -> f64) -> f64 {
     (0..count).map(|k| function((f64::from(k) + 0.5) / f64::from(count))).sum::<f64>() / f64::from(count)
 }
@@ -23,7 +23,8 @@ fn the_phase_function_is_a_density_whose_mean_cosine_is_g() {
     }
 }
 
-/// The share of deflections below a cosine is the integral of the phase function up to it.
+/// Checks that the share of deflections below a cosine is the integral of the phase function up to
+/// it.
 #[test]
 fn deflections_follow_the_phase_function() {
     for g in [-0.8, -0.2, 1e-4, 1e-7, 0.0, 0.4, 0.7] {
@@ -43,7 +44,8 @@ fn both_ways_of_the_oracle_meet() {
     }
 }
 
-/// 2^16 numbers of neighbouring counters: mean, variance, correlation of words and of neighbours, all within 4 standard errors.
+/// Checks 2^16 numbers of neighbouring counters: mean, variance, correlation of words and of
+/// neighbours, all within 4 standard errors.
 #[test]
 fn random_numbers_are_uniform_and_unrelated() {
     let count = 1u32 << 16;
@@ -54,7 +56,7 @@ fn random_numbers_are_uniform_and_unrelated() {
     for a in 0..4 {
         let sum = |term: &dyn Fn(usize) -> f64| (0..numbers.len()).map(term).sum::<f64>() / f64::from(count);
         assert!(sum(&|k| numbers[k][a]).abs() < 4.0 * error);
-        // A uniform number's square, so scaled, has the variance 4/5.
+        // The square of a uniform number, scaled in this way, has the variance 4/5.
         assert!((sum(&|k| numbers[k][a].powi(2)) - 1.0).abs() < 4.0 * error);
         for b in 0..4 {
             let next = sum(&|k| numbers[k][a] * numbers[(k + 1) % numbers.len()][b]);
@@ -64,9 +66,9 @@ fn random_numbers_are_uniform_and_unrelated() {
     }
 }
 
-/// A long walk's direction keeps its length, which without Newton's step it does not.
+/// Checks that the direction of a long walk keeps its length; without Newton's step it does not.
 #[test]
-fn a_thousand_turns_keep_unit_length() {
+fn a_hundred_thousand_turns_keep_unit_length() {
     let mut direction = Vec3::new(0.6, 0.0, -0.8);
     for step in 0..100_000 {
         let u = random(UVec4::new(1, 2, step, 0));
@@ -75,7 +77,8 @@ fn a_thousand_turns_keep_unit_length() {
     }
 }
 
-/// Fresnel's reflectance keeps the energy: crossing one way at an angle is as likely as the other way at the refracted angle (Stokes).
+/// Checks that Fresnel's reflectance conserves energy: crossing one way at an angle is as likely as
+/// the other way at the refracted angle (Stokes).
 #[test]
 fn a_boundary_is_as_open_both_ways() {
     for index in [1.1, 1.5, 2.4] {
@@ -91,8 +94,8 @@ fn a_boundary_is_as_open_both_ways() {
     }
 }
 
-/// Delta tracking through matter of density (1 + sin x)/2: the share that passes is e to the minus the integral, and ratio tracking's mean
-/// is the same.
+/// Checks delta tracking through matter of density (1 + sin x)/2: the share that passes is e to the
+/// minus the integral, and the mean of ratio tracking is the same.
 #[test]
 fn tracking_gives_the_mean_transmittance() {
     let (length, majorant) = (6.0f32, 0.7f32);
@@ -123,7 +126,7 @@ fn tracking_gives_the_mean_transmittance() {
     assert!(errors[1] < errors[0]);
 }
 
-/// The mean of isotropic directions is 0 and of their squares a third.
+/// Checks that the mean of isotropic directions is 0 and the mean of their squares a third.
 #[test]
 fn isotropic_directions_favour_none() {
     let side = 64;

@@ -1,4 +1,5 @@
-//! `wgsl/random_walk.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-random_walk`.
+//! Device tests of every function of `wgsl/random_walk.wgsl` and its naive forms:
+//! `cargo test -p lapidary-random_walk`.
 
 use lapidary_random_walk::formulas::formulas;
 

@@ -13,10 +13,12 @@ mirror_struct!(crate, ReflectiveShadowMapBasis { right, up });
 
 const M: &str = "reflective_shadow_map";
 
-/// Error of a length or a cosine that a basis' formula and the axis' own rounding leave, with room for the portable bounds.
+/// Error of a length or a cosine from the rounding of a basis formula and of the axis itself, with
+/// room for the portable bounds.
 const SQUARE: f64 = 32.0 / (1 << 24) as f64;
 
-/// Axes: anywhere, along a coordinate axis, and beside the equator and the poles at every magnitude.
+/// Draws an axis: anywhere, along a coordinate axis, or at a distance of any magnitude from the
+/// equator or a pole.
 fn axis(draws: &mut Draws<'_>) -> Vec3 {
     match draws.below(4) {
         0 => {
@@ -31,13 +33,13 @@ fn axis(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// Places near the origin and far from it.
+/// Draws a position near the origin or far from it.
 fn place(draws: &mut Draws<'_>) -> Vec3 {
     let size = if draws.below(2) == 0 { 1.0 } else { draws.magnitude(-10, 19) };
     size * draws.in_cube()
 }
 
-/// Normals: unit, shortened by interpolation, of any length, none.
+/// Draws a normal: unit, shortened by interpolation, of any length, or 0.
 fn normal(draws: &mut Draws<'_>) -> Vec3 {
     match draws.below(8) {
         0 => draws.magnitude(-39, 39) * draws.unit_vector(),
@@ -47,7 +49,7 @@ fn normal(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// A light's view and a point: in what the map covers, anywhere, or in the origin.
+/// Draws a light's view and a point: within the map, anywhere, or at the view's origin.
 fn seen(draws: &mut Draws<'_>) -> (ReflectiveShadowMapView, Vec3) {
     let origin = place(draws);
     let lamp = draws.below(2);
@@ -68,7 +70,8 @@ fn seen(draws: &mut Draws<'_>) -> (ReflectiveShadowMapView, Vec3) {
     (ReflectiveShadowMapView { origin, lamp, axis, extent, near, far }, position)
 }
 
-/// A seen point beside a point: at any distance, on the plane that touches the surface, straight above, or the same.
+/// Draws a seen point at any distance from a point, and the normal at the point: in the tangent
+/// plane, in any direction, straight above, or the point itself.
 fn above(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3) {
     let (position, normal) = (place(draws), normal(draws));
     let distance = draws.magnitude(-16, 8);
@@ -89,7 +92,8 @@ fn square(basis: &ReflectiveShadowMapBasis, axis: Vec3) -> Result<(), String> {
     near("right x up . axis", right.cross(up).dot(axis), 1.0, SQUARE)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -170,7 +174,7 @@ fn cosine() -> Formula {
     formula(M, "reflective_shadow_map_cosine", mirror::cosine, oracle::cosine, |draws| {
         let (normal, light) = (normal(draws), draws.unit_vector());
         match draws.below(4) {
-            // About the horizon, at every magnitude.
+            // Near the horizon, at every magnitude of the elevation.
             0 => {
                 let across = draws.perpendicular(light.as_dvec3().normalize());
                 let up = f64::from(draws.signed(-30, -1));
@@ -197,7 +201,8 @@ fn cosine() -> Formula {
 
 fn height() -> Formula {
     const NAIVE: &str = "reflective_shadow_map_height_naive";
-    // A plane along x and y, seen half a unit beside the point, under light that grazes it towards the seen side.
+    // The plane of x and y. The seen point lies half a unit beside the point, towards the light,
+    // which is at grazing incidence.
     let (beside, grazing) = (Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.99995, 0.0, 0.01));
     formula(M, "reflective_shadow_map_height", mirror::height, oracle::height, above)
         .edge("the point itself", |(seen, position, _)| seen == position)

@@ -1,4 +1,5 @@
-//! `wgsl/reflective_shadow_map.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-reflective_shadow_map`.
+//! Tests `wgsl/reflective_shadow_map.wgsl` and its naive forms, function by function, on the
+//! device: `cargo test -p lapidary-reflective_shadow_map`.
 
 use lapidary_reflective_shadow_map::formulas::formulas;
 

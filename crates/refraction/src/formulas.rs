@@ -12,11 +12,12 @@ use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, RefractionHit { direction, total });
 
-/// Error of a length that three squares, two sums and the inputs' own rounding leave: 2⁻²⁴ each, with room for the
-/// portable bounds.
+/// Error of a length from three squares, two sums and the rounding of the inputs: 2⁻²⁴ each, with
+/// room for the portable bounds.
 const UNIT: f64 = 16.0 / (1 << 24) as f64;
 
-/// Cosines of incidence in [0, 1]: every magnitude down to the smallest normal, and the ends.
+/// Draws a cosine of incidence in [0, 1]: of any magnitude down to the smallest normal number, or
+/// an end.
 fn cosine(draws: &mut Draws<'_>) -> f32 {
     match draws.below(8) {
         0 => draws.pick(&[1.0, 1.0f32.next_down(), 0.0, f32::MIN_POSITIVE, 1e-40]),
@@ -25,7 +26,7 @@ fn cosine(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Relative indices in [1/4, 4]: anywhere, and 1 ± every magnitude down to the last place.
+/// Draws a relative index in [1/4, 4]: anywhere, or 1 ± any magnitude down to the last place.
 pub fn relative_index(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[1.0, 4.0, 0.25, 1.0f32.next_up(), 1.0f32.next_down(), 2.41749, 1.0 / 2.41749]),
@@ -38,7 +39,8 @@ pub fn relative_index(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A cosine within a few ulp of the critical angle of `index` < 1, on both sides; any cosine for the others.
+/// Draws a cosine: for `index` < 1 within a few ulp of the critical angle, on either side; any
+/// cosine for other indices.
 pub fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
     if index < 1.0 && draws.below(3) == 0 {
         let index = f64::from(index);
@@ -49,7 +51,8 @@ pub fn cosine_near_critical(draws: &mut Draws<'_>, index: f32) -> f32 {
     }
 }
 
-/// An incident direction and a normal at the angle of incidence of `cosine`; exact where the normal lies along an axis.
+/// Draws an incident direction and a normal at the angle of incidence of `cosine`; exact if the
+/// normal lies along an axis.
 pub fn incidence(draws: &mut Draws<'_>, cosine: f32) -> (Vec3, Vec3) {
     let normal = draws.unit_vector();
     let axis = normal.as_dvec3().normalize();
@@ -68,7 +71,8 @@ fn refraction_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     (incident, normal, index)
 }
 
-/// Away from grazing incidence and from total internal reflection, where the forms that one finds do well.
+/// Draws inputs away from grazing incidence and total internal reflection, for which the usual
+/// forms are accurate.
 fn benign_refraction_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     let index = draws.between(1.25, 4.0);
     let cosine = draws.between(0.1, 1.0);
@@ -76,13 +80,15 @@ fn benign_refraction_inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3, f32) {
     (incident, normal, index)
 }
 
-/// The squared sine of the angle of incidence over n², from which total internal reflection is told in f64.
+/// Returns the squared sine of the angle of incidence divided by n², in f64; above 1, reflection is
+/// total.
 fn squared_sine_transmitted(incident: Vec3, normal: Vec3, index: f32) -> f64 {
     let cosine = -incident.as_dvec3().dot(normal.as_dvec3());
     (1.0 - cosine * cosine) / f64::from(index).powi(2)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -184,7 +190,7 @@ fn functions() -> Vec<Formula> {
             .edge("grazing to the last ulp", |(r, n, _)| r.dot(n) != 0.0 && r.dot(n).abs() < 1e-30)
             .edge("into a denser medium", |(_, _, index)| index > 1.0)
             .invariant("unit length", |_, hit: RefractionHit| {
-                // docs/refraction.md: 88 and 148 units of 2⁻²⁴ at the least index, 1/4.
+                // docs/refraction.md: 88 and 148 units of 2⁻²⁴ at the smallest index, 1/4.
                 near("length", hit.direction.as_dvec3().length(), 1.0, 148.0 / (1 << 24) as f64)
             })
             .invariant("Snell: n × r = n_relative n × r'", |(incident, normal, index), hit: RefractionHit| {
@@ -245,7 +251,7 @@ fn functions() -> Vec<Formula> {
             )
             .build(),
         formula(M, "refraction_refract_naive", mirror::refract_naive, oracle::refract, |draws| {
-            // Either side of the critical angle, at a distance from it, and just inside it.
+            // On either side of the critical angle at a distance from it, and just inside it.
             match draws.below(4) {
                 0 => {
                     let cosine = draws.between(0.2, 0.6);

@@ -1,7 +1,8 @@
-//! Mirror of `wgsl/refraction.wgsl`: a ray refracted at a plane interface, with total internal reflection as an
-//! explicit result. Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7).
+//! Mirror of `wgsl/refraction.wgsl`: a ray refracted at a plane interface, with total internal
+//! reflection as an explicit result. After Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7).
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
+//! The WGSL file states the units, domain and accuracy of each function. This file mirrors it line
+//! by line.
 //!
 //! ```
 //! use glam::{Vec3, vec3};
@@ -18,10 +19,10 @@ pub mod oracle;
 
 use glam::Vec3;
 
-/// Where a ray goes at an interface.
+/// Result of refraction at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefractionHit {
-    /// Unit direction of the refracted ray, or of the reflected one where nothing is refracted.
+    /// Unit direction of the refracted ray, or of the reflected ray if nothing is refracted.
     pub direction: Vec3,
     /// True under total internal reflection: all light stays on the incident side.
     pub total: bool,
@@ -32,7 +33,7 @@ pub fn relative_index(index_incident: f32, index_transmitted: f32) -> f32 {
     index_transmitted / index_incident
 }
 
-/// Mirror direction of `incident` at a plane of normal `normal`.
+/// Mirror direction of `incident` at a plane with the normal `normal`.
 pub fn reflect(incident: Vec3, normal: Vec3) -> Vec3 {
     incident - 2.0 * normal.dot(incident) * normal
 }
@@ -43,13 +44,14 @@ pub fn radicand(cosine: f32, relative_index: f32) -> f32 {
     (excess + cosine * cosine) / (relative_index * relative_index)
 }
 
-/// The radicand as eq. (6) prints it.
+/// The radicand as printed in eq. (6).
 pub fn radicand_naive(cosine: f32, relative_index: f32) -> f32 {
     let eta = 1.0 / relative_index;
     1.0 - eta * eta * (1.0 - cosine * cosine)
 }
 
-/// Refracts `incident` at a plane of normal `normal`, or reflects it where refraction is impossible.
+/// Refracts `incident` at a plane with the normal `normal`, or reflects it if refraction is
+/// impossible.
 pub fn refract(incident: Vec3, normal: Vec3, relative_index: f32) -> RefractionHit {
     let cosine = (-normal.dot(incident)).max(0.0);
     let excess = (relative_index - 1.0) * (relative_index + 1.0);
@@ -58,14 +60,15 @@ pub fn refract(incident: Vec3, normal: Vec3, relative_index: f32) -> RefractionH
         return RefractionHit { direction: incident + 2.0 * cosine * normal, total: true };
     }
     if excess == 0.0 {
-        // Equal indices do not bend. Said apart, because at grazing incidence the quotient below would be 0 / 0.
+        // Equal indices do not bend the ray. This case is handled separately because the quotient
+        // below would be 0 / 0 at grazing incidence.
         return RefractionHit { direction: incident, total: false };
     }
     let bend = excess / (cosine + radicand.sqrt());
     RefractionHit { direction: (incident - bend * normal) / relative_index, total: false }
 }
 
-/// Refraction as eq. (6) prints it, by a double cross product.
+/// Refraction as printed in eq. (6), with a double cross product.
 pub fn refract_naive(incident: Vec3, normal: Vec3, relative_index: f32) -> RefractionHit {
     let eta = 1.0 / relative_index;
     let cosine = -normal.dot(incident);
@@ -76,7 +79,8 @@ pub fn refract_naive(incident: Vec3, normal: Vec3, relative_index: f32) -> Refra
     RefractionHit { direction: -eta * normal.cross(normal.cross(incident)) - radicand.sqrt() * normal, total: false }
 }
 
-/// What one finds in shaders: the built-in `refract`, normalized; not a number under total internal reflection.
+/// The usual form in shaders: the built-in `refract`, normalized. Not a number under total internal
+/// reflection.
 pub fn refract_builtin(incident: Vec3, normal: Vec3, relative_index: f32) -> RefractionHit {
     RefractionHit { direction: incident.refract(normal, 1.0 / relative_index).normalize(), total: false }
 }

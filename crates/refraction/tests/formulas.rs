@@ -1,4 +1,5 @@
-//! `wgsl/refraction.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-refraction`.
+//! Tests `wgsl/refraction.wgsl` and its naive forms, function by function, on the device:
+//! `cargo test -p lapidary-refraction`.
 
 use lapidary_refraction::formulas::formulas;
 

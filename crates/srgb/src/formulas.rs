@@ -9,20 +9,20 @@ use lapidary_assay::formula::{Formula, formula, near, with_promises};
 
 const M: &str = "srgb";
 
-/// Where the pieces of the encoding meet.
+/// Light at which the pieces of the encoding meet.
 const ENCODE_THRESHOLD: f32 = 0.003_130_8;
-/// Where the pieces of the decoding meet.
+/// Code value at which the pieces of the decoding meet.
 const DECODE_THRESHOLD: f32 = 0.040_45;
 
-/// Where they meet in the standard's drafts.
+/// Code value at which they meet in the standard's drafts.
 const DRAFT_THRESHOLD: f32 = 0.039_28;
 
-/// The curve of the drafts, its power by logarithms.
+/// Decodes with the curve of the drafts, its power from logarithms.
 fn decode_of_the_drafts(encoded: f64) -> f64 {
     if encoded <= f64::from(DRAFT_THRESHOLD) { encoded / 12.92 } else { (2.4 * ((encoded + 0.055) / 1.055).ln()).exp() }
 }
 
-/// A light or a code value: about a threshold, of every magnitude, in range, out of range.
+/// Draws a light or a code value: near a threshold, of any magnitude, in range or out of range.
 fn value(draws: &mut Draws<'_>, threshold: f32) -> f32 {
     match draws.below(8) {
         0 => draws.pick(&[0.0, 1.0, 1.0f32.next_up(), -1.0, -1e-20, -1e19, 1e19]),
@@ -37,7 +37,8 @@ fn color(draws: &mut Draws<'_>, threshold: f32) -> Vec3 {
     Vec3::new(value(draws, threshold), value(draws, threshold), value(draws, threshold))
 }
 
-/// Radiance: dark and bright, grey and coloured, about the shoulder's start and the toe's end, slightly negative.
+/// Draws a radiance: dark or bright, grey or coloured, near the start of the shoulder or the end of
+/// the toe, or negative.
 fn radiance(draws: &mut Draws<'_>) -> Vec3 {
     let channel = |draws: &mut Draws<'_>| match draws.below(6) {
         0 => draws.magnitude(-40, 100),
@@ -54,7 +55,8 @@ fn radiance(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -129,7 +131,8 @@ fn decoding_formulas() -> Vec<Formula> {
             .hard_case("a code of -0.06", (-0.06,), (&[0.0], 0.0), ("srgb_decode_naive", 4e-3))
             .hard_case("a code of 1e19", (1e19,), (&[1.0], 2e-6), ("srgb_decode_naive", f64::INFINITY))
             .build(),
-        // Judged as what it is, the curve with the drafts' threshold; that this is not the standard's is a hard case above.
+        // Compared with the curve that it implements, the one with the drafts' threshold. Its
+        // difference from the standard is a hard case above.
         formula(M, "srgb_decode_naive", mirror::decode_naive, decode_of_the_drafts, |draws| {
             (match draws.below(4) {
                 0 => draws.nudged(DRAFT_THRESHOLD, 1),

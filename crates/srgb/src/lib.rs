@@ -1,5 +1,5 @@
-//! Mirror of `wgsl/srgb.wgsl`: from scene radiance to display code values. The shader's comments hold the reasons,
-//! domains and accuracies.
+//! Mirror of `wgsl/srgb.wgsl`: from scene radiance to display code values. The comments of the WGSL
+//! file state the reasons, domains and accuracies.
 //!
 //! ```
 //! use lapidary_srgb::{decode, encode};
@@ -15,7 +15,8 @@ pub mod oracle;
 
 use glam::Vec3;
 
-/// sRGB code value of display light, by the exact two-piece curve of IEC 61966-2-1:1999.
+/// Encodes display light into an sRGB code value with the exact two-piece curve of
+/// IEC 61966-2-1:1999.
 pub fn encode(light: f32) -> f32 {
     let display = light.clamp(0.0, 1.0);
     if display <= 0.0031308 {
@@ -29,7 +30,7 @@ pub fn encode_naive(light: f32) -> f32 {
     1.055 * light.powf(1.0 / 2.4) - 0.055
 }
 
-/// Code value by a power law of 1/2.2: the cheap rung.
+/// Encodes display light with a plain power law of 1/2.2: the cheap rung.
 pub fn encode_gamma(light: f32) -> f32 {
     // pow(0, y) passes through log2(0), which WGSL leaves undefined.
     if light <= 0.0 {
@@ -38,7 +39,7 @@ pub fn encode_gamma(light: f32) -> f32 {
     light.min(1.0).powf(1.0 / 2.2)
 }
 
-/// Display light of an sRGB code value, by the exact two-piece curve.
+/// Decodes an sRGB code value into display light with the exact two-piece curve.
 pub fn decode(encoded: f32) -> f32 {
     let code = encoded.clamp(0.0, 1.0);
     if code <= 0.04045 {
@@ -55,12 +56,12 @@ pub fn decode_naive(encoded: f32) -> f32 {
     ((encoded + 0.055) / 1.055).powf(2.4)
 }
 
-/// [`encode`], channel by channel.
+/// Encodes a colour with [`encode`], channel by channel.
 pub fn encode_color(color: Vec3) -> Vec3 {
     Vec3::new(encode(color.x), encode(color.y), encode(color.z))
 }
 
-/// [`decode`], channel by channel.
+/// Decodes a colour with [`decode`], channel by channel.
 pub fn decode_color(encoded: Vec3) -> Vec3 {
     Vec3::new(decode(encoded.x), decode(encoded.y), decode(encoded.z))
 }
@@ -70,36 +71,39 @@ pub fn luminance(color: Vec3) -> f32 {
     0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
 }
 
-/// Khronos PBR Neutral, without branches and cancellations: radiance times exposure to display light in [0, 1].
+/// Khronos PBR Neutral without branches or cancellations: maps radiance times exposure to display
+/// light in [0, 1].
 pub fn tone_curve(color: Vec3) -> Vec3 {
-    // F90 of Khronos's text: ((1.5 - 1) / (1.5 + 1))^2, the reflectance of index 1.5 at normal incidence.
+    // F90 in Khronos's text: ((1.5 - 1) / (1.5 + 1))^2, the reflectance of index 1.5 at normal
+    // incidence.
     let specular = 0.04f32;
     // Khronos's K_s = 0.8 - F90.
     let start = 0.76f32;
     // Khronos's K_d.
     let desaturation = 0.15f32;
 
-    // Toe: the smallest channel x becomes x^2 / (4 F90), then x - F90; the others keep their distance to it.
+    // Toe: the smallest channel x becomes x^2 / (4 F90) up to 2 F90, and x - F90 from there on. The
+    // other channels keep their distance from it.
     let radiance = color.max(Vec3::ZERO);
     let smallest = radiance.x.min(radiance.y.min(radiance.z));
     let curved = smallest.min(2.0 * specular);
     let toe = curved * curved / (4.0 * specular) + (smallest - curved);
     let base = (radiance - smallest) + toe;
 
-    // Shoulder: the excess e over `start` bent into the headroom h below 1.
+    // Shoulder: bends the excess e over `start` into the headroom h below 1.
     let shoulder = base.x.max(base.y.max(base.z)).max(start);
     let headroom = 1.0 - start;
     let excess = shoulder - start;
     let share = excess / (excess + headroom);
     let peak = start + headroom * share;
 
-    // Desaturation: what the shoulder took away, e^2 / (e + h), turns into white.
+    // Desaturation: the amount removed by the shoulder, e^2 / (e + h), turns into white.
     let white = desaturation * excess * share;
     let kept = 1.0 / (white + 1.0);
     base * (peak / shoulder * kept) + peak * (white * kept)
 }
 
-/// The tone curve as Khronos publishes it.
+/// The tone curve as published by Khronos.
 pub fn tone_curve_naive(color: Vec3) -> Vec3 {
     let start = 0.76f32;
     let desaturation = 0.15f32;

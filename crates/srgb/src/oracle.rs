@@ -1,9 +1,9 @@
-//! The truth for `srgb`, in f64 and from other formulas than the mirror's.
+//! Ground truth for `srgb`, in f64 and from formulas other than the mirror's.
 
 use glam::DVec3;
 
-/// The inverse problem solved by bisection: the code value that decodes to `light`. Which piece is asked is the
-/// standard's own threshold, where the two pieces are 3e-8 apart.
+/// Solves the inverse problem by bisection: the code value that decodes to `light`. The standard's
+/// own threshold selects the piece; there the two pieces are 3e-8 apart.
 pub fn encode(light: f64) -> f64 {
     let display = light.clamp(0.0, 1.0);
     if display <= f64::from(0.0031308f32) {
@@ -17,18 +17,18 @@ pub fn encode(light: f64) -> f64 {
     high
 }
 
-/// The power law through logarithms.
+/// Computes the power law with logarithms.
 pub fn encode_gamma(light: f64) -> f64 {
     if light <= 0.0 { 0.0 } else { (light.min(1.0).ln() / 2.2).exp() }
 }
 
-/// Line and power: `decode_power` takes a fifth root instead of a power.
+/// Decodes with the line or the power; `decode_power` takes a fifth root instead of a power.
 pub fn decode(encoded: f64) -> f64 {
     let code = encoded.clamp(0.0, 1.0);
     if code <= f64::from(0.04045f32) { code * (1.0 / 12.92) } else { decode_power(code) }
 }
 
-/// t^2.4 = t^2 (t^2)^(1/5), the fifth root by Newton's iteration from above.
+/// Computes t^2.4 = t^2 (t^2)^(1/5), with the fifth root by Newton's iteration from above.
 fn decode_power(code: f64) -> f64 {
     let square = ((code + 0.055) / 1.055).powi(2);
     let mut root = 1.0;
@@ -38,24 +38,25 @@ fn decode_power(code: f64) -> f64 {
     square * root
 }
 
-/// [`encode`] on each channel.
+/// Applies [`encode`] to each channel.
 pub fn encode_color(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(encode))
 }
 
-/// [`decode`] on each channel.
+/// Applies [`decode`] to each channel.
 pub fn decode_color(encoded: DVec3) -> DVec3 {
     DVec3::from_array(encoded.to_array().map(decode))
 }
 
-/// Green as the base, red and blue as differences to it: the weights sum to 1.
+/// Takes green as the base, and red and blue as differences from it: the weights sum to 1.
 pub fn luminance(color: DVec3) -> f64 {
     color.y + 0.2126 * (color.x - color.y) + 0.0722 * (color.z - color.y)
 }
 
-/// Khronos PBR Neutral from its geometry. The toe is the area under a slope that climbs to 1 over [0, 2 F90]; on the shoulder,
-/// the reciprocal of the distance to 1 grows linearly with the excess; the desaturation is a centre of mass
-/// of the curved colour, mass 1, and white, mass K_d times what the shoulder took away.
+/// Computes Khronos PBR Neutral from its geometry. The toe is the area under a slope that rises to
+/// 1 over [0, 2 F90]. On the shoulder, the reciprocal of the distance to 1 grows linearly with the
+/// excess. The desaturation is the centre of mass of the curved colour, with mass 1, and the
+/// grey of its peak, with mass K_d times the amount removed by the shoulder.
 pub fn tone_curve(color: DVec3) -> DVec3 {
     let radiance = color.max(DVec3::ZERO);
     let smallest = radiance.min_element();

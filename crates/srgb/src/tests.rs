@@ -1,4 +1,4 @@
-//! Mirror against oracle: what f32 costs, and where the naive forms break.
+//! Mirror against oracle: the error of f32, and the inputs for which the naive forms fail.
 
 use super::*;
 use glam::DVec3;
@@ -46,7 +46,8 @@ fn transfer_function_matches_the_oracle() {
     assert!((encode(1.0) - 1.0).abs() <= 1e-7, "{}", encode(1.0));
 }
 
-/// `encode` is monotone and inverse to `decode`; the gamma rung is as far off as the docs say.
+/// Checks that `encode` is monotone and the inverse of `decode`, and that the error of the gamma
+/// rung is as documented.
 #[test]
 fn transfer_function_invariants() {
     let (mut before, mut worst, mut gamma) = (0.0, 0.0f32, [0.0f32; 2]);
@@ -64,7 +65,7 @@ fn transfer_function_invariants() {
     assert!((0.0330..0.0336).contains(&gamma[0]) && (0.0055..0.0059).contains(&gamma[1]));
 }
 
-/// The weights are those of the Rec. 709 primaries and D65, to four digits.
+/// Checks that the weights follow from the Rec. 709 primaries and D65, to four digits.
 #[test]
 fn luminance_weights_follow_from_the_primaries() {
     let xyz = |x: f64, y: f64| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
@@ -105,7 +106,7 @@ fn colours_match_the_oracle() {
 
 #[test]
 fn naive_forms_fail_where_the_docs_say_so() {
-    // A dark grey: x^2 / 0.16, of which x - (x - x^2 / 0.16) keeps nothing.
+    // A dark grey x becomes x^2 / 0.16, of which x - (x - x^2 / 0.16) keeps no digit.
     for x in [1e-4f32, 1e-5, 1e-8] {
         let exact = oracle::tone_curve(DVec3::splat(f64::from(x)));
         let stable = vector_ulps(tone_curve(Vec3::splat(x)), exact);
@@ -134,7 +135,7 @@ fn naive_forms_fail_where_the_docs_say_so() {
     assert!((decode_naive(0.04) / decode(0.04) - 1.0).abs() > 1e-4);
 }
 
-/// The naive forms are the same functions on their benign domains.
+/// Checks that the naive forms are the same functions on their benign domains.
 #[test]
 fn naive_forms_hold_on_benign_inputs() {
     let mut rng = Draws::of_row(3, 0);

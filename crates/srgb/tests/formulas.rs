@@ -1,4 +1,5 @@
-//! `wgsl/srgb.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-srgb`.
+//! Tests `wgsl/srgb.wgsl` and its naive forms, function by function, on the device:
+//! `cargo test -p lapidary-srgb`.
 
 use lapidary_srgb::formulas::formulas;
 

@@ -15,7 +15,7 @@ const M: &str = "texture_diffusion";
 /// Ratios at which a pair of taps is added.
 const LADDER: [f32; 8] = [0.695, 0.345, 0.248, 0.198, 0.124, 0.104, 0.087, 0.073];
 
-/// Bits of every kind.
+/// Draws bits of every kind.
 fn any(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => draws.pick(&[
@@ -39,7 +39,7 @@ fn any(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A length: of every magnitude that counts, ordinary, or none.
+/// Draws a length: of any valid magnitude, ordinary, 0 or invalid.
 fn length(draws: &mut Draws<'_>) -> f32 {
     match draws.below(6) {
         0 => draws.pick(&[0.0, f32::NAN, -1.0, f32::INFINITY, f32::NAN]),
@@ -48,7 +48,8 @@ fn length(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A material: the channels alike, at ratios about the steps of the ladder, at any ratio, or each for itself. Any may be the widest.
+/// Draws a material: equal channels, ratios near the steps of the ladder, any ratio, or independent
+/// channels. Any channel may be the widest.
 fn sigma0(draws: &mut Draws<'_>) -> Vec3 {
     if draws.below(4) == 0 {
         return Vec3::new(length(draws), length(draws), length(draws));
@@ -69,7 +70,7 @@ fn sigma0(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// A tap of the material's own number of pairs in one case of two.
+/// Draws a tap; in one case of two with the material's own number of pairs.
 fn tap(draws: &mut Draws<'_>) -> (u32, u32, Vec3) {
     let sigma0 = sigma0(draws);
     let pairs = match draws.below(4) {
@@ -92,7 +93,7 @@ fn derivative(draws: &mut Draws<'_>) -> Vec3 {
     }
 }
 
-/// Coverage and the sum of colours under it.
+/// Draws a sum of colours and its coverage.
 fn sums(draws: &mut Draws<'_>) -> (Vec3, Vec3) {
     let coverage = |draws: &mut Draws<'_>| match draws.below(5) {
         0 => draws.pick(&[0.0, 1.0, 0.5, mirror::TEXTURE_DIFFUSION_SMALLEST]),
@@ -112,7 +113,8 @@ fn step(draws: &mut Draws<'_>) -> Vec2 {
     Vec2::new(draws.below(5) as f32 - 2.0, draws.below(5) as f32 - 2.0)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -232,7 +234,7 @@ fn taps() -> Vec<Formula> {
             .edge("nothing scatters", |(index, _, s)| index > 0 && s.max_element() <= 0.0)
             .invariant("within reach, weights not negative", |_, tap: TextureDiffusionTap| {
                 let reach = (0.0..=TEXTURE_DIFFUSION_REACH * (1.0 + 1e-6)).contains(&tap.offset);
-                // What an exponential leaves far out may be flushed or not.
+                // Far out, tiny values of the exponential may or may not be flushed to 0.
                 if reach && tap.weight.min_element() >= 0.0 { Ok(()) } else { Err(format!("{tap:?}")) }
             })
             .pair("farther from tap to tap", |(index, pairs, s)| (index + 1, pairs, s), {
@@ -243,7 +245,7 @@ fn taps() -> Vec<Formula> {
             })
             .pair("a material's scale does not matter", |(index, pairs, s)| (index, pairs, 4.0 * s), {
                 |(_, _, s), one: TextureDiffusionTap, other: TextureDiffusionTap| {
-                    // Beyond, numbers count as at most 1e18.
+                    // Numbers count as at most 1e18, and divisors as at least 2^-60.
                     if s.is_nan() || s.max_element() > 1e17 || (s.max_element() > 0.0 && s.max_element() < 1e-17) {
                         return Ok(());
                     }
@@ -302,7 +304,7 @@ fn means() -> Vec<Formula> {
         formula(M, "texture_diffusion_half", mirror::half, oracle::half, |draws| {
             let value = |draws: &mut Draws<'_>| match draws.below(6) {
                 0 => draws.pick(&[0.0, 1.0, 65504.0, 65519.0, 1e18, -65520.0, 6.103_515_6e-5]),
-                // In the middle of two half floats, of either parity, or next to it.
+                // Halfway between two half floats, of either parity, or 1 ulp from it.
                 1 | 2 => {
                     let tie = 2048.0 + draws.below(2048) as f32 + 0.5;
                     draws.nudged(tie, 1)

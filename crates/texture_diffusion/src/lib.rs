@@ -1,5 +1,5 @@
-//! Rust mirror of `wgsl/texture_diffusion.wgsl`, line by line: diffusion of light along a surface as a blur of its texture. Units,
-//! domain and accuracy stand above the WGSL functions.
+//! Rust mirror of `wgsl/texture_diffusion.wgsl`, line by line: diffusion of light along a surface
+//! as a blur of its texture. The comments of the WGSL functions state units, domain and accuracy.
 //!
 //! ```
 //! use glam::Vec3;
@@ -18,16 +18,17 @@ pub mod oracle;
 
 use glam::{UVec3, Vec2, Vec3, Vec4};
 
-/// Where the outermost taps lie, in standard deviations of the widest channel.
+/// Distance of the outermost taps, in standard deviations of the widest channel.
 pub const TEXTURE_DIFFUSION_REACH: f32 = 3.4;
-/// Placement knows no narrower channel than this share of the widest.
+/// Smallest share of the widest channel that the placement of taps takes into account.
 pub const TEXTURE_DIFFUSION_LEAST_RATIO: f32 = 0.0625;
-/// A channel narrower than this share of the widest counts as so narrow.
+/// A channel narrower than this share of the widest, 2^-12, counts as this wide.
 pub const TEXTURE_DIFFUSION_NARROWEST: f32 = 0.000244140625;
-/// Divisors are at least this.
+/// Lower limit of divisors, 2^-60.
 pub const TEXTURE_DIFFUSION_SMALLEST: f32 = 8.673617379884035e-19;
 
-/// A number from anywhere, made safe to calculate with: NaN is 0, magnitudes end at 1e18.
+/// Makes a number from any source safe to calculate with: a NaN becomes 0, and magnitudes are
+/// limited to 1e18.
 pub fn finite(value: f32) -> f32 {
     let bits = value.to_bits();
     let magnitude = bits & 0x7fff_ffff;
@@ -37,17 +38,18 @@ pub fn finite(value: f32) -> f32 {
     f32::from_bits((bits & 0x8000_0000) | magnitude.min(0x5d5e_0b6b))
 }
 
-/// Clip-space position of a vertex by its texture coordinates.
+/// Clip-space position of a vertex, from its texture coordinates.
 pub fn clip(uv: Vec2) -> Vec4 {
     Vec4::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.0, 1.0)
 }
 
-/// The same upside down, a naive form.
+/// The same position upside down: a naive form.
 pub fn clip_naive(uv: Vec2) -> Vec4 {
     (2.0 * uv - 1.0).extend(0.0).extend(1.0)
 }
 
-/// World length of a texel along u and along v, from the position's derivatives in the texture.
+/// World length of a texel along u and along v, from the derivatives of the position in the
+/// texture.
 pub fn stretch(position_x: Vec3, position_y: Vec3) -> Vec2 {
     Vec2::new(position_x.length(), position_y.length())
 }
@@ -59,18 +61,18 @@ pub fn width(sigma0: f32, stretch: f32, widest: f32) -> f32 {
     (sigma / texel.max(TEXTURE_DIFFUSION_SMALLEST)).min(widest).max(0.0)
 }
 
-/// The quotient as it stands, a naive form.
+/// The unguarded quotient: a naive form.
 pub fn width_naive(sigma0: f32, stretch: f32) -> f32 {
     sigma0 / stretch
 }
 
-/// Each channel's scattering, made safe.
+/// Scattering of each channel, made safe.
 pub fn sigma(sigma0: Vec3) -> Vec3 {
     let finite = Vec3::new(finite(sigma0.x), finite(sigma0.y), finite(sigma0.z));
     finite.max(Vec3::ZERO)
 }
 
-/// The narrowest channel's share of the widest.
+/// The narrowest channel as a share of the widest.
 pub fn ratio(sigma0: Vec3) -> f32 {
     let sigma = sigma(sigma0);
     let widest = sigma.x.max(sigma.y).max(sigma.z);
@@ -78,7 +80,8 @@ pub fn ratio(sigma0: Vec3) -> f32 {
     (narrowest / widest.max(TEXTURE_DIFFUSION_SMALLEST)).clamp(TEXTURE_DIFFUSION_LEAST_RATIO, 1.0)
 }
 
-/// How many pairs of taps, beside the one in the middle, keep the blur's error below 1e-3.
+/// Number of pairs of taps, besides the tap in the middle, that keep the error of the blur below
+/// 1e-3.
 pub fn pairs(sigma0: Vec3) -> u32 {
     let ratio = ratio(sigma0);
     let mut pairs = 15;
@@ -93,16 +96,17 @@ pub fn pairs(sigma0: Vec3) -> u32 {
     pairs
 }
 
-/// One of two taps that lie opposite each other.
+/// One of a pair of taps on opposite sides of the texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureDiffusionTap {
     /// Distance from the texel, in standard deviations of the widest channel.
     pub offset: f32,
-    /// Of each channel, the tap in the middle having 1; they are divided by their sum.
+    /// Weight in each channel, where the tap in the middle has weight 1; the weights are divided by
+    /// their sum.
     pub weight: Vec3,
 }
 
-/// Place and weights of a pair of taps.
+/// Position and weights of a pair of taps.
 pub fn tap(index: u32, pairs: u32, sigma0: Vec3) -> TextureDiffusionTap {
     let sigma = sigma(sigma0);
     let widest = sigma.x.max(sigma.y).max(sigma.z);
@@ -117,7 +121,7 @@ pub fn tap(index: u32, pairs: u32, sigma0: Vec3) -> TextureDiffusionTap {
     TextureDiffusionTap { offset, weight: (1.0 + bent) / (apart * apart) * (-0.5 * deviations * deviations).exp() }
 }
 
-/// Taps at equal distances, a naive form.
+/// Taps at equal distances: a naive form.
 pub fn tap_naive(index: u32, pairs: u32, sigma0: Vec3) -> TextureDiffusionTap {
     let widest = sigma0.x.max(sigma0.y).max(sigma0.z);
     let offset = TEXTURE_DIFFUSION_REACH * index as f32 / pairs as f32;
@@ -125,12 +129,12 @@ pub fn tap_naive(index: u32, pairs: u32, sigma0: Vec3) -> TextureDiffusionTap {
     TextureDiffusionTap { offset, weight: (-0.5 * deviations * deviations).exp() }
 }
 
-/// The mean over what the taps have found of the surface.
+/// Mean irradiance of the part of the surface that the taps hit.
 pub fn normalize(sum: Vec3, coverage: Vec3) -> Vec3 {
     sum / coverage.max(Vec3::splat(TEXTURE_DIFFUSION_SMALLEST))
 }
 
-/// The mean over all that the taps have found, a naive form.
+/// The sum divided by the sum of the weights, even if taps miss the chart: a naive form.
 pub fn normalize_naive(sum: Vec3, total: Vec3) -> Vec3 {
     sum / total
 }
@@ -142,7 +146,7 @@ pub fn half(value: Vec3) -> Vec3 {
     Vec3::from(((bits + 0xfff + odd) & UVec3::splat(0xffff_e000)).to_array().map(f32::from_bits))
 }
 
-/// Weight of a covered texel for an empty one, `step` texels away.
+/// Weight of a covered texel for an empty texel that is `step` texels away.
 pub fn nearness(step: Vec2) -> f32 {
     let squared = step.dot(step).max(1.0);
     1.0 / (squared * squared)

@@ -1,12 +1,13 @@
-//! What the placement of docs/texture_diffusion.md promises of sums over taps.
+//! Tests of the placement in docs/texture_diffusion.md: its promises about sums over taps.
 
 use super::*;
 
-/// Materials, by their widest channel's share of 1.
+/// Materials, in units of their widest channel.
 const MATERIALS: [Vec3; 4] =
     [Vec3::ONE, Vec3::new(1.0, 0.5, 0.25), Vec3::new(0.3, 1.0, 0.125), Vec3::new(0.25, 0.0625, 1.0)];
 
-/// Sum over all taps, both of each pair, of `f` at their offsets, by channel, divided by the weights'.
+/// Returns the mean of `f` over the offsets of all taps, both of each pair, with the weights of
+/// each channel.
 fn mean(sigma0: Vec3, f: impl Fn(f32) -> f32) -> Vec3 {
     let count = pairs(sigma0);
     let (mut sum, mut total) = (Vec3::splat(f(0.0)), Vec3::ONE);
@@ -21,7 +22,8 @@ fn mean(sigma0: Vec3, f: impl Fn(f32) -> f32) -> Vec3 {
 #[test]
 fn taps_damp_each_harmonic_as_the_gaussian_does() {
     for sigma0 in MATERIALS {
-        // Harmonics as a blur of one radian meets them; what lies outside the last tap is 7e-4 of the widest Gaussian.
+        // Harmonics as in a blur of one radian. The part beyond the last tap is 7e-4 of the widest
+        // Gaussian.
         for order in 1..=3u8 {
             let order = f32::from(order);
             let damped = mean(sigma0, |x| (order * x).cos());
@@ -40,7 +42,7 @@ fn offsets_rise_from_the_middle_to_the_reach() {
         assert!((taps[count as usize].offset - TEXTURE_DIFFUSION_REACH).abs() < 1e-5);
         let gaps: Vec<f32> = taps.windows(2).map(|pair| pair[1].offset - pair[0].offset).collect();
         assert!(gaps.is_sorted() && gaps[0] > 0.0, "{sigma0}: {gaps:?}");
-        // No gap in the middle is wider than the narrowest channel's own standard deviation.
+        // The gap in the middle is narrower than the standard deviation of the narrowest channel.
         assert!(gaps[0] < ratio(sigma0), "{sigma0}: {}", gaps[0]);
     }
 }

@@ -1,4 +1,5 @@
-//! `wgsl/texture_diffusion.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-texture_diffusion`.
+//! Tests `wgsl/texture_diffusion.wgsl` and its naive forms, function by function, on the device:
+//! `cargo test -p lapidary-texture_diffusion`.
 
 use lapidary_texture_diffusion::formulas::formulas;
 

@@ -13,7 +13,8 @@ mirror_struct!(crate, VeinsPattern { frequency, width, least, greatest, octaves,
 
 const M: &str = "veins";
 
-/// A coordinate: on borders and beside them, every magnitude of either sign, anywhere near the origin.
+/// Draws a coordinate: on a border or next to it, of any magnitude and either sign, or anywhere
+/// near the origin.
 fn coordinate(draws: &mut Draws<'_>, largest: i32) -> f32 {
     match draws.below(5) {
         0 => draws.pick(&[0.0, 1.0, -1.0, -0.25, 0.5]),
@@ -42,7 +43,7 @@ fn seed(draws: &mut Draws<'_>) -> u32 {
     if draws.below(4) == 0 { draws.pick(&[0, 1, u32::MAX]) } else { draws.bits() }
 }
 
-/// Widths: those of use, every magnitude, and those that are clamped.
+/// Draws a width: in the useful range, of any magnitude, or one that is clamped.
 fn width(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => draws.pick(&[1.0, mirror::VEINS_NARROWEST, 0.0, -1.0, 1e-5, mirror::VEINS_WIDEST, 1e30]),
@@ -62,12 +63,13 @@ fn pattern(draws: &mut Draws<'_>) -> VeinsPattern {
     }
 }
 
-/// Whether a coordinate is a whole number.
+/// Returns whether a coordinate is a whole number.
 fn whole(x: f32) -> bool {
     x.fract() == 0.0
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -139,7 +141,7 @@ fn noises() -> Vec<Formula> {
                 |(p, seed)| (p.with_x(p.x.round().next_down()), seed),
                 |(p, _), one: f32, other: f32| {
                     let step = f64::from(p.x - p.x.round().next_down()).abs();
-                    // The slope is at most 4 or so.
+                    // The slope is at most about 4.
                     if step < 1e-3 { near("step", f64::from(one - other), 0.0, 4.0 * step + 1e-5) } else { Ok(()) }
                 },
             )

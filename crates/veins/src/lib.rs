@@ -1,5 +1,5 @@
-//! Rust mirror of `wgsl/veins.wgsl`, line by line: density of veined stone. Units, domain and accuracy stand above the WGSL
-//! functions.
+//! Rust mirror of `wgsl/veins.wgsl`, line by line: density of veined stone. The comments of the
+//! WGSL functions state units, domain and accuracy.
 //!
 //! ```
 //! use glam::Vec3;
@@ -16,38 +16,38 @@ pub mod oracle;
 
 use glam::{IVec3, UVec4, Vec3, Vec4, Vec4Swizzles as _};
 
-/// Positions count as at most this many cells from the origin, on each axis.
+/// Positions are clamped to this many cells from the origin on each axis.
 pub const VEINS_FARTHEST: f32 = 4194304.0;
-/// A vein's width counts as at least this.
+/// The minimum width of a vein; smaller widths are clamped to it.
 pub const VEINS_NARROWEST: f32 = 0.0009765625;
-/// And as at most this, 2²⁰.
+/// The maximum width, 2²⁰; larger widths are clamped to it.
 pub const VEINS_WIDEST: f32 = 1_048_576.0;
-/// The most octaves that are summed.
+/// The maximum number of octaves.
 pub const VEINS_MOST_OCTAVES: u32 = 8;
 
-/// A cell of the noise and a place in it.
+/// A cell of the noise and a position in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VeinsCell {
-    /// Corner at the lower coordinates.
+    /// Corner of the cell at the lower coordinates.
     pub corner: IVec3,
-    /// From that corner, in [0, 1].
+    /// Position relative to that corner, in [0, 1].
     pub offset: Vec3,
 }
 
-/// What a stone's veins are like.
+/// Parameters of a stone's veins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VeinsPattern {
-    /// Cells of the first octave per unit of length.
+    /// Number of cells of the first octave per unit of length.
     pub frequency: f32,
-    /// Value of the noise at which a vein's density has fallen half way.
+    /// Value of the noise at which a vein's density has fallen halfway to `least`.
     pub width: f32,
     /// Density between the veins.
     pub least: f32,
     /// Density in the middle of a vein.
     pub greatest: f32,
-    /// 1 to 8.
+    /// Number of octaves, 0 to 8; more count as 8.
     pub octaves: u32,
-    /// Another seed gives other veins.
+    /// Seed; different seeds give different veins.
     pub seed: u32,
 }
 
@@ -58,13 +58,13 @@ pub fn cell(position: Vec3) -> VeinsCell {
     VeinsCell { corner: lower.as_ivec3(), offset: p - lower }
 }
 
-/// The cell by conversion to integers, a naive form.
+/// The cell by conversion to integers: a naive form.
 pub fn cell_naive(position: Vec3) -> VeinsCell {
     let corner = position.as_ivec3();
     VeinsCell { corner, offset: position - corner.as_vec3() }
 }
 
-/// Random bits of a corner of the grid, by pcg4d.
+/// Random bits for a corner of the grid, by pcg4d.
 pub fn hash(corner: IVec3, seed: u32) -> u32 {
     let mut v =
         corner.as_uvec3().extend(seed).wrapping_mul(UVec4::splat(1664525)).wrapping_add(UVec4::splat(1013904223));
@@ -76,7 +76,7 @@ pub fn hash(corner: IVec3, seed: u32) -> u32 {
     v.x.wrapping_add(v.y.wrapping_mul(v.w))
 }
 
-/// One of the twelve directions from a cube's middle to its edges' middles.
+/// One of the twelve directions from the centre of a cube to the middles of its edges.
 pub fn gradient(bits: u32) -> Vec3 {
     let first = if (bits & 0x80000000) != 0 { -1.0 } else { 1.0 };
     let second = if (bits & 0x40000000) != 0 { -1.0 } else { 1.0 };
@@ -90,7 +90,7 @@ pub fn gradient(bits: u32) -> Vec3 {
     Vec3::new(first, second, 0.0)
 }
 
-/// A corner's part in the noise, before it is faded.
+/// The contribution of one corner to the noise, before fading.
 pub fn corner(cell: VeinsCell, corner: IVec3, seed: u32) -> f32 {
     gradient(hash(cell.corner + corner, seed)).dot(cell.offset - corner.as_vec3())
 }
@@ -117,7 +117,7 @@ pub fn noise(position: Vec3, seed: u32) -> f32 {
     along_y.x + fade.z * (along_y.y - along_y.x)
 }
 
-/// Octaves of the noise.
+/// A sum of octaves of the noise.
 pub fn fractal(position: Vec3, octaves: u32, seed: u32) -> f32 {
     let mut sum = 0.0;
     let mut amplitude = 1.0;
@@ -130,14 +130,14 @@ pub fn fractal(position: Vec3, octaves: u32, seed: u32) -> f32 {
     sum
 }
 
-/// A vein where the noise passes 0.
+/// A vein where the noise passes through 0.
 pub fn fold(value: f32, width: f32) -> f32 {
     let half = width.clamp(VEINS_NARROWEST, VEINS_WIDEST);
     let squared = half * half;
     (squared / (squared + value * value)).min(1.0)
 }
 
-/// The vein by the absolute value, a naive form.
+/// A vein by the absolute value: a naive form.
 pub fn fold_naive(value: f32, width: f32) -> f32 {
     1.0 - value.abs() / (2.0 * width)
 }

@@ -1,39 +1,39 @@
-//! The truth in f64: the hash in 64 bits, the gradient by a table, the noise as a sum of eight corners by the products of their weights, each
-//! weight by the integral of 30 t² (1 - t)².
+//! Ground truth in f64: the hash in 64 bits, the gradient from a table, the noise as a sum over
+//! eight corners with products of weights, each weight from the integral of 30 t² (1 - t)².
 
 use glam::{DVec3, IVec3};
 
-// The module's constants, written out again: a slip in theirs must not carry over to the truth.
+// The module's constants, repeated: a mistake in the module must not carry over to the truth.
 const FARTHEST: f64 = 4_194_304.0;
 const NARROWEST: f64 = 1.0 / 1024.0;
 
-/// A cell of the noise and a place in it.
+/// A cell of the noise and a position in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VeinsCell {
-    /// Corner at the lower coordinates.
+    /// Corner of the cell at the lower coordinates.
     pub corner: IVec3,
-    /// From that corner, in [0, 1].
+    /// Position relative to that corner, in [0, 1].
     pub offset: DVec3,
 }
 
-/// What a stone's veins are like.
+/// Parameters of a stone's veins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VeinsPattern {
-    /// Cells of the first octave per unit of length.
+    /// Number of cells of the first octave per unit of length.
     pub frequency: f64,
-    /// Value of the noise at which a vein's density has fallen half way.
+    /// Value of the noise at which a vein's density has fallen halfway to `least`.
     pub width: f64,
     /// Density between the veins.
     pub least: f64,
     /// Density in the middle of a vein.
     pub greatest: f64,
-    /// 1 to 8.
+    /// Number of octaves, 0 to 8; more count as 8.
     pub octaves: u32,
-    /// Another seed gives other veins.
+    /// Seed; different seeds give different veins.
     pub seed: u32,
 }
 
-/// By division with a remainder that is not negative.
+/// Divides with a remainder that is not negative.
 pub fn cell(position: DVec3) -> VeinsCell {
     let parts = position.to_array().map(|x| {
         let x = x.clamp(-FARTHEST, FARTHEST);
@@ -45,12 +45,12 @@ pub fn cell(position: DVec3) -> VeinsCell {
     }
 }
 
-/// Cut towards 0, which is another function.
+/// Truncates towards 0, which is a different function.
 pub fn cell_naive(position: DVec3) -> VeinsCell {
     VeinsCell { corner: position.trunc().as_ivec3(), offset: position - position.trunc() }
 }
 
-/// In 64 bits, where nothing overflows.
+/// Computes the hash in 64 bits, so that nothing overflows.
 pub fn hash(corner: IVec3, seed: u32) -> u32 {
     let rest = |value: u64| value % (1 << 32);
     let corner = corner.to_array().map(|part| i64::from(part).rem_euclid(1 << 32) as u64);
@@ -62,7 +62,8 @@ pub fn hash(corner: IVec3, seed: u32) -> u32 {
     rest(x + rest(y * w)) as u32
 }
 
-/// By a table of the quarter that the bits lie in, and their rest by 3.
+/// Looks up the signs by the quarter of the range that the bits lie in, and the axis by their
+/// remainder modulo 3.
 pub fn gradient(bits: u32) -> DVec3 {
     const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
     let mut parts = SIGNS[bits as usize / (1 << 30)].to_vec();
@@ -70,18 +71,18 @@ pub fn gradient(bits: u32) -> DVec3 {
     DVec3::new(parts[0], parts[1], parts[2])
 }
 
-/// The gradient's plane through the corner.
+/// Evaluates the gradient's plane through the corner.
 pub fn corner(cell: VeinsCell, corner: IVec3, seed: u32) -> f64 {
     let gradient = gradient(hash(cell.corner + corner, seed));
     (0..3).map(|axis| gradient[axis] * (cell.offset[axis] - f64::from(corner[axis]))).sum()
 }
 
-/// The integral of 30 t² (1 - t)² from 0.
+/// Returns the integral of 30 t² (1 - t)² from 0 to t.
 fn weight(t: f64) -> f64 {
     10.0 * t.powi(3) - 15.0 * t.powi(4) + 6.0 * t.powi(5)
 }
 
-/// The sum over the eight corners.
+/// Sums over the eight corners.
 pub fn noise(position: DVec3, seed: u32) -> f64 {
     let cell = cell(position);
     let part = |number: i32| {
@@ -95,7 +96,7 @@ pub fn noise(position: DVec3, seed: u32) -> f64 {
     (0..8).map(part).sum()
 }
 
-/// The first octave and half of what the others make.
+/// Adds half of the sum of the other octaves to the first octave.
 pub fn fractal(position: DVec3, octaves: u32, seed: u32) -> f64 {
     match octaves.min(8) {
         0 => 0.0,
@@ -103,17 +104,17 @@ pub fn fractal(position: DVec3, octaves: u32, seed: u32) -> f64 {
     }
 }
 
-/// The squared cosine of the angle whose tangent is value / width.
+/// Returns the squared cosine of the angle whose tangent is value / width.
 pub fn fold(value: f64, width: f64) -> f64 {
     (value / width.max(NARROWEST)).atan().cos().powi(2)
 }
 
-/// The line, which is another function.
+/// Computes the straight line, which is a different function.
 pub fn fold_naive(value: f64, width: f64) -> f64 {
     (width - value.abs() / 2.0) / width
 }
 
-/// From the least to the greatest by the share of a vein.
+/// Interpolates from `least` to `greatest` by the share of vein.
 pub fn density(position: DVec3, pattern: VeinsPattern) -> f64 {
     let share = fold(fractal(position * pattern.frequency, pattern.octaves, pattern.seed), pattern.width);
     pattern.least + (pattern.greatest - pattern.least) * share

@@ -1,4 +1,5 @@
-//! What the page claims: no step in value, slope or curvature at a cell's border, no corner that is preferred, bounds that hold.
+//! Tests of the claims of the documentation page: no step in value, slope or curvature at the
+//! border of a cell, no preferred gradient, bounds that hold.
 
 use super::*;
 use glam::DVec3;
@@ -10,7 +11,7 @@ fn value_slope_and_curvature_go_on_across_borders() {
         let along = f64::from(k) * 0.137;
         let at = |x: f64| oracle::noise(DVec3::new(x, 0.3 + along, 7.7 - along), 5);
         let step = 1e-4;
-        // One-sided differences of the second order, on either side of x = 3.
+        // One-sided differences of second order, on either side of x = 3.
         let slope = |side: f64| {
             (-3.0 * at(3.0 + side * 1e-12) + 4.0 * at(3.0 + side * step) - at(3.0 + 2.0 * side * step))
                 / (2.0 * side * step)
@@ -24,7 +25,7 @@ fn value_slope_and_curvature_go_on_across_borders() {
     }
 }
 
-/// The twelve gradients are as likely as each other, next to each other as well.
+/// Checks that the twelve gradients are equally likely, also in pairs of neighbours.
 #[test]
 fn gradients_are_evenly_spread() {
     let mut counts = std::collections::HashMap::new();

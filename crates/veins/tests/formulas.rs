@@ -1,4 +1,5 @@
-//! `wgsl/veins.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-veins`.
+//! Tests `wgsl/veins.wgsl` and its naive forms, function by function, on the device:
+//! `cargo test -p lapidary-veins`.
 
 use lapidary_veins::formulas::formulas;
 

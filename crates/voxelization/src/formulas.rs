@@ -21,7 +21,7 @@ fn cells(draws: &mut Draws<'_>) -> u32 {
     8 * (2 + draws.below(31))
 }
 
-/// A grid anywhere, or one whose faces f32 holds exactly.
+/// Draws a grid anywhere, or one whose faces f32 represents exactly.
 fn grid(draws: &mut Draws<'_>) -> VoxelizationGrid {
     let cells = cells(draws);
     if draws.below(2) == 0 {
@@ -32,7 +32,7 @@ fn grid(draws: &mut Draws<'_>) -> VoxelizationGrid {
     VoxelizationGrid { origin: cells as f32 * spacing * draws.in_cube(), spacing, cells }
 }
 
-/// A whole number from -n to n.
+/// Draws a whole number from -n to n.
 fn whole(draws: &mut Draws<'_>, n: u32) -> f32 {
     draws.below(2 * n + 1) as f32 - n as f32
 }
@@ -42,7 +42,7 @@ fn in_grid(draws: &mut Draws<'_>, cells: u32) -> UVec3 {
     UVec3::new(number(), number(), number())
 }
 
-/// Halves of small whole numbers, of which f32 makes sums of products exactly.
+/// Draws half of a small whole number; f32 computes sums of products of these exactly.
 fn step(draws: &mut Draws<'_>) -> f32 {
     0.5 * whole(draws, 6)
 }
@@ -59,7 +59,7 @@ fn all_steps(points: &[Vec3]) -> bool {
     points.iter().all(|point| point.to_array().into_iter().all(is_step))
 }
 
-/// A triangle at least 1/8 as thick as long, of this size, about a place.
+/// Draws a triangle of size `size` around `middle`, at least 1/8 as thick as long.
 fn fat_triangle(draws: &mut Draws<'_>, middle: DVec3, size: f64) -> Triangle {
     let first = draws.unit_vector().as_dvec3().normalize();
     let second = draws.perpendicular(first);
@@ -71,12 +71,13 @@ fn fat_triangle(draws: &mut Draws<'_>, middle: DVec3, size: f64) -> Triangle {
     if draws.below(2) == 0 { (a, b, c) } else { (a, c, b) }
 }
 
-/// A place in a grid, away from its origin, where a coordinate's last place says how exact all of them are.
+/// Draws a position in a grid, away from its origin, so that the last place of one coordinate shows
+/// the precision of all.
 fn place(draws: &mut Draws<'_>) -> DVec3 {
     150.0 + 80.0 * draws.in_cube().as_dvec3()
 }
 
-/// A point of the lattice near the column, or as far away as points are.
+/// Draws a lattice point near the column, or as far away as points can be.
 fn point(draws: &mut Draws<'_>) -> IVec2 {
     const MOST: i32 = 1 << 29;
     let mut coordinate = || match draws.below(4) {
@@ -90,7 +91,8 @@ fn point(draws: &mut Draws<'_>) -> IVec2 {
     IVec2::new(coordinate(), coordinate())
 }
 
-/// Two points of the lattice whose difference is within it: anywhere, or nearly on a line through the column.
+/// Draws two lattice points whose difference is within the lattice: anywhere, or nearly on a line
+/// through the column.
 fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
     let beside = |draws: &mut Draws<'_>| IVec2::new(draws.below(3) as i32 - 1, draws.below(3) as i32 - 1);
     let far = point(draws);
@@ -99,7 +101,7 @@ fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
         0 | 1 => (far, near + beside(draws)),
         2 => (near, point(draws) / 2),
         3 => (near, near),
-        // By ratios whose products stay exact.
+        // With ratios whose products stay exact.
         _ => {
             let (over, under) = draws.pick(&[(1, 1), (-1, 1), (1, 2), (-1, 2), (2, 3), (-3, 4), (0, 1)]);
             (near, near / (4 * under) * over + beside(draws))
@@ -108,7 +110,8 @@ fn edge(draws: &mut Draws<'_>) -> (IVec2, IVec2) {
     if draws.below(2) == 0 { (one, other) } else { (other, one) }
 }
 
-/// A triangle and a column: of the steps, aimed at the inside, an edge, a corner or beside, of a few points of the lattice, or as wide as it is.
+/// Draws a triangle and a column: with coordinates from `step`, aimed at the inside, an edge, a
+/// corner or beside the triangle, on a few lattice points, or as wide as the lattice.
 fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
     let aimed = match draws.below(8) {
         0..3 => return (steps(draws), steps(draws), steps(draws), Vec2::new(step(draws), step(draws))),
@@ -144,10 +147,11 @@ fn column_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
     (a, b, c, Vec2::new(at.y, at.z))
 }
 
-/// Away from edges, or of the steps, with an area as seen along x.
+/// Draws a triangle and a column: away from edges, or with coordinates from `step` and an area as
+/// seen along x.
 fn benign_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
     if draws.below(2) == 0 {
-        // Small ones, so that areas are small too.
+        // Small triangles, so that areas are small too.
         let scale = draws.pick(&[1.0, 1.0 / 16.0]);
         let (a, b, c) = (scale * steps(draws), scale * steps(draws), scale * steps(draws));
         let at = scale * Vec2::new(step(draws), step(draws));
@@ -161,7 +165,8 @@ fn benign_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec2) {
     (a, b, c, Vec2::new(draws.between(0.5, 1.5), draws.between(1.0, 1.5)))
 }
 
-/// A triangle and a voxel: of the steps, aimed at the voxel's corners and faces, or anywhere near.
+/// Draws a triangle and a voxel: with coordinates from `step`, aimed at the voxel's corners and
+/// faces, or anywhere near.
 fn overlap_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     if draws.below(2) == 0 {
         let corner = Vec3::new(whole(draws, 1), whole(draws, 1), whole(draws, 1));
@@ -177,7 +182,8 @@ fn overlap_case(draws: &mut Draws<'_>) -> (Vec3, Vec3, Vec3, Vec3) {
     let target = corner + DVec3::new(share(draws), share(draws), share(draws));
     let size = f64::from(draws.magnitude(-3, 4));
     let (a, b, c) = fat_triangle(draws, DVec3::ZERO, size);
-    // One of its corners, or a point of an edge, or of the inside, comes to lie there, or not far from there.
+    // Moves a corner of the triangle, a point on an edge or a point of the inside to the target or
+    // near it.
     let (v, w) = match draws.below(4) {
         0 => (0.0, 0.0),
         1 => (draws.unit(), 0.0),
@@ -193,7 +199,8 @@ fn exact_triangle((a, b, c): Triangle) -> [DVec3; 3] {
     [a, b, c].map(Vec3::as_dvec3)
 }
 
-/// Every function of the module, bound to its mirror and its oracle, with what it promises outside of its domain.
+/// Returns every function of the module, bound to its mirror and its oracle, with its promises
+/// outside its domain.
 #[must_use]
 pub fn formulas() -> Vec<Formula> {
     with_promises(functions(), outside::promises())
@@ -259,7 +266,8 @@ fn grid_formulas() -> Vec<Formula> {
 }
 
 fn column_formulas() -> Vec<Formula> {
-    // Two triangles over the square from (0, 0) to (4, 4), parted by the diagonal from (0, 0) to (4, 4).
+    // The triangle under the diagonal of the square from (0, 0) to (4, 4), with two columns; a column
+    // at an apex; a triangle seen edge-on.
     let corner = |y: f32, z: f32| Vec3::new(2.0, y, z);
     let under = (corner(0.0, 0.0), corner(4.0, 0.0), corner(4.0, 4.0), Vec2::splat(1.5));
     let closed_end = (corner(0.0, 0.0), corner(4.0, 0.0), corner(4.0, 4.0), Vec2::new(4.0, 1.5));
@@ -337,7 +345,8 @@ fn column_formulas() -> Vec<Formula> {
                 "the corners may be named in any order",
                 |(a, b, c, at)| (c, b, a, at),
                 |(a, b, c, _), one: VoxelizationColumn, other: VoxelizationColumn| {
-                    // Three weights, products and their sum, the sum of the weights and the quotient, each way.
+                    // Errors of three weights, of the products and their sum, of the sum of the
+                    // weights and of the quotient, in either order.
                     let most = f64::from(a.x.abs().max(b.x.abs()).max(c.x.abs())) * 24.0 * 2f64.powi(-23);
                     near("depth", one.depth.into(), other.depth.into(), most)?;
                     if one.inside == other.inside { Ok(()) } else { Err(format!("{one:?}, {other:?}")) }
@@ -465,7 +474,7 @@ fn surface_formulas() -> Vec<Formula> {
                 "the corners may be named in any order",
                 |(a, b, c, corner)| (b, c, a, corner),
                 |(a, b, c, corner), one: bool, other: bool| {
-                    // Within the margin rounding decides.
+                    // Within the margin, rounding decides.
                     let wide = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.01);
                     let narrow = oracle::touches(exact_triangle((a, b, c)), corner.as_dvec3(), 0.0);
                     if one == other || wide != narrow { Ok(()) } else { Err(format!("{one}, {other}")) }

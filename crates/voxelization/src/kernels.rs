@@ -1,27 +1,30 @@
-//! The kernels of the recipe `voxelization`, buffer by buffer, in its names and its order of operations.
+//! The kernels of the recipe `voxelization`, buffer by buffer, with its names and its order of
+//! operations.
 
 use crate::VoxelizationGrid;
 use glam::{UVec2, Vec3};
 
-/// What a frame of the recipe writes, all 0 at first.
+/// Output buffers of a frame of the recipe, all 0 at first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Buffers {
-    /// A bit for each voxel, a row along x beginning at a word.
+    /// A bit for each voxel; each row along x starts at a new word.
     pub matter: Vec<u32>,
-    /// The same: what the surface touches.
+    /// The same layout, for the voxels that the surface touches.
     pub surface: Vec<u32>,
-    /// A bit for each column: whether it is crossed an odd number of times behind its last centre.
+    /// A bit for each column, set if the column is crossed an odd number of times behind its last
+    /// centre.
     pub beyond: Vec<u32>,
-    /// Voxels whose centre is inside, voxels that the surface touches, and columns crossed an odd number of times.
+    /// Numbers of voxels whose centre is inside, of voxels that the surface touches, and of columns
+    /// that are crossed an odd number of times.
     pub status: [u32; 3],
 }
 
-/// The words of a row.
+/// Returns the number of words in a row.
 pub fn words(grid: VoxelizationGrid) -> u32 {
     grid.cells.div_ceil(32)
 }
 
-/// A frame: the kernels after one another. `positions` holds three numbers a vertex.
+/// Runs the kernels of a frame one after another. `positions` holds three numbers per vertex.
 pub fn frame(grid: VoxelizationGrid, positions: &[f32], indices: &[u32], effect_surface: bool) -> Buffers {
     let columns = grid.cells * grid.cells;
     let bits = vec![0; (columns * words(grid)) as usize];
@@ -39,7 +42,8 @@ pub fn frame(grid: VoxelizationGrid, positions: &[f32], indices: &[u32], effect_
     buffers
 }
 
-/// `voxelization_load` and `voxelization_walk`: all columns of a triangle in the grid's coordinates.
+/// Mirrors `voxelization_load` and `voxelization_walk`, for all columns of a triangle in grid
+/// coordinates.
 pub fn walk(grid: VoxelizationGrid, [a, b, c]: [Vec3; 3], effect_surface: bool, buffers: &mut Buffers) {
     let margin = crate::margin(a, b, c);
     let low = a.min(b.min(c)) - margin;
@@ -69,7 +73,8 @@ pub fn walk(grid: VoxelizationGrid, [a, b, c]: [Vec3; 3], effect_surface: bool, 
     }
 }
 
-/// `voxelization_finish` of a row: filled from each crossing on, unless there is an odd number of them.
+/// Mirrors `voxelization_finish` for a row: each crossing flips all bits behind it. A row with an
+/// odd number of crossings is not filled.
 pub fn finish(grid: VoxelizationGrid, row: u32, buffers: &mut Buffers) {
     let words = words(grid);
     let first = (row * words) as usize;

@@ -1,8 +1,9 @@
-//! Mirror of `wgsl/voxelization.wgsl`: where a triangle crosses a column of voxel centres, without leaks, and which voxels it
-//! touches. After Schwarz and Seidel 2010 and Akenine-Möller 2001.
+//! Mirror of `wgsl/voxelization.wgsl`: the crossing of a triangle and a column of voxel centres,
+//! without leaks, and the voxels that a triangle touches. After Schwarz and Seidel 2010 and
+//! Akenine-Möller 2001.
 //!
-//! The WGSL file states units, domain and accuracy of each function; this file reads line by line like it.
-//! [`kernels`] mirrors the recipe `wgsl/recipes/voxelization.wgsl`.
+//! The WGSL file states the units, domain and accuracy of each function. This file mirrors it line
+//! by line. [`kernels`] mirrors the recipe `wgsl/recipes/voxelization.wgsl`.
 //!
 //! ```
 //! use glam::{Vec3, vec2, vec3};
@@ -25,13 +26,14 @@ mod tests;
 
 use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec3Swizzles as _};
 
-/// Points of the lattice along a voxel's edge.
+/// Lattice points along a voxel's edge.
 pub const VOXELIZATION_LATTICE: f32 = 16384.0;
-/// How far the lattice reaches from the grid's origin, in voxels.
+/// The extent of the lattice from the grid's origin, in voxels.
 pub const VOXELIZATION_REACH: f32 = 16384.0;
-/// How far a triangle reaches beyond itself, relative to its largest coordinate or to a voxel, 2⁻¹⁹.
+/// The margin by which a triangle is enlarged, relative to its largest coordinate or to a voxel,
+/// 2⁻¹⁹.
 pub const VOXELIZATION_MARGIN: f32 = 1.9073486328125e-6;
-/// Steeper planes than this are cut off by the triangle's own extent, whatever the grid.
+/// The steepest plane; steeper ones are cut off by the triangle's own extent, whatever the grid.
 pub const VOXELIZATION_STEEPEST: f32 = 1048576.0;
 
 /// A cube of voxels.
@@ -45,7 +47,7 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// An integer of more bits than 32: high 2³⁰ + low.
+/// An integer of more than 32 bits: high 2³⁰ + low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoxelizationInteger {
     /// Units of 2³⁰.
@@ -57,22 +59,23 @@ pub struct VoxelizationInteger {
 /// An edge as seen from a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelizationEdge {
-    /// 1 where it runs counterclockwise about the column, with y to the right and z upwards; -1 where clockwise; 0 for an edge without length.
+    /// 1 if the edge runs counterclockwise about the column, with y to the right and z upwards; -1
+    /// if clockwise; 0 for an edge without length.
     pub turn: i32,
     /// Twice the area of the triangle between the edge and the column, in squares of the lattice.
     pub area: f32,
 }
 
-/// Where a triangle crosses a column.
+/// The crossing of a triangle and a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelizationColumn {
-    /// Whether it does.
+    /// True if they cross.
     pub inside: bool,
-    /// x of the place; 0 where there is none.
+    /// The x coordinate of the crossing; 0 if there is none.
     pub depth: f32,
 }
 
-/// The number of a voxel, x running fastest.
+/// The index of a voxel, with x varying fastest.
 pub fn index(grid: VoxelizationGrid, voxel: UVec3) -> u32 {
     voxel.x + grid.cells * (voxel.y + grid.cells * voxel.z)
 }
@@ -82,12 +85,12 @@ pub fn centre(grid: VoxelizationGrid, voxel: UVec3) -> Vec3 {
     grid.origin + (voxel.as_vec3() + 0.5) * grid.spacing
 }
 
-/// A position in the grid's own coordinates, which count voxels.
+/// A position in grid coordinates, which count voxels.
 pub fn local(grid: VoxelizationGrid, position: Vec3) -> Vec3 {
     (position - grid.origin) / grid.spacing
 }
 
-/// The voxel that holds a position, or the nearest one.
+/// The voxel that contains a position, or the nearest one.
 pub fn voxel(grid: VoxelizationGrid, position: Vec3) -> UVec3 {
     let last = grid.cells - 1;
     local(grid, position).clamp(Vec3::ZERO, Vec3::splat(last as f32)).as_uvec3().min(UVec3::splat(last))
@@ -100,7 +103,7 @@ pub fn lattice(position: Vec2) -> IVec2 {
     Vec2::new(scaled.x.round_ties_even(), scaled.y.round_ties_even()).as_ivec2()
 }
 
-/// The cross product of two vectors of whole numbers, all of its bits.
+/// The cross product of two integer vectors, with all of its bits.
 pub fn cross(p: IVec2, q: IVec2) -> VoxelizationInteger {
     let p_high = p >> UVec2::splat(15);
     let q_high = q >> UVec2::splat(15);
@@ -119,13 +122,14 @@ pub fn edge(from_point: IVec2, to_point: IVec2) -> VoxelizationEdge {
     let turn_beside = if way.x == 0 { -way.y.signum() } else { way.x.signum() };
     let turn_near = if area.low > 0 { 1 } else { turn_beside };
     let turn = if area.high == 0 { turn_near } else { area.high.signum() };
-    // Without the sign: a small difference of two large parts would lose its digits.
+    // The magnitude: with the sign, a small difference of two large parts would lose its digits.
     let high = if area.high < 0 { -1 - area.high } else { area.high };
     let low = if area.high < 0 { 1_073_741_824 - area.low } else { area.low };
     VoxelizationEdge { turn, area: high as f32 * 1_073_741_824.0 + low as f32 }
 }
 
-/// Where a triangle crosses a column: all three edges turn about it the same way.
+/// The crossing of a triangle and a column, which exists if all three edges turn about the column
+/// the same way.
 pub fn column(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     let at = lattice(column);
     let p = lattice(a.yz()) - at;
@@ -137,13 +141,13 @@ pub fn column(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     if ab.turn == 0 || ab.turn != bc.turn || bc.turn != ca.turn {
         return VoxelizationColumn { inside: false, depth: 0.0 };
     }
-    // Each corner weighs as much as the edge across from it.
+    // Each corner's weight is the area of the opposite edge.
     let weights = Vec3::new(bc.area, ca.area, ab.area);
     let depth = weights.dot(Vec3::new(a.x, b.x, c.x)) / (weights.x + weights.y + weights.z);
     VoxelizationColumn { inside: true, depth: depth.clamp(a.x.min(b.x.min(c.x)), a.x.max(b.x.max(c.x))) }
 }
 
-/// The same in floats, as one finds it.
+/// [`column`] in floats, as usually written.
 pub fn column_naive(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     let p = a.yz() - column;
     let q = b.yz() - column;
@@ -156,13 +160,13 @@ pub fn column_naive(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColu
     VoxelizationColumn { inside: false, depth: 0.0 }
 }
 
-/// The first voxel of a row whose centre lies at a coordinate or beyond it; `cells` where there is none.
+/// The first voxel of a row whose centre lies at or beyond a coordinate; `cells` if there is none.
 pub fn first(coordinate: f32, cells: u32) -> u32 {
     let near = coordinate.clamp(0.0, cells as f32);
     ((near - 0.5).ceil() as u32).min(cells)
 }
 
-/// Bits that change at each bit that is set, the least first.
+/// The running parity of bits, from the least on.
 pub fn prefix(bits: u32) -> u32 {
     let two = bits ^ (bits << 1);
     let four = two ^ (two << 2);
@@ -171,13 +175,14 @@ pub fn prefix(bits: u32) -> u32 {
     sixteen ^ (sixteen << 16)
 }
 
-/// The length of a way along the axes.
+/// The taxicab length of a vector.
 pub fn taxicab(vector: Vec3) -> f32 {
     let size = vector.abs();
     size.x + size.y + size.z
 }
 
-/// How far beyond itself a triangle touches voxels, so that rounding misses none.
+/// The margin around a triangle within which it counts as touching voxels, so that rounding misses
+/// none.
 pub fn margin(a: Vec3, b: Vec3, c: Vec3) -> f32 {
     let largest = a.abs().max(b.abs().max(c.abs()));
     VOXELIZATION_MARGIN * (1.0 + largest.x.max(largest.y.max(largest.z)))
@@ -190,7 +195,8 @@ pub fn range(low: f32, high: f32, cells: u32) -> UVec2 {
     UVec2::new((low.clamp(0.0, most) as u32).min(end), end)
 }
 
-/// The interval along x in which a triangle's plane passes over the square of a column, cut off by the triangle's own extent.
+/// The interval along x in which a triangle's plane passes over the square of a column, cut off by
+/// the triangle's own extent.
 pub fn span(a: Vec3, b: Vec3, c: Vec3, corner: Vec2) -> Vec2 {
     let margin = margin(a, b, c);
     let extent = Vec2::new(a.x.min(b.x.min(c.x)) - margin, a.x.max(b.x.max(c.x)) + margin);
@@ -204,12 +210,13 @@ pub fn span(a: Vec3, b: Vec3, c: Vec3, corner: Vec2) -> Vec2 {
         return extent;
     }
     let middle = a.x - normal.yz().dot((corner + 0.5) - a.yz()) / normal.x;
-    // What quotients round goes with them.
+    // The rounding error of a quotient is proportional to it, hence the factor.
     let half = (1.0 + VOXELIZATION_MARGIN) * width / slope + margin;
     Vec2::new(extent.x.max(middle - half), extent.y.min(middle + half))
 }
 
-/// Whether a triangle touches a voxel, its faces, edges and corners included, or comes within the margin of it.
+/// Whether a triangle touches a voxel, including its faces, edges and corners, or comes within the
+/// margin of it.
 pub fn overlaps(a: Vec3, b: Vec3, c: Vec3, corner: Vec3) -> bool {
     let margin = margin(a, b, c);
     let half = 0.5 + margin;
@@ -223,7 +230,8 @@ pub fn overlaps(a: Vec3, b: Vec3, c: Vec3, corner: Vec3) -> bool {
     let ab = b - a;
     let bc = c - b;
     let ca = a - c;
-    // Component i of edge × corner is the corner's projection onto axis i × edge; both ends of the edge have the same.
+    // Component i of edge × corner is the corner's projection onto axis i × edge; both ends of the
+    // edge have the same projection.
     let ab_p = ab.cross(p);
     let ab_r = ab.cross(r);
     let bc_q = bc.cross(q);
@@ -242,7 +250,8 @@ pub fn overlaps(a: Vec3, b: Vec3, c: Vec3, corner: Vec3) -> bool {
     {
         return false;
     }
-    // The normal of a thin triangle is rounding for the most part, by as much as its edges are long.
+    // The normal of a thin triangle is mostly rounding error, in proportion to the lengths of its
+    // edges.
     let normal = ab.cross(ca);
     let slack = margin * taxicab(ab) * taxicab(ca);
     normal.dot(p).abs() <= half * taxicab(normal) + slack

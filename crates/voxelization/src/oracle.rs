@@ -1,5 +1,6 @@
-//! The truth, in f64 and in integers of 128 bits. Faces and centres are counted, a column is inside by the edges that lie beside it, its depth by Cramer's rule,
-//! and a triangle touches a voxel if something is left of it once the voxel's six faces have clipped it.
+//! Ground truth in f64 and in integers of 128 bits. Faces and centres are counted. The edges beside
+//! a column decide whether it is inside, and Cramer's rule gives its depth. A triangle touches a
+//! voxel if a part of it remains after clipping by the six faces of the voxel.
 
 use glam::{DVec2, DVec3, IVec2, UVec2, UVec3};
 
@@ -14,7 +15,7 @@ pub struct VoxelizationGrid {
     pub cells: u32,
 }
 
-/// An integer of more bits than 32: high 2³⁰ + low.
+/// An integer of more than 32 bits: high 2³⁰ + low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoxelizationInteger {
     /// Units of 2³⁰.
@@ -26,41 +27,41 @@ pub struct VoxelizationInteger {
 /// An edge as seen from a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelizationEdge {
-    /// 1 counterclockwise, -1 clockwise, 0 for an edge without length.
+    /// 1 if counterclockwise, -1 if clockwise, 0 for an edge without length.
     pub turn: i32,
     /// Twice the area of the triangle between the edge and the column.
     pub area: f64,
 }
 
-/// Where a triangle crosses a column.
+/// The crossing of a triangle and a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelizationColumn {
-    /// Whether it does.
+    /// True if they cross.
     pub inside: bool,
-    /// x of the place; 0 where there is none.
+    /// The x coordinate of the crossing; 0 if there is none.
     pub depth: f64,
 }
 
-/// Slices, rows and voxels before this one.
+/// Counts the slices, rows and voxels before this one.
 pub fn index(grid: VoxelizationGrid, voxel: UVec3) -> u32 {
     let row = grid.cells;
     let slice = row * grid.cells;
     voxel.z * slice + voxel.y * row + voxel.x
 }
 
-/// The middle of the voxel's two corners.
+/// Returns the middle of the voxel's two extreme corners.
 pub fn centre(grid: VoxelizationGrid, voxel: UVec3) -> DVec3 {
     let corner = |voxel: UVec3| grid.origin + grid.spacing * voxel.as_dvec3();
     0.5 * (corner(voxel) + corner(voxel + 1))
 }
 
-/// By the reciprocal.
+/// Multiplies by the reciprocal of the spacing.
 pub fn local(grid: VoxelizationGrid, position: DVec3) -> DVec3 {
     let density = grid.spacing.recip();
     position * density - grid.origin * density
 }
 
-/// Faces between voxels that lie at the position or before it, counted.
+/// Counts the faces between voxels that lie at the position or before it.
 pub fn voxel(grid: VoxelizationGrid, position: DVec3) -> UVec3 {
     UVec3::from_array([0, 1, 2].map(|axis| {
         let faces = (1..grid.cells).map(|face| grid.origin[axis] + f64::from(face) * grid.spacing);
@@ -68,7 +69,7 @@ pub fn voxel(grid: VoxelizationGrid, position: DVec3) -> UVec3 {
     }))
 }
 
-/// By the whole numbers on both sides.
+/// Chooses between the whole numbers on both sides.
 pub fn lattice(position: DVec2) -> IVec2 {
     let nearest = |coordinate: f64| {
         let steps = coordinate.clamp(-16384.0, 16384.0) * 16384.0;
@@ -78,18 +79,19 @@ pub fn lattice(position: DVec2) -> IVec2 {
     IVec2::new(nearest(position.x), nearest(position.y))
 }
 
-/// At once, in 128 bits.
+/// Computes the cross product at once, in 128 bits.
 fn whole_cross(p: IVec2, q: IVec2) -> i128 {
     i128::from(p.x) * i128::from(q.y) - i128::from(p.y) * i128::from(q.x)
 }
 
-/// The parts of the whole.
+/// Splits the cross product into its parts.
 pub fn cross(p: IVec2, q: IVec2) -> VoxelizationInteger {
     let whole = whole_cross(p, q);
     VoxelizationInteger { high: whole.div_euclid(1 << 30) as i32, low: whole.rem_euclid(1 << 30) as i32 }
 }
 
-/// The area from a column at (e², e), as the coefficients of a polynomial in e: the first that is not 0 has the sign.
+/// Writes the area from a column at (e², e) as a polynomial in e; the first coefficient that is not
+/// 0 gives the sign.
 pub fn edge(from_point: IVec2, to_point: IVec2) -> VoxelizationEdge {
     let area = whole_cross(from_point, to_point);
     let powers = [area, i128::from(to_point.x - from_point.x), i128::from(from_point.y - to_point.y)];
@@ -97,7 +99,7 @@ pub fn edge(from_point: IVec2, to_point: IVec2) -> VoxelizationEdge {
     VoxelizationEdge { turn: turn as i32, area: area.unsigned_abs() as f64 }
 }
 
-/// Twice the signed area of a triangle in the plane of y and z.
+/// Returns twice the signed area of a triangle in the plane of y and z.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -106,8 +108,8 @@ fn across(point: DVec3) -> DVec2 {
     DVec2::new(point.y, point.z)
 }
 
-/// By the edges that lie beside the column, each with its lower end and without its upper one; ties as if the column lay a little higher in z, and in y
-/// by less than that.
+/// Decides by the edges beside the column, each with its lower end and without its upper end. Ties
+/// count as if the column lay a little higher in z, and in y by less than that.
 pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
     let at = lattice(column);
     let corners = [a, b, c].map(|corner| (lattice(across(corner)) - at, corner.x));
@@ -128,14 +130,14 @@ pub fn column(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn
     VoxelizationColumn { inside: true, depth: start + to_second * (b.x - start) + to_third * (c.x - start) }
 }
 
-/// x of the plane over a column, within the triangle's extent.
+/// Returns the x coordinate of the plane over a column, within the triangle's extent.
 fn on_plane(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> f64 {
     let normal = (b - a).cross(c - a);
     let depth = a.x - (normal.y * (column.x - a.y) + normal.z * (column.y - a.z)) / normal.x;
     depth.clamp(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x))
 }
 
-/// Not outside of any edge, by the signs of areas.
+/// Decides by the signs of areas: inside if the column is not outside any edge.
 pub fn column_naive(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> VoxelizationColumn {
     let whole = area(across(a), across(b), across(c));
     let outside = |from: DVec3, to: DVec3| area(across(from), across(to), column) * whole < 0.0;
@@ -145,12 +147,12 @@ pub fn column_naive(a: DVec3, b: DVec3, c: DVec3, column: DVec2) -> Voxelization
     VoxelizationColumn { inside: true, depth: on_plane(a, b, c, column) }
 }
 
-/// Centres before the coordinate, counted.
+/// Counts the centres before the coordinate.
 pub fn first(coordinate: f64, cells: u32) -> u32 {
     (0..cells).filter(|voxel| f64::from(*voxel) + 0.5 < coordinate).count() as u32
 }
 
-/// Bit by bit.
+/// Computes the parity bit by bit.
 pub fn prefix(bits: u32) -> u32 {
     let mut inside = 0;
     (0..u32::BITS).fold(0, |result, bit| {
@@ -159,28 +161,28 @@ pub fn prefix(bits: u32) -> u32 {
     })
 }
 
-/// The largest of the sums with all signs.
+/// Returns the largest of the sums with all combinations of signs.
 pub fn taxicab(vector: DVec3) -> f64 {
     let signs = [1.0, -1.0];
     let sums = signs.map(|x| signs.map(|y| signs.map(|z| vector.dot(DVec3::new(x, y, z)))));
     sums.into_iter().flatten().flatten().fold(0.0, f64::max)
 }
 
-/// 2⁻¹⁹ of the largest coordinate, of one at least as large as a voxel added.
+/// Returns 2⁻¹⁹ of the largest coordinate plus one voxel.
 pub fn margin(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let all = [a, b, c].map(|corner| corner.to_array());
     let largest = all.into_iter().flatten().fold(0.0, |largest: f64, x| largest.max(x).max(-x));
     (largest + 1.0) / f64::from(1 << 19)
 }
 
-/// Voxels that end before the interval, and those that begin in it or before it, counted.
+/// Counts the voxels that end before the interval, and those that begin in it or before it.
 pub fn range(low: f64, high: f64, cells: u32) -> UVec2 {
     let before = (0..cells).filter(|voxel| f64::from(voxel + 1) <= low).count() as u32;
     let begun = (0..cells).filter(|voxel| f64::from(*voxel) <= high).count() as u32;
     UVec2::new(before.min(begun), begun)
 }
 
-/// The plane at the corners of the square, moved along x by what its distance may be off.
+/// Evaluates the plane at the corners of the square, and moves it along x by its possible error.
 pub fn span(a: DVec3, b: DVec3, c: DVec3, corner: DVec2) -> DVec2 {
     let margin = margin(a, b, c);
     let xs = [a.x, b.x, c.x];
@@ -204,7 +206,7 @@ pub fn span(a: DVec3, b: DVec3, c: DVec3, corner: DVec2) -> DVec2 {
     DVec2::new(low.max(least - more), high.min(most + more))
 }
 
-/// What is left of a polygon on one side of a face across an axis.
+/// Returns the part of a polygon on one side of a face perpendicular to an axis.
 fn clipped(polygon: &[DVec3], axis: usize, side: f64, face: f64) -> Vec<DVec3> {
     let height = |point: DVec3| side * (point[axis] - face);
     let mut left = Vec::new();
@@ -223,7 +225,7 @@ fn clipped(polygon: &[DVec3], axis: usize, side: f64, face: f64) -> Vec<DVec3> {
     left
 }
 
-/// Whether anything of the triangle is left within a voxel that is larger by `margin` on all sides.
+/// Returns whether any part of the triangle is within a voxel enlarged by `margin` on all sides.
 pub fn touches([a, b, c]: [DVec3; 3], corner: DVec3, margin: f64) -> bool {
     let mut polygon = vec![a, b, c];
     for axis in 0..3 {
@@ -237,7 +239,7 @@ pub fn touches([a, b, c]: [DVec3; 3], corner: DVec3, margin: f64) -> bool {
     true
 }
 
-/// By clipping, with the margin.
+/// Clips the triangle by the voxel, enlarged by the margin.
 pub fn overlaps(a: DVec3, b: DVec3, c: DVec3, corner: DVec3) -> bool {
     touches([a, b, c], corner, margin(a, b, c))
 }

@@ -1,10 +1,11 @@
-//! What parity promises of whole meshes, in exact counts.
+//! Tests of the parity of whole meshes, in exact counts.
 
 use crate::{VOXELIZATION_LATTICE, column, column_naive};
 use glam::{Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 
-/// Two fans with one outline, about vertices that columns pass through exactly: each edge belongs to two triangles.
+/// Returns two fans with a common outline, around vertices that columns pass through exactly. Each
+/// edge belongs to two triangles.
 fn bipyramid(sides: u32, radius: f32) -> Vec<[Vec3; 3]> {
     let rim = |k: u32| {
         let angle = std::f32::consts::TAU * (k % sides) as f32 / sides as f32;
@@ -14,7 +15,8 @@ fn bipyramid(sides: u32, radius: f32) -> Vec<[Vec3; 3]> {
     (0..sides).flat_map(|k| [[ends[0], rim(k), rim(k + 1)], [ends[1], rim(k + 1), rim(k)]]).collect()
 }
 
-/// Columns through vertices, along edges, and anywhere up to a distance along y and z.
+/// Returns columns through vertices, through the middles of edges, and anywhere within `reach` in y
+/// and z.
 fn columns(mesh: &[[Vec3; 3]], reach: f32) -> Vec<Vec2> {
     let flat = |v: Vec3| Vec2::new(v.y, v.z);
     let corners = mesh.iter().flatten().map(|corner| flat(*corner));
@@ -46,7 +48,8 @@ fn every_column_is_crossed_an_even_number_of_times() {
     assert!(odd_naive > 0, "the usual form leaks nowhere");
 }
 
-/// Closed by construction: each tetrahedron has its four faces, and any number of them may meet, turned inside out or flat.
+/// Returns the faces of tetrahedra. The mesh is closed by construction: each tetrahedron has its
+/// four faces, and any number of tetrahedra may meet, inside out or flat.
 fn tetrahedra(corners: &[Vec3]) -> Vec<[Vec3; 3]> {
     corners
         .chunks_exact(4)

@@ -1,4 +1,5 @@
-//! `wgsl/voxelization.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-voxelization`.
+//! Tests `wgsl/voxelization.wgsl` and its naive forms, function by function, on the device:
+//! `cargo test -p lapidary-voxelization`.
 
 use lapidary_voxelization::formulas::formulas;
 

@@ -1,20 +1,22 @@
-//! The `Accuracy:` line of a function: the tolerance that its tests apply. Grammar at [`Accuracy::parse`].
+//! The `Accuracy:` line of a function: the tolerance that its tests apply. [`Accuracy::parse`]
+//! gives the grammar.
 
 use crate::shape::Shape;
 use std::fmt;
 
-/// What a function promises.
+/// The accuracy that a function promises.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Accuracy {
-    /// Kept to be compared with; promises nothing.
+    /// A form kept for comparison; promises nothing.
     Naive,
     /// Bounds on lavapipe and on any conforming WebGPU implementation.
     Bounded {
-        /// On the reference device.
+        /// Bounds on the reference device.
         lavapipe: Vec<FieldBound>,
-        /// From WGSL's own guarantees.
+        /// Bounds from WGSL's own guarantees.
         portable: Vec<FieldBound>,
-        /// Whether the portable bounds need sums and products in the order in which they are written. WGSL lets a compiler take them in another.
+        /// Whether the portable bounds require sums and products in the written order. WGSL lets a
+        /// compiler reorder them.
         order_kept: bool,
     },
 }
@@ -22,29 +24,32 @@ pub enum Accuracy {
 /// The bound on one field of the result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldBound {
-    /// The struct's field; none where the result is a scalar, a vector or a matrix.
+    /// Name of the struct's field; `None` if the result is a scalar, a vector or a matrix.
     pub field: Option<String>,
-    /// Its bound.
+    /// Allowed error of the field.
     pub bound: Bound,
 }
 
 /// The allowed error of a field, a sum of terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bound {
-    /// In units in the last place of the exact value's largest component.
+    /// Error in units in the last place of the exact value's largest component.
     pub ulp: f64,
-    /// Absolute.
+    /// Absolute error.
     pub absolute: f64,
-    /// Relative to the exact value's largest component.
+    /// Error relative to the exact value's largest component.
     pub relative: f64,
-    /// Exact for an input that is off by up to this many ulp in each component.
+    /// Backward error: the result is exact for an input that is off by up to this many ulp in each
+    /// component.
     pub backward: f64,
 }
 
 impl Accuracy {
-    /// Parses the text after `Accuracy:`: `naive`, or `lavapipe BOUNDS; portable BOUNDS`, where BOUNDS are one bound for each field of the result,
-    /// with commas between, and a bound is `[field] NUMBER UNIT {+ NUMBER UNIT}` in `ulp`, `abs`, `rel` and `backward`. `; order kept` after them says that the
-    /// portable bounds need sums and products in the order in which they are written.
+    /// Parses the text after `Accuracy:`, either `naive` or `lavapipe BOUNDS; portable BOUNDS`.
+    /// BOUNDS is a comma-separated list of one bound for each field of the result. A bound is
+    /// `[field] NUMBER UNIT {+ NUMBER UNIT}`, with the units `ulp`, `abs`, `rel` and `backward`. A
+    /// final `; order kept` states that the portable bounds require sums and products in the
+    /// written order.
     pub fn parse(text: &str) -> Result<Accuracy, String> {
         let text = text.trim();
         if text == "naive" {
@@ -61,10 +66,11 @@ impl Accuracy {
         Ok(Self::Bounded { lavapipe: parse_bounds(lavapipe)?, portable: parse_bounds(portable)?, order_kept })
     }
 
-    /// What the comment over `fn name` in a WGSL `source` states: the text after its `Accuracy:`, to the comment's end.
+    /// Reads the comment above `fn name` in a WGSL `source`, from its `Accuracy:` to the comment's
+    /// end.
     ///
     /// # Errors
-    /// Where there is no such function or no such line, or the line is broken.
+    /// Returns an error if the function or the line is missing, or if the line is malformed.
     pub fn of_function(source: &str, name: &str) -> Result<Accuracy, String> {
         let lines: Vec<&str> = source.lines().collect();
         let is_function = |line: &&str| {
@@ -82,7 +88,7 @@ impl Accuracy {
         Self::parse(accuracy).map_err(|fault| format!("{name}: Accuracy: {fault}"))
     }
 
-    /// The bounds for a device, and none for a naive form.
+    /// Returns the bounds for a device, or `None` for a naive form.
     pub fn bounds(&self, lavapipe: bool) -> Option<&[FieldBound]> {
         match self {
             Self::Naive => None,
@@ -91,14 +97,14 @@ impl Accuracy {
         }
     }
 
-    /// Checks that the fields named are those of `result`, each once.
+    /// Checks that the named fields are those of `result`, each once.
     pub fn check_fields(&self, result: &Shape) -> Result<(), String> {
         let Self::Bounded { lavapipe, portable, .. } = self else { return Ok(()) };
         check_fields(lavapipe, result).and_then(|()| check_fields(portable, result))
     }
 }
 
-/// Checks that bounds are for the fields of `result`, each once.
+/// Checks that the bounds cover the fields of `result`, each once.
 pub fn check_fields(bounds: &[FieldBound], result: &Shape) -> Result<(), String> {
     let fields: Vec<Option<&str>> = match result {
         Shape::Struct(_, fields) => fields.iter().map(|(name, _)| Some(name.as_str())).collect(),
@@ -111,7 +117,7 @@ pub fn check_fields(bounds: &[FieldBound], result: &Shape) -> Result<(), String>
         };
         return Err(format!("bounds are for {}, the result has {}", spell(&named), spell(&fields)));
     }
-    // One box of inputs serves all fields.
+    // All fields share one box of inputs.
     let mut backward = bounds.iter().map(|bound| bound.bound.backward).filter(|backward| *backward > 0.0);
     if let Some(first) = backward.next()
         && backward.any(|other| other != first)
@@ -121,7 +127,8 @@ pub fn check_fields(bounds: &[FieldBound], result: &Shape) -> Result<(), String>
     Ok(())
 }
 
-/// Parses bounds for the fields of a result, as `direction 12 ulp + 8 backward, total 8 backward`.
+/// Parses bounds for the fields of a result, such as `direction 12 ulp + 8 backward, total 8
+/// backward`.
 pub fn parse_bounds(text: &str) -> Result<Vec<FieldBound>, String> {
     text.split(',').map(|bound| parse_bound(bound.trim())).collect()
 }
@@ -153,7 +160,7 @@ fn parse_bound(text: &str) -> Result<FieldBound, String> {
     Ok(FieldBound { field, bound })
 }
 
-/// In the line's own grammar.
+/// Formats the accuracy in the line's own grammar.
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self::Bounded { lavapipe, portable, order_kept } = self else { return f.write_str("naive") };
@@ -163,7 +170,7 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// In the line's own grammar.
+/// Formats the bound in the line's own grammar.
 impl fmt::Display for FieldBound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(field) = &self.field {
@@ -174,7 +181,7 @@ impl fmt::Display for FieldBound {
         let mut terms: Vec<String> = terms
             .iter()
             .filter(|(number, _)| *number != 0.0)
-            // Tiny ones by their exponent, to be read at all.
+            // Tiny numbers get an exponent, to stay readable.
             .map(
                 |(number, unit)| if *number < 1e-9 { format!("{number:e} {unit}") } else { format!("{number} {unit}") },
             )

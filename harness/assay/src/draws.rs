@@ -1,9 +1,9 @@
-//! Where random inputs come from: a counter-based stream of draws.
+//! Random inputs from a counter-based stream of draws.
 //!
-//! Row r of a run is a pure function of (seed, r), so that a million rows are generated without a value tree, and one row
-//! is rebuilt alone when it must be shrunk. Shrinking works on the draws: each is pulled towards 0, and each
-//! generator maps 0 to the simplest value, so that whatever a generator guarantees (unit length, an angle, a
-//! side of a plane) holds for every shrunk input as well.
+//! Row r of a run is a pure function of (seed, r). A million rows are therefore generated without a
+//! value tree, and a single row is rebuilt alone to be shrunk. Shrinking works on the draws: each
+//! is pulled towards 0, and each generator maps 0 to the simplest value. Every guarantee of a
+//! generator (unit length, an angle, a side of a plane) thus holds for the shrunk inputs as well.
 
 #[cfg(feature = "gpu")]
 mod shrinking;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[cfg(feature = "gpu")]
 pub use shrinking::Tree;
 
-/// A stream of random draws, replayed from a record where there is one.
+/// A stream of random draws, or the replay of a record.
 #[derive(Debug)]
 pub struct Draws<'a> {
     key: u64,
@@ -23,17 +23,17 @@ pub struct Draws<'a> {
 }
 
 impl<'a> Draws<'a> {
-    /// The stream of row `row` of a run with `seed`.
+    /// Creates the stream of row `row` in a run with `seed`.
     pub fn of_row(seed: u64, row: u64) -> Draws<'static> {
         Draws { key: mix(seed ^ mix(row)), count: 0, replayed: None }
     }
 
-    /// A stream that repeats `draws`, then goes on with zeros.
+    /// Creates a stream that repeats `draws`, then continues with zeros.
     pub fn replay(draws: &'a [u32]) -> Draws<'a> {
         Draws { key: 0, count: 0, replayed: Some(draws) }
     }
 
-    /// The next 32 bits.
+    /// Returns the next 32 bits.
     pub fn bits(&mut self) -> u32 {
         let index = self.count;
         self.count += 1;
@@ -43,38 +43,39 @@ impl<'a> Draws<'a> {
         }
     }
 
-    /// A whole number in [0, n), 0 the simplest.
+    /// Returns a whole number in [0, n); 0 is the simplest.
     pub fn below(&mut self, n: u32) -> u32 {
         ((u64::from(self.bits()) * u64::from(n)) >> 32) as u32
     }
 
-    /// One of `choices`, the first the simplest.
+    /// Returns one of `choices`; the first is the simplest.
     pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len() as u32) as usize]
     }
 
-    /// Uniform in [0, 1), on the multiples of 2⁻³².
+    /// Returns a number uniform in [0, 1), a multiple of 2⁻³².
     pub fn unit(&mut self) -> f64 {
         f64::from(self.bits()) * 2f64.powi(-32)
     }
 
-    /// Uniform in [low, high], `low` the simplest.
+    /// Returns a number uniform in [low, high]; `low` is the simplest.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         let value = f64::from(low) + self.unit() * (f64::from(high) - f64::from(low));
         value as f32
     }
 
-    /// The same in f64.
+    /// Returns a number uniform in [low, high], in f64; `low` is the simplest.
     pub fn between_f64(&mut self, low: f64, high: f64) -> f64 {
         low + self.unit() * (high - low)
     }
 
-    /// Positive, with an exponent uniform in [low, high] and any mantissa, so that all magnitudes are met. The
-    /// exponent nearest 0 and the mantissa 1 are the simplest.
+    /// Returns a positive number with an exponent uniform in [low, high] and any mantissa, so that
+    /// all magnitudes occur. The exponent nearest 0 and the mantissa 1 are the simplest.
     pub fn magnitude(&mut self, low: i32, high: i32) -> f32 {
         let near = 0.clamp(low, high);
         let step = self.below((high - low + 1).unsigned_abs()) as i32;
-        // Fans out from `near`: 0, -1, 1, -2, 2, … until one side ends, then on along the other.
+        // Fans out from `near`: 0, -1, 1, -2, 2, … until one side ends, then continues on the
+        // other.
         let (below, above) = (near - low, high - near);
         let side = below.min(above);
         let exponent = if step <= 2 * side {
@@ -89,30 +90,31 @@ impl<'a> Draws<'a> {
         (mantissa * 2f64.powi(exponent)) as f32
     }
 
-    /// `magnitude` with either sign, plus the simplest.
+    /// Returns a [`Draws::magnitude`] with either sign; plus is the simplest.
     pub fn signed(&mut self, low: i32, high: i32) -> f32 {
         let sign = if self.below(2) == 0 { 1.0 } else { -1.0 };
         sign * self.magnitude(low, high)
     }
 
-    /// `value` moved by up to `ulps` units in the last place, either way; often not at all.
+    /// Returns `value` moved by up to `ulps` units in the last place, either way, and often not at
+    /// all.
     pub fn nudged(&mut self, value: f32, ulps: u32) -> f32 {
         let steps = self.below(2 * ulps + 1);
         let (count, down) = (steps.div_ceil(2), steps % 2 == 1);
         (0..count).fold(value, |value, _| if down { value.next_down() } else { value.next_up() })
     }
 
-    /// A vector with components in [-1, 1].
+    /// Returns a vector with components in [-1, 1].
     pub fn in_cube(&mut self) -> Vec3 {
         Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
     }
 
-    /// A point in the unit square.
+    /// Returns a point in the unit square.
     pub fn in_square(&mut self) -> Vec2 {
         Vec2::new(self.between(0.0, 1.0), self.between(0.0, 1.0))
     }
 
-    /// Uniform on the sphere, in f64; +z the simplest.
+    /// Returns a direction uniform on the sphere, in f64; +z is the simplest.
     pub fn direction(&mut self) -> DVec3 {
         let z = 1.0 - 2.0 * self.unit();
         let azimuth = std::f64::consts::TAU * self.unit();
@@ -120,7 +122,8 @@ impl<'a> Draws<'a> {
         DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z)
     }
 
-    /// A unit vector: along an axis in one case of four, where sums of products are exact, else anywhere.
+    /// Returns a unit vector: in one case of four along an axis, where sums of products are exact,
+    /// otherwise anywhere.
     pub fn unit_vector(&mut self) -> Vec3 {
         match self.below(4) {
             0 => self.pick(&[Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y]),
@@ -128,7 +131,8 @@ impl<'a> Draws<'a> {
         }
     }
 
-    /// A unit vector perpendicular to `axis` (unit, f64): exactly so where `axis` lies along a coordinate axis.
+    /// Returns a unit vector perpendicular to `axis` (unit, f64), exactly so if `axis` lies along a
+    /// coordinate axis.
     pub fn perpendicular(&mut self, axis: DVec3) -> DVec3 {
         let helper = if axis.z.abs() < 0.9 { DVec3::Z } else { DVec3::X };
         let first = axis.cross(helper).normalize();
@@ -152,16 +156,17 @@ pub fn mix(key: u64) -> u64 {
     key ^ (key >> 31)
 }
 
-/// A generator of values from draws; with the feature `gpu` also a proptest strategy, which shrinks by its draws.
+/// A generator of values from draws. With the feature `gpu` it is also a proptest strategy, which
+/// shrinks a value through its draws.
 pub struct Domain<T> {
     generate: Arc<dyn Fn(&mut Draws<'_>) -> T + Send + Sync>,
-    /// How a row is shrunk, where not by its draws.
+    /// Shrinks a row other than through its draws.
     #[cfg(feature = "gpu")]
     tree: Option<shrinking::MakeTree<T>>,
 }
 
 impl<T> Domain<T> {
-    /// A domain from its generator.
+    /// Creates a domain from its generator.
     pub fn new(generate: impl Fn(&mut Draws<'_>) -> T + Send + Sync + 'static) -> Self {
         Self {
             generate: Arc::new(generate),
@@ -170,12 +175,12 @@ impl<T> Domain<T> {
         }
     }
 
-    /// The value of row `row`.
+    /// Returns the value of row `row`.
     pub fn row(&self, seed: u64, row: u64) -> T {
         (self.generate)(&mut Draws::of_row(seed, row))
     }
 
-    /// The draws that row `row` is made of.
+    /// Returns the draws behind row `row`.
     pub fn draws(&self, seed: u64, row: u64) -> Vec<u32> {
         let mut draws = Draws::of_row(seed, row);
         (self.generate)(&mut draws);
@@ -184,13 +189,13 @@ impl<T> Domain<T> {
         (0..count).map(|_| again.bits()).collect()
     }
 
-    /// Whether its values are a strategy's, so that its draws say nothing of them.
+    /// Returns whether the values come from a strategy, so that the draws say nothing about them.
     #[cfg(feature = "gpu")]
     pub(crate) fn is_of_strategy(&self) -> bool {
         self.tree.is_some()
     }
 
-    /// The value of these draws.
+    /// Returns the value of these draws.
     pub fn of_draws(&self, draws: &[u32]) -> T {
         (self.generate)(&mut Draws::replay(draws))
     }

@@ -1,4 +1,5 @@
-//! Everything that is tested of a WGSL function: random inputs, hard cases, promises outside of its domain, the inputs beside its branches.
+//! All tests of a WGSL function: random inputs, hard cases, promises outside its domain, and inputs
+//! next to its branches.
 
 use crate::accuracy_line::Accuracy;
 use crate::dispatch::DispatchError;
@@ -11,35 +12,36 @@ use crate::runner::Runner;
 use crate::tolerance::{Tolerance, numbers};
 use std::fmt::Write as _;
 
-/// What was found.
+/// The findings of all tests.
 #[derive(Clone, Debug)]
 pub struct Examination {
-    /// The random inputs.
+    /// Report on the random inputs.
     pub report: Report,
     /// The results at the simplest failing input.
     pub failure: Option<Failure>,
-    /// Hard cases that do not hold, by name, with the distance from the limit.
+    /// Names of the failing hard cases, with the distance from the limit.
     pub broken_hard_cases: Vec<String>,
-    /// Promises outside of the domain that do not hold, with an input.
+    /// Broken promises outside the domain, each with an input.
     pub broken_promises: Vec<String>,
-    /// Branches with a wrong result one float to either side, with the input.
+    /// Branches with a wrong result one float to either side, each with the input.
     pub broken_branches: Vec<String>,
-    /// Of an input that holds by chance, on the worst device that WGSL allows.
+    /// Fault at an input that holds only by chance, on the worst device that WGSL allows.
     pub worst_choices: Option<String>,
-    /// Why branches were not looked at, where the interpreter cannot run the function.
+    /// Reason why branches were not examined, if the interpreter cannot run the function.
     pub branches_untested: Option<String>,
     settings: Settings,
 }
 
 impl Examination {
-    /// Whether all of it holds. Edges count from the default number of cases on: a shorter run may well miss some.
+    /// Returns whether everything holds. Edges count only from the default number of cases on,
+    /// since a shorter run may well miss some.
     pub fn holds(&self) -> bool {
         let edges = self.settings.cases < DEFAULT_CASES || self.report.missed_edges().next().is_none();
         let others = [&self.broken_hard_cases, &self.broken_promises, &self.broken_branches];
         self.report.failed == 0 && self.worst_choices.is_none() && edges && others.into_iter().all(Vec::is_empty)
     }
 
-    /// What does not hold, a line each, and how to run it again.
+    /// Describes the faults, one per line, and how to reproduce them.
     pub fn describe(&self, formula: &Formula) -> String {
         let Settings { cases, seed } = self.settings;
         let mut text = String::new();
@@ -69,15 +71,16 @@ impl Examination {
     }
 }
 
-/// What there is to say of edges that no input reached.
+/// Describes the edges that no input reached.
 pub(crate) fn not_reached(edges: &[&str]) -> String {
     format!("no input reached `{}`; mend the inputs, or the edge", edges.join("`, `"))
 }
 
-/// What a formula's function is held to on this device: what its comment promises; of a naive form, what it keeps on its benign domain.
+/// Returns the tolerance of a formula's function on this device: the promise in its comment or, for
+/// a naive form, the error that it keeps on its benign domain.
 ///
 /// # Errors
-/// Where the comment calls it naive, and its formula has no benign domain.
+/// Returns an error if the comment calls the function naive and its formula has no benign domain.
 pub fn tolerance(formula: &Formula, accuracy: &Accuracy, lavapipe: bool) -> Result<Tolerance, String> {
     if let Some(relative) = formula.benign {
         return Ok(Tolerance::of_benign(&formula.arguments, &formula.result, relative));
@@ -87,10 +90,11 @@ pub fn tolerance(formula: &Formula, accuracy: &Accuracy, lavapipe: bool) -> Resu
     Ok(Tolerance::new(&formula.arguments, &formula.result, bounds))
 }
 
-/// Examines the function of `formula` in `source`, which `runner` was made of. `replayed` inputs and the hard cases' go first.
+/// Examines the function of `formula` in `source`, from which `runner` was made. The `replayed`
+/// inputs and those of the hard cases are tested first.
 ///
 /// # Errors
-/// Where the device refuses.
+/// Returns an error if the device refuses.
 pub fn examine(
     formula: &Formula,
     source: &str,
@@ -106,13 +110,14 @@ pub fn examine(
         None => None,
         Some(shrunk) => Some(Failure::at(formula, runner, tolerance, shrunk)?),
     };
-    // A form that is backward stable, and yet naive, passes the tolerance; the limits tell it from the stable one.
+    // A naive form that is backward stable passes the tolerance; the limits distinguish it from the
+    // stable form.
     let mut broken_hard_cases = Vec::new();
     for case in &formula.hard_cases {
         broken_hard_cases.extend(broken(case, formula, tolerance, runner)?);
     }
     let broken_promises = promises::broken(runner, formula, tolerance, &formula.promises, settings.seed)?;
-    // A function whose loops do not end takes as long on the CPU, and has failed.
+    // A function with endless loops takes as long on the CPU, and has already failed.
     let branches = if report.stopped > 0 {
         Ok(Vec::new())
     } else {
@@ -134,7 +139,8 @@ pub fn examine(
     })
 }
 
-/// What is wrong at a hard case. On a device that errs as far as it may the result need only keep to its tolerance, which is held to the oracle, too.
+/// Returns the fault at a hard case. On a device that errs as far as it may, the result need only
+/// keep its tolerance, which is also measured from the oracle.
 fn broken(
     case: &HardCase,
     formula: &Formula,
@@ -153,17 +159,18 @@ fn broken(
     Ok(if runner.any_stopped() {
         Some(format!("{}: {}", case.name, runner.why_stopped()))
     } else if distance.is_nan() || distance > bound {
-        // A NaN is no distance within the bound.
+        // A NaN distance is not within the bound.
         Some(format!("{}: off the limit by {distance:e}, at most {bound:e}", case.name))
     } else {
         None
     })
 }
 
-/// The largest distance of the result's components from `limit`, NaN where one is; infinite where a result is.
+/// Returns the largest distance of the result's components from `limit`; NaN if a component is NaN,
+/// infinite if one is infinite.
 ///
 /// # Errors
-/// Where the device refuses.
+/// Returns an error if the device refuses.
 pub fn distance_from_limit(
     runner: &mut dyn Runner,
     formula: &Formula,

@@ -1,12 +1,13 @@
-//! The largest of values that may be no numbers.
+//! The largest of several values, which may include NaNs.
 
-/// The larger of two; NaN where one of them is NaN, which `f64::max` drops: the largest of some errors is then NaN, and no bound holds.
+/// Returns the larger of two values, or NaN if either is NaN. `f64::max` would drop the NaN; here
+/// the largest of several errors is then NaN, and no bound holds.
 pub fn larger<Value: PartialOrd + Copy>(one: Value, other: Value) -> Value {
-    // A NaN compares with nothing, itself included.
+    // A NaN compares with nothing, not even itself.
     if one > other || one.partial_cmp(&one).is_none() { one } else { other }
 }
 
-/// The largest of values none of which is negative; NaN where one is, and 0 where there are none.
+/// Returns the largest of several non-negative values: NaN if one is NaN, 0 if there are no values.
 pub fn largest<Value: PartialOrd + Copy + Default>(values: impl IntoIterator<Item = Value>) -> Value {
     values.into_iter().fold(Value::default(), larger)
 }

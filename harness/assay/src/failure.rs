@@ -1,4 +1,5 @@
-//! What a failing input gives: the shader's result, the mirror's, the oracle's, and how far they may be apart.
+//! A failing input with the results of the shader, the mirror and the oracle, and the allowed
+//! error.
 
 use crate::dispatch::DispatchError;
 use crate::formula::{Formula, Words};
@@ -18,9 +19,9 @@ pub struct Failure {
     pub arguments_rust: String,
     /// The shader's result as a WGSL literal.
     pub got: String,
-    /// The oracle's, rounded to f32, as a WGSL literal.
+    /// The oracle's result, rounded to f32, as a WGSL literal.
     pub expected: String,
-    /// The mirror's as a WGSL literal.
+    /// The mirror's result as a WGSL literal.
     pub mirror: String,
     /// The shader's result in Rust.
     pub got_rust: String,
@@ -36,21 +37,22 @@ pub struct Failure {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Field {
-    /// Which, as `field.member[index]`; empty where the result has one part.
+    /// Path of the part, as `field.member[index]`; empty if the result has one part.
     pub field: String,
-    /// By the shader.
+    /// Components of the shader's result.
     pub got: Vec<f64>,
-    /// By the mirror.
+    /// Components of the mirror's result.
     pub mirror: Vec<f64>,
-    /// By the oracle.
+    /// Components of the oracle's result.
     pub expected: Vec<f64>,
-    /// How far a component may be off; 0 for a flag or an integer.
+    /// Allowed error of a component; 0 for a flag or an integer.
     pub allowed: f64,
-    /// By how many ulp the input may be off besides, so that the result counts as right.
+    /// Additional error of the input, in ulp, for which the result still counts as right.
     pub backward_ulp: f64,
 }
 
-/// The call and its result, what was expected, and how far the result may be off, a line each, to be pasted.
+/// Formats the call and its result, the expected result and the allowed error for pasting, one line
+/// each.
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "  {} = {}\n  expected {}", self.wgsl, self.got, self.expected)?;
@@ -67,7 +69,7 @@ impl std::fmt::Display for Failure {
 }
 
 impl Failure {
-    /// Runs the three at one input.
+    /// Runs shader, mirror and oracle at one input.
     pub fn at(
         formula: &Formula,
         runner: &mut dyn Runner,

@@ -1,5 +1,5 @@
-//! What a formula is: a WGSL function with its mirror, its oracle, the domain of its inputs and the edges that the domain
-//! must reach, its invariants, its hard cases, and what it promises outside of the domain.
+//! A formula: a WGSL function with its mirror, its oracle, the domain of its inputs, the edges that
+//! the domain must reach, its invariants, its hard cases, and its promises outside the domain.
 
 pub use crate::near::near;
 
@@ -9,94 +9,94 @@ use crate::shape::Shape;
 use crate::tolerance::number;
 use crate::value::{Arguments, Exact, Function, Value};
 
-/// A row's words.
+/// The words of a row.
 pub type Words = Vec<u32>;
-/// The mirror on words: appends the result's.
+/// A mirror on words: appends the words of the result.
 pub type MirrorFn = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
-/// The oracle on numbers: appends the result's.
+/// An oracle on numbers: appends the numbers of the result.
 pub type OracleFn = Box<dyn Fn(&[f64], &mut Vec<f64>) + Send + Sync>;
 /// Appends the other input.
 type Transform = Box<dyn Fn(&[u32], &mut Words) + Send + Sync>;
 type Predicate = Box<dyn Fn(&[u32]) -> bool + Send + Sync>;
-/// Says what is broken for these arguments and this result of the shader.
+/// Describes the fault for these arguments and this result of the shader.
 type Invariance = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
-/// The same for the results at two related inputs.
+/// Describes the fault for the results at two related inputs.
 type Relation = Box<dyn Fn(&[u32], &[u32], &[u32]) -> Result<(), String> + Send + Sync>;
 
 /// A part of the domain that a run must reach.
 pub struct Edge {
-    /// What is there.
+    /// Name of the part.
     pub name: &'static str,
-    /// Whether these arguments are there.
+    /// Whether the arguments lie in the part.
     pub reached: Predicate,
 }
 
-/// Something that the mathematics says of every result.
+/// A mathematical property of every result.
 pub struct Invariant {
-    /// What it says.
+    /// Statement of the property.
     pub name: &'static str,
-    /// Whether it holds.
+    /// Check of the property.
     pub holds: Invariance,
-    /// Whether it is said only of devices that round to nearest.
+    /// Whether the property applies only to devices that round to nearest.
     pub at_nearest: bool,
 }
 
-/// Something that the mathematics says of the results at two inputs.
+/// A mathematical relation between the results at two inputs.
 pub struct Pair {
-    /// What it says.
+    /// Statement of the relation.
     pub name: &'static str,
-    /// The other input, from the row's.
+    /// Derives the other input from the row's.
     pub transform: Transform,
-    /// Whether it holds between the row's result and the other's.
+    /// Check of the relation between the row's result and the other's.
     pub holds: Relation,
 }
 
-/// An input at which the usual form fails, with what is mathematically right there.
+/// An input at which the usual form fails, with the mathematically correct result.
 pub struct HardCase {
-    /// What is hard about it.
+    /// Reason why the input is hard.
     pub name: &'static str,
     /// The input.
     pub arguments: Words,
-    /// The right result, flattened.
+    /// Correct result, flattened.
     pub limit: Vec<f64>,
-    /// Largest allowed distance of the stable form's result from it, over all components.
+    /// Largest allowed distance of the stable form's result from `limit`, over all components.
     pub bound: f64,
-    /// The WGSL function that fails here.
+    /// WGSL function that fails here.
     pub naive: &'static str,
-    /// The naive form's arguments, where it takes others.
+    /// Arguments of the naive form, which may take others.
     pub naive_arguments: Words,
-    /// By how much the naive form fails at least: its largest distance from the limit; infinite where it must not even be
-    /// finite.
+    /// Least error of the naive form, as its largest distance from the limit; infinite if the
+    /// result must not even be finite.
     pub naive_error: f64,
 }
 
-/// A WGSL function and everything that its tests need.
+/// A WGSL function with everything that its tests need.
 pub struct Formula {
-    /// The module.
+    /// Name of the module.
     pub module: &'static str,
-    /// The WGSL function.
+    /// Name of the WGSL function.
     pub function: &'static str,
-    /// Its arguments' shapes.
+    /// Shapes of the arguments.
     pub arguments: Vec<Shape>,
-    /// Its result's shape.
+    /// Shape of the result.
     pub result: Shape,
     /// The mirror.
     pub mirror: MirrorFn,
     /// The oracle.
     pub oracle: OracleFn,
-    /// Where inputs come from.
+    /// Generator of the inputs.
     pub domain: Domain<Words>,
-    /// What the domain must reach.
+    /// Parts that the domain must reach.
     pub edges: Vec<Edge>,
-    /// What holds of every result.
+    /// Properties of every result.
     pub invariants: Vec<Invariant>,
-    /// What holds of pairs of results.
+    /// Relations between pairs of results.
     pub pairs: Vec<Pair>,
-    /// Where the naive form fails.
+    /// Inputs at which the naive form fails.
     pub hard_cases: Vec<HardCase>,
-    /// For a naive form, the relative error that it keeps on its benign domain.
+    /// Relative error that a naive form keeps on its benign domain.
     pub benign: Option<f64>,
-    /// What it promises outside of its domain.
+    /// Promises outside the domain.
     pub promises: Vec<Promise>,
 }
 
@@ -107,26 +107,27 @@ impl std::fmt::Debug for Formula {
 }
 
 impl Formula {
-    /// A row's words as the numbers that they stand for: what the oracle takes.
+    /// Converts a row's words to the numbers that they represent, as the oracle takes them.
     pub fn numbers(&self, row: &[u32]) -> Vec<f64> {
         let scalars = self.arguments.iter().flat_map(Shape::scalars);
         row.iter().zip(scalars).map(|(word, scalar)| number(scalar, *word)).collect()
     }
 
-    /// The mirror's result at a row.
+    /// Returns the mirror's result at a row.
     pub fn mirrored(&self, row: &[u32]) -> Words {
         let mut result = Words::new();
         (self.mirror)(row, &mut result);
         result
     }
 
-    /// The first invariant that a row's result breaks, and how; `is_portable` where the device need not round to nearest.
+    /// Returns the first invariant that a row's result breaks, with the reason. `is_portable` means
+    /// that the device need not round to nearest.
     pub fn broken(&self, row: &[u32], result: &[u32], is_portable: bool) -> Option<(&'static str, String)> {
         let mut said = self.invariants.iter().filter(|invariant| !(is_portable && invariant.at_nearest));
         said.find_map(|invariant| (invariant.holds)(row, result).err().map(|why| (invariant.name, why)))
     }
 
-    /// The oracle's result at a row.
+    /// Returns the oracle's result at a row.
     pub fn exact(&self, row: &[u32]) -> Vec<f64> {
         let mut result = Vec::new();
         (self.oracle)(&self.numbers(row), &mut result);
@@ -134,11 +135,13 @@ impl Formula {
     }
 }
 
-/// Starts a formula: the WGSL function's name, the mirror and the oracle. Argument and result types are the mirror's and are
-/// checked against naga's at start-up; the oracle's must be their twins.
+/// Starts a formula with the WGSL function's name, the mirror and the oracle. Argument and result
+/// types are the mirror's and are checked against naga's at start-up; the oracle's types must match
+/// them.
 ///
 /// # Panics
-/// Where mirror and oracle do not have the same shape: a slip in `formulas/`, found by the first test that runs.
+/// Panics if mirror and oracle differ in shape: a slip in `formulas/`, found by the first test that
+/// runs.
 pub fn formula<A, R, EA, ER>(
     module: &'static str,
     function: &'static str,
@@ -179,7 +182,8 @@ where
     }
 }
 
-/// A formula of no module, of a mirror and an oracle that read their arguments from words and numbers.
+/// Starts a formula without a module, with a typed mirror and an oracle that reads its arguments
+/// from numbers.
 #[cfg(feature = "gpu")]
 pub(crate) fn of_parts<A: Arguments<u32> + 'static, R: Value + 'static>(
     function: &'static str,
@@ -208,23 +212,23 @@ pub(crate) fn of_parts<A: Arguments<u32> + 'static, R: Value + 'static>(
     }
 }
 
-/// A formula in the making, with its types.
+/// A formula under construction, with its types.
 pub struct Builder<A, R> {
     formula: Formula,
-    /// Inputs that are tested always.
+    /// Inputs that are always tested.
     #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "what tests them needs a device"))]
     cases: Vec<Words>,
     types: std::marker::PhantomData<fn(A) -> R>,
 }
 
 impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
-    /// A part of the domain that a run of the default size must reach.
+    /// Names a part of the domain that a run of the default size must reach.
     pub fn edge(mut self, name: &'static str, reached: impl Fn(A) -> bool + Send + Sync + 'static) -> Self {
         self.formula.edges.push(Edge { name, reached: Box::new(move |mut words| reached(A::read(&mut words))) });
         self
     }
 
-    /// What the mathematics says of every result; the message says by how much it is broken.
+    /// Adds a mathematical property of every result; the error message states the deviation.
     pub fn invariant(
         self,
         name: &'static str,
@@ -233,8 +237,9 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self.said(name, holds, false)
     }
 
-    /// The same of devices that round sums, products, quotients and roots to nearest, as the mirrors do: that simple numbers give exact results, or a bound that rests on
-    /// such rounding. On other devices results are as near to it as the bounds say.
+    /// Adds a property that applies only to devices that round sums, products, quotients and roots
+    /// to nearest, as the mirrors do: exact results for simple numbers, or a bound that rests on
+    /// such rounding. On other devices results come as close to it as the bounds say.
     pub fn invariant_at_nearest(
         self,
         name: &'static str,
@@ -256,7 +261,8 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self
     }
 
-    /// What the mathematics says of the results at an input and at `transform` of it.
+    /// Adds a mathematical relation between the results at an input and at its image under
+    /// `transform`.
     pub fn pair(
         mut self,
         name: &'static str,
@@ -273,8 +279,8 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self
     }
 
-    /// A hard case: at `arguments` the result is within `bound` of `limit`, and `naive`, at the same arguments, is off by
-    /// `naive_error` or more (infinite: not finite).
+    /// Adds a hard case: at `arguments` the result is within `bound` of `limit`, and `naive`, at
+    /// the same arguments, is off by `naive_error` or more (infinite: not finite).
     pub fn hard_case(
         self,
         name: &'static str,
@@ -287,7 +293,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self.push_hard_case(name, words.clone(), (limit, bound), naive, words, naive_error)
     }
 
-    /// A hard case whose naive form takes other arguments.
+    /// Adds a hard case whose naive form takes other arguments.
     pub fn hard_case_with<N: Arguments<u32>>(
         self,
         name: &'static str,
@@ -315,13 +321,14 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self
     }
 
-    /// Says that this is a naive form, and which relative error it keeps on the benign domain given.
+    /// Marks the function as a naive form that keeps this relative error on the given benign
+    /// domain.
     pub fn benign(mut self, relative: f64) -> Self {
         self.formula.benign = Some(relative);
         self
     }
 
-    /// An input that is tested always.
+    /// Adds an input that is always tested.
     #[cfg(feature = "gpu")]
     pub(crate) fn case(mut self, arguments: A) -> Self {
         let mut words = Words::new();
@@ -330,22 +337,23 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Builder<A, R> {
         self
     }
 
-    /// The formula, and the inputs that are tested always.
+    /// Returns the formula and the inputs that are always tested.
     #[cfg(feature = "gpu")]
     pub(crate) fn build_with_cases(self) -> (Formula, Vec<Words>) {
         (self.formula, self.cases)
     }
 
-    /// The formula.
+    /// Returns the formula.
     pub fn build(self) -> Formula {
         self.formula
     }
 }
 
-/// The formulas with their functions' promises outside of their domains.
+/// Adds to the formulas the promises of their functions outside their domains.
 ///
 /// # Panics
-/// Where a promise is of another function, or made for other arguments: a slip in a module's formulas, found by the first test that runs.
+/// Panics if a promise names a function without a formula, or was made for other arguments: a slip
+/// in a module's formulas, found by the first test that runs.
 #[must_use]
 pub fn with_promises(mut formulas: Vec<Formula>, promises: Vec<Promise>) -> Vec<Formula> {
     for promise in promises {

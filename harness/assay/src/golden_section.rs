@@ -1,13 +1,14 @@
-//! Golden-section search: the least value of a function of one number.
+//! Golden-section search: the minimum of a function of one number.
 
 /// The inverse of the golden ratio.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// The place between `low` and `high` where `value` is least, found to 0.618^`narrowings` of their distance where there is one minimum. Asks
-/// for two values, and one more at each narrowing.
+/// Returns the place between `low` and `high` at which `value` is least, to 0.618^`narrowings` of
+/// their distance if there is one minimum. Evaluates `value` twice, and once more for each
+/// narrowing.
 ///
 /// # Errors
-/// The first of `value`'s.
+/// Returns the first error of `value`.
 pub fn golden_section<E>(
     [mut low, mut high]: [f64; 2],
     narrowings: usize,

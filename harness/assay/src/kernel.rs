@@ -1,5 +1,5 @@
-//! A property test of a compute entry point, whole buffers against whole buffers: [`kernel`] names it, the methods after it say what it is held
-//! to, and [`KernelTest::run`] answers.
+//! A property test of a compute entry point on whole buffers: [`kernel`] names the entry point,
+//! further methods state its requirements, and [`KernelTest::run`] runs the test.
 
 mod buffers;
 mod program;
@@ -20,12 +20,13 @@ use program::{Binding, Program};
 use proptest::strategy::Strategy;
 use std::fmt::{self, Write as _};
 
-/// Random inputs, where no other number is asked for.
+/// Default number of random inputs.
 const DEFAULT_CASES: u64 = 256;
-/// Dispatches spent on shrinking an input at most.
+/// Maximum number of dispatches for shrinking an input.
 const MOST_SHRINKS: usize = 2_000;
 
-/// Begins a test of the compute entry point `entry` in `source`, a WGSL text that is valid by itself.
+/// Begins a test of the compute entry point `entry` in `source`, a WGSL text that is valid by
+/// itself.
 pub fn kernel(source: impl Into<String>, entry: &'static str) -> KernelSource {
     KernelSource { text: source.into(), entry, constants: Vec::new() }
 }
@@ -39,15 +40,17 @@ pub struct KernelSource {
 }
 
 impl KernelSource {
-    /// A value for an `override`; a bool is 0 or 1.
+    /// Sets the value of an `override`; a bool is 0 or 1.
     #[must_use]
     pub fn constant(mut self, name: &'static str, value: f64) -> Self {
         self.constants.push((name, value));
         self
     }
 
-    /// What the kernel does to its buffers, in Rust. They are a tuple in the order of groups and bindings, of those that the entry point uses:
-    /// a `Vec` for a runtime-sized array, a value for anything else, an integer for an atomic. Their types are checked against the shader's.
+    /// Sets the mirror, a Rust function with the kernel's effect on its buffers. The buffers that
+    /// the entry point uses form a tuple in the order of groups and bindings: a `Vec` for a
+    /// runtime-sized array, an integer for an atomic, otherwise one value. Their types are checked
+    /// against the shader's.
     pub fn mirror<B: Buffers>(self, mirror: impl Fn(&mut B) + 'static) -> KernelMirror<B> {
         KernelMirror { source: self, mirror: Box::new(mirror) }
     }
@@ -56,7 +59,7 @@ impl KernelSource {
 type Mirror<B> = Box<dyn Fn(&mut B)>;
 type Workgroups<B> = Box<dyn Fn(&B) -> [u32; 3]>;
 type Reached<B> = Box<dyn Fn(&B) -> bool>;
-/// Of each buffer, where it has one.
+/// The tolerance of each buffer, if it has one.
 type Tolerances = Vec<Option<Tolerance>>;
 
 /// A compute entry point with its mirror.
@@ -66,12 +69,13 @@ pub struct KernelMirror<B> {
 }
 
 impl<B: Buffers + fmt::Debug + 'static> KernelMirror<B> {
-    /// Buffers from a proptest strategy, which also shrinks those that fail. Output buffers are among them: their length is what the kernel sees.
+    /// Takes buffers from a proptest strategy, which also shrinks failing inputs. Output buffers
+    /// are included, since the kernel sees their length.
     pub fn inputs(self, strategy: impl Strategy<Value = B> + Send + Sync + 'static) -> KernelTest<B> {
         self.over(Domain::of_strategy(strategy.prop_map(|buffers| buffers.words())))
     }
 
-    /// Buffers from draws: what a generator guarantees holds of every shrunk input as well.
+    /// Takes buffers from draws. Every guarantee of the generator also holds for the shrunk inputs.
     pub fn draws(self, generate: impl Fn(&mut Draws<'_>) -> B + Send + Sync + 'static) -> KernelTest<B> {
         self.over(Domain::new(move |draws| generate(draws).words()))
     }
@@ -101,13 +105,13 @@ pub struct KernelTest<B> {
     domain: Domain<Vec<Words>>,
     workgroups: Workgroups<B>,
     bounds: Vec<(&'static str, String)>,
-    /// Inputs that are tested always.
+    /// Inputs that are always tested.
     kept: Vec<Vec<Words>>,
     edges: Vec<(&'static str, Reached<B>)>,
     settings: Settings,
 }
 
-/// The worst place of a run.
+/// The element with the largest error in a run.
 struct Worst {
     buffer: usize,
     element: usize,
@@ -117,32 +121,34 @@ struct Worst {
 }
 
 impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
-    /// How many workgroups are dispatched for these buffers; one otherwise.
+    /// Sets the number of workgroups to dispatch for these buffers; the default is one.
     pub fn workgroups(mut self, workgroups: impl Fn(&B) -> [u32; 3] + 'static) -> Self {
         self.workgroups = Box::new(workgroups);
         self
     }
 
-    /// Tolerance of the named buffer's elements: a sum of `ulp`, `abs` and `rel`, for structs one for each field. Without it a buffer is to be
-    /// the mirror's to the bit.
+    /// Sets the tolerance of the named buffer's elements: a sum of `ulp`, `abs` and `rel` terms;
+    /// for structs, one sum per field. Without a tolerance, the buffer must equal the mirror's to
+    /// the bit.
     pub fn within(mut self, buffer: &'static str, bounds: &str) -> Self {
         self.bounds.push((buffer, bounds.to_owned()));
         self
     }
 
-    /// A part of the inputs that a run must reach.
+    /// Names a part of the inputs that a run must reach.
     pub fn edge(mut self, name: &'static str, reached: impl Fn(&B) -> bool + 'static) -> Self {
         self.edges.push((name, Box::new(reached)));
         self
     }
 
-    /// Buffers that are tested always, such as those of a failure: the tuple that it prints `in Rust`.
+    /// Adds buffers that are always tested, such as those of a failure: the tuple that it prints
+    /// after `in Rust`.
     pub fn case(mut self, buffers: B) -> Self {
         self.kept.push(buffers.words());
         self
     }
 
-    /// How many random inputs; 256 otherwise.
+    /// Sets the number of random inputs; the default is 256.
     pub fn cases(mut self, cases: u64) -> Self {
         self.settings.cases = cases;
         self
@@ -154,11 +160,12 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         self
     }
 
-    /// Runs the kernel on the device that `LAPIDARY_ADAPTER` names. A loop without an end is not ended here: the driver's limits hold.
+    /// Runs the kernel on the device that `LAPIDARY_ADAPTER` names. An endless loop is not stopped
+    /// here; the driver's limits apply.
     ///
     /// # Errors
-    /// Where a buffer is wrong, with the simplest input found; where the source is not valid or its buffers are others; where there is no
-    /// adapter, unless `ASSAY_WITHOUT_ADAPTER=skip`.
+    /// Returns an error if a buffer is wrong, with the simplest input found; if the source is not
+    /// valid or its buffers differ; or if there is no adapter, unless `ASSAY_WITHOUT_ADAPTER=skip`.
     pub fn run(mut self) -> Outcome {
         let entry = self.source.entry;
         let fail = |what: String| Failure::new(format!("{entry}: {what}"));
@@ -198,7 +205,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         Err(fail(self.describe(&program, &tolerances, &buffers, &worst, failed)))
     }
 
-    /// One tolerance for each buffer that has bounds.
+    /// Creates one tolerance for each buffer that has bounds.
     fn tolerances(&self, bindings: &[Binding]) -> Result<Tolerances, String> {
         if let Some((name, _)) = self.bounds.iter().find(|(name, _)| !bindings.iter().any(|b| b.name == *name)) {
             return Err(format!("within: the entry point uses no buffer `{name}`"));
@@ -212,7 +219,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         bindings.iter().map(of).collect()
     }
 
-    /// The element that is farthest off; none where every one is the mirror's.
+    /// Returns the element with the largest error, or `None` if every element equals the mirror's.
     fn judge(&self, program: &Program<'_>, tolerances: &Tolerances, before: &[Words]) -> Result<Option<Worst>, String> {
         let mut mirrored = B::of_words(before);
         let got = program.run(before, (self.workgroups)(&mirrored))?;
@@ -229,7 +236,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
             }
             let width = binding.ty.shape.words();
             let elements = got.chunks_exact(width).zip(expected.chunks_exact(width)).enumerate();
-            // What is the mirror's to the bit is right, an infinity too.
+            // An element that equals the mirror's to the bit is right, even an infinity.
             for (element, (got, expected)) in elements.filter(|(_, (got, expected))| got != expected) {
                 let ratio = match &tolerances[buffer] {
                     None => f64::INFINITY,
@@ -246,7 +253,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         Ok(worst)
     }
 
-    /// The simplest buffers found that fail half as badly.
+    /// Returns the simplest buffers found that fail at least half as badly as the worst.
     fn shrink(
         &self,
         program: &Program<'_>,
@@ -259,7 +266,7 @@ impl<B: Buffers + fmt::Debug + 'static> KernelTest<B> {
         let mut buffers = tree.current();
         let mut steps = 0;
         let mut fails = true;
-        // As proptest's own runner: what a step back leads to is tested as well.
+        // As in proptest's own runner, the value after a step back is tested as well.
         while steps < MOST_SHRINKS && (if fails { tree.simplify() } else { tree.complicate() }) {
             steps += 1;
             let simpler = tree.current();
@@ -329,7 +336,7 @@ fn bounds(text: &str, binding: &Binding) -> Result<Vec<FieldBound>, String> {
     Ok(bounds)
 }
 
-/// Refuses a mirror of other buffers than the entry point's.
+/// Checks that the mirror's buffers match the entry point's.
 fn expect(bindings: &[Binding], types: &[Type]) -> Result<(), String> {
     if bindings.len() != types.len() {
         let names: Vec<String> = bindings.iter().map(|binding| format!("`{}`", binding.name)).collect();
@@ -343,7 +350,7 @@ fn expect(bindings: &[Binding], types: &[Type]) -> Result<(), String> {
     match bindings.iter().zip(types).find(|(binding, ty)| binding.ty != **ty) {
         None => Ok(()),
         Some((binding, ty)) => {
-            // Of structs of one name, down to the member.
+            // For structs of the same name, the message names the member.
             let inner = difference(&ty.shape, &binding.ty.shape).filter(|_| ty.to_string() == binding.ty.to_string());
             let (expected, found) = inner.unwrap_or_else(|| (ty.to_string(), binding.ty.to_string()));
             Err(format!("buffer `{}`: expected {expected}, found {found}", binding.name))
@@ -351,7 +358,7 @@ fn expect(bindings: &[Binding], types: &[Type]) -> Result<(), String> {
     }
 }
 
-/// A buffer as a literal.
+/// Formats a buffer as a literal.
 fn spell(language: Language, ty: &Type, words: &[u32]) -> String {
     if !ty.is_runtime_sized {
         return literal::of_shape(language, &ty.shape, words);

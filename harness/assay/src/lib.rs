@@ -1,7 +1,9 @@
-//! Property tests of WGSL functions and kernels on a GPU, in a plain `cargo test`: any function is reflected and run as a compute kernel, compared with a
-//! function in Rust over random, hard and shrunk inputs, under a tolerance in ulp, absolute, relative or backward error.
+//! Property tests of WGSL functions and kernels on a GPU, in a plain `cargo test`. Any function is
+//! reflected, run as a compute kernel and compared with a Rust function on random, hard and shrunk
+//! inputs, within a tolerance in ulp, absolute, relative or backward error.
 //!
-//! A function: [`wgsl`] → `mirror` → perhaps `oracle` → `inputs` or `draws` → [the rest](Test) → [`run`](Test::run) or [`mutate`](Test::mutate).
+//! A function: [`wgsl`] → `mirror` → optional `oracle` → `inputs` or `draws` → [settings](Test) →
+//! [`run`](Test::run) or [`mutate`](Test::mutate).
 //!
 //! ```no_run
 //! use lapidary_assay::{Outcome, wgsl};
@@ -19,8 +21,8 @@
 //! }
 //! ```
 //!
-//! A compute entry point, whole buffers against whole buffers: [`kernel`] → perhaps `constant` → `mirror` → `inputs` or `draws` → [the rest](KernelTest) →
-//! [`run`](KernelTest::run).
+//! A compute entry point, compared buffer by buffer: [`kernel`] → optional `constant` → `mirror` →
+//! `inputs` or `draws` → [settings](KernelTest) → [`run`](KernelTest::run).
 //!
 //! ```no_run
 //! use lapidary_assay::{Outcome, kernel};
@@ -42,7 +44,8 @@
 //! }
 //! ```
 //!
-//! Without the feature `gpu`, what needs no device is left: random inputs ([`draws`]), shapes and values, tolerances.
+//! Without the feature `gpu`, only the parts that need no device remain: random inputs ([`draws`]),
+//! shapes, values and tolerances.
 
 pub mod accuracy_line;
 #[cfg(feature = "gpu")]

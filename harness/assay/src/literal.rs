@@ -1,5 +1,5 @@
-//! Values as literals that can be pasted: Rust for the mirrors' crates, WGSL for a shader. Decimals are the shortest that
-//! name the f32 exactly.
+//! Values as literals for pasting: Rust for the mirrors' crates, WGSL for a shader. Decimals are
+//! the shortest that identify the f32 exactly.
 
 use crate::formula::Formula;
 use crate::shape::{Scalar, Shape};
@@ -7,13 +7,13 @@ use crate::shape::{Scalar, Shape};
 /// The language of a literal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
-    /// With glam's types and the module's own crate.
+    /// Rust, with glam's types and the module's own crate.
     Rust,
-    /// With the short names of types.
+    /// WGSL, with the short names of types.
     Wgsl,
 }
 
-/// The call of a formula's function with these arguments: the WGSL function, or its mirror.
+/// Formats the call of a formula's function with these arguments: the WGSL function, or its mirror.
 pub fn call(language: Language, formula: &Formula, arguments: &[u32]) -> String {
     let name = match language {
         Language::Wgsl => formula.function.to_owned(),
@@ -26,7 +26,7 @@ pub fn call(language: Language, formula: &Formula, arguments: &[u32]) -> String 
     format!("{name}({})", values(language, formula, arguments))
 }
 
-/// A row of arguments, with commas between.
+/// Formats a row of arguments, separated by commas.
 pub fn values(language: Language, formula: &Formula, arguments: &[u32]) -> String {
     let mut rest = arguments;
     let values: Vec<String> =
@@ -34,19 +34,19 @@ pub fn values(language: Language, formula: &Formula, arguments: &[u32]) -> Strin
     values.join(", ")
 }
 
-/// A value of a formula's result.
+/// Formats a value of a formula's result.
 pub fn value(language: Language, formula: &Formula, words: &[u32]) -> String {
     let mut rest = words;
     write(language, formula.module, &formula.result, &mut rest)
 }
 
-/// A value of a shape; structs by their names alone.
+/// Formats a value of a shape; structs have their names alone, without a path.
 pub fn of_shape(language: Language, shape: &Shape, words: &[u32]) -> String {
     let mut rest = words;
     write(language, "", shape, &mut rest)
 }
 
-/// Takes the value's words off the front.
+/// Formats a value and removes its words from the front.
 fn write(language: Language, module: &str, shape: &Shape, words: &mut &[u32]) -> String {
     use Language::{Rust, Wgsl};
     let mut list = |shapes: &mut dyn Iterator<Item = &Shape>| -> Vec<String> {
@@ -96,12 +96,12 @@ fn write(language: Language, module: &str, shape: &Shape, words: &mut &[u32]) ->
     }
 }
 
-/// What stands before a name of a module's mirror: its crate, or nothing where there is no module.
+/// Returns the path before a name in a module's mirror: its crate, or nothing without a module.
 fn path(module: &str) -> String {
     if module.is_empty() { String::new() } else { format!("lapidary_{module}::") }
 }
 
-/// What glam puts before `Vec`.
+/// Returns glam's prefix of `Vec`.
 fn prefix(kind: Scalar) -> &'static str {
     match kind {
         Scalar::F32 => "",
@@ -124,7 +124,7 @@ fn scalar(language: Language, kind: Scalar, word: u32) -> String {
             }
         }
         Scalar::I32 if rust => word.cast_signed().to_string(),
-        // -2147483648i would be a minus before a literal that is out of range.
+        // -2147483648i would be a minus sign before an out-of-range literal.
         Scalar::I32 => format!("i32({})", word.cast_signed()),
         Scalar::U32 if rust => word.to_string(),
         Scalar::U32 => format!("{word}u"),

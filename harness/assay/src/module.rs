@@ -1,4 +1,5 @@
-//! The tests of a module of WGSL functions, for `cargo test`: one for each formula, filtered by name as cargo's users expect.
+//! The tests of a module of WGSL functions, for `cargo test`: one for each formula, filtered by
+//! name as usual in cargo.
 //!
 //! In the module's `tests/formulas.rs`, whose `[[test]]` has `harness = false`:
 //!
@@ -19,12 +20,13 @@ use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// How many times as many inputs a run has that has missed a rare edge.
+/// Factor on the number of inputs when a run that missed a rare edge is repeated.
 const MORE: u64 = 16;
 
-/// Tests each formula's function in `sources`, which are joined to one text: a module and its naive forms. The function's comment states its
-/// bounds in an `Accuracy:` line. Tested are random inputs, hard cases, promises outside of the domain and the inputs beside branches. Takes
-/// libtest's arguments.
+/// Tests the function of each formula in `sources`, which are joined into one text: a module and
+/// its naive forms. The function's comment states its bounds in an `Accuracy:` line. The tests
+/// cover random inputs, hard cases, promises outside the domain and inputs next to branches.
+/// Accepts libtest's arguments.
 pub fn test(sources: &[&str], formulas: Vec<Formula>) -> ExitCode {
     let source: Arc<str> = sources.join("\n").into();
     let trial = |formula: Formula| {
@@ -35,14 +37,14 @@ pub fn test(sources: &[&str], formulas: Vec<Formula>) -> ExitCode {
     libtest_mimic::run(&Arguments::from_args(), formulas.into_iter().map(trial).collect()).exit_code()
 }
 
-/// Ignored, and counted so, where there is no adapter and the environment allows that.
+/// Runs one test. Without an adapter, if the environment allows that, it counts as ignored.
 fn completion(source: &str, formula: &Formula) -> Result<Completion, Failed> {
     let gpu = environment::gpu(formula.function).map_err(|error| Failed::from(error.to_string()))?;
     let Some(gpu) = gpu else { return Ok(Completion::ignored_with("no adapter")) };
     let seed = environment::seed()?.unwrap_or(Settings::default().seed);
     let mut found = examined(gpu, source, formula, Settings { cases: DEFAULT_CASES, seed })?;
     if found.report.failed == 0 && found.report.missed_edges().next().is_some() {
-        // A rare edge, which a seed may miss by chance.
+        // A seed may miss a rare edge by chance.
         found = examined(gpu, source, formula, Settings { cases: MORE * DEFAULT_CASES, seed })?;
     }
     if found.holds() { Ok(Completion::Completed) } else { Err(found.describe(formula).into()) }

@@ -1,5 +1,6 @@
-//! Mutation of a WGSL function on naga's IR: one operator, comparison or constant changed at a time. Tests that let a mutant pass do not test
-//! what was changed. [`Test::mutate`](crate::Test::mutate) judges all mutants of a function by its own test.
+//! Mutation of a WGSL function on naga's IR: one operator, comparison or constant changed at a
+//! time. If the tests pass on a mutant, they do not test the changed part.
+//! [`Test::mutate`](crate::Test::mutate) judges all mutants of a function by its own test.
 
 mod judge;
 
@@ -9,21 +10,23 @@ use crate::dispatch::{DispatchError, KernelModule};
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, UnaryOperator};
 use std::fmt;
 
-/// The factor on a constant: 1 + 2⁻⁶, far above any tolerance and far below any other value that a formula might hold.
+/// Factor on a constant: 1 + 2⁻⁶, far above any tolerance and far below any other value that a
+/// formula might hold.
 const NUDGE: f32 = 1.0 + 1.0 / 64.0;
 
 /// A single change.
 #[derive(Clone, Debug, PartialEq)]
 enum Edit {
     Binary(BinaryOperator),
-    /// `-x` instead of `x * s` or `s * x` of a vector `x` and a scalar, for which there is no quotient.
+    /// `-x` instead of `x * s` or `s * x` for a vector `x` and a scalar `s`, of which naga's IR has
+    /// no quotient.
     Negate(Handle<Expression>),
-    /// `x` instead of `-x`, of this kind.
+    /// `x` instead of `-x`, for an `x` of this kind.
     Keep(ScalarKind),
     Literal(Literal),
 }
 
-/// Where a change is made.
+/// Place of a change.
 #[derive(Clone, Debug, PartialEq)]
 enum Site {
     /// An expression of a function, by its index in the compacted function.
@@ -32,22 +35,22 @@ enum Site {
     Constant,
 }
 
-/// A mutant: where, and what is changed into what.
+/// A mutant: the place of a change, and the change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mutant {
-    /// The WGSL function, or the const.
+    /// Name of the WGSL function or const.
     pub owner: String,
-    /// The line of source, trimmed.
+    /// Line of source, trimmed.
     pub line: String,
-    /// Which of several sites on that line with the same change, from 1 on.
+    /// Number among the sites on that line with the same change, from 1 on.
     pub occurrence: usize,
-    /// The change, as `Add -> Subtract`.
+    /// Change, in the form `Add -> Subtract`.
     pub change: String,
     site: Site,
     edit: Edit,
 }
 
-/// A name that stays the same while other lines change.
+/// Formats a name that stays the same if other lines change.
 impl fmt::Display for Mutant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} | {} | {}", self.owner, self.line, self.change)?;
@@ -55,12 +58,12 @@ impl fmt::Display for Mutant {
     }
 }
 
-/// How many mutants a function's tests catch, and which they do not.
+/// The number of mutants of a function, and those that its tests miss.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
-    /// Mutants in all, those of the consts that the function uses too.
+    /// Number of mutants, including those of the consts that the function uses.
     pub mutants: usize,
-    /// Those that no test notices.
+    /// Mutants that no test notices.
     pub survivors: Vec<Mutant>,
 }
 
@@ -74,16 +77,17 @@ impl fmt::Display for Score {
 /// The mutants of a function.
 #[derive(Clone, Debug)]
 pub struct Mutants {
-    /// In their order, the same in every run.
+    /// Valid mutants, in the same order in every run.
     pub valid: Vec<Mutant>,
-    /// How many changes more make no valid program.
+    /// Number of further changes that make the program invalid.
     pub invalid: usize,
 }
 
-/// Every mutant of the named function of `source`, and of the consts that it uses; `path` is for messages.
+/// Returns every mutant of the named function of `source`, and of the consts that it uses; `path`
+/// appears in messages.
 ///
 /// # Errors
-/// Where the source is not valid, or has no such function.
+/// Returns an error if the source is not valid, or has no such function.
 pub fn of_function(source: &str, path: &str, function: &str) -> Result<Mutants, DispatchError> {
     let kernel = compacted(KernelModule::reflect(source, path, function)?);
     let (valid, invalid): (Vec<_>, Vec<_>) =
@@ -91,14 +95,15 @@ pub fn of_function(source: &str, path: &str, function: &str) -> Result<Mutants, 
     Ok(Mutants { valid, invalid: invalid.len() })
 }
 
-/// A kernel with nothing in it that its function does not use, so that every expression is live.
+/// Removes everything from a kernel that its function does not use, so that every expression is
+/// live.
 fn compacted(mut kernel: KernelModule) -> KernelModule {
     naga::compact::compact(&mut kernel.module, naga::compact::KeepUnused::No);
     kernel
 }
 
-/// Every change to the named function of `source`, and to the consts that it uses; `kernel` is the function's own, compacted. One may make no valid
-/// program.
+/// Returns every change to the named function of `source`, and to the consts that it uses; `kernel`
+/// is the function's own, compacted. A change may make the program invalid.
 fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
     let mut mutants: Vec<Mutant> = Vec::new();
     let mut add = |owner: &str, span: naga::Span, site: Site, change: String, edit: Edit| {
@@ -123,7 +128,8 @@ fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
             }
         }
     }
-    // Compaction keeps every const that has a name; one that no function reads is for recipes, and no run can tell its value.
+    // Compaction keeps every const with a name. A const that no function reads is for recipes, and
+    // no run can tell its value.
     let read: Vec<Handle<naga::Constant>> = ir
         .functions
         .iter()
@@ -145,7 +151,8 @@ fn mutants(source: &str, function: &str, kernel: &KernelModule) -> Vec<Mutant> {
     mutants
 }
 
-/// The kernel with one change; none where the kernel does not hold the site, or where the change makes no valid program.
+/// Returns the kernel with one change, or `None` if the kernel lacks the site or the change makes
+/// the program invalid.
 fn apply(kernel: &KernelModule, mutant: &Mutant) -> Option<KernelModule> {
     let mut mutated = kernel.clone();
     let ir = &mut mutated.module;
@@ -175,7 +182,7 @@ fn edit(expression: &mut Expression, edit: &Edit) {
             Expression::Unary { op: UnaryOperator::Negate, expr: *vector }
         }
         (Expression::Unary { expr, .. }, Edit::Keep(kind)) => {
-            // A conversion to its own type, since an expression cannot stand for another.
+            // A conversion to its own type, since no expression can stand for another.
             Expression::As { expr: *expr, kind: *kind, convert: Some(4) }
         }
         (Expression::Literal(_), Edit::Literal(literal)) => Expression::Literal(*literal),
@@ -184,13 +191,13 @@ fn edit(expression: &mut Expression, edit: &Edit) {
     *expression = replacement;
 }
 
-/// What is known of an expression's operands.
+/// Types of an expression's operands.
 struct Operands<'a> {
     is_vector: &'a dyn Fn(Handle<Expression>) -> bool,
     kind: &'a dyn Fn(Handle<Expression>) -> Option<ScalarKind>,
 }
 
-/// The changes to an expression.
+/// Returns the changes to an expression.
 fn edits(operands: &Operands<'_>, expression: &Expression) -> Vec<(String, Edit)> {
     match expression {
         Expression::Binary { op, left, right } => {
@@ -216,7 +223,7 @@ fn edits(operands: &Operands<'_>, expression: &Expression) -> Vec<(String, Edit)
     }
 }
 
-/// The vector of a product of a vector and a scalar; none where both sides are of one type.
+/// Returns the vector in a product of a vector and a scalar, or `None` if both sides have one type.
 fn mixed_vector(
     is_vector: &dyn Fn(Handle<Expression>) -> bool,
     left: Handle<Expression>,
@@ -236,7 +243,7 @@ fn operators(op: BinaryOperator) -> &'static [BinaryOperator] {
         Op::Subtract => &[Op::Add],
         Op::Multiply => &[Op::Divide],
         Op::Divide | Op::Modulo => &[Op::Multiply],
-        // Each comparison loses or gains its boundary, and is turned round.
+        // Each comparison loses or gains its boundary, or is reversed.
         Op::Less => &[Op::LessEqual, Op::Greater],
         Op::LessEqual => &[Op::Less, Op::GreaterEqual],
         Op::Greater => &[Op::GreaterEqual, Op::Less],

@@ -1,4 +1,4 @@
-//! What a function promises outside of its domain: hostile inputs, and what must hold of the results there.
+//! Promises of a function outside its domain: hostile inputs, and conditions on the results there.
 
 use crate::draws::{Domain, Draws};
 use crate::near::near;
@@ -9,32 +9,33 @@ use glam::{UVec2, UVec3, Vec3};
 type Predicate = Box<dyn Fn(&[u32], &[u32]) -> Result<(), String> + Send + Sync>;
 type Transform = Box<dyn Fn(&[u32], &mut Vec<u32>) + Send + Sync>;
 
-/// What is promised of the results.
+/// A condition on the results.
 pub(crate) enum Claim {
-    /// They are finite.
+    /// The results are finite.
     Finite,
-    /// The `Accuracy:` line holds there too.
+    /// The `Accuracy:` line holds as well.
     Accuracy,
-    /// They are those of another input, to the bit.
+    /// The results equal those of another input: on a device that rounds to nearest to the bit, with
+    /// 0 equal to -0; on others within the tolerance.
     Like(Transform),
-    /// Whatever the predicate says.
+    /// The predicate holds.
     Holds(Predicate),
-    /// Nothing: the words name what goes wrong.
+    /// No condition: the clause names the failure.
     Nothing,
 }
 
 /// A clause of an `Outside:` line.
 pub struct Promise {
-    /// The WGSL function.
+    /// Name of the WGSL function.
     pub function: &'static str,
-    /// The clause, word for word.
+    /// Text of the clause, word for word.
     pub says: &'static str,
-    /// Shapes that the inputs were made for; empty for any.
+    /// Argument shapes of the inputs; empty for any shapes.
     pub arguments: Vec<Shape>,
-    /// The inputs; none where nothing is promised.
+    /// Generator of the inputs; `None` if nothing is promised.
     pub(crate) inputs: Option<Domain<Vec<u32>>>,
     pub(crate) claim: Claim,
-    /// Whether it is said only of devices that round to nearest.
+    /// Whether the promise applies only to devices that round to nearest.
     pub(crate) at_nearest: bool,
 }
 
@@ -59,24 +60,25 @@ impl Promise {
         Self { function, says, arguments: A::shapes(), inputs: Some(inputs), claim, at_nearest: false }
     }
 
-    /// The same of devices that round sums, products, quotients and roots to nearest, as the mirrors do.
+    /// Restricts the promise to devices that round sums, products, quotients and roots to nearest,
+    /// as the mirrors do.
     #[must_use]
     pub fn at_nearest(self) -> Self {
         Self { at_nearest: true, ..self }
     }
 
-    /// Whether there is something to test.
+    /// Returns whether there is anything to test.
     pub fn is_tested(&self) -> bool {
         self.inputs.is_some()
     }
 }
 
-/// The clause names what goes wrong, and promises nothing.
+/// Creates a clause that names the failure and promises nothing.
 pub fn nothing(function: &'static str, says: &'static str) -> Promise {
     Promise { function, says, arguments: Vec::new(), inputs: None, claim: Claim::Nothing, at_nearest: false }
 }
 
-/// Results are finite.
+/// Promises that results are finite.
 pub fn finite<A: Arguments<u32>>(
     function: &'static str,
     says: &'static str,
@@ -85,7 +87,7 @@ pub fn finite<A: Arguments<u32>>(
     Promise::new(function, says, inputs, Claim::Finite)
 }
 
-/// The `Accuracy:` line holds for these inputs as well.
+/// Promises that the `Accuracy:` line holds for these inputs as well.
 pub fn accurate<A: Arguments<u32>>(
     function: &'static str,
     says: &'static str,
@@ -94,7 +96,8 @@ pub fn accurate<A: Arguments<u32>>(
     Promise::new(function, says, inputs, Claim::Accuracy)
 }
 
-/// The result is that of the input that `inside` makes of it, to the bit.
+/// Promises that the result equals the result at the input that `inside` returns: on a device that
+/// rounds to nearest to the bit, with 0 equal to -0; on others within the tolerance.
 pub fn like<A: Arguments<u32> + 'static>(
     function: &'static str,
     says: &'static str,
@@ -105,7 +108,7 @@ pub fn like<A: Arguments<u32> + 'static>(
     Promise::new(function, says, inputs, Claim::Like(transform))
 }
 
-/// The predicate holds of each input and its result.
+/// Promises that the predicate holds for each input and its result.
 pub fn holds<A: Arguments<u32> + 'static, R: Value + 'static>(
     function: &'static str,
     says: &'static str,
@@ -118,7 +121,7 @@ pub fn holds<A: Arguments<u32> + 'static, R: Value + 'static>(
     Promise::new(function, says, inputs, Claim::Holds(predicate))
 }
 
-/// Any finite number: 0, the ends of f32's range, every magnitude between.
+/// Draws any finite number: 0, the ends of f32's range, and every magnitude between.
 pub fn any_finite(draws: &mut Draws<'_>) -> f32 {
     match draws.below(4) {
         0 => draws.pick(&[0.0, -0.0, 1.0, -1.0, f32::MAX, f32::MIN, f32::MIN_POSITIVE, -f32::MIN_POSITIVE]),
@@ -127,7 +130,7 @@ pub fn any_finite(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// Any bits at all: subnormal numbers, infinities and every NaN too.
+/// Draws any bit pattern, including subnormals, infinities and every NaN.
 pub fn any_bits(draws: &mut Draws<'_>) -> f32 {
     match draws.below(3) {
         0 => draws.pick(&[f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-40, -1e-40, 0.0, -0.0]),
@@ -136,23 +139,23 @@ pub fn any_bits(draws: &mut Draws<'_>) -> f32 {
     }
 }
 
-/// A vector of any finite components.
+/// Draws a vector of any finite components.
 pub fn any_vector(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(any_finite(draws), any_finite(draws), any_finite(draws))
 }
 
-/// A vector with components 0 or of magnitudes up to 2^`high`.
+/// Draws a vector whose components are 0 or have magnitudes up to 2^`high`.
 pub fn vector_up_to(draws: &mut Draws<'_>, high: i32) -> Vec3 {
     let mut component = || if draws.below(6) == 0 { 0.0 } else { draws.signed(-126, high - 1) };
     Vec3::new(component(), component(), component())
 }
 
-/// A direction of any length between 2^`low` and 2^`high`.
+/// Draws a vector of any direction, with a length between 2^`low` and 2^`high`.
 pub fn of_length(draws: &mut Draws<'_>, low: i32, high: i32) -> Vec3 {
     draws.magnitude(low, high - 1) * draws.unit_vector()
 }
 
-/// Whole numbers: small ones, the ends, any.
+/// Draws a whole number: a small one, one of the ends of the range, or any.
 pub fn any_number(draws: &mut Draws<'_>) -> u32 {
     match draws.below(3) {
         0 => draws.pick(&[0, 1, 2, u32::MAX, u32::MAX - 1, 1 << 31]),
@@ -161,27 +164,27 @@ pub fn any_number(draws: &mut Draws<'_>) -> u32 {
     }
 }
 
-/// Three of them.
+/// Draws three numbers with [`any_number`].
 pub fn any_numbers(draws: &mut Draws<'_>) -> UVec3 {
     UVec3::new(any_number(draws), any_number(draws), any_number(draws))
 }
 
-/// A texture's size, 1 to 64 either way.
+/// Draws a texture size of 1 to 64 in each dimension.
 pub fn small_size(draws: &mut Draws<'_>) -> UVec2 {
     UVec2::new(1 + draws.below(64), 1 + draws.below(64))
 }
 
-/// Passes where `right`; `what` says what is not.
+/// Checks that `right` is true; otherwise `what` gives the error message.
 pub fn that(right: bool, what: impl FnOnce() -> String) -> Result<(), String> {
     if right { Ok(()) } else { Err(what()) }
 }
 
-/// Passes where every component of `value` is within `bound` of `wanted`; a NaN never is.
+/// Checks that every component of `value` is within `bound` of `wanted`; a NaN never is.
 pub fn close(value: &[f32], wanted: &[f64], bound: f64) -> Result<(), String> {
     value.iter().zip(wanted).try_for_each(|(value, wanted)| near("a component", f64::from(*value), *wanted, bound))
 }
 
-/// Passes where all are finite.
+/// Checks that all values are finite.
 pub fn finite_values(values: &[f32]) -> Result<(), String> {
     that(values.iter().all(|value| value.is_finite()), || format!("the result is {values:?}"))
 }

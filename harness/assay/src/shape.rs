@@ -1,7 +1,8 @@
-//! The shape of a value that travels to the GPU: a WGSL type, and its mirror in Rust.
+//! The shape of a value on its way to the GPU: a WGSL type, and its mirror in Rust.
 //!
-//! A value of any shape flattens into 32-bit words, one per scalar in declaration order. Comparison, shrinking,
-//! storage of failing inputs and reports all work on words; only the upload knows offsets.
+//! A value of any shape flattens into 32-bit words, one per scalar in declaration order.
+//! Comparison, shrinking, storage of failing inputs and reports all work on words; only the upload
+//! knows offsets.
 
 use std::fmt;
 
@@ -14,12 +15,12 @@ pub enum Scalar {
     I32,
     /// Unsigned.
     U32,
-    /// Travels as a `u32` of 0 or 1, since WGSL has no bool in buffers.
+    /// Sent as a `u32` of 0 or 1, since WGSL has no bool in buffers.
     Bool,
 }
 
 impl Scalar {
-    /// Its WGSL keyword.
+    /// Returns the WGSL keyword.
     pub const fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
@@ -30,7 +31,7 @@ impl Scalar {
     }
 }
 
-/// A WGSL type of scalars, vectors, matrices, arrays and structs of those.
+/// A WGSL type: scalars, vectors and matrices, and arrays and structs of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// One scalar.
@@ -41,12 +42,12 @@ pub enum Shape {
     Matrix(u8, u8),
     /// `array<T, N>`.
     Array(Box<Shape>, u32),
-    /// A struct: its name, and name and shape of each member in order.
+    /// A struct: its name, and the name and shape of each member in order.
     Struct(String, Vec<(String, Shape)>),
 }
 
 impl Shape {
-    /// How many 32-bit words a value flattens to.
+    /// Returns the number of 32-bit words in a value.
     pub fn words(&self) -> usize {
         match self {
             Self::Scalar(_) => 1,
@@ -57,7 +58,8 @@ impl Shape {
         }
     }
 
-    /// Whether a bool is anywhere inside, so that the type cannot stand in a buffer as it is.
+    /// Returns whether there is a bool anywhere inside, so that the type cannot be in a buffer as
+    /// it is.
     pub fn holds_bool(&self) -> bool {
         match self {
             Self::Scalar(scalar) | Self::Vector(_, scalar) => *scalar == Scalar::Bool,
@@ -67,12 +69,12 @@ impl Shape {
         }
     }
 
-    /// The scalar of each word, in order.
+    /// Returns the scalar of each word, in order.
     pub fn scalars(&self) -> Vec<Scalar> {
         self.leaves().iter().flat_map(|leaf| std::iter::repeat_n(leaf.scalar, leaf.length)).collect()
     }
 
-    /// The scalars, vectors and matrix columns that the value is made of, in order of their words.
+    /// Returns the scalars, vectors and matrix columns of the value, in the order of their words.
     pub fn leaves(&self) -> Vec<Leaf> {
         let mut leaves = Vec::new();
         self.collect_leaves(String::new(), &mut leaves);
@@ -106,21 +108,21 @@ impl Shape {
     }
 }
 
-/// A scalar, vector or matrix column inside a value: the unit of comparison, since a vector's error is measured by its
-/// largest component.
+/// A scalar, vector or matrix column inside a value: the unit of comparison, since a vector's error
+/// is measured by its largest component.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leaf {
-    /// Where it is, as `field.member[index]`; empty where the whole value is the leaf.
+    /// Path of the leaf, as `field.member[index]`; empty if the leaf is the whole value.
     pub path: String,
-    /// What it is made of.
+    /// Type of its scalars.
     pub scalar: Scalar,
-    /// Its first word.
+    /// Index of its first word.
     pub start: usize,
-    /// How many words.
+    /// Number of words.
     pub length: usize,
 }
 
-/// As WGSL writes the type.
+/// Formats the type as in WGSL.
 impl fmt::Display for Shape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let letter = |scalar: &Scalar| match scalar {

@@ -1,16 +1,16 @@
-//! WGSL as tokens, without comments and white space: what stays the same when a text is laid out anew. For what must be
-//! known before naga may see a text, or where naga keeps no names.
+//! WGSL as tokens, without comments and white space, and so independent of the layout of the text.
+//! For questions that arise before naga may see a text, or for which naga keeps no names.
 
-/// A token and where it stands.
+/// A token and its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token<'a> {
     /// An identifier, keyword or number, or one character of punctuation.
     pub text: &'a str,
-    /// Its line, from 1.
+    /// Line, from 1.
     pub line: u32,
 }
 
-/// The tokens of a source, which need not be valid.
+/// Splits a source into tokens; it need not be valid.
 pub fn tokens(source: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let mut line = 1;
@@ -34,7 +34,7 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// The length of the comment at the start, others inside it included.
+/// Returns the length of the comment at the start, including nested comments.
 fn block_comment(text: &str) -> usize {
     let bytes = text.as_bytes();
     let (mut at, mut depth) = (0, 0);
@@ -79,17 +79,17 @@ fn token_length(text: &str, first: char) -> usize {
 /// A declaration at module scope.
 #[derive(Clone, Debug)]
 pub struct Item<'a> {
-    /// Its keyword: `fn`, `struct`, `const` and so on.
+    /// Keyword: `fn`, `struct`, `const` and so on.
     pub kind: &'a str,
-    /// Its name.
+    /// Declared name.
     pub name: &'a str,
-    /// The line of its keyword, from 1.
+    /// Line of the keyword, from 1.
     pub line: u32,
-    /// All its tokens, attributes included.
+    /// All tokens, including attributes.
     pub tokens: Vec<Token<'a>>,
 }
 
-/// The declarations of a source that have a name, in order.
+/// Returns the named declarations of a source, in order.
 pub fn items<'a>(tokens: &[Token<'a>]) -> Vec<Item<'a>> {
     let mut items = Vec::new();
     let (mut start, mut depth) = (0, 0usize);
@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(texts(laid_out), plain);
         assert!(plain.contains(&"1e-5f") && plain.contains(&".5f") && plain.contains(&"0x1p-3f"), "{plain:?}");
         assert_eq!(texts("0xe-1u"), ["0xe", "-", "1u"]);
-        // Whatever a file may hold ends.
+        // Tokenizing ends, whatever the file holds.
         assert_eq!(texts("/* open"), [""; 0]);
         assert_eq!(texts("é€ \u{0}"), ["é", "€", "\u{0}"]);
     }

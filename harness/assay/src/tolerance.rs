@@ -1,5 +1,5 @@
-//! Whether a result is right: the comparison of a shader's row with the mirror's and with the oracle's, under the
-//! bounds of the function's `Accuracy:` line.
+//! Comparison of a shader's row with the mirror's and the oracle's, within the bounds of the
+//! function's `Accuracy:` line.
 
 mod search;
 
@@ -7,39 +7,42 @@ use crate::accuracy_line::{Bound, FieldBound};
 use crate::shape::{Leaf, Scalar, Shape};
 use search::{Effort, InputBox, Search, Spread};
 
-/// What is forgiven of every result, since WGSL lets an implementation flush what is below the smallest normal f32 to zero: once in a term, once in the result.
+/// Error allowed in every result, since WGSL lets an implementation flush numbers below the
+/// smallest normal f32 to zero: once in a term, once in the result.
 pub(super) const FLUSHED: f64 = 2.0 * f32::MIN_POSITIVE as f64;
 
 /// An oracle on numbers.
 pub type OracleFn<'a> = &'a dyn Fn(&[f64], &mut Vec<f64>);
 
-/// What comparing a row found.
+/// The result of comparing a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
-    /// Error of the shader against the oracle in ulp of the exact value's largest component, the largest over fields.
+    /// Error of the shader against the oracle, in ulp of the exact value's largest component; the
+    /// largest over all fields.
     pub ulp: f64,
-    /// Error over allowed error, the largest over fields and over the three comparisons; above 1 the row fails.
+    /// Ratio of error to allowed error, the largest over all fields and the three comparisons;
+    /// above 1 the row fails.
     pub ratio: f64,
     /// Whether the shader returned a NaN or an infinity.
     pub nonfinite: bool,
 }
 
 impl Verdict {
-    /// Whether the row is within its tolerance.
+    /// Returns whether the row is within its tolerance.
     pub fn holds(&self) -> bool {
-        // Written so that a NaN ratio does not hold.
+        // Written so that a NaN ratio fails.
         !self.nonfinite && self.ratio <= 1.0
     }
 }
 
-/// How far a part of a result may be off.
+/// The allowed error of a part of a result.
 #[derive(Clone, Debug)]
 pub struct Allowed {
     /// The part.
     pub leaf: Leaf,
-    /// The largest error of a component, whatever the input.
+    /// Largest error of a component, whatever the input.
     pub allowed: f64,
-    /// By how many ulp the input may be off besides.
+    /// Additional error of the input, in ulp.
     pub backward: f64,
 }
 
@@ -51,11 +54,11 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// The tolerance for a function of these shapes. `bounds` holds one bound per field of the result, as
-    /// `Accuracy::check_fields` has made sure.
+    /// Creates the tolerance for a function of these shapes. `bounds` holds one bound per field of
+    /// the result, as ensured by `Accuracy::check_fields`.
     ///
     /// # Panics
-    /// Where a field has none.
+    /// Panics if a field has no bound.
     pub fn new(arguments: &[Shape], result: &Shape, bounds: &[FieldBound]) -> Tolerance {
         let arguments =
             Shape::Struct(String::new(), arguments.iter().map(|shape| (String::new(), shape.clone())).collect());
@@ -74,14 +77,16 @@ impl Tolerance {
         Tolerance { arguments: arguments.leaves(), results }
     }
 
-    /// The tolerance of a naive form on its benign domain: one relative bound on every field.
+    /// Creates the tolerance of a naive form on its benign domain: one relative bound on every
+    /// field.
     pub fn of_benign(arguments: &[Shape], result: &Shape, relative: f64) -> Tolerance {
         let bound = Bound { relative, ..Bound::default() };
         Self::new(arguments, result, &[FieldBound { field: None, bound }])
     }
 
-    /// Compares the shader's and the mirror's results with the exact one and with each other. `oracle` is called again only
-    /// where the plain bounds do not suffice and the line allows `backward` error.
+    /// Compares the shader's and the mirror's results with the exact one and with each other.
+    /// `oracle` is called again only if the plain bounds do not suffice and the line allows
+    /// `backward` error.
     pub fn judge(
         &self,
         arguments: &[u32],
@@ -93,7 +98,8 @@ impl Tolerance {
         self.judge_by(&[Effort::Corners, Effort::Boundaries], arguments, [gpu, mirror], exact, oracle)
     }
 
-    /// [`Tolerance::judge`] with a search that costs some ten thousand calls of `oracle` more, for rows that it finds wrong.
+    /// Judges like [`Tolerance::judge`]; for a row found wrong, adds a search that costs some ten
+    /// thousand more calls of `oracle`.
     pub fn judge_thoroughly(
         &self,
         arguments: &[u32],
@@ -122,10 +128,11 @@ impl Tolerance {
         let broken_mirror =
             self.floats().any(|(leaf, _)| !mirror[leaf.start..leaf.start + leaf.length].iter().all(is_finite));
         if broken_mirror || exact.iter().any(|value| !value.is_finite()) {
-            // The formula's own fault: mirror or oracle does not hold over its domain.
+            // A fault of the formula itself: mirror or oracle does not hold over its domain.
             return Verdict { ulp: f64::INFINITY, ratio: f64::INFINITY, nonfinite };
         }
-        // Beyond a discrete difference the floats belong to another case, and their distance says nothing.
+        // After a discrete difference the floats belong to another case, and their distance means
+        // nothing.
         let ulp = if self.discrete_fields_agree(gpu, exact, |_| true) {
             self.floats().map(|(leaf, _)| in_ulps(leaf, gpu, exact)).fold(0.0, f64::max)
         } else {
@@ -147,7 +154,8 @@ impl Tolerance {
         Verdict { ulp, ratio, nonfinite }
     }
 
-    /// How far each part of a result may be off from the exact one, by the plain bounds.
+    /// Returns the allowed error of each part of a result against the exact one, by the plain
+    /// bounds.
     pub fn allowed(&self, exact: &[f64]) -> Vec<Allowed> {
         let of = |(leaf, bound): &(Leaf, Bound)| {
             let scale = largest(&exact[leaf.start..leaf.start + leaf.length]);
@@ -160,19 +168,21 @@ impl Tolerance {
         self.results.iter().map(of).collect()
     }
 
-    /// A result's error over the allowed one, without what `backward` allows; infinite where a discrete field differs.
+    /// Returns the ratio of a result's error to the allowed error, without the `backward`
+    /// allowance; infinite if a discrete field differs.
     pub fn forward(&self, result: &[u32], exact: &[f64]) -> f64 {
         self.ratio(result, result, exact, None)
     }
 
-    /// Whether two of the oracle's results differ in a bool or an integer.
+    /// Returns whether two of the oracle's results differ in a bool or an integer.
     pub fn discrete_differ(&self, one: &[f64], other: &[f64]) -> bool {
         let discrete = self.results.iter().filter(|(leaf, _)| leaf.scalar != Scalar::F32);
         discrete.flat_map(|(leaf, _)| leaf.start..leaf.start + leaf.length).any(|index| one[index] != other[index])
     }
 
-    /// By how much two of the oracle's results are apart, where that is more than a result that is right for one may be off and one that is
-    /// right for the other, an ulp each at least, without what `backward` allows; the largest over fields.
+    /// Returns the distance between two of the oracle's results, if it exceeds the combined error
+    /// of a correct result for each, at least an ulp each, without the `backward` allowance; the
+    /// largest over fields.
     pub fn apart(&self, one: &[f64], other: &[f64]) -> Option<f64> {
         let excess = self.floats().filter_map(|(leaf, bound)| {
             let range = leaf.start..leaf.start + leaf.length;
@@ -184,15 +194,16 @@ impl Tolerance {
         excess.reduce(f64::max)
     }
 
-    /// The names of the parts of a result that are floats, and whether each is to be exact.
+    /// Returns the names of the float parts of a result, and whether each must be exact.
     pub fn fields(&self) -> impl Iterator<Item = (&str, bool)> {
         self.floats().map(|(leaf, bound)| (leaf.path.as_str(), *bound == Bound::default()))
     }
 
-    /// Of each part that is floats, how far it may be off for these arguments, what `backward` allows included to first order: `derivatives` holds those of each word of
-    /// the result by each word of the arguments. None where that is not finite.
+    /// Returns the allowed error of each float part for these arguments, including the `backward`
+    /// allowance to first order. `derivatives` holds the derivatives of each word of the result
+    /// with respect to each word of the arguments. Returns `None` if an error is not finite.
     pub fn stated(&self, arguments: &[u32], exact: &[f64], derivatives: &[Vec<f64>]) -> Option<Vec<f64>> {
-        // The unit of the input's largest component, for each of its words.
+        // The ulp of the input's largest component, for each of its words.
         let mut units = vec![0.0; arguments.len()];
         for leaf in self.arguments.iter().filter(|leaf| leaf.scalar == Scalar::F32) {
             let range = leaf.start..leaf.start + leaf.length;
@@ -211,7 +222,8 @@ impl Tolerance {
         self.floats().map(stated).collect()
     }
 
-    /// Of each part that is floats, the largest of these numbers, one for each word of the result.
+    /// Returns the largest of these numbers in each float part; there is one number for each word
+    /// of the result.
     pub fn largest_of_parts(&self, numbers: &[f64]) -> Vec<f64> {
         self.floats().map(|(leaf, _)| largest(&numbers[leaf.start..leaf.start + leaf.length])).collect()
     }
@@ -220,14 +232,15 @@ impl Tolerance {
         self.results.iter().filter(|(leaf, _)| leaf.scalar == Scalar::F32)
     }
 
-    /// Whether the discrete fields with a bound that `concerns` says are the oracle's.
+    /// Returns whether the discrete fields equal the oracle's, for the bounds that `concerns`
+    /// selects.
     fn discrete_fields_agree(&self, words: &[u32], exact: &[f64], concerns: impl Fn(&Bound) -> bool) -> bool {
         self.results.iter().filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && concerns(bound)).all(|(leaf, _)| {
             (leaf.start..leaf.start + leaf.length).all(|index| number(leaf.scalar, words[index]) == exact[index])
         })
     }
 
-    /// Where the discrete results with a backward bound are.
+    /// Returns the places of the discrete results with a backward bound.
     fn backward_places(&self) -> Vec<(usize, Scalar)> {
         let discrete = self.results.iter().filter(|(leaf, bound)| leaf.scalar != Scalar::F32 && bound.backward > 0.0);
         discrete
@@ -235,15 +248,16 @@ impl Tolerance {
             .collect()
     }
 
-    /// The largest backward bound of any field.
+    /// Returns the largest backward bound of any field.
     fn backward(&self) -> f64 {
         self.results.iter().map(|(_, bound)| bound.backward).fold(0.0, f64::max)
     }
 
-    /// The worst error over allowed error; discrete fields that differ count as infinite.
+    /// Returns the largest ratio of error to allowed error; a differing discrete field counts as
+    /// infinite.
     fn ratio(&self, gpu: &[u32], mirror: &[u32], exact: &[f64], spread: Option<&Spread>) -> f64 {
-        // With a spread, the oracle has already been met at the inputs where it gives these very discrete values, as far as
-        // their fields allow backward error.
+        // With a spread, the search has already found inputs at which the oracle gives these very
+        // discrete values, as far as their fields allow backward error.
         let agree = |words: &[u32]| match spread {
             None => self.discrete_fields_agree(words, exact, |_| true),
             Some(_) => self.discrete_fields_agree(words, exact, |bound| bound.backward == 0.0),
@@ -258,7 +272,8 @@ impl Tolerance {
                 Some(spread) => (&spread.low[range.clone()], &spread.high[range.clone()]),
                 None => (&exact[range.clone()], &exact[range.clone()]),
             };
-            // As a vector's ulp is that of its largest component, so its range is that of the component that varies most.
+            // A vector's ulp is the ulp of its largest component; likewise its range is the range
+            // of the component that varies most.
             let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
             let scale = largest(low).max(largest(high));
             let allowed = forward(bound, scale);
@@ -280,12 +295,12 @@ impl Tolerance {
     }
 }
 
-/// A NaN in either counts as failing.
+/// Returns error over allowed error; a NaN in either counts as failing.
 fn ratio_of(error: f64, allowed: f64) -> f64 {
     if error <= allowed || error > allowed { error / allowed } else { f64::INFINITY }
 }
 
-/// A word as the number that it stands for.
+/// Converts a word to the number that it represents.
 pub fn number(scalar: Scalar, word: u32) -> f64 {
     match scalar {
         Scalar::F32 => f64::from(f32::from_bits(word)),
@@ -295,12 +310,12 @@ pub fn number(scalar: Scalar, word: u32) -> f64 {
     }
 }
 
-/// A value's words as the numbers that they stand for.
+/// Converts a value's words to the numbers that they represent.
 pub fn numbers(shape: &Shape, words: &[u32]) -> Vec<f64> {
     words.iter().zip(shape.scalars()).map(|(word, scalar)| number(scalar, *word)).collect()
 }
 
-/// The word nearest to a number.
+/// Converts a number to the nearest word.
 pub fn word(kind: Scalar, number: f64) -> u32 {
     match kind {
         Scalar::F32 => (number as f32).to_bits(),
@@ -310,18 +325,20 @@ pub fn word(kind: Scalar, number: f64) -> u32 {
     }
 }
 
-/// How far a component may be off where the exact value's largest is `scale`, without what `backward` allows.
+/// Returns the allowed error of a component if the exact value's largest one is `scale`, without
+/// the `backward` allowance.
 fn forward(bound: &Bound, scale: f64) -> f64 {
     bound.ulp * ulp_of(scale) + bound.relative * scale + bound.absolute + FLUSHED
 }
 
-/// The unit in the last place of an f32 of this size, whatever its sign; that of the smallest normal below it.
+/// Returns the unit in the last place of an f32 of this size, whatever its sign; below the smallest
+/// normal, the unit of the smallest normal.
 pub fn ulp_of(value: f64) -> f64 {
     let magnitude = value.abs();
     if magnitude.is_nan() || magnitude < f64::from(f32::MIN_POSITIVE) {
         return 2f64.powi(-149);
     }
-    // The exponent's bits alone make the power of two below `magnitude`, without a logarithm a row.
+    // The exponent bits alone give the power of two below `magnitude`, without a logarithm per row.
     f64::from_bits(magnitude.min(f64::from(f32::MAX)).to_bits() & 0x7ff0_0000_0000_0000) * 2f64.powi(-23)
 }
 
@@ -335,6 +352,6 @@ fn in_ulps(leaf: &Leaf, gpu: &[u32], exact: &[f64]) -> f64 {
     let range = leaf.start..leaf.start + leaf.length;
     let ulp = ulp_of(largest(&exact[range.clone()]));
     let error = range.map(|index| (f64::from(f32::from_bits(gpu[index])) - exact[index]).abs()).fold(0.0, f64::max);
-    // What may be flushed is no error.
+    // A difference that flushing may cause is no error.
     if error <= FLUSHED { 0.0 } else { error / ulp }
 }

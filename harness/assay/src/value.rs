@@ -1,4 +1,4 @@
-//! How Rust values become words and words become values, for mirrors (32-bit) and for oracles (f64).
+//! Conversion between Rust values and words, for mirrors (32-bit) and for oracles (f64).
 
 use crate::shape::{Scalar, Shape};
 use glam::{
@@ -6,29 +6,30 @@ use glam::{
     UVec4, Vec2, Vec3, Vec4,
 };
 
-/// A value of a mirror: it has the shape of a WGSL type.
+/// A value of a mirror, with the shape of a WGSL type.
 pub trait Value: Sized {
-    /// Its WGSL type.
+    /// Returns the WGSL type.
     fn shape() -> Shape;
-    /// Appends its words.
+    /// Appends the value's words.
     fn write(&self, words: &mut Vec<u32>);
-    /// Takes its words off the front.
+    /// Reads a value and removes its words from the front.
     ///
     /// # Panics
-    /// Where `words` is shorter than the shape.
+    /// Panics if `words` is shorter than the shape.
     fn read(words: &mut &[u32]) -> Self;
 }
 
-/// A value of an oracle: the same shape with every float widened to f64; bools are 0 and 1, integers themselves.
+/// A value of an oracle: the same shape with every float widened to f64. Bools become 0 and 1;
+/// integers keep their value.
 pub trait Exact: Sized {
-    /// The shape of the mirror's value that it stands for.
+    /// Returns the shape of the corresponding mirror value.
     fn shape() -> Shape;
-    /// Appends its numbers.
+    /// Appends the value's numbers.
     fn write(&self, numbers: &mut Vec<f64>);
-    /// Takes its numbers off the front.
+    /// Reads a value and removes its numbers from the front.
     ///
     /// # Panics
-    /// Where `numbers` is shorter than the shape.
+    /// Panics if `numbers` is shorter than the shape.
     fn read(numbers: &mut &[f64]) -> Self;
 }
 
@@ -144,17 +145,17 @@ arrays!(Exact, f64);
 
 /// The arguments of a function: a tuple of values.
 pub trait Arguments<T>: Sized {
-    /// The shape of each.
+    /// Returns the shape of each argument.
     fn shapes() -> Vec<Shape>;
-    /// Appends their words.
+    /// Appends the words of all arguments.
     fn write(&self, words: &mut Vec<T>);
-    /// Takes their words off the front.
+    /// Reads the arguments and removes their words from the front.
     fn read(words: &mut &[T]) -> Self;
 }
 
 /// A function that takes a tuple's members as its arguments.
 pub trait Function<A, R> {
-    /// Calls it.
+    /// Calls the function.
     fn call(&self, arguments: A) -> R;
 }
 
@@ -195,8 +196,9 @@ tuples!(A B C D E G);
 tuples!(A B C D E G H);
 tuples!(A B C D E G H I);
 
-/// Lets a struct of yours stand for the WGSL struct of the same name: its members by name in the WGSL struct's order, their types inferred and
-/// checked against naga's reflection. The struct must be of the crate that calls this; a library's is wrapped in one of its name.
+/// Lets your struct stand for the WGSL struct of the same name. List its members in the WGSL
+/// struct's order; their types are inferred and checked against naga's reflection. The struct must
+/// belong to the calling crate; wrap a library's struct in one of the same name.
 ///
 /// ```
 /// use glam::{DVec3, Vec3};
@@ -219,7 +221,7 @@ tuples!(A B C D E G H I);
 /// mirror_struct!(Ray, exact ExactRay { origin });
 /// ```
 ///
-/// `mirror_struct!(crate, Hit { … })` is both for `crate::Hit` and `crate::oracle::Hit`.
+/// `mirror_struct!(crate, Hit { … })` covers both `crate::Hit` and `crate::oracle::Hit`.
 #[macro_export]
 macro_rules! mirror_struct {
     ($name:ident { $($field:ident),* $(,)? }) => {
@@ -236,7 +238,7 @@ macro_rules! mirror_struct {
     (@one $trait:ident, $word:ty, $type:path, $name:ident { $($field:ident),* }) => {
         impl $crate::value::$trait for $type {
             fn shape() -> $crate::shape::Shape {
-                // Never called: only its type says what a member's is.
+                // Never called: its signature alone gives the type of a member.
                 fn of<S, T: $crate::value::$trait>(_: impl Fn(&S) -> &T) -> $crate::shape::Shape {
                     <T as $crate::value::$trait>::shape()
                 }

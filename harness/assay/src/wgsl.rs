@@ -1,5 +1,5 @@
-//! A property test of one WGSL function, for `cargo test`: [`wgsl`] names the function, the methods after it say what it is held to, and
-//! [`Test::run`] answers.
+//! A property test of one WGSL function, for `cargo test`: [`wgsl`] names the function, further
+//! methods state its requirements, and [`Test::run`] runs the test.
 
 use crate::accuracy_line::{Bound, FieldBound, check_fields, parse_bounds};
 use crate::dispatch::{self, DispatchError, Kernel, KernelModule};
@@ -17,13 +17,13 @@ use lapidary_gpu::Gpu;
 use proptest::strategy::Strategy;
 use std::fmt;
 
-/// What messages call the source.
+/// Name of the source in messages.
 const PATH: &str = "the source";
 
-/// What a `#[test]` returns.
+/// The result of a `#[test]`.
 pub type Outcome = Result<(), Failure>;
 
-/// Why a test failed: what `cargo test` prints.
+/// The reason why a test failed, as `cargo test` prints it.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure(String);
 
@@ -60,7 +60,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// The function in Rust, in `f32`, that the shader is to agree with. Its argument and result types are checked against the shader's.
+    /// Sets the mirror, a Rust function in `f32` that the shader must agree with. Its argument and
+    /// result types are checked against the shader's.
     pub fn mirror<A, R, F>(self, mirror: F) -> Mirrored<A, R>
     where
         A: Arguments<u32>,
@@ -73,7 +74,7 @@ impl Source {
         };
         let arguments: Vec<_> = A::shapes().iter().flat_map(Shape::scalars).collect();
         let results = R::shape().scalars();
-        // Until there is an oracle, the mirror on the nearest words.
+        // Until an oracle is set, the mirror on the nearest words serves as the oracle.
         let oracle = move |numbers: &[f64], exact: &mut Vec<f64>| {
             let words: Words = arguments.iter().zip(numbers).map(|(kind, number)| word(*kind, *number)).collect();
             let mut result = Words::new();
@@ -93,12 +94,13 @@ pub struct Mirrored<A, R> {
     source: Source,
     mirror: Mirror<A, R>,
     oracle: Oracle,
-    /// What is wrong with the oracle's types.
+    /// Mismatch between the types of the oracle and the mirror.
     oracle_fault: Option<String>,
 }
 
 impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
-    /// The function in Rust, in `f64`, that says what is right. Without one, the mirror does. Its types are the mirror's, with `f64` for `f32`.
+    /// Sets the oracle, a Rust function in `f64` that defines the correct result. Without an
+    /// oracle, the mirror defines it. The oracle's types are the mirror's, with `f64` for `f32`.
     #[must_use]
     pub fn oracle<EA, ER>(mut self, oracle: impl Function<EA, ER> + Send + Sync + 'static) -> Self
     where
@@ -118,7 +120,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
         self
     }
 
-    /// Inputs from a proptest strategy, which also shrinks those that fail.
+    /// Takes inputs from a proptest strategy, which also shrinks failing inputs.
     pub fn inputs(self, strategy: impl Strategy<Value = A> + Send + Sync + 'static) -> Test<A, R>
     where
         A: fmt::Debug,
@@ -126,7 +128,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Mirrored<A, R> {
         self.over(Domain::of_strategy(strategy.prop_map(|arguments| to_words(&arguments))))
     }
 
-    /// Inputs from draws: what a generator guarantees holds of every shrunk input as well.
+    /// Takes inputs from draws. Every guarantee of the generator also holds for the shrunk inputs.
     pub fn draws(self, generate: impl Fn(&mut Draws<'_>) -> A + Send + Sync + 'static) -> Test<A, R> {
         self.over(Domain::new(move |draws| to_words(&generate(draws))))
     }
@@ -163,27 +165,29 @@ pub struct Test<A, R> {
 }
 
 impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
-    /// Tolerance between shader, mirror and oracle, pairwise: a sum of `ulp`, `abs`, `rel` and `backward`, as `"4 ulp + 2 backward"`; for structs one
-    /// for each field in its order, as `"direction 12 ulp + 8 backward, total 0 ulp"`. Default: none but 2^-125, since WGSL lets a device flush subnormals. A
-    /// result that is not finite fails.
+    /// Sets the tolerance between shader, mirror and oracle, pairwise: a sum of `ulp`, `abs`, `rel`
+    /// and `backward` terms, such as `"4 ulp + 2 backward"`; for a struct, one sum per field in
+    /// field order, such as `"direction 12 ulp + 8 backward, total 0 ulp"`. By default only 2^-125
+    /// is allowed, since WGSL lets a device flush subnormals. A non-finite result fails.
     pub fn within(mut self, bounds: &str) -> Self {
         self.bounds = Some(bounds.to_owned());
         self
     }
 
-    /// The same for [`Test::run_anywhere`], where a device may err more than most do; that of [`Test::within`] otherwise.
+    /// Sets the tolerance for [`Test::run_anywhere`], in which a device may err more than most do.
+    /// The default is the tolerance of [`Test::within`].
     pub fn within_anywhere(mut self, bounds: &str) -> Self {
         self.portable = Some(bounds.to_owned());
         self
     }
 
-    /// A part of the inputs that must be reached.
+    /// Names a part of the inputs that the run must reach.
     pub fn edge(mut self, name: &'static str, reached: impl Fn(A) -> bool + Send + Sync + 'static) -> Self {
         self.formula = self.formula.edge(name, reached);
         self
     }
 
-    /// What holds of every result; the message says by how much it does not.
+    /// Adds a property that every result must have; the error message states the deviation.
     pub fn invariant(
         mut self,
         name: &'static str,
@@ -193,7 +197,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         self
     }
 
-    /// What holds of the results at an input and at `transform` of it.
+    /// Adds a relation between the results at an input and at its image under `transform`.
     pub fn pair(
         mut self,
         name: &'static str,
@@ -204,13 +208,13 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         self
     }
 
-    /// An input that is tested first, always.
+    /// Adds an input that is always tested first.
     pub fn case(mut self, arguments: A) -> Self {
         self.formula = self.formula.case(arguments);
         self
     }
 
-    /// How many random inputs; 65,536 otherwise. With fewer, edges are not demanded.
+    /// Sets the number of random inputs; the default is 65,536. With fewer, edges are not required.
     pub fn cases(mut self, cases: u64) -> Self {
         self.settings.cases = cases;
         self
@@ -222,11 +226,13 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         self
     }
 
-    /// Runs the function on the device that `LAPIDARY_ADAPTER` names: `lapidary_gpu::AdapterChoice`.
+    /// Runs the function on the device that `LAPIDARY_ADAPTER` names (see
+    /// `lapidary_gpu::AdapterChoice`).
     ///
     /// # Errors
-    /// Where a result is wrong, with the simplest input found; where the source is not valid or its signature another; where there is no adapter,
-    /// unless `ASSAY_WITHOUT_ADAPTER=skip`.
+    /// Returns an error if a result is wrong, with the simplest input found; if the source is not
+    /// valid or its signature differs; or if there is no adapter, unless
+    /// `ASSAY_WITHOUT_ADAPTER=skip`.
     pub fn run(self) -> Outcome {
         let Ready { text, formula, cases, tolerance, settings } = self.ready()?;
         let Some(gpu) = gpu(&formula)? else { return Ok(()) };
@@ -236,12 +242,15 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 
-    /// Runs the function as any device may that conforms to WGSL, on the CPU: each row rounds either way, errs in quotients and built-in functions as far as the standard lets it, fuses
-    /// products with sums or does not, flushes subnormals or does not, ignores the sign of zeros, and makes anything of infinities and NaNs. Needs no adapter. Invariants hold there, too;
-    /// pairs are not asked, since both results are held to their bounds.
+    /// Runs the function on the CPU, as any device that conforms to WGSL may run it: each row
+    /// rounds either way, errs in quotients and built-in functions up to the standard's limits,
+    /// fuses products with sums or not, flushes subnormals or not, ignores the sign of zeros, and
+    /// replaces infinities and NaNs with anything. Needs no adapter. Invariants are tested as well;
+    /// pairs are not, since both results are held to their bounds.
     ///
     /// # Errors
-    /// Where a result is wrong, with the simplest input found; where the source is not valid, its signature another, or the function does what the interpreter cannot.
+    /// Returns an error if a result is wrong, with the simplest input found; if the source is not
+    /// valid or its signature differs; or if the interpreter cannot run the function.
     pub fn run_anywhere(mut self) -> Outcome {
         self.bounds = self.portable.take().or(self.bounds);
         let Ready { text, formula, cases, tolerance, settings } = self.ready()?;
@@ -253,13 +262,17 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         if found.holds() { Ok(()) } else { Err(Failure(found.describe(&formula))) }
     }
 
-    /// Changes one operator, comparison or constant of the function at a time, and says which changes this test does not notice: an equivalent
-    /// mutant, or a gap in the inputs, the invariants or the bounds. Its inputs are the test's cases and 139,264 of seeds of its own; a mutant counts as caught, too, where it
-    /// computes an infinity or a NaN on the way that the function does not, of which another device may make something else. Functions that this one calls, and
-    /// built-ins, are not changed. Takes a fraction of a second a mutant.
+    /// Changes one operator, comparison or constant of the function at a time, and reports the
+    /// changes that this test does not notice. Each is an equivalent mutant, or a gap in the
+    /// inputs, the invariants or the bounds. The inputs are the test's cases and 139,264 inputs
+    /// from seeds of its own. A mutant also counts as caught if it computes an intermediate
+    /// infinity or NaN that the function does not, since another device may replace it with
+    /// anything. Called functions and built-ins are not changed. Takes a fraction of a second per
+    /// mutant.
     ///
     /// # Errors
-    /// As [`Test::run`], and where the test fails on the function as it is. Without an adapter, where that may be skipped, there are no mutants.
+    /// Returns the errors of [`Test::run`], and an error if the test fails on the unchanged
+    /// function. Without an adapter, if tests may be skipped, the score has no mutants.
     pub fn mutate(self) -> Result<Score, Failure> {
         let Ready { text, formula, cases, tolerance, .. } = self.ready()?;
         let Some(gpu) = gpu(&formula)? else { return Ok(Score { mutants: 0, survivors: Vec::new() }) };
@@ -274,7 +287,7 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
         Ok(Score { mutants: count, survivors: mutants })
     }
 
-    /// Everything that a run needs but the device.
+    /// Prepares everything that a run needs, except the device.
     fn ready(self) -> Result<Ready, Failure> {
         let Self { text, formula, oracle_fault, bounds, mut settings, .. } = self;
         let (formula, cases) = formula.build_with_cases();
@@ -300,12 +313,12 @@ impl<A: Arguments<u32> + 'static, R: Value + 'static> Test<A, R> {
     }
 }
 
-/// The device; none where there is no adapter and tests may be skipped.
+/// Returns the device, or `None` if there is no adapter and tests may be skipped.
 fn gpu(formula: &Formula) -> Result<Option<&'static Gpu>, Failure> {
     environment::gpu(formula.function).map_err(|error| Failure(format!("{}: {error}", formula.function)))
 }
 
-/// A test whose parts fit each other.
+/// A test whose parts match each other.
 struct Ready {
     text: String,
     formula: Formula,
@@ -314,7 +327,7 @@ struct Ready {
     settings: Settings,
 }
 
-/// No error at all, in any field.
+/// Returns bounds that allow no error in any field.
 fn exact(result: &Shape) -> Vec<FieldBound> {
     let none = |field| FieldBound { field, bound: Bound::default() };
     match result {

@@ -1,4 +1,4 @@
-//! Times of the optical path's solvers beside each other, on the bunny, ten optical depths wide:
+//! Compares the times of the optical path's solvers on the bunny, ten optical depths wide:
 //! `cargo bench --profile dev --bench optical_path [CELLS…]`.
 
 #![allow(dead_code, reason = "the tests use more of the bodies")]
@@ -12,10 +12,10 @@ use lapidary_render::solver::{LoneSolver, Solve};
 use lapidary_scene::solver::Method;
 use std::time::{Duration, Instant};
 
-/// Rounds over all solvers, of which the least time counts.
+/// Rounds over all solvers. The least time counts.
 const ROUNDS: usize = 7;
 
-/// Seeds back, then a solve; the time of the solve.
+/// Resets the seeds, solves, and returns the time of the solve.
 fn run(gpu: &Gpu, solver: &LoneSolver<'_>, case: &Case) -> Duration {
     let wait = || gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
     solver.set_seeds(&case.seeds);

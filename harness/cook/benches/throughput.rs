@@ -1,4 +1,5 @@
-//! How fast the harness itself is: `cargo bench --profile dev`, which serves from the build that `cook` runs from.
+//! Measures the speed of the harness itself: `cargo bench --profile dev`, which reuses the build of
+//! `cook`.
 
 use lapidary_assay::property::{Check, Settings};
 use lapidary_cook::check::{self, Source};
@@ -12,7 +13,8 @@ fn main() {
     divan::main();
 }
 
-/// Property tests, generation, shader, mirror, oracle and comparison included; `item/s` are cases a second.
+/// Measures property tests, including generation, shader, mirror, oracle and comparison. `item/s`
+/// are cases per second.
 #[divan::bench(args = ["refraction_refract", "fresnel_dielectric", "closest_point_centre"], sample_count = 5, sample_size = 1)]
 fn property_cases(bencher: divan::Bencher<'_, '_>, function: &str) {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("an adapter");

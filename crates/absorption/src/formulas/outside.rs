@@ -1,10 +1,10 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{self as absorption};
 use glam::Vec3;
 use lapidary_assay::outside::{Promise, accurate, any_finite, close, holds, nothing, that};
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     vec![
         accurate("absorption_optical_depth", "none is", |draws| (any_finite(draws),)),

@@ -1,11 +1,11 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{self as bvh, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceRay};
 use glam::{DVec3, Mat3, Quat, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, any_vector, finite, holds, like, nothing, of_length, that, vector_up_to};
 
-/// A ray of a box, coordinates up to 2^`high`.
+/// Draws a ray and the box that it is made for, with coordinates up to 2^`high`.
 fn ray(draws: &mut Draws<'_>, high: i32) -> (BvhTraceRay, Vec3, Vec3) {
     let (one, other) = (vector_up_to(draws, high), vector_up_to(draws, high));
     let (lower, upper) = (one.min(other), one.max(other));
@@ -13,7 +13,7 @@ fn ray(draws: &mut Draws<'_>, high: i32) -> (BvhTraceRay, Vec3, Vec3) {
     (bvh::ray(vector_up_to(draws, high), direction, lower, upper), lower, upper)
 }
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const TRIANGLE: &str = "bvh_trace_triangle";
     const HUGE: &str = "finite for coordinates up to 1e30";
@@ -31,7 +31,7 @@ pub(super) fn promises() -> Vec<Promise> {
             (vector_up_to(draws, huge), of_length(draws, -19, 19), one.min(other), one.max(other))
         }),
         nothing("bvh_trace_ray", "a zero direction divides by 0"),
-        // Rows no shorter than 1e-3 and square to each other turn no direction into 0.
+        // Perpendicular rows at least 1e-3 long turn no direction into 0.
         finite("bvh_trace_to_object", "finite while the direction is not turned into 0", move |draws| {
             let turn = Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, draws.unit_vector()));
             let rows = turn.transpose() * Mat3::from_diagonal(Vec3::splat(draws.magnitude(-9, 40)));
@@ -48,14 +48,15 @@ pub(super) fn promises() -> Vec<Promise> {
             |draws| {
                 let upper = draws.in_cube();
                 let lower = upper + draws.between(0.1, 2.0);
-                // Aimed at its middle from outside of it.
+                // Aimed at the middle of the box from outside.
                 let middle = 0.5 * (lower + upper);
                 let direction = draws.unit_vector();
                 let ray = bvh::ray(middle - 8.0 * direction, direction, -4.0 * Vec3::ONE, 4.0 * Vec3::ONE);
                 (ray, lower, upper, 1e37f32)
             },
             |(_, lower, upper, _): (BvhTraceRay, Vec3, Vec3, f32), found: BvhTraceBox| {
-                // The ray ends in the box's middle after 8; its faces are at most a diagonal's half before that.
+                // The ray reaches the middle of the box after 8; the faces are at most half a
+                // diagonal before that.
                 let nearest = 8.0 - 0.51 * (lower - upper).length();
                 that(found.hit && found.entry > nearest && found.entry < 8.0, || format!("{found:?}"))
             },
@@ -93,7 +94,7 @@ pub(super) fn promises() -> Vec<Promise> {
             TRIANGLE,
             "Of thin ones none is refused that the ray meets, but the point in it is less sure",
             |draws| {
-                // Thin, and met in the middle by a ray that comes from in front of it.
+                // A thin triangle, met in the middle by a ray from in front of it.
                 let (along, across) = (Vec3::X, draws.magnitude(-14, -5) * Vec3::Y);
                 let [a, b, c] = [-along - across, along - across, 0.2 * along + across];
                 let middle = (a + b + c) / 3.0;

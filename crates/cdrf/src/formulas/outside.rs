@@ -1,11 +1,11 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::oracle as cdrf;
 use glam::{UVec2, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_finite, close, finite, holds, like, nothing, that};
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     [reflectances(), tables()].into_iter().flatten().collect()
 }
@@ -18,15 +18,16 @@ fn not_negative(value: f32) -> Result<(), String> {
     that(value >= 0.0 && value.is_finite(), || format!("the result is {value}"))
 }
 
-/// A cosine and a fixed blur.
+/// Returns a draw of a cosine with a fixed blur.
 fn blurred(sigma: f32) -> impl Fn(&mut Draws<'_>) -> (f32, f32) {
     move |draws| (draws.between(-1.0, 1.0), sigma)
 }
 
-/// Passes where the reflectance is as near to the true one as the line says, and rounding.
+/// Passes if the reflectance is as close to the true one as the line says, except for rounding.
 fn off_by(most: f64) -> impl Fn((f32, f32), f32) -> Result<(), String> {
     move |(cosine, sigma), reflectance| {
-        // The line's figure has two digits; the accuracy line's own bound is that of rounding.
+        // The figure in the line has two digits; the bound of the accuracy line is the rounding
+        // error.
         let bound = 1.05 * most + 1.2e-6;
         close(&[reflectance], &[cdrf::accurate(cosine.into(), sigma.into())], bound)
     }

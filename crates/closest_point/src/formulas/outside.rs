@@ -1,11 +1,11 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::oracle as closest_point;
 use glam::{Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, accurate, any_vector, close, finite, holds, of_length, that};
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const DIRECTION: &str = "closest_point_direction";
     const PARAMETERS: &str = "closest_point_parameters";
@@ -40,7 +40,7 @@ pub(super) fn promises() -> Vec<Promise> {
         finite(PARAMETERS, "finite wherever |origin_j - origin_i| / angle < 1e37", |draws| {
             let angle = draws.magnitude(-60, 0);
             let across = Vec3::Y * angle;
-            // Half of f32's range for the other products.
+            // Half of f32's range, which leaves the other half for the products.
             let apart = draws.magnitude(-60, 60) * draws.in_cube();
             (Vec3::ZERO, Vec3::X, apart, Vec3::new(1.0 / (1.0 + angle * angle).sqrt(), across.y, 0.0))
         }),
@@ -80,7 +80,8 @@ pub(super) fn promises() -> Vec<Promise> {
             |(a, n_a, b, n_b, c, n_c): (Vec3, Vec3, Vec3, Vec3, Vec3, Vec3), o: Vec3| {
                 let [a, n_a, b, n_b, c, n_c] = [a, n_a, b, n_b, c, n_c].map(Vec3::as_dvec3);
                 let wanted = closest_point::centre(a, n_a, b, n_b, c, n_c);
-                // The face's normal, which the fallback takes, is as sure as the triangle is fat.
+                // The fallback uses the face normal, which is the less certain the thinner the
+                // triangle is.
                 let fat = (b - a).cross(c - a).length() / (b - a).length().max((c - a).length()).powi(2);
                 let bound = 4000.0 * 2f64.powi(-23) * wanted.abs().max_element().max(1.0) / fat.clamp(1e-3, 1.0);
                 close(&o.to_array(), &wanted.to_array(), bound)

@@ -1,10 +1,10 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{self as convex, CONVEX_TRACE_FAR, CONVEX_TRACE_NONE, ConvexTraceHit};
 use glam::{Vec3, Vec4};
 use lapidary_assay::outside::{Promise, close, finite, holds, that, vector_up_to};
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const STEP: &str = "convex_trace_step";
     vec![

@@ -1,11 +1,11 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{CurvatureFrame, CurvaturePixel};
 use glam::Vec3;
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, any_vector, finite, holds, of_length, that};
 
-/// Every promise of the module.
+/// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const DERIVATIVE: &str = "curvature_normal_derivative";
     const STEEPEST: &str = "finite for |normal_x|, |normal_y| <= 2";
@@ -34,12 +34,12 @@ pub(super) fn promises() -> Vec<Promise> {
             DERIVATIVE,
             "fades to 0 for shorter normals",
             |draws| {
-                // Shorter than what CURVATURE_SMALLEST scales to 1.
+                // Shorter than the length that CURVATURE_SMALLEST scales to 1.
                 let length = draws.magnitude(-126, -52);
                 (length * draws.unit_vector(), length * draws.magnitude(-20, 20) * draws.unit_vector())
             },
             |(normal, derivative): (Vec3, Vec3), result: Vec3| {
-                // Of what a normal of that length has: derivative / normal's.
+                // The bound of a normal of that length that does not fade: derivative / normal.
                 let (normal, derivative) = (normal.as_dvec3().length(), derivative.as_dvec3().length());
                 let most = 1.000_01 * derivative / normal.max(f64::MIN_POSITIVE) + 1e-30;
                 that(result.as_dvec3().length() <= most, || format!("{result}, longer than {most:e}"))

@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{DispersionSellmeier, oracle as dispersion};
 use glam::Vec3;
@@ -6,7 +6,7 @@ use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, close, finite, holds, nothing, of_length};
 use lapidary_refraction::formulas::linear;
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const SAME: &str = "the same formula, while the wavelength is in [1e-3, 1e9]";
     const ENTER: &str = "dispersion_enter";

@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::EnvironmentTexels;
 use glam::{DVec3, UVec2, Vec2, Vec3};
@@ -8,17 +8,17 @@ use lapidary_assay::outside::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     [directions(), lights()].into_iter().flatten().collect()
 }
 
-/// Any number, subnormal ones too.
+/// Draws any number, including subnormal ones.
 fn subnormal_or_any(draws: &mut Draws<'_>) -> f32 {
     if draws.below(3) == 0 { f32::from_bits(draws.below(0x80_0000)) } else { any_finite(draws) }
 }
 
-/// The same below 2^127.
+/// Draws such a number below 2^127.
 fn subnormal_or_less(draws: &mut Draws<'_>) -> f32 {
     if draws.below(2) == 0 { subnormal_or_any(draws).clamp(-1.0, 1.0) } else { draws.signed(-126, 126) }
 }
@@ -31,7 +31,7 @@ fn directions() -> Vec<Promise> {
         let (polar, azimuth) = (PI * f64::from(uv.y), TAU * (f64::from(uv.x) - 0.5));
         DVec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin())
     };
-    // Of the angle's own last place, six times; sine and cosine add two.
+    // Six times the last place of the angle itself; sine and cosine add two.
     let off = |uv: Vec2| 1e-6 * (1.0 + f64::from(uv.abs().max_element()));
     let runs_on = move |(uv,): (Vec2,), direction: Vec3| close(&direction.to_array(), &from_uv(uv).to_array(), off(uv));
     vec![
@@ -99,7 +99,7 @@ fn lights() -> Vec<Promise> {
             SOFTBOX,
             "any length of direction gives the same, as long as products stay finite",
             |draws| {
-                // A power of 2 scales all that is computed exactly.
+                // A power of 2 scales all computed values exactly.
                 let length = 2f32.powi(draws.below(81) as i32 - 40);
                 let half_size = Vec2::new(draws.between(0.1, 1.0), draws.between(0.1, 1.0));
                 (length * (Vec3::Z + 0.9 * draws.in_cube()), Vec3::Z, Vec3::Y, half_size, draws.between(0.01, 0.1))
@@ -124,7 +124,7 @@ fn lights() -> Vec<Promise> {
             STUDIO,
             "lights do not depend on the length",
             |draws| {
-                // Level, where the dome is the same at any length.
+                // Horizontal directions, for which the dome is the same at any length.
                 let azimuth = draws.between(0.0, 6.3);
                 let length = 2f32.powi(draws.below(41) as i32 - 20);
                 (length * Vec3::new(azimuth.cos(), 0.0, azimuth.sin()),)

@@ -1,9 +1,9 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, any_finite, holds, that};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const WIDE: &str = "finite and in [0, 1] for relative_index in [2^-30, 2^30]";
     let share = |value: f32| that((0.0..=1.0).contains(&value), || format!("the reflectance is {value}"));

@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
@@ -8,7 +8,7 @@ fn not_negative(value: f32) -> Result<(), String> {
     that(value >= 0.0 && value.is_finite(), || format!("the result is {value}"))
 }
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const DISTRIBUTION: &str = "microfacet_distribution";
     const REFLECTANCE: &str = "microfacet_reflectance";
@@ -36,7 +36,7 @@ pub(super) fn promises() -> Vec<Promise> {
             |draws| {
                 let length = draws.magnitude(-10, 59);
                 let first = draws.unit_vector();
-                // Not nearly opposite, where the sum is rounding.
+                // Not nearly opposite, because the sum would be rounding error.
                 let second = (first.as_dvec3() + 0.9 * draws.direction()).as_vec3();
                 (length * first, length * draws.between(0.1, 2.0) * second)
             },

@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::OPTICAL_PATH_UNREACHED;
 use glam::Vec3;
@@ -6,7 +6,7 @@ use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::near;
 use lapidary_assay::outside::{Promise, accurate, any_bits, any_number, finite, holds, that};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     vec![
         finite("optical_path_edge", "finite while products stay below 3e38", |draws| {

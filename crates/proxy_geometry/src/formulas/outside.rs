@@ -1,18 +1,18 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{ProxyGeometryCell, ProxyGeometryPlane};
 use glam::{IVec2, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::outside::{Promise, finite, holds, nothing, that};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const BEYOND: &str = "overflows beyond";
     const CELL: &str = "proxy_geometry_cell";
     let sized = |draws: &mut Draws<'_>, low: i32, high: i32| {
         let size = draws.magnitude(low, high);
         let (one, two) = (size * draws.in_cube(), size * draws.in_cube());
-        // Degenerate in every way.
+        // All kinds of degenerate triangles.
         match draws.below(6) {
             0 => (one, one, one),
             1 => (one, one, two),

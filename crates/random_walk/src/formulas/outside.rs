@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
 use crate::{RANDOM_WALK_PASSED, RANDOM_WALK_THINNEST, RandomWalkCrossing};
 use glam::{UVec4, Vec2, Vec3};
@@ -7,7 +7,7 @@ use lapidary_assay::outside::{
     Promise, accurate, any_finite, any_number, finite, finite_values, holds, like, of_length, that, vector_up_to,
 };
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     let counter = |draws: &mut Draws<'_>| (UVec4::from_array(std::array::from_fn(|_| any_number(draws))),);
     let below_one = |draws: &mut Draws<'_>| draws.between(0.0, 1.0).min(1.0f32.next_down());

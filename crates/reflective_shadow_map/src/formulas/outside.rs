@@ -1,10 +1,10 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use crate::{REFLECTIVE_SHADOW_MAP_NOTHING, ReflectiveShadowMapView};
 use glam::{Vec2, Vec3, Vec4};
 use lapidary_assay::outside::{Promise, finite, finite_values, holds, nothing, of_length, that, vector_up_to};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const TEXEL: &str = "reflective_shadow_map_texel";
     const SQUARED: &str = "finite as long as the squared length of the normal is";

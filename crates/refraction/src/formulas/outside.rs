@@ -1,18 +1,17 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use crate::RefractionHit;
 use glam::Vec3;
 use lapidary_assay::outside::{Promise, close, finite, finite_values, holds, of_length};
 
-/// r - 2 (n . r) n, in f64.
-/// A reflection's linear map, of vectors of any length.
+/// Checks a reflection against its linear map, r - 2 (n . r) n in f64, for vectors of any length.
 pub fn linear(vector: Vec3, normal: Vec3, reflected: Vec3) -> Result<(), String> {
     let (r, n) = (vector.as_dvec3(), normal.as_dvec3());
     let wanted = r - 2.0 * n.dot(r) * n;
     close(&reflected.to_array(), &wanted.to_array(), 2e-6 * r.length() * (1.0 + 2.0 * n.length_squared()))
 }
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const RADICAND: &str = "refraction_radicand";
     vec![

@@ -1,9 +1,9 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use glam::{DVec3, Vec3};
 use lapidary_assay::outside::{Promise, accurate, any_finite, any_vector, close, holds, nothing};
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const NOTHING: &str = "nothing is outside";
     vec![

@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use crate::TextureDiffusionTap;
 use glam::{Vec2, Vec3};
@@ -12,7 +12,7 @@ fn bits_vector(draws: &mut Draws<'_>) -> Vec3 {
     Vec3::new(any_bits(draws), any_bits(draws), any_bits(draws))
 }
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const TAP: &str = "texture_diffusion_tap";
     let uv = |draws: &mut Draws<'_>| (Vec2::new(draws.signed(0, 30), draws.signed(0, 30)),);
@@ -30,7 +30,7 @@ pub(super) fn promises() -> Vec<Promise> {
             "0 for shorter ones",
             |draws| (of_length(draws, -126, -64), of_length(draws, -126, -64)),
             |(x, y): (Vec3, Vec3), stretch: Vec2| {
-                // Squares that are subnormal have few digits left, and below them is 2^-149.
+                // Subnormal squares have few digits, and the smallest is 2^-149.
                 let longest = 1.5 * x.as_dvec3().length().max(y.as_dvec3().length()) + 1e-22;
                 let right = stretch.min_element() >= 0.0 && f64::from(stretch.max_element()) <= longest;
                 that(right, || format!("the stretch is {stretch}"))

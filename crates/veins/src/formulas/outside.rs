@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use crate::{self as veins, VeinsCell, VeinsPattern};
 use glam::{IVec3, Vec3};
@@ -7,7 +7,7 @@ use lapidary_assay::outside::{
     Promise, accurate, any_number, any_numbers, any_vector, close, holds, like, nothing, that,
 };
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     let pattern = |draws: &mut Draws<'_>, least_width: i32| VeinsPattern {
         frequency: draws.magnitude(-40, 40),
@@ -58,7 +58,7 @@ pub(super) fn promises() -> Vec<Promise> {
         holds(
             "veins_density",
             "as veins_fractal and veins_fold",
-            // Scaled by the pattern they overflow later.
+            // The pattern scales the positions, which could then overflow; hence the factor.
             move |draws| (1e-20 * any_vector(draws), pattern(draws, -4)),
             between,
         ),

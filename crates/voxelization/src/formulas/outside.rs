@@ -1,4 +1,4 @@
-//! What the functions promise outside of their domains, clause by clause of their `Outside:` lines.
+//! Promises of the functions outside their domains, for each clause of their `Outside:` lines.
 
 use crate::{VoxelizationColumn, VoxelizationEdge, VoxelizationGrid, VoxelizationInteger, oracle};
 use glam::{DVec3, IVec2, UVec2, UVec3, Vec2, Vec3};
@@ -8,7 +8,7 @@ use lapidary_assay::outside::{
     vector_up_to,
 };
 
-/// Every promise of the module.
+/// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const OVERLAPS: &str = "voxelization_overlaps";
     let grid = |draws: &mut Draws<'_>, high: i32| VoxelizationGrid {
@@ -82,7 +82,7 @@ pub(super) fn promises() -> Vec<Promise> {
                 )
             },
             |(a, b, c, column): (Vec3, Vec3, Vec3, Vec2), found: VoxelizationColumn| {
-                // What x is makes no difference.
+                // The x coordinates make no difference.
                 let [a, b, c] = [a, b, c].map(|corner| DVec3::new(0.0, corner.y.into(), corner.z.into()));
                 let wanted = oracle::column(a, b, c, column.as_dvec2());
                 that(found.inside == wanted.inside, || format!("inside: {}", found.inside))
@@ -128,7 +128,7 @@ pub(super) fn promises() -> Vec<Promise> {
             |draws| {
                 let size = draws.magnitude(0, 39);
                 let (a, b, c) = (size * draws.in_cube(), size * draws.in_cube(), size * draws.in_cube());
-                // The voxel that holds a corner of the triangle.
+                // The voxel that contains a corner of the triangle.
                 (a, b, c, a.floor())
             },
             |_: (Vec3, Vec3, Vec3, Vec3), overlaps: bool| {

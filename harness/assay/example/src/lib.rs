@@ -5,13 +5,13 @@ use glam::{IVec2, Vec2, Vec2Swizzles as _};
 /// The noise and its slope at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// In [0, 1).
+    /// Noise in [0, 1).
     pub value: f32,
-    /// Per unit of either coordinate.
+    /// Slope per unit of either coordinate.
     pub slope: Vec2,
 }
 
-/// Random bits of a corner.
+/// Returns the random bits of a corner.
 pub fn hash(corner: IVec2) -> u32 {
     let x = corner.x.cast_unsigned().wrapping_mul(0x9e37_79b9);
     let mut bits = x.wrapping_add(corner.y.cast_unsigned().wrapping_mul(0x85eb_ca6b));
@@ -20,12 +20,12 @@ pub fn hash(corner: IVec2) -> u32 {
     bits ^ (bits >> 15)
 }
 
-/// The value at a corner, in [0, 1).
+/// Returns the value at a corner, in [0, 1).
 pub fn corner(corner: IVec2) -> f32 {
     (hash(corner) >> 8) as f32 * 5.960_464_5e-8
 }
 
-/// Value and slope at `place`.
+/// Returns the value and slope at `place`.
 pub fn sample(place: Vec2) -> Sample {
     let cell = place.floor();
     let t = place - cell;

@@ -1,4 +1,5 @@
-//! The shader against the Rust: a function to the bit, one within bounds, a kernel, and a broken copy that must fail.
+//! Tests of the shader against the Rust code: a function to the bit, one within bounds, a kernel,
+//! and a broken copy that must fail.
 
 use glam::{IVec2, Vec2};
 use lapidary_assay::{Failure, Outcome, kernel, mirror_struct, wgsl};
@@ -46,7 +47,8 @@ fn corners_are_in_their_range() -> Outcome {
         .run()
 }
 
-/// A device may fuse products and sums: about twelve roundings of terms up to 2, and of slopes up to 4.
+/// A device may fuse products and sums: about twelve roundings of terms up to 2, and of slopes up
+/// to 4.
 const BOUNDS: &str = "value 2e-6 abs, slope 8e-6 abs";
 
 #[test]
@@ -84,7 +86,8 @@ fn a_row_of_heights_is_filled() -> Outcome {
         .run()
 }
 
-/// Truncation in place of floor, right of the origin the same: the test says where it is not.
+/// The copy truncates instead of rounding down. Right of the origin both agree; the test reports a
+/// place at which they differ.
 #[test]
 fn a_broken_copy_fails_with_a_place_to_paste() {
     let broken = NOISE.replace("floor(place)", "trunc(place)");
@@ -95,7 +98,7 @@ fn a_broken_copy_fails_with_a_place_to_paste() {
     assert!(message.contains("to keep it: .case((Vec2::new("), "{message}");
 }
 
-/// What the tests above would notice: every change to the hash.
+/// The tests above would notice every change to the hash.
 #[test]
 fn every_change_to_the_hash_is_noticed() -> Result<(), Failure> {
     let corners = (any::<i32>(), any::<i32>()).prop_map(|(x, y)| (IVec2::new(x, y),));

@@ -1,27 +1,28 @@
-//! One dispatch: a batch of rows to the device, results and turn counts back.
+//! One dispatch: sends a batch of rows to the device and reads back results and turn counts.
 
 use super::kernel::WORKGROUP_SIZE;
 use super::turns::{self, LAVAPIPE_ENDS_AT};
 use super::{DispatchError, Kernel};
 use crate::runner::Runner;
 
-/// Most workgroups along one axis that WebGPU promises.
+/// Workgroups along one axis that WebGPU guarantees.
 const MOST_WORKGROUPS: usize = 65_535;
 
-/// What the rows lie in on the device.
+/// Device buffers for the rows.
 #[derive(Debug)]
 pub(super) struct Buffers {
     capacity: usize,
     inputs: wgpu::Buffer,
     outputs: wgpu::Buffer,
     readback: wgpu::Buffer,
-    /// The counts, and where they are read; none where the function has no loop.
+    /// Counts, and the buffer that reads them back; `None` if the function has no loop.
     turns: Option<[wgpu::Buffer; 2]>,
     staging: Vec<u8>,
 }
 
 impl Kernel<'_> {
-    /// Runs a batch; `turns` then holds the count of each row, and stays empty where the function has no loop.
+    /// Runs a batch. `turns` then holds the count of each row, or is empty if the function has no
+    /// loop.
     pub(super) fn batch(
         &mut self,
         arguments: &[u32],
@@ -31,8 +32,9 @@ impl Kernel<'_> {
         let pipeline = self.compiled.pipeline.clone();
         self.dispatch(&pipeline, WORKGROUP_SIZE as usize, arguments, results, turns)?;
         let Some(alone) = self.compiled.turns.as_ref().and_then(|turns| turns.alone.clone()) else { return Ok(()) };
-        // lavapipe counts a turn that any invocation of a group takes. Together they take at most the sum of all; where that is
-        // above its limit, a row may have been cut short though its own count is below.
+        // lavapipe counts a turn that any invocation of a group takes. Together they take at most
+        // the sum of all. If that reaches its limit, a row may have been cut short although its own
+        // count is below the limit.
         let suspect: Vec<usize> = turns
             .chunks(WORKGROUP_SIZE as usize)
             .enumerate()
@@ -73,7 +75,7 @@ impl Kernel<'_> {
         self.compiled.input.scatter(arguments, &mut buffers.staging[..input_bytes]);
         self.gpu.queue.write_buffer(&buffers.inputs, 0, &buffers.staging[..input_bytes]);
         self.gpu.guarded(&format!("running `{}`", self.compiled.signature.function), |device| {
-            // Bound to the rows in use, so that arrayLength is their number.
+            // The bindings cover only the rows in use, so that arrayLength is their number.
             let mut entries = vec![
                 wgpu::BindGroupEntry { binding: 0, resource: sized(&buffers.inputs, input_bytes as u64) },
                 wgpu::BindGroupEntry { binding: 1, resource: sized(&buffers.outputs, output_bytes) },

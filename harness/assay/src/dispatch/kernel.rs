@@ -1,7 +1,7 @@
 //! Writes the compute entry point that calls a function once per row, from its signature alone.
 //!
-//! Buffers cannot hold bools, so each struct that has one travels as a twin with `u32` in its place; everything else
-//! travels as it is, in the layout that naga gives it.
+//! Buffers cannot hold bools, so each struct with a bool travels as a twin with `u32` in its place.
+//! Everything else travels unchanged, in naga's layout.
 
 use super::signature::Signature;
 use crate::shape::{Scalar, Shape};
@@ -13,8 +13,8 @@ pub const ENTRY_POINT: &str = "lapidary_kernel";
 pub const INPUT: &str = "LapidaryKernelInput";
 /// The struct that holds one row's result.
 pub const OUTPUT: &str = "LapidaryKernelOutput";
-/// Words of the kernel's text that a source may declare too: the entry point's own variables and members, and what means
-/// something only where it stands.
+/// Words of the kernel's text that a source may also declare: the entry point's own variables and
+/// members, and words that have a meaning only in their context.
 pub const HARMLESS: [&str; 13] = [
     "invocation",
     "row",
@@ -33,8 +33,8 @@ pub const HARMLESS: [&str; 13] = [
 /// Invocations in a workgroup.
 pub const WORKGROUP_SIZE: u32 = 64;
 
-/// WGSL text to append to the source that defines the function: transport structs, two buffers
-/// (`@group(0)`: binding 0 holds the inputs, binding 1 the outputs), and the entry point.
+/// Returns the WGSL text to append to the source that defines the function: transport structs, two
+/// buffers (`@group(0)`: binding 0 holds the inputs, binding 1 the outputs), and the entry point.
 pub fn kernel_source(signature: &Signature) -> String {
     let mut declarations = String::new();
     let mut declared = Vec::new();
@@ -76,7 +76,7 @@ fn {ENTRY_POINT}(@builtin(global_invocation_id) invocation: vec3u) {{
     )
 }
 
-/// The type that `shape` travels as.
+/// Returns the transport type of `shape`.
 fn transport_name(shape: &Shape) -> String {
     if !shape.holds_bool() {
         return shape.to_string();
@@ -90,7 +90,7 @@ fn transport_name(shape: &Shape) -> String {
     }
 }
 
-/// Declares the twin of each struct in `shape` that holds a bool, members before the struct that has them.
+/// Declares the twin of each struct in `shape` that holds a bool, members before their struct.
 fn declare_twins(shape: &Shape, declared: &mut Vec<String>, declarations: &mut String) {
     match shape {
         _ if !shape.holds_bool() => {}
@@ -112,7 +112,7 @@ fn declare_twins(shape: &Shape, declared: &mut Vec<String>, declarations: &mut S
     }
 }
 
-/// The expression that turns the transported `expression` into a value of `shape`.
+/// Returns the expression that converts the transported `expression` to a value of `shape`.
 fn decode(shape: &Shape, expression: &str) -> String {
     convert(shape, expression, &|shape| shape.to_string(), &|shape, expression| match shape {
         Shape::Vector(size, Scalar::Bool) => format!("({expression} != vec{size}u(0u))"),
@@ -120,7 +120,7 @@ fn decode(shape: &Shape, expression: &str) -> String {
     })
 }
 
-/// The expression that turns a value of `shape` into what travels.
+/// Returns the expression that converts a value of `shape` to its transported form.
 fn encode(shape: &Shape, expression: &str) -> String {
     convert(shape, expression, &transport_name, &|shape, expression| match shape {
         Shape::Vector(size, Scalar::Bool) => format!("select(vec{size}u(0u), vec{size}u(1u), {expression})"),
@@ -128,7 +128,8 @@ fn encode(shape: &Shape, expression: &str) -> String {
     })
 }
 
-/// Rebuilds a value member by member, down to the bools, which `bools` converts; what holds no bool is passed as it is.
+/// Rebuilds a value member by member, down to the bools, which `bools` converts; parts without a
+/// bool are passed unchanged.
 fn convert(
     shape: &Shape,
     expression: &str,

@@ -1,4 +1,4 @@
-//! Where each word of a value lies in a buffer: naga's own offsets, strides and sizes.
+//! Position of each word of a value in a buffer: naga's own offsets, strides and sizes.
 
 use lapidary_specialise::layout::word_offsets;
 
@@ -7,25 +7,26 @@ use lapidary_specialise::layout::word_offsets;
 pub struct Layout {
     /// Bytes from one element to the next.
     pub stride: usize,
-    /// Byte offset of each word, in order of the words.
+    /// Byte offset of each word, in word order.
     pub offsets: Vec<usize>,
 }
 
 impl Layout {
-    /// The layout of an array of the struct type `name` in the storage address space.
+    /// Returns the layout of an array of the struct type `name` in the storage address space.
     ///
     /// # Panics
-    /// Where the module has no such struct: the caller has just generated it.
+    /// Panics if the module has no such struct: the caller has just generated it.
     pub fn of_struct(module: &naga::Module, name: &str) -> Layout {
         let (handle, _) =
             module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("a generated struct");
         Self::of_type(module, handle)
     }
 
-    /// The layout of a type whose shape is known; of the elements where it is a runtime-sized array.
+    /// Returns the layout of a type with a known shape; for a runtime-sized array, that of its
+    /// elements.
     ///
     /// # Panics
-    /// Where the module is not valid.
+    /// Panics if the module is not valid.
     pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Layout {
         // Other types have no shape.
         let offsets = |ty| word_offsets(module, ty, 0).expect("a type with a shape is made of words");

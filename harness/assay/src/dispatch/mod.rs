@@ -1,4 +1,4 @@
-//! Any WGSL function as a compute kernel: reflected on naga's IR, run over rows of words.
+//! Runs any WGSL function as a compute kernel: reflected on naga's IR, run over rows of words.
 
 mod batch;
 mod kernel;
@@ -21,33 +21,34 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
-/// Rows in one dispatch: enough to fill the device, few enough that memory stays bounded (16 MiB at 64 words a row).
+/// Rows in one dispatch: enough to fill the device, but few enough to limit memory (16 MiB at 64
+/// words per row).
 pub const ROWS_PER_DISPATCH: usize = 65_536;
 
-/// Most words of a row of arguments or results.
+/// Most words in a row of arguments or results.
 const MOST_WORDS: usize = 16_384;
 
-/// Why a function could not be made into a kernel, or run.
+/// Reason why a function could not be made into a kernel, or could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum DispatchError {
     /// The source is not valid WGSL; naga's message with line and column.
     #[error("{0}")]
     Source(String),
-    /// The source is valid WGSL, but no kernel can be made of it.
+    /// The source is valid WGSL, but cannot be made into a kernel.
     #[error("{message}")]
     Fault {
-        /// The line, from 1, where there is one.
+        /// Line, from 1, if known.
         line: Option<u32>,
-        /// What is wrong and what to do.
+        /// The fault and its remedy.
         message: String,
     },
-    /// The function is not there or cannot be dispatched.
+    /// The function does not exist or cannot be dispatched.
     #[error(transparent)]
     Signature(#[from] SignatureError),
-    /// The device refused.
+    /// The device refused the operation.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// Another runner than a device of wgpu's refused.
+    /// A runner other than a wgpu device refused the operation.
     #[error("{0}")]
     Runner(String),
 }
@@ -57,21 +58,22 @@ pub fn parse(source: &str, path: &str) -> Result<(naga::Module, naga::valid::Mod
     lapidary_specialise::parse(source, path).map_err(|error| DispatchError::Source(error.0))
 }
 
-/// A function's source with its entry point, as text, for whatever runs WGSL: a row of arguments an invocation, in bindings 0 (arguments) and 1 (results) of group 0.
+/// A function's source with its entry point, as text for any WGSL implementation. Each invocation
+/// takes one row of arguments; bindings 0 (arguments) and 1 (results) are in group 0.
 #[derive(Clone, Debug)]
 pub struct KernelText {
-    /// The source, as it was given, and the kernel below it.
+    /// The source as given, followed by the kernel.
     pub text: String,
-    /// The function's signature.
+    /// Signature of the function.
     pub signature: Signature,
-    /// Where the words of a row of arguments lie.
+    /// Layout of a row of arguments.
     pub input: Layout,
-    /// Where those of a row of results lie.
+    /// Layout of a row of results.
     pub output: Layout,
 }
 
 impl KernelText {
-    /// Reflects `function` in `source` (`path` is for messages) and writes its entry point.
+    /// Reflects `function` in `source` (`path` appears in messages) and writes its entry point.
     pub fn of_function(source: &str, path: &str, function: &str) -> Result<KernelText, DispatchError> {
         Self::reflect(source, path, function).map(|(kernel, _)| kernel)
     }
@@ -94,26 +96,26 @@ impl KernelText {
     }
 }
 
-/// A function's source with its entry point, as naga IR: what a kernel is compiled from, and what a mutant is made of.
+/// A function's source with its entry point, as naga IR: the form that is compiled and mutated.
 #[derive(Clone, Debug)]
 pub struct KernelModule {
-    /// The function's signature.
+    /// Signature of the function.
     pub signature: Signature,
-    /// The source's functions and the entry point.
+    /// Functions of the source, and the entry point.
     pub module: naga::Module,
     input: Layout,
     output: Layout,
 }
 
 impl KernelModule {
-    /// Reflects `function` in `source` (`path` is for messages) and appends its entry point.
+    /// Reflects `function` in `source` (`path` appears in messages) and appends its entry point.
     pub fn reflect(source: &str, path: &str, function: &str) -> Result<KernelModule, DispatchError> {
         let (KernelText { signature, input, output, .. }, module) = KernelText::reflect(source, path, function)?;
         Ok(KernelModule { signature, module, input, output })
     }
 }
 
-/// Refuses a function of a source that is not the cookbook's where it is not pure, or too large for a compiler.
+/// Refuses a function from outside the cookbook if it is impure or too large for a compiler.
 pub fn examine(source: &str, path: &str, function: &str) -> Result<(), DispatchError> {
     let (module, _) = parse(source, path)?;
     reach::check(&module, function).map_err(|fault| DispatchError::Fault {
@@ -122,7 +124,8 @@ pub fn examine(source: &str, path: &str, function: &str) -> Result<(), DispatchE
     })
 }
 
-/// Refuses a source that declares a name that the kernel's text needs for something else, such as a built-in's.
+/// Refuses a source that declares a name that the kernel's text needs for another purpose, such as
+/// the name of a built-in.
 fn refuse_clashes(source: &str, kernel: &str, signature: &Signature) -> Result<(), DispatchError> {
     let mut needed: BTreeSet<&str> = tokens(kernel).iter().map(|token| token.text).collect();
     for name in kernel::HARMLESS {
@@ -144,23 +147,24 @@ fn refuse_clashes(source: &str, kernel: &str, signature: &Signature) -> Result<(
     }
 }
 
-/// What is compiled once for a source and a function.
+/// The parts of a kernel that are compiled once for a source and a function.
 #[derive(Clone, Debug)]
 struct Compiled {
     signature: Signature,
     input: Layout,
     output: Layout,
     pipeline: wgpu::ComputePipeline,
-    /// Where the function has a loop.
+    /// Turn counting, if the function has a loop.
     turns: Option<Turns>,
 }
 
-/// How the turns of a kernel's loops are counted.
+/// Turn counting of a kernel's loops.
 #[derive(Clone, Debug)]
 struct Turns {
-    /// Most that an invocation may take.
+    /// Most turns of an invocation.
     limit: u32,
-    /// On lavapipe: the kernel with one row a workgroup, for rows that may have been cut short by their neighbours.
+    /// On lavapipe, the kernel with one row per workgroup, for rows that their neighbours may have
+    /// cut short.
     alone: Option<wgpu::ComputePipeline>,
 }
 
@@ -173,13 +177,14 @@ pub struct Kernel<'gpu> {
     gpu: &'gpu Gpu,
     compiled: Compiled,
     buffers: Option<Buffers>,
-    /// Of each row of the last run; empty where the function has no loop.
+    /// Turns of each row of the last run; empty if the function has no loop.
     turns: Vec<u32>,
     is_portable: bool,
 }
 
 impl<'gpu> Kernel<'gpu> {
-    /// The kernel of `function` in `source` (`path` is for messages), compiled at the first call for both.
+    /// Returns the kernel of `function` in `source` (`path` appears in messages), compiled at the
+    /// first call for both.
     pub fn of_function(
         gpu: &'gpu Gpu,
         source: &str,
@@ -199,7 +204,7 @@ impl<'gpu> Kernel<'gpu> {
         Ok(Kernel { gpu, compiled, buffers: None, turns: Vec::new(), is_portable: false })
     }
 
-    /// Compiles a kernel that nobody asks for again, such as a mutant.
+    /// Compiles a kernel that is used only once, such as a mutant.
     pub fn new(gpu: &'gpu Gpu, kernel: KernelModule) -> Result<Kernel<'gpu>, DispatchError> {
         Self::with_constants(gpu, kernel, &[])
     }
@@ -219,20 +224,22 @@ impl<'gpu> Kernel<'gpu> {
         })
     }
 
-    /// The same, held to what every device must keep that conforms to WGSL: see [`Runner::is_portable`].
+    /// Returns the kernel, held only to the guarantees of every device that conforms to WGSL: see
+    /// [`Runner::is_portable`].
     #[must_use]
     pub fn portable(mut self, is_portable: bool) -> Self {
         self.is_portable = is_portable;
         self
     }
 
-    /// The function's signature.
+    /// Returns the function's signature.
     pub fn signature(&self) -> &Signature {
         &self.compiled.signature
     }
 
-    /// Most turns that the function's loops may take together in one call; none where it has no loop. Beyond it the
-    /// kernel ends them, and the row's result is not the function's.
+    /// Returns the most turns (iterations) that the function's loops may take together in one call,
+    /// or `None` if it has no loop. Beyond that limit the kernel ends them, and the row's result is
+    /// not the function's.
     pub fn turn_limit(&self) -> Option<u32> {
         self.compiled.turns.as_ref().map(|turns| turns.limit)
     }
@@ -300,8 +307,8 @@ fn compile(gpu: &Gpu, kernel: KernelModule, constants: &[(&str, f64)]) -> Result
     let KernelModule { signature, mut module, input, output } = kernel;
     module.entry_points.retain(|point| point.name == ENTRY_POINT);
     if constants.is_empty() {
-        // What the function does not reach is no business of the driver's compiler; with constants, an override that
-        // is not there any more would be an error.
+        // The driver's compiler need not see code that the function does not reach. With constants,
+        // a removed override would be an error.
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
     }
     let limit = if gpu.is_lavapipe() { turns::LAVAPIPE_LIMIT } else { turns::LIMIT };
@@ -339,8 +346,8 @@ fn pipeline(
     })?)
 }
 
-/// Calls a WGSL function for each of `inputs` and returns its results: a slice in, a vector out, types checked against
-/// naga's first.
+/// Calls a WGSL function for each of `inputs` and returns the results, after a check of the Rust
+/// types against naga's.
 pub fn call<A: Arguments<u32>, R: Value>(
     gpu: &Gpu,
     source: &str,

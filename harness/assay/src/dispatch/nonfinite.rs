@@ -1,5 +1,6 @@
-//! A kernel that also says whether its function computed an infinity or a NaN on the way, which WGSL leaves to each device: what a
-//! device makes of one in `clamp`, `min` or `select` is not promised, so that a result which rests on it is right by chance.
+//! A kernel that also reports whether its function computed an infinity or a NaN on the way. WGSL
+//! leaves the effect of one in `clamp`, `min` or `select` to each device, so a result that depends
+//! on it is right by chance.
 
 use super::kernel::{self, kernel_source};
 use super::layout::Layout;
@@ -9,11 +10,12 @@ use lapidary_specialise::validate;
 use naga::{BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, MathFunction};
 use naga::{RelationalFunction, Scalar, ScalarKind, Span, Statement, TypeInner, VectorSize};
 
-/// The private variable that remembers it.
+/// Private variable that records an infinity or a NaN.
 const FLAG: &str = "lapidary_kernel_nonfinite";
 
 impl KernelModule {
-    /// As `reflect`, with one word more at the end of each result: 0, until [`KernelModule::watched`] makes it say more.
+    /// Reflects like `reflect`, with one more word at the end of each result. The word is 0 until
+    /// [`KernelModule::watched`] gives it a meaning.
     pub fn reflect_watched(source: &str, path: &str, function: &str) -> Result<KernelModule, DispatchError> {
         let (module, _) = parse(source, path)?;
         let signature = Signature::reflect(&module, function)?;
@@ -24,7 +26,8 @@ impl KernelModule {
         Ok(KernelModule { signature, module, input, output })
     }
 
-    /// The same kernel; the last word of a result is 1 where any sum, product, quotient or function of floats was not finite.
+    /// Returns the same kernel; the last word of a result is 1 if any sum, product, quotient or
+    /// function of floats was not finite, outside of `continuing` blocks.
     pub fn watched(mut self) -> KernelModule {
         let flag = self.module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some(FLAG));
         let Some((flag, _)) = flag else { return self };
@@ -48,7 +51,7 @@ impl KernelModule {
     }
 }
 
-/// The generated text with the flag declared and handed out.
+/// Declares the flag in the generated text and appends it to the result.
 fn with_flag(text: &str) -> String {
     let mut lines = Vec::new();
     for line in text.lines() {
@@ -64,7 +67,7 @@ fn with_flag(text: &str) -> String {
     format!("var<private> {FLAG}: u32;\n{}\n", lines.join("\n"))
 }
 
-/// Of a float: its vector's size, none for a scalar.
+/// Returns the vector size of a float type: `Some(None)` for a scalar, `None` for other types.
 fn float_size(inner: &TypeInner) -> Option<Option<VectorSize>> {
     match inner {
         TypeInner::Scalar(Scalar::F32) => Some(None),
@@ -73,7 +76,7 @@ fn float_size(inner: &TypeInner) -> Option<Option<VectorSize>> {
     }
 }
 
-/// Puts a test behind each computation of floats.
+/// Inserts a test after each computation of floats.
 fn watch(
     block: Block,
     function: &mut Function,
@@ -94,7 +97,7 @@ fn watch(
                 watched.push(Statement::Emit(range), span);
                 for (handle, size) in computed {
                     test(&mut watched, function, (handle, size), NOT_FINITE, flag);
-                    // exp2(y log2(0)) by WGSL's definition, whatever a device returns.
+                    // By WGSL's definition this is exp2(y log2(0)), whatever a device returns.
                     if let Expression::Math { fun: MathFunction::Pow, arg, .. } = function.expressions[handle] {
                         test(&mut watched, function, (arg, size), ZERO, flag);
                     }
@@ -108,7 +111,7 @@ fn watch(
             }
             Statement::Loop { body, continuing, break_if } => {
                 let body = watch(body, function, types, flag);
-                // `break_if` reads what is emitted last.
+                // `break_if` reads the values emitted last.
                 watched.push(Statement::Loop { body, continuing, break_if }, span);
             }
             Statement::Switch { selector, mut cases } => {
@@ -124,12 +127,12 @@ fn watch(
     watched
 }
 
-/// Bits under a mask, and what they must be.
+/// A mask, and the required value of the bits under it.
 type Pattern = (u32, u32);
 const NOT_FINITE: Pattern = (0x7f80_0000, 0x7f80_0000);
 const ZERO: Pattern = (0x7fff_ffff, 0);
 
-/// By its bits: a comparison of floats may be compiled as if there were no NaN.
+/// Tests the bits: a comparison of floats may be compiled as if there were no NaN.
 fn test(
     block: &mut Block,
     function: &mut Function,

@@ -1,30 +1,31 @@
-//! What a function reaches: the functions that it calls, and the module-scope variables that those read. A function that
-//! a kernel calls must be pure, and small enough for a compiler to inline into one piece.
+//! The functions that a function calls, and the module-scope variables that those read. A function
+//! that a kernel calls must be pure, and small enough for a compiler to inline into one piece.
 
 use lapidary_specialise::for_each_statement;
 use naga::{AddressSpace, Expression, Function, Handle, Module, Span, Statement, TypeInner};
 use std::collections::BTreeSet;
 
-/// Bytes that the variables of a function and its callees may take: eight times what WGSL promises (section 2.4,
-/// limits: 8,192 bytes in the function address space), and no strain on the stack of a software device.
+/// Most bytes of variables of a function and its callees: eight times the 8,192 bytes that WGSL
+/// guarantees in the function address space (section 2.4, limits), and no strain on the stack of a
+/// software device.
 const MOST_BYTES: u64 = 65_536;
-/// Levels of structs and arrays inside one another that WGSL promises.
+/// Nesting depth of structs and arrays that WGSL guarantees.
 const DEEPEST_TYPE: usize = 15;
-/// Calls inside one another.
+/// Deepest chain of calls.
 const DEEPEST_CALL: usize = 100;
-/// Statements and expressions once every call is inlined, as compilers for GPUs do.
+/// Most statements and expressions after all calls are inlined, as compilers for GPUs do.
 const MOST_INLINED: u64 = 1_000_000;
 
-/// A fault of a module that its text does not show to naga: the place, and one line that says what to do.
+/// A fault that naga does not see in the text of a module: its place, and one line with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Where; undefined where nothing names the place.
+    /// Place of the fault; undefined if nothing names it.
     pub span: Span,
-    /// What is wrong and what to do.
+    /// The fault and its remedy.
     pub message: String,
 }
 
-/// What a function needs once all that it calls is inlined into it.
+/// Needs of a function with all of its calls inlined.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     depth: usize,
@@ -32,11 +33,13 @@ struct Cost {
     bytes: u64,
 }
 
-/// Checks that `function` of a validated module can be called by a kernel: that neither it nor what it calls reads a
-/// binding, an override or another variable of the module, and that all of it together is of a size that compilers take.
+/// Checks that a kernel can call `function` of a validated module: that neither it nor its callees
+/// read a binding, an override or another variable of the module, and that their total size is one
+/// that compilers accept.
 pub fn check(module: &Module, function: &str) -> Result<(), Fault> {
     let Some((root, _)) = module.functions.iter().find(|(_, found)| found.name.as_deref() == Some(function)) else {
-        // An entry point is no function to naga, or the function is not there at all, which its reflection says.
+        // naga does not count an entry point as a function. If the function does not exist at all,
+        // its reflection says so.
         return match module.entry_points.iter().find(|point| point.name == function) {
             Some(_) => Err(Fault {
                 span: Span::UNDEFINED,
@@ -80,7 +83,7 @@ pub fn check(module: &Module, function: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Depth, size and memory of every function; naga keeps callees before their callers.
+/// Returns the depth, size and memory of every function; naga keeps callees before their callers.
 fn costs(module: &Module) -> Result<Vec<Cost>, Fault> {
     let mut layouter = naga::proc::Layouter::default();
     let sized = layouter.update(module.to_ctx());
@@ -94,7 +97,8 @@ fn costs(module: &Module) -> Result<Vec<Cost>, Fault> {
         }
         for (_, expression) in function.expressions.iter() {
             cost.inlined += 1;
-            // Values are held in registers, unless they are too large: then they are laid down to be indexed.
+            // Values are held in registers, unless they are too large: then they are stored in
+            // memory to be indexed.
             if let Some(ty) = value_type(module, expression).filter(|ty| size(*ty) > MOST_BYTES) {
                 cost.bytes = cost.bytes.saturating_add(size(ty));
             }
@@ -113,7 +117,7 @@ fn costs(module: &Module) -> Result<Vec<Cost>, Fault> {
     Ok(costs)
 }
 
-/// The type of a value that the expression makes as a whole.
+/// Returns the type of a value that an expression makes as a whole.
 fn value_type(module: &Module, expression: &Expression) -> Option<Handle<naga::Type>> {
     match expression {
         Expression::ZeroValue(ty) | Expression::Compose { ty, .. } => Some(*ty),
@@ -122,7 +126,7 @@ fn value_type(module: &Module, expression: &Expression) -> Option<Handle<naga::T
     }
 }
 
-/// The types that hold others too deep inside one another; naga keeps a type after its members.
+/// Returns the types that are nested too deep; naga keeps a type after its members.
 fn deep_types(module: &Module) -> BTreeSet<Handle<naga::Type>> {
     let mut depths: Vec<usize> = Vec::new();
     let mut deep = BTreeSet::new();
@@ -142,7 +146,7 @@ fn deep_types(module: &Module) -> BTreeSet<Handle<naga::Type>> {
     deep
 }
 
-/// The function and all that it calls.
+/// Returns the function and everything that it calls.
 fn reached(module: &Module, root: Handle<Function>) -> BTreeSet<Handle<Function>> {
     let mut found = BTreeSet::from([root]);
     let mut ahead = vec![root];
@@ -158,7 +162,8 @@ fn reached(module: &Module, root: Handle<Function>) -> BTreeSet<Handle<Function>
     found
 }
 
-/// Checks that a function that `root` reaches uses nothing but its arguments and the module's consts.
+/// Checks that a function within reach of `root` uses nothing but its arguments and the module's
+/// consts.
 fn pure(module: &Module, function: &Function, root: &str) -> Result<(), Fault> {
     let by = match function.name.as_deref() {
         Some(name) if name != root => format!("`{root}` reaches through `{name}`"),

@@ -1,4 +1,5 @@
-//! The signature of a WGSL function, read off naga's IR and compared with what Rust expects.
+//! Signature of a WGSL function, read from naga's IR and compared with the signature that Rust
+//! expects.
 
 use crate::shape::{Scalar, Shape};
 use std::fmt;
@@ -6,22 +7,22 @@ use std::fmt;
 /// A function's name, its arguments with their names, and its result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// The WGSL function.
+    /// Name of the WGSL function.
     pub function: String,
     /// Name and shape of each argument.
     pub arguments: Vec<(String, Shape)>,
-    /// What it returns.
+    /// Shape of the result.
     pub result: Shape,
 }
 
 impl Signature {
-    /// Reads the signature of `function` in WGSL source; `path` is for messages.
+    /// Reads the signature of `function` in WGSL source; `path` appears in messages.
     pub fn of_source(source: &str, path: &str, function: &str) -> Result<Signature, super::DispatchError> {
         let (module, _) = super::parse(source, path)?;
         Ok(Signature::reflect(&module, function)?)
     }
 
-    /// Reads the signature of `function` off a naga module.
+    /// Reads the signature of `function` from a naga module.
     pub fn reflect(module: &naga::Module, function: &str) -> Result<Signature, SignatureError> {
         let Some((_, found)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)) else {
             return Err(SignatureError::Missing { function: function.to_owned() });
@@ -46,7 +47,8 @@ impl Signature {
         Ok(Signature { function: function.to_owned(), arguments, result })
     }
 
-    /// The names of all structs in the arguments and the result, those inside others included, with their members'.
+    /// Returns the names of all structs in the arguments and the result, nested ones included, and
+    /// of their members.
     pub fn structs(&self) -> std::collections::BTreeSet<&str> {
         fn collect<'a>(shape: &'a Shape, names: &mut std::collections::BTreeSet<&'a str>) {
             match shape {
@@ -70,7 +72,7 @@ impl Signature {
         names
     }
 
-    /// Checks that this, the WGSL function's signature, is what the Rust side expects.
+    /// Checks that this signature, read from WGSL, is the one that the Rust side expects.
     pub fn expect(&self, arguments: &[Shape], result: &Shape) -> Result<(), SignatureError> {
         let mismatch = |part: String, expected: &str, found: &str| SignatureError::Mismatch {
             function: self.function.clone(),
@@ -97,7 +99,7 @@ impl Signature {
     }
 }
 
-/// As WGSL writes it.
+/// Formats the signature in WGSL syntax.
 impl fmt::Display for Signature {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "fn {}(", self.function)?;
@@ -108,7 +110,7 @@ impl fmt::Display for Signature {
     }
 }
 
-/// The first difference between two shapes, spelled out down to the member.
+/// Returns the first difference between two shapes, down to the member.
 pub(crate) fn difference(expected: &Shape, found: &Shape) -> Option<(String, String)> {
     if expected == found {
         return None;
@@ -133,10 +135,10 @@ pub(crate) fn difference(expected: &Shape, found: &Shape) -> Option<(String, Str
     Some((spell(expected), spell(found)))
 }
 
-/// Why a function cannot be dispatched.
+/// Reason why a function cannot be dispatched.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SignatureError {
-    /// No such function in the source.
+    /// The source has no such function.
     #[error("function `{function}` is missing")]
     Missing {
         /// Its name.
@@ -149,7 +151,7 @@ pub enum SignatureError {
         function: String,
         /// Which argument, or the result.
         part: String,
-        /// What is the matter with it.
+        /// Reason why it cannot travel.
         reason: String,
     },
     /// WGSL and Rust disagree.
@@ -159,14 +161,15 @@ pub enum SignatureError {
         function: String,
         /// Which argument, or the result.
         part: String,
-        /// What the mirror has.
+        /// Shape or number in the mirror.
         expected: String,
-        /// What the WGSL has.
+        /// Shape or number in the WGSL.
         found: String,
     },
 }
 
-/// The shape of a type of a naga module, or the part of it that cannot travel.
+/// Returns the shape of a type in a naga module, or an error that names the part that cannot
+/// travel.
 pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Result<Shape, String> {
     let named = |ty: naga::Handle<naga::Type>| {
         module.types[ty].name.clone().unwrap_or_else(|| format!("{:?}", module.types[ty].inner))
@@ -179,7 +182,7 @@ pub fn of_type(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Result<Sh
         _ => Err(format!("{scalar:?} is not a 32-bit scalar")),
     };
     match &module.types[ty].inner {
-        // Read and written as the integer that it is.
+        // An atomic is read and written as its integer.
         naga::TypeInner::Scalar(inner) | naga::TypeInner::Atomic(inner) => Ok(Shape::Scalar(scalar(*inner)?)),
         naga::TypeInner::Vector { size, scalar: inner } => Ok(Shape::Vector(*size as u8, scalar(*inner)?)),
         naga::TypeInner::Matrix { columns, rows, scalar: inner } => match scalar(*inner)? {

@@ -1,27 +1,30 @@
-//! Turns of loops, counted in the kernel. A driver may end a loop without a word: lavapipe does so after 65,535 turns,
-//! counted over all loops of a group of invocations that run together. The result is then not the function's, and an
-//! endless loop looks like one that ends. So each kernel with a loop counts its own turns, ends its loops itself a
-//! little earlier, and writes the count of each row beside the result.
+//! Turns (iterations) of loops, counted in the kernel. A driver may end a loop without notice:
+//! lavapipe does so after 65,535 turns, counted over all loops of a group of invocations that run
+//! together. The result is then not the function's, and an endless loop looks like one that ends.
+//! Each kernel with a loop therefore counts its own turns, ends its loops itself a little earlier,
+//! and writes the count of each row next to the result.
 
 use super::kernel::ENTRY_POINT;
 use lapidary_specialise::for_each_statement;
 use naga::{AddressSpace, BinaryOperator, Block, Expression, Handle, Literal, Span, Statement, Type, TypeInner};
 
-/// Most turns of all loops of an invocation together on lavapipe: below its own limit by more than what its compiler
-/// adds in rewriting loops, which is a turn or two a loop.
+/// Most turns of all loops of an invocation together on lavapipe. The margin below lavapipe's own
+/// limit exceeds the turns that its compiler adds when it rewrites loops, one or two per loop.
 pub(super) const LAVAPIPE_LIMIT: u32 = 65_000;
-/// Where lavapipe ends loops by itself (Mesa's `LP_MAX_TGSI_LOOP_ITERATIONS`), counted over invocations that run together.
+/// Turns after which lavapipe itself ends loops (Mesa's `LP_MAX_TGSI_LOOP_ITERATIONS`), counted
+/// over invocations that run together.
 pub(super) const LAVAPIPE_ENDS_AT: u64 = 65_535;
-/// The same elsewhere: a fraction of a second on a GPU, long before its watchdog resets the device.
+/// Most turns on other devices: a fraction of a second on a GPU, long before its watchdog resets
+/// the device.
 pub(super) const LIMIT: u32 = 1 << 20;
-/// The most lanes that lavapipe runs together; fewer divide it.
+/// Most lanes that lavapipe runs together; smaller lane counts divide it.
 const LANES: u32 = 16;
 /// The binding of the counts, in group 0, after the kernel's inputs and outputs.
 pub(super) const BINDING: u32 = 2;
 
-/// Makes every loop of `module` count its turns, and the kernel write each row's count at [`BINDING`]; an invocation
-/// whose loops have taken more than `limit` turns leaves them. Returns whether there is a loop; a module without one
-/// stays as it is.
+/// Makes every loop of `module` count its turns, and the kernel write each row's count at
+/// [`BINDING`]. An invocation leaves its loops once they have taken more than `limit` turns.
+/// Returns whether there is a loop; a module without one does not change.
 pub(super) fn count(module: &mut naga::Module, limit: u32) -> bool {
     if !module.functions.iter().any(|(_, function)| has_loop(&function.body)) {
         return false;
@@ -51,8 +54,9 @@ pub(super) fn count(module: &mut naga::Module, limit: u32) -> bool {
     true
 }
 
-/// Makes a kernel work on one row with the whole workgroup, so that no other row's turns are counted with it. lavapipe runs
-/// the lanes that a smaller workgroup leaves over as well, on a row of zeros.
+/// Makes a kernel work on one row with the whole workgroup, so that no other row's turns are
+/// counted with it. If the workgroup were smaller, lavapipe would also run the unused lanes, on a
+/// row of zeros.
 pub(super) fn one_row_a_workgroup(kernel: &mut naga::EntryPoint) {
     kernel.workgroup_size = [LANES, 1, 1];
     for argument in &mut kernel.function.arguments {
@@ -75,7 +79,8 @@ fn count_in(block: &mut Block, expressions: &mut Expressions, counter: Variable,
             Statement::Loop { body, continuing, .. } => {
                 count_in(body, expressions, counter, limit);
                 count_in(continuing, expressions, counter, limit);
-                // At the start of a turn, so that turns that end in `break` or `continue` count too.
+                // At the start of a turn, so that turns that end in `break` or `continue` also
+                // count.
                 body.splice(0..0, one_more(expressions, counter, limit));
             }
             Statement::Block(block) => count_in(block, expressions, counter, limit),
@@ -108,7 +113,8 @@ fn one_more(expressions: &mut Expressions, counter: Variable, limit: u32) -> Blo
     ])
 }
 
-/// `counts[invocation.x] = counter;` at the end of the kernel, whose first argument is the invocation.
+/// Writes `counts[invocation.x] = counter;` at the end of the kernel, whose first argument is the
+/// invocation.
 fn write_count(kernel: &mut naga::Function, counter: Variable, counts: Variable) {
     let mut add = |expression| kernel.expressions.append(expression, Span::UNDEFINED);
     let invocation = add(Expression::FunctionArgument(0));
@@ -121,7 +127,7 @@ fn write_count(kernel: &mut naga::Function, counter: Variable, counts: Variable)
         Statement::Emit(naga::Range::new_from_bounds(index, value)),
         Statement::Store { pointer: place, value },
     ]);
-    // naga ends each function that returns nothing with a `return`.
+    // naga ends each function without a result with a `return`.
     let returns = matches!(kernel.body.last(), Some(Statement::Return { .. }));
     let end = kernel.body.len() - usize::from(returns);
     kernel.body.splice(end..end, write);

@@ -1,4 +1,5 @@
-//! Domains and proptest: a domain is a strategy, whose failing values are shrunk by their draws; a strategy makes a domain.
+//! Domains and proptest: a domain is a strategy that shrinks failing values through their draws;
+//! conversely, a strategy makes a domain.
 
 use super::{Domain, Draws};
 use proptest::strategy::{NewTree, Strategy, ValueTree};
@@ -8,16 +9,17 @@ use std::sync::Arc;
 
 /// A failing value on its way to a simpler one.
 pub type Tree<T> = Box<dyn ValueTree<Value = T>>;
-/// The tree of a row of a run.
+/// Makes the tree of a row of a run.
 pub(super) type MakeTree<T> = Arc<dyn Fn(Seed) -> Tree<T> + Send + Sync>;
 /// Draws that seed proptest's generator: 256 bits.
 type Seed = [u32; 8];
 
 impl<T: Debug + 'static> Domain<T> {
-    /// The domain of a proptest strategy. A failing value is shrunk by the strategy's own tree.
+    /// Creates the domain of a proptest strategy. The strategy's own tree shrinks a failing value.
     ///
     /// # Panics
-    /// When a value is asked for and the strategy has none, as after too many rejections by a filter.
+    /// Panics when a value is requested and the strategy has no value, for example after too many
+    /// rejections by a filter.
     pub fn of_strategy(strategy: impl Strategy<Value = T> + Send + Sync + 'static) -> Self
     where
         T: Send + Sync,
@@ -35,7 +37,7 @@ impl<T: Debug + 'static> Domain<T> {
         Self { generate, tree: Some(tree) }
     }
 
-    /// The tree of row `row`, to be shrunk.
+    /// Returns the tree of row `row`, for shrinking.
     pub fn tree(&self, seed: u64, row: u64) -> Tree<T> {
         if let Some(tree) = &self.tree {
             return tree(self::seed(&mut Draws::of_row(seed, row)));
@@ -49,7 +51,7 @@ fn seed(draws: &mut Draws<'_>) -> Seed {
     std::array::from_fn(|_| draws.bits())
 }
 
-/// A runner whose random numbers follow from `seed`.
+/// Creates a runner whose random numbers follow from `seed`.
 fn runner(seed: Seed) -> TestRunner {
     let bytes: Vec<u8> = seed.iter().flat_map(|word| word.to_le_bytes()).collect();
     TestRunner::new_with_rng(Config::default(), TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
@@ -66,8 +68,9 @@ impl<T: Debug + 'static> Strategy for Domain<T> {
     }
 }
 
-/// A value with the draws that made it. Each draw in turn is tried at 0, then with ever fewer of its low bits cleared,
-/// then one less; what still fails is kept, and rounds go on until one changes nothing.
+/// A value with the draws behind it. Each draw in turn is tried at 0, then with ever fewer of its
+/// low bits cleared, then at a half of itself and less by ever smaller fractions. A value that still
+/// fails is kept, and rounds continue until one changes nothing.
 struct DrawTree<T> {
     domain: Domain<T>,
     draws: Vec<u32>,
@@ -77,7 +80,7 @@ struct DrawTree<T> {
     moved: bool,
 }
 
-/// What a draw is tried at, from the boldest to the smallest step.
+/// Attempts for a draw, from the boldest to the smallest step.
 const STAGES: [fn(u32) -> u32; 11] = [
     |_| 0,
     |draw| draw & 0xff00_0000,
@@ -100,7 +103,7 @@ impl<T: std::fmt::Debug> ValueTree for DrawTree<T> {
     }
 
     fn simplify(&mut self) -> bool {
-        // Reached again without `complicate`: the last step was kept.
+        // Called again without `complicate`: the last step was kept.
         if self.undo.take().is_some() {
             self.moved = true;
         }
@@ -158,7 +161,7 @@ mod tests {
 
     #[test]
     fn shrinking_finds_the_edge_of_a_failure() {
-        // Fails above 1000 whatever the sign: the smallest failing magnitude is the edge itself.
+        // Fails above 1000 for either sign: the smallest failing magnitude is the edge itself.
         let domain = Domain::new(|draws| draws.signed(-20, 20));
         let fails = |value: f32| value.abs() > 1000.0;
         let row = (0..).find(|row| fails(domain.row(3, *row))).expect("some row fails");

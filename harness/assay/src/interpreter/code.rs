@@ -1,15 +1,16 @@
-//! What a function is compiled to: operations on scalars in registers, calls inlined, vectors and structs taken apart.
+//! Compiled code of a function: operations on scalars in registers, with calls inlined, and vectors
+//! and structs split into scalars.
 
 use super::machine::Site;
 use naga::{BinaryOperator, MathFunction, ScalarKind};
 
-/// The number of a word.
+/// Index of a word.
 pub(super) type Register = u32;
 
-/// The place of an operation.
+/// Index of an operation.
 pub(super) type Label = usize;
 
-/// A function of floats that is no infix operator, as WGSL names it.
+/// A function of floats other than an infix operator, under its WGSL name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Float {
     /// `abs`
@@ -54,7 +55,7 @@ pub enum Float {
     Atan2,
 }
 
-/// What gives one of its operands.
+/// A function that returns one of its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bound {
     Min,
@@ -62,15 +63,16 @@ pub(super) enum Bound {
     Clamp,
 }
 
-/// One step. `to` is the register of the result; the others are operands.
+/// One operation. `to` is the register of the result; the other registers are operands.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Op {
     Copy {
         to: Register,
         from: Register,
     },
-    /// The number of words from the start of a composite to element `index`, the last where there is none, of `stride` words each;
-    /// `from` is where the composite itself starts in another.
+    /// Offset in words of element `index` of a composite, or of the last element if there is no
+    /// such element, with `stride` words per element. `from` is the offset of the composite itself
+    /// within another.
     Offset {
         to: Register,
         from: Register,
@@ -169,7 +171,7 @@ pub(super) enum Op {
         reject: Register,
         site: Option<Site>,
     },
-    /// A branch is taken or not.
+    /// Notes whether a branch is taken.
     Decide {
         condition: Register,
         site: Site,
@@ -192,10 +194,10 @@ pub(super) enum Op {
 #[derive(Debug)]
 pub(super) struct Code {
     pub(super) ops: Vec<Op>,
-    /// The registers before the first call: constants are in place, and nothing writes there.
+    /// Registers before the first call; they hold the constants, which no operation overwrites.
     pub(super) registers: Vec<u32>,
     pub(super) arguments: Vec<Register>,
     pub(super) result: Vec<Register>,
-    /// Whether it has a loop.
+    /// Whether the function has a loop.
     pub(super) loops: bool,
 }

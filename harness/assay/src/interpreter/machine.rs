@@ -1,22 +1,23 @@
-//! Machines to run on: one that rounds to nearest, one that notes every decision.
+//! Machines for the interpreter: one rounds to nearest, one also notes every decision.
 
 use super::code::Float;
 
-/// Where a decision is made: a function of the module and an expression of it, by their numbers.
+/// Place of a decision: a function of the module and an expression of it, by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Site {
-    /// Which function.
+    /// Index of the function.
     pub function: u32,
-    /// Which expression of it.
+    /// Index of the expression in it.
     pub expression: u32,
 }
 
-/// What was decided where.
+/// A decision and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
-    /// Where.
+    /// Place of the decision.
     pub site: Site,
-    /// A condition as 0 or 1, the operand that a minimum took, the whole number that a floor gave.
+    /// Condition as 0 or 1; for a minimum or maximum, whether the first operand won; for a clamp,
+    /// which of the three; for a floor, step or conversion, the bits of the result.
     pub choice: u32,
 }
 
@@ -25,8 +26,8 @@ pub struct Decision {
 pub struct Exact {
     /// The nearest f64.
     pub value: f64,
-    /// What is left of a sum. Of other operations it is 0: products of two f32 are f64 numbers, and for quotients and functions the standard asks
-    /// for no correct rounding.
+    /// Remainder of a sum. It is 0 for other operations: products of two f32 are exact in f64, and
+    /// the standard asks for no correct rounding of quotients and functions.
     pub rest: f64,
 }
 
@@ -37,7 +38,7 @@ impl From<f64> for Exact {
 }
 
 impl Exact {
-    /// a + b without an error (Knuth's two-sum).
+    /// Returns a + b without an error (Knuth's two-sum).
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Self {
         let value = a + b;
@@ -46,38 +47,39 @@ impl Exact {
         Self { value, rest }
     }
 
-    /// How far the result lies above `float`, the nearest f32 or next to it: its sign is right, however small the difference.
+    /// Returns the distance of the result above `float`, the nearest f32 or a neighbour of it. The
+    /// sign is right, however small the difference.
     #[inline(always)]
     pub fn above(self, float: f32) -> f64 {
         (self.value - f64::from(float)) + self.rest
     }
 }
 
-/// How far WGSL lets the result of an operation be off.
+/// Error that WGSL allows in the result of an operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slack {
     /// Correctly rounded, up or down.
     Rounded,
-    /// So many units in the last place.
+    /// Error in units in the last place.
     Ulps(f64),
-    /// So much.
+    /// Absolute error.
     Absolute(f64),
-    /// As 1 / inverseSqrt: 2 ulp, then a division's 2.5.
+    /// Error of 1 / inverseSqrt: 2 ulp, then 2.5 ulp of a division.
     Root,
 }
 
-/// What is taken to hold where the standard states no accuracy.
+/// Assumption in a case for which the standard states no accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Assumption {
-    /// A divisor beyond 2^±126: 2.5 ulp, as within.
+    /// Quotient by a divisor beyond 2^±126: 2.5 ulp, as within.
     Quotient,
-    /// A sine or a cosine beyond ±π: 2^-11, as within.
+    /// Sine or cosine beyond ±π: 2^-11, as within.
     Wave,
     /// sqrt(0) is 0.
     Root,
     /// pow(0, y) is 0 for y > 0.
     Power,
-    /// atan2 where x is 0 or y is 0: 4096 ulp, as elsewhere.
+    /// atan2 with x or y of 0, or a divisor beyond 2^±126: 4096 ulp, as elsewhere.
     Angle,
 }
 
@@ -93,69 +95,71 @@ impl std::fmt::Display for Assumption {
     }
 }
 
-/// An operation on floats that was run.
+/// A completed operation on floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Operation {
-    /// Which function, and its first argument; none of an infix operator.
+    /// Function and its first argument; `None` for an infix operator.
     pub function: Option<(Float, f32)>,
-    /// The numbers of its operands in the record: 0 for a constant.
+    /// Numbers of its operands in the record; 0 for a constant.
     pub operands: [u32; 2],
-    /// The derivatives of its result by them.
+    /// Derivatives of its result with respect to the operands.
     pub partials: [f64; 2],
 }
 
-/// What rounds, and what is told of decisions.
+/// Arithmetic of the interpreter: it rounds results and is told of decisions.
 pub trait Machine {
-    /// Whether it may fuse products with sums.
+    /// Whether the machine may fuse products with sums.
     const FUSES: bool = false;
 
-    /// Whether it records operations.
+    /// Whether the machine records operations.
     const RECORDS: bool = false;
 
-    /// The result of an operation whose exact one is `exact`.
+    /// Returns the rounded result of an operation, given the exact one.
     fn round(&mut self, exact: Exact, slack: Slack) -> f32;
 
-    /// An operand as the operation sees it.
+    /// Returns an operand as the operation sees it.
     #[inline(always)]
     fn operand(&mut self, operand: f32) -> f32 {
         operand
     }
 
-    /// A result that is a float from the start, such as an absolute value.
+    /// Returns a result that needs no rounding, such as an absolute value.
     #[inline(always)]
     fn kept(&mut self, result: f32) -> f32 {
         result
     }
 
-    /// A comparison's result.
+    /// Returns the result of a comparison.
     #[inline(always)]
     fn compared(&mut self, _operands: [f32; 2], holds: bool) -> bool {
         holds
     }
 
-    /// The result of `min`, `max` or `clamp`.
+    /// Returns the result of `min`, `max` or `clamp`.
     #[inline(always)]
     fn bounded(&mut self, _operands: &[f32], result: f32) -> f32 {
         result
     }
 
-    /// The standard states nothing here.
+    /// Notes an assumption in a case on which the standard is silent.
     #[inline(always)]
     fn assumed(&mut self, _assumption: Assumption) {}
 
-    /// Which of a sum's operands, those that are products, comes in unrounded; `at` numbers the sum in the program.
+    /// Returns the index of the sum's operand that enters unrounded, one of those that are
+    /// products; `at` is the number of the sum in the program.
     #[inline(always)]
     fn fused(&mut self, _at: usize, _products: [bool; 2]) -> Option<usize> {
         None
     }
 
-    /// Notes an operation's result, and how it depends on its operands; returns its number in the record, 0 where nothing is recorded.
+    /// Records an operation's result and its dependence on the operands. Returns its number in the
+    /// record, or 0 if nothing is recorded.
     #[inline(always)]
     fn recorded(&mut self, _operation: Operation) -> u32 {
         0
     }
 
-    /// A branch was taken.
+    /// Notes a decision: a branch, or a minimum, maximum, clamp, floor, step or conversion.
     #[inline(always)]
     fn decided(&mut self, _site: Site, _choice: u32) {}
 }
@@ -174,7 +178,7 @@ impl Machine for Nearest {
 /// Rounds to nearest and notes every decision.
 #[derive(Clone, Debug, Default)]
 pub struct Traced {
-    /// What was decided, in order.
+    /// Decisions, in order.
     pub decisions: Vec<Decision>,
 }
 

@@ -1,5 +1,5 @@
-//! A WGSL function on the CPU, compiled from naga's IR: with every rounding in the hands of a [`Machine`], which may err as far as WGSL lets a
-//! device, and with every branch that is taken told to it.
+//! Interpreter of a WGSL function on the CPU, compiled from naga's IR. A [`Machine`] performs every
+//! rounding, may err as far as WGSL allows a device to, and is told of every branch taken.
 
 mod code;
 mod compile;
@@ -15,26 +15,26 @@ use code::Code;
 use naga::valid::ModuleInfo;
 use naga::{Block, Expression, Function, Handle, Module, ScalarKind, Statement};
 
-/// Operations that one call may take: more is an endless loop.
+/// Most operations of one call; more count as an endless loop.
 const MOST_OPERATIONS: u64 = 10_000_000;
 
-/// What the interpreter cannot run, or did not end.
+/// Reason why the interpreter cannot run a function, or stopped it before its end.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Stopped(String);
 
-/// A branch of a function, as its source has it.
+/// A branch in the source of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Branch {
-    /// Where decisions of it are noted.
+    /// Site of its decisions.
     pub site: Site,
-    /// The condition's text.
+    /// Text of the condition.
     pub condition: String,
     /// Whether it compares floats.
     pub compares_floats: bool,
 }
 
-/// A function that can be run.
+/// A function compiled for the interpreter.
 #[derive(Debug)]
 pub struct Program {
     module: Module,
@@ -45,7 +45,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// The function of that name in WGSL source; `path` is for messages.
+    /// Compiles the named function of WGSL source; `path` appears in messages.
     pub fn new(source: &str, path: &str, function: &str) -> Result<Program, DispatchError> {
         let (module, info) = dispatch::parse(source, path)?;
         dispatch::signature::Signature::reflect(&module, function)?;
@@ -54,7 +54,8 @@ impl Program {
         Ok(Self::compiled(module, info, source.to_owned(), function))
     }
 
-    /// The function of that name in a module; none where the module is not valid or has none of that name. Its lines and conditions have no text.
+    /// Compiles the named function of a module. Returns `None` if the module is not valid or has no
+    /// such function. Its lines and conditions have no text.
     pub fn of_module(module: Module, function: &str) -> Option<Program> {
         let info = lapidary_specialise::validate(&module).ok()?;
         let (function, _) = module.functions.iter().find(|(_, found)| found.name.as_deref() == Some(function))?;
@@ -66,7 +67,8 @@ impl Program {
         Program { module, info, source, function, code }
     }
 
-    /// The same function with chains of sums and of products in another order, as WGSL lets a compiler take them: which one, `seed` says.
+    /// Returns the same function with chains of sums and of products in another order, as WGSL
+    /// allows a compiler; `seed` selects the order.
     #[must_use]
     pub fn reassociated(&self, seed: u64) -> Program {
         Program {
@@ -82,37 +84,39 @@ impl Program {
         self.code.as_ref().map_err(Clone::clone)
     }
 
-    /// Whether it has a loop, and so may take long.
+    /// Returns whether the function has a loop, and so may take long.
     pub fn loops(&self) -> bool {
         self.code.as_ref().is_ok_and(|code| code.loops)
     }
 
-    /// Words of a row of arguments, and of a row of results.
+    /// Returns the numbers of words in a row of arguments and in a row of results.
     ///
     /// # Errors
-    /// Where the function does what the interpreter cannot.
+    /// Returns an error if the function uses a feature that the interpreter lacks.
     pub fn words(&self) -> Result<[usize; 2], Stopped> {
         let code = self.code()?;
         Ok([code.arguments.len(), code.result.len()])
     }
 
-    /// The words to run it in.
+    /// Returns registers for a run of the function.
     ///
     /// # Errors
-    /// Where the function does what the interpreter cannot.
+    /// Returns an error if the function uses a feature that the interpreter lacks.
     pub fn registers(&self) -> Result<Registers, Stopped> {
         Ok(self.code()?.registers())
     }
 
-    /// Runs the function on a row of arguments and appends its result. Returns how many operations it took.
+    /// Runs the function on a row of arguments and appends its result. Returns the number of
+    /// operations.
     ///
     /// # Errors
-    /// Where the function does what the interpreter cannot, or does not end.
+    /// Returns an error if the function uses a feature that the interpreter lacks, or does not end.
     pub fn run(&self, arguments: &[u32], machine: &mut impl Machine, result: &mut Vec<u32>) -> Result<u64, Stopped> {
         self.run_in(&mut self.registers()?, arguments, machine, result)
     }
 
-    /// The same in registers of the caller's, from [`Program::registers`].
+    /// Runs the function as [`Program::run`] does, in the caller's registers, from
+    /// [`Program::registers`].
     ///
     /// # Errors
     /// As [`Program::run`].
@@ -129,22 +133,22 @@ impl Program {
         Ok(steps)
     }
 
-    /// The numbers of the last run's results in its machine's record.
+    /// Returns the numbers of the last run's results in the machine's record.
     ///
     /// # Errors
-    /// Where the function does what the interpreter cannot.
+    /// Returns an error if the function uses a feature that the interpreter lacks.
     pub fn recorded(&self, registers: &Registers) -> Result<Vec<u32>, Stopped> {
         Ok(self.code()?.result.iter().map(|register| registers.number(*register)).collect())
     }
 
-    /// The branches of the function itself: those of what it calls are theirs.
+    /// Returns the branches of the function itself, without those of its callees.
     pub fn branches(&self) -> Vec<Branch> {
         let mut found = Vec::new();
         self.collect_branches(&self.module.functions[self.function].body, &mut found);
         found
     }
 
-    /// The line of source that a site is on, trimmed.
+    /// Returns the line of source at a site, trimmed.
     pub fn line(&self, site: Site) -> &str {
         let start = self.span(site).map_or(0, |span| span.start);
         let before = self.source[..start.min(self.source.len())].matches('\n').count();
@@ -198,7 +202,8 @@ impl Program {
         }
     }
 
-    /// Whether a condition compares floats: itself, or what it is put together from. A bool that was stored may have been such a one.
+    /// Returns whether a condition compares floats, itself or in one of its parts. A stored bool
+    /// may hide such a comparison.
     fn compares_floats(&self, condition: Handle<Expression>) -> bool {
         let info = &self.info[self.function];
         let is_float = |handle: Handle<Expression>| {
@@ -246,15 +251,16 @@ mod tests {
             }";
         let row = [(-1f32).to_bits(), 2f32.to_bits(), 3f32.to_bits(), 9];
         let result = call(source, &row, &mut Nearest);
-        // Turns 0, 1, 2 and 4.
+        // Iterations 0, 1, 2 and 4.
         assert_eq!(result, [8f32.to_bits(), (7f32 + 12.0).to_bits(), 8]);
     }
 
-    /// WGSL of a function of one u32, arguments, and the results that WGSL's rules give.
+    /// The table holds bodies of a function of one u32, each with arguments and the results under
+    /// WGSL's rules.
     #[test]
     fn control_flow_is_wgsls() {
         let table: [(&str, [(u32, u32); 3]); 12] = [
-            // A break leaves the switch, a continue the turn of the loop around it.
+            // A break leaves the switch; a continue ends the iteration of the loop around it.
             (
                 "var s = 0u; for (var i = 0u; i < n; i++) { switch i { case 1u: { continue; } case 2u: { break; } default: { s += 10u; } } s += 1u; } return s;",
                 [(1, 11), (3, 12), (5, 34)],
@@ -269,15 +275,15 @@ mod tests {
             ),
             ("switch n { case 1u, 2u: { return 5u; } case default, 3u: { return 7u; } }", [(1, 5), (2, 5), (9, 7)]),
             ("switch n { case default: { return 7u; } case 4u: { return 8u; } }", [(4, 8), (0, 7), (5, 7)]),
-            // A return out of a loop of an inlined call ends the call alone.
+            // A return from a loop in an inlined call ends only the call.
             ("return first(n) * 100u + first(n + 1u);", [(0, 1), (2, 203), (7, 404)]),
-            // A variable in a loop begins anew.
+            // A variable in a loop is initialised in each iteration.
             (
                 "var s = 0u; for (var i = 0u; i < n; i++) { var t: u32; t += 1u; s += t; } return s;",
                 [(0, 0), (1, 1), (4, 4)],
             ),
             ("var s = 0u; for (var i = 0u; i < n; i++) { s += counted(i); } return s;", [(1, 1), (2, 3), (3, 6)]),
-            // A pointer into what an index finds.
+            // A pointer to an indexed element.
             (
                 "var a = array<u32, 4>(1u, 2u, 3u, 4u); raise(&a[n % 4u]); return a[0] * 1000u + a[1] * 100u + a[2] * 10u + a[3];",
                 [(0, 6234), (1, 1734), (3, 1239)],
@@ -287,7 +293,7 @@ mod tests {
                 [(0, 923), (1, 496), (2, 129)],
             ),
             ("let m = mat2x2f(1.0, 2.0, 3.0, 4.0); return u32(m[n % 2u][(n / 2u) % 2u]);", [(0, 1), (1, 3), (3, 4)]),
-            // What was loaded stays as it was.
+            // A loaded value does not change.
             ("var a = n; let b = a; a += 1u; var c = a; c += b; return c * 10u + b;", [(0, 10), (1, 31), (2, 52)]),
         ];
         for (body, rows) in table {

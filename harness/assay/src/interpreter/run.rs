@@ -1,20 +1,20 @@
-//! Runs the compiled code.
+//! Execution of the compiled code.
 
 use super::code::{Bound, Code, Float, Op};
 use super::machine::{Assumption, Exact, Machine, Operation, Site, Slack};
 use super::{MOST_OPERATIONS, Stopped};
 use naga::{BinaryOperator, MathFunction, ScalarKind};
 
-/// Where the standard states how accurate a quotient is.
+/// Magnitudes of divisors for which the standard states the accuracy of a quotient.
 const DIVISORS: std::ops::RangeInclusive<f32> = f32::MIN_POSITIVE..=8.507_059e37;
 
-/// The words that a program works on; used again for each row.
+/// Working memory of a program, reused for each row.
 #[derive(Clone, Debug)]
 pub struct Registers {
     words: Vec<u32>,
-    /// Beside a word that is a product, the exact one; NaN beside any other.
+    /// Exact product of each word that is a product; NaN for any other word.
     products: Vec<f64>,
-    /// Beside a word that a machine has recorded, its number there; 0 beside any other.
+    /// Number of each word that a machine has recorded; 0 for any other word.
     records: Vec<u32>,
 }
 
@@ -24,7 +24,7 @@ impl Code {
         Registers { words: self.registers.clone(), products: vec![f64::NAN; length], records: vec![0; length] }
     }
 
-    /// Runs from the first operation to the last; returns how many it took.
+    /// Runs the code and returns the number of operations executed.
     pub(super) fn run<M: Machine>(
         &self,
         arguments: &[u32],
@@ -69,7 +69,7 @@ impl Registers {
         }
     }
 
-    /// Notes how a result depends on its operands.
+    /// Records the dependence of a result on its operands.
     #[inline(always)]
     fn record<M: Machine>(&mut self, to: u32, operands: [u32; 2], partials: [f64; 2], machine: &mut M) {
         if M::RECORDS {
@@ -78,12 +78,12 @@ impl Registers {
         }
     }
 
-    /// The number of a word in its machine's record.
+    /// Returns the number of a word in the machine's record.
     pub(super) fn number(&self, register: u32) -> u32 {
         self.records[register as usize]
     }
 
-    /// As it is, a product as one.
+    /// Copies a word with its exact product and its record.
     fn copy<M: Machine>(&mut self, to: u32, from: u32) {
         self.words[to as usize] = self.word(from);
         if M::FUSES {
@@ -94,7 +94,7 @@ impl Registers {
         }
     }
 
-    /// Takes a step and returns the place of the next.
+    /// Executes one operation and returns the place of the next.
     #[inline(always)]
     fn step<M: Machine>(&mut self, op: &Op, at: usize, machine: &mut M) -> usize {
         match *op {
@@ -148,7 +148,7 @@ impl Registers {
             Op::Bound { bound, to, operands, site } => {
                 let floats = operands.map(|register| machine.operand(self.float(register)));
                 let result = bounded(bound, floats, site, machine);
-                // The first of those that it may be; of no number what it depends on is unknown.
+                // The first operand that equals the result. For a NaN, the dependence is unknown.
                 let chosen = floats.iter().position(|float| *float == result);
                 let partial = if chosen.is_some() { 1.0 } else { f64::NAN };
                 self.put(to, result, (None, [operands[chosen.unwrap_or(0)]; 2]), || [partial, 0.0], machine);
@@ -208,7 +208,7 @@ impl Registers {
         at + 1
     }
 
-    /// Sets a float and notes how it depends on its operands.
+    /// Sets a float and records its dependence on its operands.
     #[inline(always)]
     fn put<M: Machine>(
         &mut self,
@@ -226,7 +226,7 @@ impl Registers {
         }
     }
 
-    /// a ± b; a product may come in as it was before it was rounded.
+    /// Computes a ± b; a product may enter unrounded.
     #[inline(always)]
     fn sum<M: Machine>(&mut self, to: u32, [a, b]: [u32; 2], sign: f64, at: usize, machine: &mut M) {
         let mut operands = [a, b].map(|register| f64::from(machine.operand(self.float(register))));
@@ -241,7 +241,7 @@ impl Registers {
     }
 }
 
-/// The derivatives of a function by its operands; 0 where it has steps.
+/// Returns the derivatives of a function with respect to its operands; 0 for functions with steps.
 fn derivatives(fun: Float, [x, y]: [f64; 2]) -> [f64; 2] {
     let of_first = match fun {
         Float::Abs => x.signum(),
@@ -311,7 +311,8 @@ fn float<M: Machine>(fun: Float, [x, y]: [f32; 2], site: Site, machine: &mut M) 
 }
 
 impl Float {
-    /// The exact value of a function, the ordinate first of `atan2`, and how far WGSL lets a device be off it. Of a power that is what its last step may add.
+    /// Returns the exact value of a function and the error that WGSL allows it. `atan2` takes the
+    /// ordinate first. The error of a power is only that of its last step.
     pub fn exact(self, x: f32, y: f32) -> (f64, Slack) {
         let exact = f64::from(x);
         match self {
@@ -343,7 +344,7 @@ impl Float {
     }
 }
 
-/// A minimum, a maximum or both: which operand it is, is a decision.
+/// Computes a minimum, a maximum or both. The choice of the operand is a decision.
 fn bounded<M: Machine>(bound: Bound, operands: [f32; 3], site: Site, machine: &mut M) -> f32 {
     let [x, y, z] = operands;
     let (choice, result) = match bound {
@@ -356,16 +357,18 @@ fn bounded<M: Machine>(bound: Bound, operands: [f32; 3], site: Site, machine: &m
     machine.bounded(&operands[..count], result)
 }
 
-/// Near 1 the logarithm is 0: there it may be off absolutely.
+/// Returns the allowed error of a logarithm. It is absolute near 1, at which the logarithm is 0.
 fn logarithm(x: f32) -> Slack {
     if (0.5..=2.0).contains(&x) { Slack::Absolute(2f64.powi(-21)) } else { Slack::Ulps(3.0) }
 }
 
-/// How far acos x or asin x may be off: an absolute error, or what `atan2` of x and sqrt(1 - x²) inherits, whichever is more.
+/// Returns the allowed error of acos x or asin x: an absolute error, or the error inherited from
+/// `atan2` of x and sqrt(1 - x²), whichever is larger.
 fn inverse_sine(x: f64, result: f64) -> f64 {
     let unit = 2f64.powi(-23);
     let left = (1.0 - x * x).max(0.0);
-    // The difference is off by its own rounding and the square's; the root halves that and adds 2 and 2.5 ulp of its own.
+    // The difference errs by its own rounding and the square's; the root halves that error and adds
+    // 2 and 2.5 ulp of its own.
     let difference = unit * (left + x * x);
     let root = (left + difference).sqrt() * (1.0 + 4.5 * unit) - left.sqrt();
     (4096.0 * crate::tolerance::ulp_of(result) + x.abs() * root).max(6.81e-5)

@@ -4,18 +4,18 @@ use crate::formula::Words;
 use crate::shape::Shape;
 use crate::value::Value;
 
-/// What one binding holds: a `Vec` of values for a runtime-sized array, a value for anything else.
+/// The contents of one binding: a `Vec` of values for a runtime-sized array, otherwise one value.
 pub trait Buffer: Clone {
-    /// The shape of an element, or of the value.
+    /// Returns the shape of an element, or of the value.
     fn shape() -> Shape;
-    /// Whether it is a runtime-sized array.
+    /// Returns whether the binding is a runtime-sized array.
     fn is_runtime_sized() -> bool;
     /// Appends the words of all elements.
     fn write(&self, words: &mut Words);
-    /// Reads all elements.
+    /// Reads all whole elements that `words` holds.
     ///
     /// # Panics
-    /// Where `words` is no whole number of elements.
+    /// Panics for a single value if `words` is too short.
     fn read(words: &[u32]) -> Self;
 }
 
@@ -58,13 +58,13 @@ impl<T: Value + Clone> Buffer for Vec<T> {
 /// The type of one binding's buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Type {
-    /// Of an element, or of the value.
+    /// Shape of an element, or of the value.
     pub shape: Shape,
-    /// Whether it is a runtime-sized array.
+    /// Whether the buffer is a runtime-sized array.
     pub is_runtime_sized: bool,
 }
 
-/// As WGSL writes the type.
+/// Formats the type as in WGSL.
 impl std::fmt::Display for Type {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.is_runtime_sized { write!(f, "array<{}>", self.shape) } else { write!(f, "{}", self.shape) }
@@ -73,11 +73,11 @@ impl std::fmt::Display for Type {
 
 /// The buffers of a kernel: a tuple, in the order of groups and bindings.
 pub trait Buffers: Clone {
-    /// The type of each.
+    /// Returns the type of each buffer.
     fn types() -> Vec<Type>;
-    /// The words of each.
+    /// Returns the words of each buffer.
     fn words(&self) -> Vec<Words>;
-    /// Reads each from its words.
+    /// Reads each buffer from its words.
     fn of_words(words: &[Words]) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! A compute entry point on the device: its bindings reflected, buffers in, buffers out.
+//! A compute entry point on the device: reflects its bindings, uploads buffers and reads them back.
 
 use super::buffers::Type;
 use crate::dispatch::layout::Layout;
@@ -31,7 +31,7 @@ pub(super) struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// Compiles `entry` of `source` with these values for its overrides.
+    /// Compiles `entry` of `source` with the given values of its overrides.
     pub(super) fn new(
         gpu: &'a Gpu,
         source: &str,
@@ -70,7 +70,8 @@ impl<'a> Program<'a> {
         Ok(Self { gpu, entry: entry.to_owned(), pipeline, bindings })
     }
 
-    /// The words of every buffer after a dispatch that starts from these.
+    /// Dispatches the entry point on these buffers and returns the words of every buffer
+    /// afterwards.
     pub(super) fn run(&self, before: &[Words], workgroups: [u32; 3]) -> Result<Vec<Words>, String> {
         let mut buffers = Vec::new();
         for (binding, words) in self.bindings.iter().zip(before) {
@@ -141,7 +142,7 @@ impl<'a> Program<'a> {
     }
 }
 
-/// What a global variable is, as a buffer.
+/// Describes a global variable as a buffer.
 fn reflect(
     module: &naga::Module,
     handle: naga::Handle<naga::GlobalVariable>,

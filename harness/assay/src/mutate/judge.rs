@@ -1,4 +1,4 @@
-//! Whether a function's tests notice a mutant.
+//! Judgement of a mutant by a function's tests.
 
 use super::{Mutant, apply, compacted};
 use crate::dispatch::{DispatchError, Kernel, KernelModule};
@@ -11,19 +11,20 @@ use crate::tolerance::Tolerance;
 use lapidary_gpu::Gpu;
 use std::cell::OnceCell;
 
-/// Of the rows, always the same: what is known to be equivalent must not depend on a run's seed.
+/// Seed of the rows. It is fixed: the known equivalent mutants must not depend on a run's seed.
 const SEED: u64 = 0x1a91_da21;
-/// Rows that are compared first: a loop that ends only where the driver ends it is soon over with them, and mostly wrong.
+/// Rows compared first. A loop that only the driver ends is over soon with them, and mostly wrong.
 const FIRST_ROWS: usize = 256;
-/// Rows whose right results are kept.
+/// Rows with stored right results.
 const KEPT_ROWS: u64 = 8_192;
-/// Rows for what those do not tell apart.
+/// Rows for mutants that the stored rows do not reveal.
 const MORE_ROWS: u64 = 131_072;
 
-/// Rows on devices that err as far as WGSL lets them, for what no other input tells apart.
+/// Rows on devices that err as far as WGSL allows, for mutants that no other input reveals.
 const ROWS_ANYWHERE: u64 = 16_384;
 
-/// A function with its tests and the right results of its first inputs, computed once for all mutants.
+/// A function with its tests and the right results of its first inputs, computed once for all
+/// mutants.
 pub struct Judge<'a> {
     gpu: &'a Gpu,
     formula: &'a Formula,
@@ -31,12 +32,13 @@ pub struct Judge<'a> {
     path: &'a str,
     kernel: KernelModule,
     tolerance: Tolerance,
-    /// What it is held to on any device that conforms to WGSL.
+    /// Tolerance on any device that conforms to WGSL.
     anywhere: Option<Tolerance>,
     arguments: Words,
     mirrored: Vec<Words>,
     exact: Vec<Vec<f64>>,
-    /// The kernel that says where it computes an infinity or a NaN, and where the right one does; made when first asked for.
+    /// Kernel that reports the rows with an infinity or a NaN, and those rows of the unchanged
+    /// function; made at first use.
     watched: OnceCell<(KernelModule, Vec<bool>)>,
 }
 
@@ -47,10 +49,11 @@ impl std::fmt::Debug for Judge<'_> {
 }
 
 impl<'a> Judge<'a> {
-    /// The tests of `formula` on `source`, and the inputs that are tested always; `path` is for messages.
+    /// Returns a judge with the tests of `formula` on `source`, and the inputs that are always
+    /// tested; `path` appears in messages.
     ///
     /// # Errors
-    /// Where the source is not valid, or has no such function.
+    /// Returns an error if the source is not valid, or has no such function.
     pub fn new(
         gpu: &'a Gpu,
         formula: &'a Formula,
@@ -69,25 +72,29 @@ impl<'a> Judge<'a> {
         Ok(Self { gpu, formula, source, path, kernel, tolerance, anywhere, arguments, mirrored, exact, watched })
     }
 
-    /// The same, and what the device forgives is tested on any that conforms to WGSL, to this tolerance.
+    /// Also tests each mutant that passes on the device on any device that conforms to WGSL, to
+    /// this tolerance.
     #[must_use]
     pub fn and_anywhere(self, tolerance: Tolerance) -> Self {
         Self { anywhere: Some(tolerance), ..self }
     }
 
-    /// Whether a test fails on the function as it is, so that nothing could be said of its mutants.
+    /// Returns whether a test fails on the unchanged function, so that its mutants cannot be
+    /// judged.
     pub fn rejects_unchanged(&self) -> bool {
         self.notices(self.kernel.clone())
     }
 
-    /// Whether a test fails on the mutant. One that makes no valid program, or that this function does not reach, is not noticed.
+    /// Returns whether a test fails on the mutant. An invalid mutant, or one outside of this
+    /// function's reach, is not noticed.
     pub fn catches(&self, mutant: &Mutant) -> bool {
         apply(&self.kernel, mutant)
             .is_some_and(|mutated| self.notices(mutated) || self.computes_more_infinities(mutant))
     }
 
-    /// Whether the mutant computes an infinity or a NaN where the function computes none: what comes of it is left to each device,
-    /// even where this one makes the right result of it.
+    /// Returns whether the mutant computes an infinity or a NaN in a row without one in the
+    /// unchanged function. WGSL leaves its effect to each device, even if this one returns the
+    /// right result.
     fn computes_more_infinities(&self, mutant: &Mutant) -> bool {
         let nonfinite = |kernel: KernelModule| -> Option<Vec<bool>> {
             let mut kernel = Kernel::new(self.gpu, kernel.watched()).ok()?;
@@ -105,7 +112,7 @@ impl<'a> Judge<'a> {
         found.iter().zip(right).any(|(found, right)| *found && !right)
     }
 
-    /// Whether the property tests tell this kernel from the right one.
+    /// Returns whether the property tests tell this kernel from the right one.
     fn notices(&self, mutated: KernelModule) -> bool {
         let module = mutated.module.clone();
         let Ok(mut kernel) = Kernel::new(self.gpu, mutated) else { return true };

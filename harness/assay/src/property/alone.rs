@@ -1,10 +1,11 @@
-//! What a result is worth on a device that errs as far as it may: held to the oracle alone. How near the mirror is to the oracle is no question of devices.
+//! Judgement of a result from a device that errs as far as it may: against the oracle alone. The
+//! distance from the mirror to the oracle does not depend on devices.
 
 use crate::formula::{Formula, Words};
 use crate::shape::{Scalar, Shape};
 use crate::tolerance::{Tolerance, Verdict};
 
-/// Judges a result; an input that is subnormal may have been read as 0.
+/// Judges a result; a subnormal input may have been read as 0.
 pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[u32], thoroughly: bool) -> Verdict {
     let judge = if thoroughly { Tolerance::judge_thoroughly } else { Tolerance::judge };
     let of = |row: &[u32]| judge(tolerance, row, result, result, &formula.exact(row), &*formula.oracle);
@@ -18,7 +19,8 @@ pub fn verdict(formula: &Formula, tolerance: &Tolerance, row: &[u32], result: &[
         .fold(plain, |best, next| if next.ratio < best.ratio { next } else { best })
 }
 
-/// Judges a result as its device is to be: alone where that errs as far as it may, else beside the mirror's as well.
+/// Judges a result according to its device: against the oracle alone if the device errs as far as
+/// it may, otherwise against the mirror as well.
 pub fn verdict_of(
     is_portable: bool,
     formula: &Formula,
@@ -34,10 +36,12 @@ pub fn verdict_of(
     judge(tolerance, row, result, &formula.mirrored(row), &formula.exact(row), &*formula.oracle)
 }
 
-/// Subnormals of a row of which each may have been flushed or not; of more all are.
+/// Maximum number of subnormals in a row that are each tried flushed or not; beyond it, all are
+/// flushed.
 const MOST_SUBNORMALS: usize = 4;
 
-/// The first invariant that a result breaks, and how; of a portable device one that it also breaks for the row as a device may see it that flushes.
+/// Returns the first invariant that a result breaks, with the reason. On a portable device the
+/// result is forgiven if it holds for the row as a flushing device may see it.
 pub fn broken(formula: &Formula, row: &[u32], result: &[u32], is_portable: bool) -> Option<(&'static str, String)> {
     let broken = formula.broken(row, result, is_portable)?;
     let holds = |row: &Words| formula.broken(row, result, is_portable).is_none();
@@ -45,7 +49,7 @@ pub fn broken(formula: &Formula, row: &[u32], result: &[u32], is_portable: bool)
     (!is_forgiven).then_some(broken)
 }
 
-/// Where the floats of a row are that a device may flush.
+/// Returns the places of the floats in a row that a device may flush.
 fn subnormals(formula: &Formula, row: &[u32]) -> Vec<usize> {
     let scalars = formula.arguments.iter().flat_map(Shape::scalars);
     let is_subnormal = |(word, scalar): (&u32, Scalar)| scalar == Scalar::F32 && f32::from_bits(*word).is_subnormal();
@@ -53,12 +57,13 @@ fn subnormals(formula: &Formula, row: &[u32]) -> Vec<usize> {
     parts.map(|(place, _)| place).collect()
 }
 
-/// Whether a device may see the row otherwise than it is.
+/// Returns whether a device may see the row differently.
 pub fn has_subnormals(formula: &Formula, row: &[u32]) -> bool {
     !subnormals(formula, row).is_empty()
 }
 
-/// The row as a device may see it that flushes some of its subnormals: each is kept, or a zero of either sign, or has lost its sign, which a comparison that flushes does not see.
+/// Returns the row as it may appear to a device that flushes some of its subnormals: each is kept,
+/// becomes a zero of either sign, or changes its sign, which a flushing comparison does not see.
 fn flushed(formula: &Formula, row: &[u32]) -> Vec<Words> {
     let places = subnormals(formula, row);
     if places.len() > MOST_SUBNORMALS {
@@ -79,7 +84,8 @@ fn flushed(formula: &Formula, row: &[u32]) -> Vec<Words> {
     rows
 }
 
-/// Whether the standard says anything of a call with these arguments: a device may take infinities and NaNs to be absent.
+/// Returns whether the standard covers a call with these arguments: a device may assume that
+/// infinities and NaNs are absent.
 pub fn is_stated(formula: &Formula, row: &[u32]) -> bool {
     let scalars = formula.arguments.iter().flat_map(Shape::scalars);
     row.iter().zip(scalars).all(|(word, scalar)| scalar != Scalar::F32 || f32::from_bits(*word).is_finite())

@@ -1,6 +1,6 @@
-//! A distribution of non-negative numbers in bounded memory, exact to under one per cent.
+//! A distribution of non-negative numbers in bounded memory, accurate to under one per cent.
 
-/// Counts by the upper 16 bits of the number's f32: 128 steps to each power of two.
+/// Counts per upper 16 bits of the number's f32: 128 steps per power of two.
 #[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(from = "Steps"))]
 pub struct Histogram {
@@ -15,21 +15,21 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Adds a number; NaN counts as infinite.
+    /// Adds a number; a NaN counts as infinite.
     pub fn add(&mut self, value: f64) {
         let value = if value.is_nan() { f32::INFINITY } else { (value as f32).abs() };
         self.counts[(value.to_bits() >> 16) as usize] += 1;
         self.total += 1;
     }
 
-    /// Adds another's numbers.
+    /// Adds the numbers of another histogram.
     pub fn join(&mut self, other: &Histogram) {
         self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
         self.total += other.total;
     }
 
-    /// The smallest recorded number that at least `share` (0 to 1) of all are not above, rounded down to its step; 0 where
-    /// nothing was added.
+    /// Returns the smallest recorded number that at least `share` (0 to 1) of all numbers do not
+    /// exceed, rounded down to its step; 0 if nothing was added.
     pub fn quantile(&self, share: f64) -> f64 {
         let wanted = (share * self.total as f64).ceil().max(1.0) as u64;
         let mut seen = 0;
@@ -43,7 +43,7 @@ impl Histogram {
     }
 }
 
-/// The steps that hold numbers: the place of each, and its count.
+/// The non-empty steps: the index and the count of each.
 #[cfg(feature = "serde")]
 type Steps = Vec<(usize, u64)>;
 

@@ -1,4 +1,5 @@
-//! Property testing on a GPU: batches of inputs a dispatch, every row compared, the worst one shrunk alone.
+//! Property testing on a GPU: each dispatch runs a batch of inputs, every row is compared, and the
+//! worst one is shrunk alone.
 
 pub(crate) mod alone;
 pub mod histogram;
@@ -16,23 +17,24 @@ use proptest::strategy::ValueTree;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Cases a formula by default.
+/// Default number of cases per formula.
 pub const DEFAULT_CASES: u64 = 65_536;
-/// Rows of a batch that are judged thoroughly where the usual search finds them wrong.
+/// Maximum number of rows in a batch that are judged again thoroughly after the usual search finds
+/// them wrong.
 const MOST_RECONSIDERED: usize = 64;
-/// Dispatches spent on shrinking one row at most.
+/// Maximum number of steps for shrinking one row.
 const MOST_SHRINKS: usize = 4_000;
-/// Rows of the first dispatch of a function with a loop, which may have no end.
+/// Rows in the first dispatch of a function with a loop, which may be endless.
 const FIRST_ROWS: usize = 1_024;
 /// Rows that one thread generates or compares at a time.
 const ROWS_PER_TASK: usize = 512;
 
-/// How to run.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// How many random inputs.
+    /// Number of random inputs.
     pub cases: u64,
-    /// From which seed.
+    /// Seed of the random inputs.
     pub seed: u64,
 }
 
@@ -42,42 +44,44 @@ impl Default for Settings {
     }
 }
 
-/// What a run found.
+/// The findings of a run.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// Rows tested, those replayed included.
+    /// Rows tested, including replayed ones.
     pub cases: u64,
     /// Rows that failed their tolerance or an invariant.
     pub failed: u64,
     /// Rows with a NaN or an infinity.
     pub nonfinite: u64,
-    /// Rows whose loops were ended at the kernel's limit of turns, so that their results say nothing.
+    /// Rows with a loop that reached the kernel's iteration limit, so that their results mean
+    /// nothing.
     pub stopped: u64,
     /// Distribution of the forward error in ulp.
     pub ulps: Histogram,
     /// Largest forward error in ulp.
     pub max_ulp: f64,
-    /// Largest error over allowed error.
+    /// Largest ratio of error to allowed error.
     pub worst_ratio: f64,
-    /// The row of that error.
+    /// Row with that ratio.
     pub worst: Words,
-    /// The simplest input found that fails half as badly as the worst; none where nothing failed.
+    /// Simplest input found that fails at least half as badly as the worst; `None` if nothing
+    /// failed.
     pub shrunk: Option<Words>,
-    /// What the worst row broke.
+    /// Reason why the worst row failed.
     pub reason: Option<String>,
-    /// How often each edge was reached.
+    /// Number of inputs that reached each edge.
     pub edges: Vec<(&'static str, u64)>,
     /// Wall-clock time.
     pub seconds: f64,
 }
 
 impl Report {
-    /// Whether every row held and every edge was reached.
+    /// Returns whether every row held and every edge was reached.
     pub fn passed(&self) -> bool {
         self.failed == 0 && self.missed_edges().next().is_none()
     }
 
-    /// The edges that the run did not reach.
+    /// Returns the edges that the run did not reach.
     pub fn missed_edges(&self) -> impl Iterator<Item = &'static str> {
         self.edges.iter().filter(|(_, count)| *count == 0).map(|(name, _)| *name)
     }
@@ -85,20 +89,20 @@ impl Report {
 
 /// A formula bound to a runner and a tolerance, ready to run.
 pub struct Check<'a> {
-    /// What is tested.
+    /// Formula under test.
     pub formula: &'a Formula,
-    /// What runs the shader.
+    /// Runner of the shader.
     pub runner: &'a mut dyn Runner,
-    /// What it is held to.
+    /// Tolerance of the results.
     pub tolerance: &'a Tolerance,
 }
 
-/// What a row's results are worth.
+/// Judgement of a row's results.
 struct Judged {
     verdict: Verdict,
-    /// The first invariant or pair that is broken.
+    /// First broken invariant or pair.
     broken: Option<String>,
-    /// Whether loops were ended at the limit of turns, of the row or of its pair.
+    /// Whether a loop reached the iteration limit, in the row or in its pair.
     stopped: bool,
 }
 
@@ -107,19 +111,21 @@ impl Judged {
         self.stopped || !self.verdict.holds() || self.broken.is_some()
     }
 
-    /// How badly the row fails; above 1 where it does.
+    /// Returns how badly the row fails; above 1 if it does.
     fn badness(&self) -> f64 {
         if self.stopped || self.verdict.nonfinite {
             return f64::INFINITY;
         }
-        // A broken invariant has no measure of its own; it counts as just failing, so that a larger error leads.
+        // A broken invariant has no measure of its own. It counts as just failing, so that a larger
+        // error takes precedence.
         let invariant = if self.broken.is_some() { 1.0 + f64::EPSILON } else { 0.0 };
         self.verdict.ratio.max(invariant)
     }
 }
 
 impl Check<'_> {
-    /// Tests `replayed` rows first, then `settings.cases` random ones, and shrinks the worst if any failed.
+    /// Tests the `replayed` rows first, then `settings.cases` random ones, and shrinks the worst if
+    /// any failed.
     pub fn run(&mut self, settings: Settings, replayed: &[Words]) -> Result<Report, DispatchError> {
         let start = Instant::now();
         let mut report = Report {
@@ -136,14 +142,16 @@ impl Check<'_> {
             edges: self.formula.edges.iter().map(|edge| (edge.name, 0)).collect(),
             seconds: 0.0,
         };
-        // Apart from the report's worst, which may be a replayed row: those have no draws to shrink by.
+        // Kept apart from the report's worst row, which may be a replayed one without draws to
+        // shrink.
         let mut worst_random: Option<(u64, f64)> = None;
         if !replayed.is_empty() {
             self.batch(&replayed.concat(), &mut report)?;
         }
         let width = self.runner.argument_words();
         let mut first = 0;
-        // Where loops are ended at the limit the verdict is clear, and more rows of so many turns take long.
+        // After a loop reaches the limit the verdict is clear, and more rows with as many
+        // iterations take long.
         while first < settings.cases && report.stopped == 0 {
             let most = if self.runner.loops() && first == 0 { FIRST_ROWS } else { ROWS_PER_DISPATCH };
             let rows = (settings.cases - first).min(most as u64) as usize;
@@ -155,7 +163,8 @@ impl Check<'_> {
                 }
             });
             let (index, badness) = self.batch(&arguments, &mut report)?;
-            // Of the random inputs alone: a replayed one says nothing of what the generator reaches.
+            // Counts random inputs only: a replayed one says nothing about the reach of the
+            // generator.
             for (edge, (_, count)) in self.formula.edges.iter().zip(&mut report.edges) {
                 *count += arguments.par_chunks_exact(width).filter(|row| (edge.reached)(row)).count() as u64;
             }
@@ -167,7 +176,7 @@ impl Check<'_> {
         if report.failed > 0 {
             report.shrunk = Some(match worst_random {
                 Some((row, badness)) => self.shrink(settings.seed, row, badness)?,
-                // A replayed row was shrunk when it was written down.
+                // A replayed row was shrunk when it was recorded.
                 None => report.worst.clone(),
             });
         }
@@ -176,7 +185,8 @@ impl Check<'_> {
         Ok(report)
     }
 
-    /// Tests a batch and adds it to the report; returns the index of its worst row, and how badly that fails.
+    /// Tests a batch and adds it to the report. Returns the index of its worst row, and how badly
+    /// that row fails.
     fn batch(&mut self, arguments: &[u32], report: &mut Report) -> Result<(usize, f64), DispatchError> {
         let width = self.runner.argument_words();
         let batch = self.judge(arguments)?;
@@ -202,7 +212,7 @@ impl Check<'_> {
         Ok(worst)
     }
 
-    /// What a row breaks; none where it holds.
+    /// Returns the reason why a row fails, or `None` if it holds.
     fn reason(&self, row: &Judged) -> Option<String> {
         if row.stopped {
             return Some(self.runner.why_stopped());
@@ -263,7 +273,7 @@ impl Check<'_> {
             .map_init(Default::default, |scratch, row| judge_row(row, false, scratch))
             .collect();
         let wrong: Vec<usize> = (0..rows).filter(|row| !judged[*row].verdict.holds()).collect();
-        // Of a function that is wrong everywhere it would take long and say nothing new.
+        // For a function that is wrong everywhere this would take long and tell nothing new.
         if wrong.len() <= MOST_RECONSIDERED {
             let again = wrong.par_iter().map_init(Default::default, |scratch, row| judge_row(*row, true, scratch));
             let again: Vec<Judged> = again.collect();
@@ -272,15 +282,16 @@ impl Check<'_> {
         Ok(judged)
     }
 
-    /// The simplest input near row `row` that still fails at least half as badly.
+    /// Returns the simplest input near row `row` that still fails at least half as badly.
     fn shrink(&mut self, seed: u64, row: u64, worst: f64) -> Result<Words, DispatchError> {
         let mut tree = self.formula.domain.tree(seed, row);
         let mut simplest = tree.current();
-        // Half the worst, so that the search does not end on the tolerance's edge; still failing in any case.
+        // Half the worst, so that the search does not end on the tolerance's edge; every candidate
+        // must still fail.
         let enough = (worst / 2.0).min(f64::MAX);
         let mut fails = true;
         for _ in 0..MOST_SHRINKS {
-            // As proptest's own runner: what a step back leads to is tested as well.
+            // As in proptest's own runner, the value after a step back is tested as well.
             if !(if fails { tree.simplify() } else { tree.complicate() }) {
                 break;
             }

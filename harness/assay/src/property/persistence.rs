@@ -1,30 +1,32 @@
-//! Failing inputs, kept as bits in a folder and replayed first in later runs of the cookbook's own functions.
+//! Failing inputs, kept as bits in a folder and replayed first in later runs of the cookbook's own
+//! functions.
 //!
-//! One file a function, one line an input: the words in hexadecimal, then a comment that says what they failed.
+//! One file per function, one line per input: the words in hexadecimal, then a comment with the
+//! reason of the failure.
 
 use crate::formula::Words;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-/// Why inputs could not be read or written.
+/// The reason why inputs could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum PersistenceError {
-    /// The system's word.
+    /// An error from the operating system.
     #[error("{path}: failing inputs cannot be kept there: {error}; choose another folder with --failures DIR")]
     Io {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// What went wrong.
+        /// Cause.
         error: std::io::Error,
     },
     /// A line that does not hold a row.
     #[error("{path}:{line}: expected {expected} words of 8 hexadecimal digits; correct or delete the line")]
     Line {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Which line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// How many words a row has.
+        /// Number of words in a row.
         expected: usize,
     },
 }
@@ -36,7 +38,7 @@ pub struct Regressions {
 }
 
 impl Regressions {
-    /// Files in `folder`.
+    /// Uses the files in `folder`.
     pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
     }
@@ -45,7 +47,7 @@ impl Regressions {
         self.folder.join(format!("{function}.txt"))
     }
 
-    /// The rows kept for `function`, of `words` words each; none where there is no file.
+    /// Returns the rows kept for `function`, of `words` words each; empty if there is no file.
     pub fn load(&self, function: &str, words: usize) -> Result<Vec<Words>, PersistenceError> {
         let path = self.path(function);
         let text = match std::fs::read_to_string(&path) {
@@ -68,7 +70,7 @@ impl Regressions {
         Ok(rows)
     }
 
-    /// Keeps a failing row, unless it is kept already, and returns the file.
+    /// Keeps a failing row, unless it is already kept, and returns the file's path.
     pub fn store(&self, function: &str, row: &Words, reason: &str) -> Result<PathBuf, PersistenceError> {
         let path = self.path(function);
         if self.load(function, row.len())?.contains(row) {

@@ -1,4 +1,4 @@
-//! What a function promises outside of its domain, tested.
+//! Tests of a function's promises outside its domain.
 
 use super::alone;
 use crate::dispatch::DispatchError;
@@ -9,10 +9,11 @@ use crate::runner::Runner;
 use crate::shape::Scalar;
 use crate::tolerance::{Tolerance, Verdict, number};
 
-/// Inputs tried for each promise.
+/// Number of inputs per promise.
 const CASES: u64 = 2_048;
 
-/// Runs `promises` of `formula`; a line for each that does not hold, with the first input at which it does not.
+/// Tests `promises` of `formula`. Returns a line for each broken promise, with the first input that
+/// breaks it.
 pub fn broken(
     runner: &mut dyn Runner,
     formula: &Formula,
@@ -40,7 +41,7 @@ pub fn broken(
             let range = index * width..(index + 1) * width;
             let result = &results[range.clone()];
             let verdict = match &promise.claim {
-                // Of infinities and NaNs the standard says nothing.
+                // The standard says nothing about infinities and NaNs.
                 _ if is_portable && !alone::is_stated(formula, row) => Ok(()),
                 Claim::Accuracy => ratio(alone::verdict_of(is_portable, formula, tolerance, row, result, is_portable)),
                 Claim::Like(transform) if is_portable => {
@@ -75,7 +76,7 @@ fn all_finite(formula: &Formula, result: &[u32]) -> Result<(), String> {
 }
 
 fn same_bits(formula: &Formula, result: &[u32], other: &[u32]) -> Result<(), String> {
-    // 0 and -0 are one number; a NaN is none.
+    // 0 and -0 are the same number; a NaN is no number.
     let differ = |(word, other): (&u32, &u32), scalar: Scalar| match scalar {
         Scalar::F32 => f32::from_bits(*word) != f32::from_bits(*other),
         _ => word != other,

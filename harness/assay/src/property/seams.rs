@@ -1,9 +1,11 @@
 //! Continuity: both sides of every branch, one ulp apart.
 //!
-//! The interpreter says which way a function goes at each of its branches. Where two inputs go different ways, the place between them at which
-//! the way changes is found by halving: one of the draws that an input is made of is halved, so that all inputs on the way lie in the domain,
-//! and then one float, down to neighbours. Both sides are held to the function's tolerance, like any input. Then they are within their bounds of
-//! each other as well, provided that the mathematics does not jump there ([`jump`]); and that is asked of the oracle, in the f64 between the two.
+//! The interpreter records the path that a function takes through its branches. If two inputs take
+//! different paths, bisection finds the place between them at which the path changes: first it
+//! bisects one of the draws behind the input, so that all inputs on the way lie in the domain, and
+//! then one float, down to neighbours. Both sides are held to the function's tolerance, like any
+//! input. They are then within their bounds of each other as well, provided that the mathematics
+//! does not jump there ([`jump`]); the oracle answers that, in f64 between the two.
 
 use super::alone;
 use crate::dispatch::DispatchError;
@@ -17,47 +19,51 @@ use crate::tolerance::{Tolerance, number, ulp_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Pairs of inputs that are tried, and fewer for a function that takes long: what that comes to in operations.
+/// Maximum number of pairs of inputs to try; a slow function gets fewer, within the number of
+/// operations below.
 const MOST_ATTEMPTS: u64 = 4_000;
 const MOST_OPERATIONS: u64 = 8_000_000;
 
-/// Runs of the function that finding one seam takes, about.
+/// Approximate number of runs of the function to find one seam.
 const RUNS: u64 = 40;
 
-/// Seams that are kept of one branch.
+/// Maximum number of seams kept for one branch.
 const MOST_OF_A_BRANCH: usize = 16;
 
-/// How far apart the inputs of two neighbouring draws may be, in ulp of a vector's largest component: of a unit vector that is still one.
+/// Largest distance between the inputs of two neighbouring draws, in ulp of a vector's largest
+/// component; a unit vector is still one at this distance.
 const NEIGHBOURS: f64 = 2.0;
 
-/// Faults that are searched for thoroughly before the rest are taken as they are.
+/// Number of faults that are searched for thoroughly; the rest are taken as they are.
 const ENOUGH_FAULTS: usize = 16;
 
-/// Halvings of the way between two neighbouring floats: far fewer than f64 resolves there.
+/// Bisections between two neighbouring floats: far fewer than f64 resolves there.
 const HALVINGS: usize = 20;
 
-/// Floats beyond either side that are tested as well: where a device rounds otherwise, the way may change there.
+/// Floats beyond either side that are tested as well, since a device that rounds differently may
+/// change its path there.
 const BESIDE: usize = 2;
 
-/// The way that a function goes on one input.
+/// The path of a function on one input.
 type Way = Vec<Decision>;
 
 /// Two neighbouring inputs on either side of a branch.
 #[derive(Clone, Debug)]
 pub struct Seam {
-    /// Which branch: the first that goes another way.
+    /// First branch at which the paths differ.
     pub site: Site,
-    /// All that go another way, as far as both sides run the same statements.
+    /// All branches at which the paths differ, as far as both sides run the same statements.
     pub parted: Vec<Site>,
-    /// The inputs: they differ in one word.
+    /// The two inputs, which differ in one word.
     pub sides: [Words; 2],
-    /// Which word that is.
+    /// Index of that word.
     pub word: usize,
-    /// The inputs that were drawn on the way to it: they lie in the domain, where a float moved alone may have left it.
+    /// Inputs drawn on the way to the seam. They lie in the domain, which a float moved alone may
+    /// have left.
     pub drawn: Vec<Words>,
 }
 
-/// Finds inputs on either side of as many branches as random inputs lead to.
+/// Finds inputs on either side of as many branches as random inputs reach.
 pub fn find(program: &Program, formula: &Formula, seed: u64) -> Result<Vec<Seam>, Stopped> {
     let scalars: Vec<Scalar> = formula.arguments.iter().flat_map(Shape::scalars).collect();
     let operations = program.run(&formula.domain.row(seed, 0), &mut Traced::default(), &mut Vec::new())?;
@@ -65,7 +71,7 @@ pub fn find(program: &Program, formula: &Formula, seed: u64) -> Result<Vec<Seam>
     let search = Finder { program, formula, scalars };
     let found: Vec<Option<Seam>> = (0..attempts)
         .into_par_iter()
-        // The draws of a strategy's value are its generator's seed, half of which leads nowhere.
+        // The draws of a strategy's value seed its generator; bisecting them leads nowhere.
         .filter(|attempt| attempt % 4 == 0 || !formula.domain.is_of_strategy())
         .map(|attempt| if attempt % 4 == 0 { search.nudge(seed, attempt) } else { search.halve(seed, attempt) })
         .collect::<Result<_, _>>()?;
@@ -91,7 +97,7 @@ impl Finder<'_> {
         Ok(traced.decisions)
     }
 
-    /// From a row to the same with one draw replaced.
+    /// Finds a seam between a row and the same row with one draw replaced.
     fn halve(&self, seed: u64, attempt: u64) -> Result<Option<Seam>, Stopped> {
         let domain = &self.formula.domain;
         let mut draws = domain.draws(seed, attempt);
@@ -117,7 +123,8 @@ impl Finder<'_> {
         Ok(self.between(&drawn[0], &drawn[1])?.map(|seam| Seam { drawn: drawn.to_vec(), ..seam }))
     }
 
-    /// From a row to the same with one float moved by an ulp: this is how a branch is met that only one number takes.
+    /// Finds a seam between a row and the same row with one float moved by an ulp. This finds a
+    /// branch that only one number takes.
     fn nudge(&self, seed: u64, attempt: u64) -> Result<Option<Seam>, Stopped> {
         let row = self.formula.domain.row(seed, attempt);
         if row.is_empty() {
@@ -135,7 +142,7 @@ impl Finder<'_> {
         Ok(self.seam(row, moved, word)?.map(|seam| Seam { drawn, ..seam }))
     }
 
-    /// The seam between two rows that are all but equal, float by float.
+    /// Finds the seam between two nearly equal rows, float by float.
     fn between(&self, near: &Words, far: &Words) -> Result<Option<Seam>, Stopped> {
         if !self.are_neighbours(near, far) {
             return Ok(None);
@@ -152,7 +159,8 @@ impl Finder<'_> {
                 row = moved;
                 continue;
             }
-            // Here the way changes: down to neighbouring floats. Beside a large component there are billions of them about 0.
+            // The path changes here; bisection continues down to neighbouring floats. In a vector
+            // with a large component, billions of floats lie around 0.
             let [mut one, mut other] = [row[word], moved[word]].map(ordered);
             while one.abs_diff(other) > 1 {
                 let middle = one.midpoint(other);
@@ -188,34 +196,34 @@ impl Finder<'_> {
             let (near, far) = (numbers(near), numbers(far));
             let scale = near.iter().chain(&far).fold(0.0, |scale: f64, value| scale.max(value.abs()));
             let reach = if leaf.scalar == Scalar::F32 { NEIGHBOURS * ulp_of(scale) } else { 0.0 };
-            // A NaN is nobody's neighbour.
+            // A NaN has no neighbours.
             near.iter().zip(&far).all(|(near, far)| near == far || (near - far).abs() <= reach)
         })
     }
 }
 
-/// The next float; beside 0 the least that no device flushes.
+/// Returns the next float; next to 0, the smallest one that no device flushes.
 fn step(value: f32, up: bool) -> f32 {
     let next = if up { value.next_up() } else { value.next_down() };
     if next.is_subnormal() && value == 0.0 { next.signum() * f32::MIN_POSITIVE } else { next }
 }
 
-/// A float's bits as a number that grows with it, both zeros apart.
+/// Maps a float's bits to a number that grows with the float and keeps both zeros apart.
 fn ordered(bits: u32) -> u32 {
     if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
 }
 
-/// The float's bits again.
+/// Maps such a number back to the float's bits.
 fn unordered(number: u32) -> u32 {
     if number >> 31 == 1 { number & 0x7fff_ffff } else { !number }
 }
 
-/// What the shader breaks beside a branch: a side that is off by more than its tolerance or breaks an invariant.
+/// A fault of the shader next to a branch: a side exceeds its tolerance or breaks an invariant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The line that the branch is on.
+    /// Source line of the branch.
     pub line: String,
-    /// What, and at which input.
+    /// The fault and its input.
     pub what: String,
 }
 
@@ -225,7 +233,8 @@ impl std::fmt::Display for Fault {
     }
 }
 
-/// What the shader breaks at seams, at inputs beside each that `rows` gives: [`Seam::drawn`] or [`beside`].
+/// Returns the faults of the shader at seams, at the inputs that `rows` gives for each:
+/// [`Seam::drawn`] or [`beside`].
 pub fn faults(
     program: &Program,
     formula: &Formula,
@@ -243,12 +252,13 @@ pub fn faults(
     let mut results = Words::new();
     runner.run(&rows.concat(), &mut results)?;
     for ((row, site), result) in rows.iter().zip(sites).zip(results.chunks_exact(formula.result.words())) {
-        // Of infinities the standard says nothing; halving goes on to where a device that knows none turns.
+        // The standard says nothing about infinities; bisection leads to the point at which a
+        // device without them changes its path.
         if runner.is_portable() && !alone::is_stated(formula, row) {
             continue;
         }
         let judge = |thoroughly| alone::verdict_of(runner.is_portable(), formula, tolerance, row, result, thoroughly);
-        // Of a function that is wrong everywhere a few faults are enough, and need no long search.
+        // For a function that is wrong everywhere a few faults suffice, without a long search.
         let quick = judge(false);
         let verdict = if quick.holds() || faults.len() > ENOUGH_FAULTS { quick } else { judge(true) };
         let fault = match alone::broken(formula, row, result, runner.is_portable()) {
@@ -263,8 +273,9 @@ pub fn faults(
     Ok(faults)
 }
 
-/// What `cook check` says of the branches of a formula's function in `source`: up to three faults, at inputs of the domain. Where the interpreter
-/// cannot run the function, why.
+/// Returns the faults that `cook check` reports for the branches of a formula's function in
+/// `source`: up to three, at inputs of the domain. If the interpreter cannot run the function,
+/// returns the reason.
 pub fn of_source(
     source: &str,
     formula: &Formula,
@@ -284,7 +295,7 @@ pub fn of_source(
     Ok(Ok(found))
 }
 
-/// A seam's sides and the next floats beyond each.
+/// Returns a seam's sides and the next floats beyond each.
 pub fn beside(seam: &Seam) -> Vec<Words> {
     let [one, other] = seam.sides.each_ref().map(|side| f32::from_bits(side[seam.word]));
     let up = other > one;
@@ -293,7 +304,7 @@ pub fn beside(seam: &Seam) -> Vec<Words> {
         let mut value = start;
         for _ in 0..BESIDE {
             value = step(value, up);
-            // Beyond 0 and beyond the largest float the other side of the domain may begin.
+            // Beyond 0 and beyond the largest float, the other side of the domain may begin.
             let mut row = seam.sides[side].clone();
             row[seam.word] = if value.is_normal() { value } else { start }.to_bits();
             rows.push(row);
@@ -302,8 +313,9 @@ pub fn beside(seam: &Seam) -> Vec<Words> {
     rows
 }
 
-/// By how much the oracle jumps between a seam's sides, if by more than the tolerances of both allow: halving towards the greater change leaves
-/// less and less of a continuous function, and all of a jump. None where a discrete result changes, which says so itself.
+/// Returns the jump of the oracle between a seam's sides, if it exceeds the tolerances of both.
+/// Bisection towards the greater change keeps less and less of a continuous function's change, but
+/// all of a jump. Returns `None` if a discrete result changes, which shows by itself.
 pub fn jump(formula: &Formula, tolerance: &Tolerance, seam: &Seam) -> Option<f64> {
     let [start, end] = seam.sides.each_ref().map(|side| formula.numbers(side));
     let at = |place: f64| {

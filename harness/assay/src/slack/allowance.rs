@@ -1,7 +1,9 @@
-//! How far a result may be off to first order: what every operation may err by, times the derivative of the result by it, added up.
+//! Allowed error of a result to first order: the sum over all operations of the allowed error times
+//! the derivative of the result with respect to the operation.
 //!
-//! A call is recorded, operation by operation, and the record run backwards (adjoints, as in automatic differentiation). What first order does not see: the branches that an
-//! error changes, and where a derivative is infinite, as of a root at 0. Those rows are counted apart.
+//! A call is recorded operation by operation, and the record is run backwards (adjoints, as in
+//! automatic differentiation). First order misses the branches that an error changes, and infinite
+//! derivatives, such as that of a root at 0; rows with infinite derivatives are counted separately.
 
 use crate::formula::{Formula, Words};
 use crate::interpreter::{Exact, Float, Machine, Operation, Program, Registers, Slack, Stopped};
@@ -12,56 +14,60 @@ use rayon::prelude::*;
 /// Rows that one thread takes at a time.
 const ROWS_PER_TASK: usize = 64;
 
-/// Operations of all rows together; of a function that takes long fewer rows are run.
+/// Most operations of all rows together; a function that takes long is run on fewer rows.
 const MOST_OPERATIONS: u64 = 2_000_000_000;
 
-/// A stated bound beside what first order allows.
+/// A stated bound compared with the first-order allowance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Allowance {
-    /// Rows that first order says something of.
+    /// Rows with a first-order allowance.
     pub rows: u64,
-    /// Those that it does not: a derivative is not finite there, or an argument is subnormal.
+    /// Rows without one: a derivative is not finite, or an argument is subnormal.
     pub beyond: u64,
-    /// The largest allowance of a row over the stated bound there.
+    /// Largest ratio of a row's allowance to its stated bound.
     pub largest: f64,
-    /// The row of the largest.
+    /// Row of the largest ratio.
     pub at: Words,
-    /// Each part of the result that is a float.
+    /// Float parts of the result.
     pub fields: Vec<Field>,
 }
 
-/// A part of the result beside its bound.
+/// A part of the result and its bound.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Field {
-    /// Its name; empty where the result has no parts.
+    /// Name; empty if the result has no parts.
     pub name: String,
-    /// The largest allowance of a row over the stated bound there.
+    /// Largest ratio of a row's allowance to its stated bound.
     pub largest: f64,
-    /// The same with what the result is off by that rounds every operation to nearest: where the function is an approximation, most of that is the method's error.
+    /// The same ratio with the error of the result under rounding to nearest added. In an
+    /// approximation, most of that is the error of the method.
     pub with_method: f64,
-    /// Whether it is stated to be exact: then what may be flushed is all that is allowed, and it is not too much.
+    /// Whether the part is stated to be exact. Then the bound allows only flushing, and is not too
+    /// large.
     pub is_exact: bool,
 }
 
-/// How many times larger than the allowance a bound may be.
+/// Largest factor by which a bound may exceed the allowance.
 const MOST_SPARE: f64 = 8.0;
 
 impl Field {
-    /// Whether the bound is neither below what first order allows nor far above it.
+    /// Returns whether the bound is neither below the first-order allowance nor far above it.
     pub fn is_fitting(&self) -> bool {
         self.largest <= 1.0 && (self.is_exact || MOST_SPARE * self.with_method >= 1.0)
     }
 }
 
-/// How far each operation may be off.
+/// Accuracy of each operation.
 pub trait Accuracy: Sync {
-    /// The largest distance of a result from the exact one, which WGSL lets be off by `slack`. `function` is a function with its first argument, none of an infix operator;
-    /// a power is a logarithm, a product and an exponential (`Log2`, none, `Exp2`).
+    /// Returns the largest distance of a result from the exact one, for an operation that WGSL
+    /// allows an error of `slack`. `function` holds the function and its first argument, or is
+    /// `None` for an infix operator. A power is a logarithm, a product and an exponential (`Log2`,
+    /// `None`, `Exp2`).
     fn reach(&self, function: Option<(Float, f32)>, exact: Exact, slack: Slack) -> f64;
 }
 
-/// What WGSL allows.
+/// The accuracy that WGSL requires.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wgsl;
 
@@ -76,17 +82,17 @@ impl Accuracy for Wgsl {
 struct Node {
     operands: [u32; 2],
     partials: [f64; 2],
-    /// How far it may be off its exact value.
+    /// Largest error of its result.
     reach: f64,
-    /// What is lost where it is flushed.
+    /// Error if the result is flushed.
     flushed: f64,
 }
 
-/// A machine that rounds to nearest and records.
+/// A machine that rounds to nearest and records operations.
 struct Recorder<'a> {
     accuracy: &'a dyn Accuracy,
     nodes: Vec<Node>,
-    /// The roundings of the operation that runs.
+    /// Roundings of the current operation.
     steps: Vec<(Exact, Slack)>,
 }
 
@@ -101,11 +107,12 @@ impl Machine for Recorder<'_> {
     fn recorded(&mut self, operation: Operation) -> u32 {
         let reach = match self.steps[..] {
             [] => 0.0,
-            // pow(x, y) as exp2(y log2(x)): what the logarithm and the product are off by goes through the power.
+            // pow(x, y) as exp2(y log2(x)): the errors of the logarithm and the product pass
+            // through the power.
             [logarithm, product, power] => {
                 let base = operation.function.map_or(1.0, |(_, base)| base);
                 let of = |function, (exact, slack): (Exact, Slack)| self.accuracy.reach(function, exact, slack);
-                // The derivative by x is y x^(y - 1), so that this is |y| x^y.
+                // The derivative with respect to x is y x^(y - 1), so this is |y| x^y.
                 let by_logarithm = (operation.partials[0] * logarithm.0.value.exp2()).abs();
                 let exponent = of(Some((Float::Log2, base)), logarithm) * by_logarithm;
                 let exponent = exponent + of(None, product) * power.0.value.abs();
@@ -122,18 +129,18 @@ impl Machine for Recorder<'_> {
     }
 }
 
-/// What first order says of one row.
+/// The first-order analysis of one row.
 #[derive(Clone, Debug, Default)]
 struct FirstOrder {
     /// The result.
     result: Words,
-    /// How far each word of the result may be off.
+    /// Largest error of each word of the result.
     reach: Vec<f64>,
-    /// The derivative of each by each word of the arguments.
+    /// Derivatives of each word of the result with respect to each word of the arguments.
     by_argument: Vec<Vec<f64>>,
 }
 
-/// Runs a row and goes back over what it did.
+/// Runs a row and propagates the adjoints back through the record.
 fn first_order(
     program: &Program,
     registers: &mut Registers,
@@ -156,8 +163,8 @@ fn first_order(
             if node.reach > 0.0 {
                 reach += adjoint.abs() * node.reach;
             }
-            // What is 0 is not flushed once more, so that of a chain the worst counts; of terms beside each other that is too little, which the runs on
-            // devices that flush look for.
+            // A 0 is not flushed again, so the worst flush of a chain counts. That is too little
+            // for independent terms; the runs on flushing devices cover those.
             if node.flushed > 0.0 {
                 flushed = flushed.max(adjoint.abs() * node.flushed);
             }
@@ -174,10 +181,11 @@ fn first_order(
     Ok(found)
 }
 
-/// Lays a formula's stated bound beside what first order allows, for random inputs and the hard cases.
+/// Compares a formula's stated bound with the first-order allowance, for random inputs and the hard
+/// cases.
 ///
 /// # Errors
-/// Where the interpreter cannot run the function, or it does not end.
+/// Returns an error if the interpreter cannot run the function, or the function does not end.
 pub fn of_formula(
     program: &Program,
     formula: &Formula,
@@ -199,7 +207,7 @@ pub fn of_formula(
         .map_init(
             || registers.clone(),
             |registers, row| {
-                // Such a one may have been read as 0.
+                // A subnormal argument may have been read as 0.
                 if alone::has_subnormals(formula, row) {
                     return Ok(None);
                 }
@@ -313,7 +321,8 @@ mod tests {
     #[test]
     fn an_allowance_is_what_the_operations_may_add() {
         let unit = 2f64.powi(-23);
-        // A sum that is exact; one rounding; a rounding of 1e4's unit that the difference leaves over.
+        // Exact operations; one rounding; a rounding in the unit of 8192 that the difference leaves;
+        // a quotient and functions with bounds of their own.
         for (expression, at, reach) in [
             ("x + y", [0.5, 0.25], 0.0),
             ("x * 2.0f", [0.3, 0.0], 0.0),
@@ -328,7 +337,7 @@ mod tests {
         }
     }
 
-    /// What devices make of it stays within: the second order is far below the first here.
+    /// Results of devices stay within the allowance: the second order is far below the first here.
     #[test]
     fn no_device_exceeds_it() {
         for expression in EXPRESSIONS {
@@ -341,7 +350,7 @@ mod tests {
                 for key in 0..64 {
                     let key = mix(key ^ mix(row));
                     let found = value(&program, at, &mut Device::new(Mode::of(key), key));
-                    // The result to nearest is itself off by as much at most.
+                    // The result under rounding to nearest is itself off by at most as much.
                     assert!(
                         (found - nearest).abs() <= 2.001 * reach,
                         "{expression} at {at:?}: {found}, {nearest} ± {reach:e}"

@@ -1,4 +1,5 @@
-//! The worst that a device may make of one row: the shares by which its operations err, turned one by one as long as that makes it worse.
+//! Search for the worst result that a device may return for one row. It flips the operations'
+//! shares of the allowed error one by one as long as the result gets worse.
 
 use super::device::{Device, Direction, Habit, Mode};
 use crate::draws::mix;
@@ -8,33 +9,34 @@ use crate::property::alone::verdict;
 use crate::tolerance::Tolerance;
 use rayon::prelude::*;
 
-/// Sets of shares that a climb starts from.
+/// Sets of shares from which a climb starts.
 const STARTS: u64 = 4;
 
-/// Rounds over all operations in a climb.
+/// Passes over all operations in a climb.
 const ROUNDS: usize = 3;
 
-/// Groups of operations, one after the other, that are turned together where there are more of them.
+/// Most groups in a climb. If there are more operations, consecutive ones are flipped together.
 const GROUPS: usize = 128;
 
-/// Operations that all climbs of a function may take together.
+/// Most operations of all climbs of a function together.
 const MOST_OPERATIONS: usize = 200_000_000;
 
-/// The worst found.
+/// The worst result found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// Its error over the allowed one.
+    /// Ratio of its error to the allowed error.
     pub ratio: f64,
-    /// The input.
+    /// Its input.
     pub arguments: Words,
-    /// The result there.
+    /// Result at that input.
     pub result: Words,
 }
 
-/// Climbs from each of `rows`, from the first ones where the function takes long, and returns the worst of all; none where there is no row, or one takes too long.
+/// Climbs from each of `rows`, or only from the first ones if the function takes long, and returns
+/// the worst result of all. Returns `None` if there is no row or the first row takes too long.
 ///
 /// # Errors
-/// Where the interpreter cannot run the function, or a row does not end.
+/// Returns an error if the interpreter cannot run the function, or a row does not end.
 pub fn worst(
     program: &Program,
     formula: &Formula,
@@ -55,14 +57,14 @@ pub fn worst(
     Ok(found.into_iter().reduce(|worst, next| if next.ratio > worst.ratio { next } else { worst }))
 }
 
-/// How many rows may be climbed from: none where one takes too long.
+/// Returns the number of rows that the budget allows; 0 if one takes too long.
 fn affordable(program: &Program, row: &[u32]) -> Result<usize, Stopped> {
     let mut device = Device::new(Mode::IDENTITY, 0);
     let steps = program.run(row, &mut device, &mut Words::new())?.max(1) as usize;
     Ok(MOST_OPERATIONS / (steps * device.operations().clamp(1, GROUPS) * ROUNDS * STARTS as usize))
 }
 
-/// The other way, each.
+/// Flips the sign of each share.
 fn turn(shares: &mut [f32]) {
     shares.iter_mut().for_each(|share| *share = -*share);
 }
@@ -78,8 +80,10 @@ struct Climb<'a> {
 }
 
 impl Climb<'_> {
-    /// The error over the allowed one, the result, and how many operations there were. What `backward` allows is left out, which takes a search, but where a
-    /// flag or an integer differs: there nothing else tells one result from a worse one.
+    /// Returns the ratio of the error to the allowed error, the result, and the number of
+    /// operations. The ratio leaves out the allowance of `backward`, which takes a search, unless it
+    /// would be infinite, as for a flag that differs: then nothing else tells one result from a worse
+    /// one.
     fn forward(&mut self, mode: Mode, key: u64, shares: &[f32]) -> Result<(f64, Words, usize), Stopped> {
         let mut device = Device::with_shares(mode, key, shares);
         let mut result = Words::new();
@@ -125,7 +129,7 @@ impl Climb<'_> {
                     break;
                 }
             }
-            // What is right for an input nearby is right.
+            // A result that is right for a nearby input is right.
             if ratio > 1.0 {
                 ratio = verdict(self.formula, self.tolerance, self.row, &result, true).ratio;
             }

@@ -1,13 +1,13 @@
-//! A device that WGSL allows: it errs in every operation, within what the standard lets it.
+//! A device that WGSL allows: it errs in every operation, within the limits of the standard.
 
 use crate::draws::mix;
 use crate::interpreter::{Assumption, Exact, Machine, Slack};
 use std::collections::BTreeSet;
 
-/// Which way operations err.
+/// Direction in which operations err.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Not at all: to nearest.
+    /// No error: rounded to nearest.
     Nearest,
     /// All upwards.
     Up,
@@ -17,42 +17,42 @@ pub enum Direction {
     Outward,
     /// All towards zero.
     Inward,
-    /// Each as far as it may, up or down.
+    /// Each as far as allowed, up or down.
     Extreme,
-    /// Each by some share of what it may.
+    /// Each by a random share of the allowed error.
     Share,
 }
 
-/// What a device does with its choice, by operation: never, always, or now and then.
+/// How often a device makes use of a choice, by operation: never, always or at times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Habit {
     /// Never.
     Never,
     /// Always.
     Always,
-    /// As chance has it.
+    /// At random.
     Sometimes,
 }
 
 /// The kind of device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mode {
-    /// Which way it rounds.
+    /// Direction of rounding.
     pub direction: Direction,
-    /// Whether products go into sums unrounded.
+    /// Whether products enter sums unrounded.
     pub fuses: Habit,
     /// Whether subnormals become 0.
     pub flushes: Habit,
-    /// Whether zeros lose their sign, and what is no number becomes anything.
+    /// Whether zeros lose their sign, and infinities and NaNs become any value.
     pub finite_math: Habit,
 }
 
 impl Mode {
-    /// Rounds to nearest, fuses nothing, keeps subnormals, signs of zeros, infinities and NaNs.
+    /// Rounds to nearest, fuses nothing, and keeps subnormals, signs of zeros, infinities and NaNs.
     pub const IDENTITY: Mode =
         Mode { direction: Direction::Nearest, fuses: Habit::Never, flushes: Habit::Never, finite_math: Habit::Never };
 
-    /// One of all, by chance.
+    /// Returns the mode that `chance` selects.
     pub fn of(chance: u64) -> Mode {
         use Direction::{Down, Extreme, Inward, Outward, Share, Up};
         let habit = |chance: u64| match chance & 3 {
@@ -70,11 +70,12 @@ impl Mode {
     }
 }
 
-/// Such a device, for one call.
+/// A device that WGSL allows, for one call.
 #[derive(Clone, Debug)]
 pub struct Device<'a> {
     mode: Mode,
-    /// Shares of what is allowed, operation by operation; the mode's direction after them.
+    /// Shares of the allowed error, operation by operation; the mode's direction applies after
+    /// them.
     shares: &'a [f32],
     key: u64,
     state: u64,
@@ -83,22 +84,23 @@ pub struct Device<'a> {
 }
 
 impl<'a> Device<'a> {
-    /// A device of that kind whose chances are `key`'s.
+    /// Returns a device of the given mode with `key` as the seed of its choices.
     pub fn new(mode: Mode, key: u64) -> Self {
         Self::with_shares(mode, key, &[])
     }
 
-    /// One whose operations err by these shares of what they may, one after the other: from -1, all of it downwards, to 1.
+    /// Returns a device with the given shares of the allowed error for its operations, in order,
+    /// from -1 (all of it downwards) to 1.
     pub fn with_shares(mode: Mode, key: u64, shares: &'a [f32]) -> Self {
         Self { mode, shares, key, state: mix(key), operations: 0, assumptions: BTreeSet::new() }
     }
 
-    /// How many operations have been rounded.
+    /// Returns the number of operations rounded so far.
     pub fn operations(&self) -> usize {
         self.operations
     }
 
-    /// What was taken to hold where the standard states nothing.
+    /// Returns the assumptions made in cases on which the standard is silent.
     pub fn assumptions(&self) -> &BTreeSet<Assumption> {
         &self.assumptions
     }
@@ -117,7 +119,7 @@ impl<'a> Device<'a> {
         }
     }
 
-    /// By which share of what it may the next operation errs.
+    /// Returns the share of the allowed error by which the next operation errs.
     #[inline(always)]
     fn share(&mut self, exact: f64) -> f64 {
         let given = self.shares.get(self.operations);
@@ -136,10 +138,10 @@ impl<'a> Device<'a> {
         }
     }
 
-    /// A float as the device may have it instead.
+    /// Returns a float as the device may replace it.
     #[inline(always)]
     fn settled(&mut self, float: f32) -> f32 {
-        // Nothing happens to what is normal.
+        // A normal float does not change.
         if float.is_normal() { float } else { self.unsettled(float) }
     }
 
@@ -152,7 +154,7 @@ impl<'a> Device<'a> {
         if float == 0.0 && self.happens(self.mode.finite_math) { -float } else { float }
     }
 
-    /// Anything.
+    /// Returns an arbitrary value.
     fn indeterminate(&mut self) -> f32 {
         let chance = self.chance();
         match chance >> 29 {
@@ -211,7 +213,8 @@ impl Machine for Device<'_> {
         if self.mode.fuses == Habit::Never || products == [false, false] {
             return None;
         }
-        // By the place in the program: a compiler fuses an operation or does not.
+        // The choice depends on the place in the program: a compiler either fuses an operation or
+        // does not.
         let chance = mix(self.key ^ mix(at as u64));
         if self.mode.fuses == Habit::Sometimes && chance & 1 == 0 {
             return None;
@@ -224,7 +227,7 @@ impl Machine for Device<'_> {
     }
 }
 
-/// The result of an operation that errs by a share of what it may.
+/// Returns the result of an operation that errs by `share` of the allowed error.
 #[inline(always)]
 fn erring(exact: Exact, share: f64, slack: Slack) -> f32 {
     let nearest = exact.value as f32;
@@ -232,7 +235,7 @@ fn erring(exact: Exact, share: f64, slack: Slack) -> f32 {
         return nearest;
     }
     match slack {
-        // What f32 holds is the result.
+        // A result that f32 can represent is exact.
         Slack::Rounded => {
             let above = exact.above(nearest);
             if share > 0.0 && above > 0.0 {
@@ -243,11 +246,13 @@ fn erring(exact: Exact, share: f64, slack: Slack) -> f32 {
                 nearest
             }
         }
-        // The units in the last place of 0 are subnormal: WGSL would let 0 / x be one, but no device is that odd.
+        // A unit in the last place of 0 is subnormal. WGSL would permit 0 / x to be one, but no
+        // device is that odd.
         Slack::Ulps(_) if exact.value == 0.0 => nearest,
         Slack::Ulps(ulps) => {
             let found = within(exact.value, share * ulps * unit(exact.value));
-            // Among subnormals so many units reach beyond 0: no device gives exp(-103) a sign.
+            // Among subnormals, this many units reach beyond 0, but no device gives exp(-103) a
+            // sign.
             if f64::from(found).signum() == exact.value.signum() { found } else { 0.0 }
         }
         Slack::Absolute(most) => within(exact.value, share * most),
@@ -261,7 +266,7 @@ fn erring(exact: Exact, share: f64, slack: Slack) -> f32 {
     }
 }
 
-/// How far a result may lie from the exact one, at most, but for what is flushed.
+/// Returns the largest distance of a result from the exact one, apart from flushing.
 pub(super) fn reach(exact: Exact, slack: Slack) -> f64 {
     let value = exact.value.abs();
     if !value.is_finite() || value > f64::from(f32::MAX) {
@@ -277,18 +282,19 @@ pub(super) fn reach(exact: Exact, slack: Slack) -> f64 {
     }
 }
 
-/// WGSL's unit in the last place: the least distance of two floats with the number between them. At a power of two that is the one below it.
+/// Returns WGSL's unit in the last place: the smallest distance of two floats that enclose the
+/// number. At a power of two, this is the unit below it.
 fn unit(number: f64) -> f64 {
     let is_power = number.to_bits() << 12 == 0;
     let unit = crate::tolerance::ulp_of(number);
     if is_power && number.abs() > f64::from(f32::MIN_POSITIVE) { 0.5 * unit } else { unit }
 }
 
-/// The float farthest off within `reach`, which has a sign.
+/// Returns the float farthest from `exact` within the signed distance `reach`.
 fn within(exact: f64, reach: f64) -> f32 {
     let end = exact + reach;
     let found = end as f32;
-    // Rounding may not carry it beyond.
+    // Rounding must not exceed the distance.
     if (f64::from(found) - exact).abs() <= reach.abs() {
         found
     } else if f64::from(found) > end {

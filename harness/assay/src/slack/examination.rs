@@ -1,4 +1,4 @@
-//! Everything that is tested of a function, on devices that err as far as WGSL lets them.
+//! All tests of a function, on devices that err as far as WGSL allows.
 
 use super::allowance::{self, Allowance, Wgsl};
 use super::{Reassociation, Slackened, climb};
@@ -11,28 +11,32 @@ use crate::property::Settings;
 use crate::tolerance::Tolerance;
 use std::collections::BTreeSet;
 
-/// Random inputs, and as many hard cases, whose worst choices are looked for.
+/// Number of random inputs, and of hard cases, for which the worst choices are searched.
 const CLIMBED: usize = 8;
 
-/// Random inputs whose first-order allowances are laid beside the bound; they take as long as the rest.
+/// Random inputs with a comparison of first-order allowance and bound. They take as long as all
+/// other tests.
 const ALLOWED: u64 = 65_536;
 
-/// What was found.
+/// Results of an examination.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// All that was tested.
+    /// Results of all tests.
     pub examination: Examination,
-    /// What was taken to hold where the standard states nothing.
+    /// Assumptions made in cases on which the standard is silent.
     pub assumptions: BTreeSet<Assumption>,
-    /// What first order says of the bound; none under reassociation, and where the function takes too long.
+    /// First-order check of the bound; `None` under reassociation, and if the function takes too
+    /// long.
     pub allowance: Option<Allowance>,
 }
 
-/// Examines the function of `formula` in `source`; `path` is for messages. `replayed` inputs, random ones, hard cases, promises outside of the domain and the inputs beside branches run on a
-/// device each; then the worst of the inputs, some hard cases and some others on the worst device that is found for them.
+/// Examines the function of `formula` in `source`; `path` appears in messages. Each of the
+/// `replayed` inputs, random inputs, hard cases, promises outside of the domain and inputs near
+/// branches runs on its own device. Then the worst input, some hard cases and some other inputs run
+/// on the worst device that a search finds for them.
 ///
 /// # Errors
-/// Where the source is not valid, or does what the interpreter cannot.
+/// Returns an error if the source is not valid, or uses a feature that the interpreter lacks.
 pub fn examine(
     formula: &Formula,
     (source, path): (&str, &str),

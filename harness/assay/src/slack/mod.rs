@@ -1,16 +1,20 @@
-//! Slack: a function as any device may run it that conforms to WGSL.
+//! Slack: a function as any device that conforms to WGSL may run it.
 //!
-//! WGSL's section on floating point (15.7) leaves a device much freedom: sums and products rounded either way, quotients and functions off by so many units in the last
-//! place, products fused with sums, sums and products in another order, subnormals flushed to zero, the sign of zero ignored, anything where a result is infinite or no number. A test
-//! on one device sees one choice of each. Here the interpreter makes them all, by chance, by rule, or as bad as they can be found.
+//! WGSL's section on floating point (15.7) leaves a device much freedom. It may round sums and
+//! products either way, let quotients and functions err by a number of units in the last place,
+//! fuse products with sums, reorder sums and products, flush subnormals to zero, ignore the sign of
+//! zero, and return any value if a result is infinite or NaN. A test on one device sees one choice
+//! of each. Here the interpreter makes all of them: at random, by rule, or as bad as a search can
+//! find.
 //!
 //! - [`Device`]: a machine for the interpreter that makes the choices of one call.
-//! - [`Slackened`]: a [`Runner`](crate::runner::Runner) whose rows run on a device each.
+//! - [`Slackened`]: a [`Runner`](crate::runner::Runner) that runs each row on its own device.
 //! - [`climb`]: the worst choices for one row.
-//! - [`allowance`]: how far a result may be off to first order, beside the bound that its comment states.
-//! - [`examine`]: everything that is tested of a formula, so.
+//! - [`allowance`]: the error of a result to first order, compared with the bound in the function's
+//!   comment.
+//! - [`examine`]: all tests of a formula on such devices.
 //!
-//! What the model takes to hold beyond the standard is named: [`Assumption`](crate::interpreter::Assumption).
+//! [`Assumption`](crate::interpreter::Assumption) names what the model assumes beyond the standard.
 
 pub mod allowance;
 pub mod climb;

@@ -1,4 +1,4 @@
-//! Rows of a function on devices that err as far as WGSL lets them.
+//! Rows of a function on devices that err as far as WGSL allows.
 
 use super::device::{Device, Mode};
 use crate::dispatch::DispatchError;
@@ -11,19 +11,20 @@ use std::collections::BTreeSet;
 /// Rows that one thread takes at a time.
 const ROWS_PER_TASK: usize = 256;
 
-/// Orders in which chains of sums and products are taken, where they are.
+/// Orders of the chains of sums and products, if they are reordered.
 const ORDERS: u64 = 16;
 
-/// Whether chains of sums and of products keep their order.
+/// Order of chains of sums and of products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reassociation {
-    /// As they are written.
+    /// As written.
     Written,
-    /// In other orders.
+    /// Changed.
     Reordered,
 }
 
-/// A function whose every row runs on another device that WGSL allows. Which one is the row's own: the same row gives the same result.
+/// A function that runs each row on a different device that WGSL allows. The row determines the
+/// device, so the same row gives the same result.
 #[derive(Debug)]
 pub struct Slackened {
     programs: Vec<Program>,
@@ -34,7 +35,7 @@ pub struct Slackened {
     why: Option<Stopped>,
 }
 
-/// What a task found of its rows.
+/// Results of one task's rows.
 struct Part {
     results: Vec<u32>,
     stopped: Vec<bool>,
@@ -43,10 +44,11 @@ struct Part {
 }
 
 impl Slackened {
-    /// The function of that name in WGSL source; `path` is for messages, `seed` for the devices' choices.
+    /// Compiles the named function of WGSL source. `path` appears in messages, and `seed`
+    /// determines the devices' choices.
     ///
     /// # Errors
-    /// Where the source is not valid, or does what the interpreter cannot.
+    /// Returns an error if the source is not valid, or uses a feature that the interpreter lacks.
     pub fn new(
         source: &str,
         path: &str,
@@ -63,10 +65,10 @@ impl Slackened {
         slackened.map_err(|stopped| DispatchError::Fault { line: None, message: stopped.to_string() })
     }
 
-    /// A function that is compiled.
+    /// Wraps a compiled function.
     ///
     /// # Errors
-    /// Where it does what the interpreter cannot.
+    /// Returns an error if the function uses a feature that the interpreter lacks.
     pub fn of_program(program: Program, seed: u64) -> Result<Slackened, Stopped> {
         Self::of_programs(vec![program], seed)
     }
@@ -76,17 +78,17 @@ impl Slackened {
         Ok(Slackened { programs, words, seed, assumptions: BTreeSet::new(), stopped: Vec::new(), why: None })
     }
 
-    /// The function, in the first of its orders.
+    /// Returns the function in the first of its orders.
     pub(super) fn program(&self) -> &Program {
         &self.programs[0]
     }
 
-    /// What was taken to hold so far where the standard states nothing.
+    /// Returns the assumptions made so far in cases on which the standard is silent.
     pub fn assumptions(&self) -> &BTreeSet<Assumption> {
         &self.assumptions
     }
 
-    /// A row's key, from its words: whoever runs it again gets the same device.
+    /// Returns a row's key, computed from its words: every run of the row gets the same device.
     fn key(&self, row: &[u32]) -> u64 {
         row.iter().fold(mix(self.seed), |key, word| mix(key ^ u64::from(*word)))
     }

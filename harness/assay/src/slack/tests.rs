@@ -11,7 +11,7 @@ fn program(source: &str) -> Program {
     Program::new(source, "test.wgsl", "f").expect("valid")
 }
 
-/// The result of a function of floats on a device of that kind.
+/// Returns the result of a function of floats on a device of the given mode.
 fn run(program: &Program, mode: Mode, key: u64, arguments: &[f32]) -> f32 {
     let words: Vec<u32> = arguments.iter().map(|argument| argument.to_bits()).collect();
     let mut result = Vec::new();
@@ -23,17 +23,17 @@ fn towards(direction: Direction) -> Mode {
     Mode { direction, ..Mode::IDENTITY }
 }
 
-/// An operation: its WGSL, where its operands lie, its exact result, and how far it may be off.
+/// An operation: its WGSL, the ranges of its operands, its exact result and its allowed error.
 struct Operation {
     expression: &'static str,
     operands: [[f64; 2]; 2],
     exact: fn(f64, f64) -> f64,
     allowed: fn(f64, f64, f64) -> f64,
-    /// Whether that is more than can be met.
+    /// Whether the allowed error is more than can be reached.
     is_loose: bool,
 }
 
-/// In units of the exact result's last place.
+/// Converts units in the last place of the exact result to an absolute error.
 fn ulps(ulps: f64, exact: f64) -> f64 {
     ulps * ulp_of(exact)
 }
@@ -53,7 +53,7 @@ fn operations() -> Vec<Operation> {
         of("x * y", [AROUND, AROUND], |x, y| x * y, rounded),
         of("x / y", [AROUND, POSITIVE], |x, y| x / y, |exact, _, _| ulps(2.5, exact)),
         of("inverseSqrt(x)", [POSITIVE, AROUND], |x, _| 1.0 / x.sqrt(), |exact, _, _| ulps(2.0, exact)),
-        // Of the inverse 2 ulp, which may be twice as many of the root's, and a quotient's 2.5.
+        // 2 ulp of the inverse, which may be twice as many of the root, and 2.5 ulp of a quotient.
         loosely("sqrt(x)", [POSITIVE, AROUND], |x, _| x.sqrt(), |exact, _, _| ulps(4.0 + 2.5 + 1e-5, exact)),
         of("exp(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
         of("exp2(x)", [[-50.0, 50.0], AROUND], |x, _| x.exp2(), |exact, x, _| ulps(3.0 + 2.0 * x.abs(), exact)),
@@ -74,7 +74,7 @@ fn operations() -> Vec<Operation> {
     ]
 }
 
-/// Operands of a row, as f32.
+/// Returns the operands of a row, as f32.
 fn operands(operation: &Operation, row: u64) -> [f32; 2] {
     let share = |place: u64| (mix(row ^ mix(place)) >> 40) as f64 / (1u64 << 24) as f64;
     let [x, y] = [0, 1].map(|place| {
@@ -89,7 +89,7 @@ fn each_operation_errs_by_what_it_may_and_no_more() {
     for operation in operations() {
         let program = program(&format!("fn f(x: f32, y: f32) -> f32 {{ return {}; }}", operation.expression));
         for direction in [Direction::Up, Direction::Down, Direction::Outward, Direction::Inward, Direction::Extreme] {
-            // The shares of what is allowed, in tenths, and to which side.
+            // Counts by share of the allowed error, in tenths, and by side.
             let (mut histogram, mut sides) = ([0u32; 11], [0u32; 2]);
             for row in 0..2_000 {
                 let [x, y] = operands(&operation, row);
@@ -111,7 +111,7 @@ fn each_operation_errs_by_what_it_may_and_no_more() {
             if sides == [0, 0] {
                 continue;
             }
-            // Of a root the inverse's 2 ulp count twice only beside a power of two, and a sum's whole ulp is rare.
+            // Roots and inverse functions seldom use all that they are allowed.
             let full = if operation.is_loose { 5 } else { 9 };
             assert!(histogram[full..].iter().sum::<u32>() > 0, "{expression} {direction:?}: {histogram:?}");
             match direction {
@@ -170,7 +170,7 @@ fn a_share_is_any_share() {
         .map(|key| (f64::from(run(&program, towards(Direction::Share), key, &[x])) - exact) / ulps(4096.0, exact));
     let mut histogram = [0u32; 8];
     shares.for_each(|share| histogram[((share + 1.0) * 4.0).clamp(0.0, 7.0) as usize] += 1);
-    // Of 4,000 in eight parts 500 each, and a standard deviation of 21.
+    // 4,000 shares in eight bins: 500 each, with a standard deviation of 21.
     assert!(histogram.iter().all(|count| count.abs_diff(500) < 130), "{histogram:?}");
 }
 
@@ -193,7 +193,7 @@ fn the_identity_changes_no_bit() {
         let (mut nearest, mut device) = (Vec::new(), Vec::new());
         program.run(&arguments, &mut Nearest, &mut nearest).expect("ends");
         program.run(&arguments, &mut Device::new(Mode::IDENTITY, row), &mut device).expect("ends");
-        // One NaN is as good as another.
+        // All NaNs count as equal.
         let bits = |words: Vec<u32>| {
             words.into_iter().map(|word| if f32::from_bits(word).is_nan() { 0x7fc0_0000 } else { word })
         };
@@ -201,7 +201,7 @@ fn the_identity_changes_no_bit() {
     }
 }
 
-/// What is left of a sum beyond f64 decides the rounding all the same.
+/// The remainder of a sum beyond f64 still decides the rounding.
 #[test]
 fn a_sum_of_far_apart_magnitudes_is_rounded_either_way() {
     let sum = program("fn f(x: f32, y: f32) -> f32 { return x + y; }");
@@ -213,7 +213,7 @@ fn a_sum_of_far_apart_magnitudes_is_rounded_either_way() {
         assert_eq!(at(Direction::Down, 1.0, -tiny), 1.0f32.next_down(), "{tiny:e}");
         assert_eq!(at(Direction::Up, f32::MAX, -tiny), f32::MAX, "{tiny:e}");
     }
-    // What f32 holds is the result, subnormals included.
+    // A result that f32 can represent is exact, subnormals included.
     let exact = [(1.0, 2.0, 3.0), (1e-45, 1e-45, 3e-45), (-1.0, 1.0, 0.0), (f32::MIN_POSITIVE, -1e-45, 1.1754942e-38)];
     for (x, y, result) in exact {
         for direction in [Direction::Up, Direction::Down] {
@@ -236,7 +236,7 @@ fn subnormals_are_flushed_and_zeros_lose_their_sign() {
     let odd = Mode { finite_math: Habit::Sometimes, ..Mode::IDENTITY };
     let signs: BTreeSet<u32> = (0..64).map(|key| run(&keeps, odd, key, &[0.0]).to_bits()).collect();
     assert_eq!(signs, BTreeSet::from([0, 0x8000_0000]));
-    // What only moves a value keeps it.
+    // An operation that only moves a value does not change it.
     let moved = program("fn f(x: f32) -> f32 { var a = array<f32, 2>(x, 1.0); return a[u32(a[1]) - 1u]; }");
     assert_eq!(run(&moved, flushing, 0, &[1e-40]), 1e-40);
 }
@@ -272,7 +272,7 @@ fn products_are_fused_with_sums_wherever_they_come_from() {
         assert_eq!(run(&program, fused, 0, &[x, y]), right, "{source}");
         assert_eq!(run(&program, Mode::IDENTITY, 0, &[x, y]), x * x - y, "{source}");
     }
-    // A rounded product whose bits were taken is rounded.
+    // A product stays rounded if its bits were taken.
     let bits = program("fn f(x: f32, y: f32) -> f32 { return bitcast<f32>(bitcast<u32>(x * x)) - y; }");
     assert_eq!(run(&bits, fused, 0, &[x, y]), x * x - y);
 }
@@ -290,7 +290,7 @@ fn chains_are_taken_in_other_orders() {
     assert_eq!(orders(named, &[1e8, 1.0, 1e8]), bits(&[0.0, 1.0]));
     let product = "fn f(x: f32, y: f32, z: f32) -> f32 { return x * y / z; }";
     assert_eq!(orders(product, &[1e30, 1e30, 1e30]), bits(&[f32::INFINITY, 1e30]));
-    // The sum of two is the same either way.
+    // A sum of two terms is the same in either order.
     assert_eq!(orders("fn f(x: f32, y: f32) -> f32 { return x + y; }", &[1e8, 1.0]).len(), 1);
     assert_eq!(orders("fn f(x: f32, y: f32, z: f32) -> f32 { return x + y * z; }", &[1.0, 3.0, 0.1]).len(), 1);
 }
@@ -300,7 +300,7 @@ fn of_one(source: &'static str, exact: fn(f64) -> f64, mirror: fn(f32) -> f32) -
     (formula("test", "f", mirror, exact, |draws| (draws.between(0.5, 4.0),)).build(), source)
 }
 
-/// The worst error over the allowed one.
+/// Returns the ratio of the worst error to the allowed error.
 fn worst((formula, source): &(Formula, &'static str), bound: &str) -> f64 {
     let bounds = parse_bounds(bound).expect("bounds");
     let tolerance = Tolerance::new(&formula.arguments, &formula.result, &bounds);
@@ -314,7 +314,7 @@ fn worst((formula, source): &(Formula, &'static str), bound: &str) -> f64 {
 
 #[test]
 fn an_amplifier_is_flagged_and_an_exact_function_is_not() {
-    // Rounded to nearest x + 1 - 1 is within half a unit of 1 + x, so it passes on a device that does so.
+    // The difference keeps the product's rounding, a million times as large.
     let amplifier = of_one(
         "fn f(x: f32) -> f32 { return (x * 1.1 - x) * 1e6; }",
         |x| (x * f64::from(1.1f32) - x) * 1e6,
@@ -325,12 +325,12 @@ fn an_amplifier_is_flagged_and_an_exact_function_is_not() {
     let exact =
         of_one("fn f(x: f32) -> f32 { return abs(max(x * 4.0, 2.0) - 0.5 * x * 0.0); }", |x| 4.0 * x, |x| 4.0 * x);
     assert_eq!(worst(&exact, "0 ulp"), 0.0);
-    // A quotient of equals may be another number than 1.
+    // A quotient of equal numbers may differ from 1.
     let quotient = of_one("fn f(x: f32) -> f32 { return x / x; }", |_| 1.0, |_| 1.0);
     assert!(worst(&quotient, "0 ulp") > 1.0 && worst(&quotient, "2.5 ulp") <= 1.0);
 }
 
-/// Where chance meets the worst rarely, a climb finds it.
+/// Chance rarely meets the worst result; a climb finds it.
 #[test]
 fn a_climb_finds_what_chance_does_not() {
     let source = "

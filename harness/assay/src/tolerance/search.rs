@@ -1,5 +1,5 @@
-//! The range of an oracle over inputs that are off by what `backward` allows: corners of the box about the input, places where a discrete
-//! result changes, and extrema.
+//! Range of an oracle over inputs within the `backward` allowance: corners of the box around the
+//! input, places at which a discrete result changes, and extrema.
 
 use super::{OracleFn, largest, number, ulp_of};
 use crate::draws::mix;
@@ -7,73 +7,80 @@ use crate::golden_section::golden_section;
 use crate::shape::{Leaf, Scalar};
 use std::convert::Infallible;
 
-/// Corners of the input box that are tried where it has too many to try all, at first and once more in earnest.
+/// Number of corners tried if the input box has too many to try all: in the first pass, and in a
+/// second, more thorough one.
 const MOST_CORNERS: [u64; 2] = [256, 1024];
 
-/// Halvings on the way to where a discrete result changes: finer than f32 resolves within the box.
+/// Bisections towards a change of a discrete result: finer than f32 resolves within the box.
 const BISECTIONS: usize = 30;
 
-/// Steps of a golden-section search along one input: it finds a place to 2⁻¹⁶ of the box's width, an extremum to the square of that.
+/// Steps of a golden-section search along one input. They find a place to 2⁻¹⁶ of the box's width,
+/// and an extremum to the square of that accuracy.
 const SECTIONS: usize = 20;
 
-/// Rounds over all inputs on the way to an extremum.
+/// Rounds over all inputs in the search for an extremum.
 const ROUNDS: usize = 6;
 
-/// Places along an input, its ends included, that tell where an extremum may lie: a function may have several, and the least may be at an end.
+/// Places along an input, including its ends, that show where an extremum may lie: a function may
+/// have several, and the least may be at an end.
 const PLACES: usize = 9;
 
-/// Places that [`Effort::Starts`] starts from: from one alone a search ends in the nearest of several extrema.
+/// Starting places of [`Effort::Starts`]: from a single place, a search ends in the nearest of
+/// several extrema.
 const STARTS: u64 = 24;
 
-/// Places for each of them that are visited first, for a case that few of them are in.
+/// Places per start that are visited first, for a case that few of them lie in.
 const PLACES_PER_START: u64 = 512;
 
-/// By which share of the box's width the inputs are moved to see where a result falls.
+/// Fraction of the box's half width by which the inputs are moved to either side to find the
+/// direction in which a result falls.
 const SLOPE: f64 = 1.0 / 64.0;
 
-/// How hard to look for the oracle's range.
+/// The effort in the search for the oracle's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// The corners of the box and the middles of its faces.
     Corners,
-    /// More corners, and on the way from each to the next every place where a discrete result changes: the rounded result may well lie
-    /// right there. Then the extrema, from the best place so far.
+    /// More corners, and every change of a discrete result on the way from one to the next, since
+    /// the rounded result may well lie right there. Then the extrema, from the best place so far.
     Boundaries,
-    /// The extrema again, from many places: for the few rows that are still not within their bounds.
+    /// The extrema again, from many places, for the few rows that still exceed their bounds.
     Starts,
 }
 
-/// The range of the oracle over inputs that are off by up to `backward` ulp, among those with the same discrete results.
+/// The range of the oracle over inputs that are off by up to `backward` ulp, among those with the
+/// same discrete results.
 pub struct Spread {
-    /// The least of each result.
+    /// Least value of each result.
     pub low: Vec<f64>,
-    /// The greatest.
+    /// Greatest value of each result.
     pub high: Vec<f64>,
     /// Whether shader and mirror found the same case.
     pub gpu_and_mirror_agree: bool,
 }
 
-/// The oracle's discrete results at a point; none where the point is outside of its domain.
+/// The oracle's discrete results at a point; `None` if the point is outside its domain.
 type Case = Option<Vec<f64>>;
 
-/// A search for the oracle's range in the box about an input.
+/// A search for the oracle's range in the box around an input.
 pub struct Search<'a> {
     oracle: OracleFn<'a>,
-    /// Where the discrete results are.
+    /// Places of the discrete results.
     places: Vec<(usize, Scalar)>,
-    /// The shader's discrete results and the mirror's.
+    /// Discrete results of the shader and of the mirror.
     wanted: [Vec<f64>; 2],
-    /// Whether the oracle has given them.
+    /// Whether the oracle has given each of them.
     met: [bool; 2],
-    /// The range over the points where it gave either.
+    /// Range over the points at which the oracle gave either.
     spread: Spread,
-    /// Where each result was least and where it was greatest: a search for extrema starts from there.
+    /// Points of the least and the greatest value of each result, from which a search for extrema
+    /// starts.
     ends: Vec<[Vec<f64>; 2]>,
     result: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
-    /// For the cases that shader and mirror found: the results at `places`.
+    /// Creates a search for the cases that shader and mirror found: the results at `places`.
     pub fn new(places: Vec<(usize, Scalar)>, gpu: &[u32], mirror: &[u32], oracle: OracleFn<'a>) -> Self {
         let discrete = |words: &[u32]| -> Vec<f64> {
             places.iter().map(|(index, scalar)| number(*scalar, words[*index])).collect()
@@ -89,12 +96,13 @@ impl<'a> Search<'a> {
         Self { oracle, places, wanted, met: [false; 2], spread, ends, result }
     }
 
-    /// The range, as far as it was found; none where the oracle did not give both cases.
+    /// Returns the range found so far, or `None` if the oracle did not give both cases.
     pub fn spread(&self) -> Option<&Spread> {
         (self.met == [true; 2]).then_some(&self.spread)
     }
 
-    /// Looks for the range until `enough`, after all lesser efforts. `results` are the shader's and the mirror's.
+    /// Searches for the range until `enough`, after all lesser efforts. `results` are the shader's
+    /// and the mirror's.
     pub fn look(&mut self, effort: Effort, inputs: &InputBox, results: [&[u32]; 2], enough: impl Fn(&Spread) -> bool) {
         let starts = match effort {
             Effort::Corners => return self.corners(effort, inputs, enough),
@@ -103,7 +111,7 @@ impl<'a> Search<'a> {
                 0
             }
             Effort::Starts => {
-                // A case may be so thin that hardly a way between corners ends in it.
+                // A case may be so thin that hardly any path between corners ends in it.
                 for number in 0..STARTS * PLACES_PER_START {
                     if self.spread().is_some_and(&enough) {
                         return;
@@ -118,7 +126,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Asks the oracle at a point.
+    /// Evaluates the oracle at a point.
     fn visit(&mut self, point: &[f64]) -> Case {
         self.result.clear();
         (self.oracle)(point, &mut self.result);
@@ -141,8 +149,8 @@ impl<'a> Search<'a> {
         Some(found)
     }
 
-    /// Visits both sides of every change of the discrete results between two points of the way from `from` to `to`, as far
-    /// as `halvings` tell them apart.
+    /// Visits both sides of every change of the discrete results between two points on the way from
+    /// `from` to `to`, as far as `halvings` resolve them.
     fn boundaries(&mut self, from: &[f64], to: &[f64], near: (f64, &Case), far: (f64, &Case), halvings: usize) {
         if near.1 == far.1 || halvings == 0 {
             return;
@@ -154,12 +162,14 @@ impl<'a> Search<'a> {
         self.boundaries(from, to, (middle, &found), far, halvings - 1);
     }
 
-    /// Extends the range towards each result that lies beside it, by less than its width: a function that does not go on rising, such
-    /// as a square, has its extremum inside the box and not at a corner. From the best place so far, and from `starts` others.
+    /// Extends the range towards each result that lies outside it by less than its width: a
+    /// function that is not monotonic, such as a square, has its extremum inside the box and not at
+    /// a corner. Starts from the best place so far, and from `starts` others.
     fn extrema(&mut self, inputs: &InputBox, results: [&[u32]; 2], starts: u64, enough: impl Fn(&Spread) -> bool) {
         for words in results {
             for (index, word) in words.iter().enumerate() {
-                // Of a discrete result the bits are no number to approach; its range has no width, and nothing lies beside it.
+                // The bits of a discrete result are no number to approach; its range has no width,
+                // and nothing lies next to it.
                 let value = f64::from(f32::from_bits(*word));
                 let (low, high) = (self.spread.low[index], self.spread.high[index]);
                 let sign = if value < low && low - value < high - low {
@@ -180,14 +190,16 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// `sign` times result `index` at a point; infinite where the discrete results are others, as it is another function's value there.
+    /// Returns `sign` times result `index` at a point; infinite if the discrete results differ,
+    /// since it is another function's value there.
     fn at(&mut self, point: &[f64], (index, sign): (usize, f64)) -> f64 {
         let found = self.visit(point);
         let wanted = found.is_some_and(|found| self.wanted.contains(&found));
         if wanted { sign * self.result[index] } else { f64::INFINITY }
     }
 
-    /// Lowers a result from `point`: all inputs at once, then one after another, until neither lowers it any more.
+    /// Lowers a result from `point`: all inputs at once, then one after another, until neither
+    /// lowers it any further.
     fn descend(
         &mut self,
         inputs: &InputBox,
@@ -215,14 +227,14 @@ impl<'a> Search<'a> {
                     return;
                 }
             }
-            // Nothing moves any more.
+            // No move helps any more.
             if lowest >= before {
                 return;
             }
         }
     }
 
-    /// The corner that each input moves to where the result falls with it: of a linear function, the lowest.
+    /// Returns the corner that lies downhill in each input; for a linear function, the lowest one.
     fn downhill(&mut self, inputs: &InputBox, point: &[f64], what: (usize, f64)) -> Vec<f64> {
         let mut corner = point.to_vec();
         let mut beside = point.to_vec();
@@ -240,8 +252,8 @@ impl<'a> Search<'a> {
         corner
     }
 
-    /// The least value on the way from `from` to `to`, and where: at the best of places, by golden-section search between that one's neighbours,
-    /// and where the case ends.
+    /// Returns the least value on the way from `from` to `to`, and its place: at the best of
+    /// several places, by golden-section search between its neighbours, and at the end of the case.
     fn lowest_between(&mut self, from: &[f64], to: &[f64], what: (usize, f64)) -> (f64, Vec<f64>) {
         let on_the_way = |share: f64| -> Vec<f64> {
             from.iter().zip(to).map(|(from, to)| (1.0 - share) * from + share * to).collect()
@@ -272,7 +284,8 @@ impl<'a> Search<'a> {
     /// Searches the corners of the box and the middles of its faces, until `enough`.
     fn corners(&mut self, effort: Effort, inputs: &InputBox, enough: impl Fn(&Spread) -> bool) {
         let InputBox { centre, steps, moving } = inputs;
-        // From corner to corner, not out from the centre: all lines through one point cross a boundary near that point.
+        // From corner to corner, not outwards from the centre: all lines through one point cross a
+        // boundary near that point.
         let mut previous = centre.clone();
         let mut at_previous = self.visit(centre);
         let mut walk = |search: &mut Self, point: &[f64]| -> bool {
@@ -298,7 +311,7 @@ impl<'a> Search<'a> {
         let all = 1u64.checked_shl(moving.len() as u32).is_some_and(|corners| corners <= most);
         let corners = if all { 1u64 << moving.len() } else { most };
         for corner in 0..corners {
-            // Where there are too many corners, a fixed pseudo-random selection.
+            // With too many corners, a fixed pseudo-random selection.
             let signs = if all { corner } else { mix(corner) };
             for (bit, index) in moving.iter().enumerate() {
                 let sign = if (signs >> (bit % 64)) & 1 == 0 { -1.0 } else { 1.0 };
@@ -311,17 +324,17 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The inputs that may stand for given ones: a box about them.
+/// The inputs that may stand for given ones: a box around them.
 pub struct InputBox {
     centre: Vec<f64>,
-    /// How far each may be off.
+    /// Largest deviation of each input.
     steps: Vec<f64>,
-    /// Those that may be off at all.
+    /// Indices of the inputs that may deviate.
     moving: Vec<usize>,
 }
 
 impl InputBox {
-    /// Up to `backward` ulp about the inputs, of a vector's largest component.
+    /// Creates the box of up to `backward` ulp of a vector's largest component around the inputs.
     pub fn new(leaves: &[Leaf], words: &[u32], backward: f64) -> Self {
         let mut centre = Vec::with_capacity(words.len());
         let mut steps = Vec::with_capacity(words.len());
@@ -342,7 +355,7 @@ impl InputBox {
         Self { centre, steps, moving }
     }
 
-    /// A fixed pseudo-random place in it.
+    /// Returns a fixed pseudo-random place in the box.
     fn place(&self, number: u64) -> Vec<f64> {
         let mut chance = mix(number);
         let mut offset = || {

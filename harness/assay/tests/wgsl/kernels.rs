@@ -1,10 +1,10 @@
-//! Kernels, whole buffers against whole buffers.
+//! Tests of kernels on whole buffers.
 
 use glam::Vec3;
 use lapidary_assay::{Outcome, kernel};
 use proptest::prelude::*;
 
-/// A sum over workgroups, a blur of three, particles in a struct, and a histogram by atomics.
+/// A blur of three, particles in a struct, a histogram with atomics, and a texture lookup.
 const KERNELS: &str = "
 override RADIUS: u32 = 1u;
 
@@ -123,7 +123,8 @@ fn a_histogram_by_atomics_is_exact() -> Outcome {
         .run()
 }
 
-/// The last invocation is left out: found, and shrunk to the shortest buffer that shows it.
+/// The last invocation is left out. The test finds this, and shrinks it to the shortest buffer that
+/// shows it.
 #[test]
 fn a_broken_kernel_fails_with_buffers_to_paste() {
     let broken = KERNELS.replace("if (id.x >= count) {", "if (id.x + 1u >= count) {");

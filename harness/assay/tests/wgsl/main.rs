@@ -1,4 +1,5 @@
-//! The library as its README has it: a function of nobody's cookbook, tested by a plain `cargo test`; and what a broken one says.
+//! The library as its README presents it: a function from outside the cookbook, tested by a plain
+//! `cargo test`, and the message of a broken one.
 
 mod kernels;
 mod mutants;
@@ -8,7 +9,7 @@ mod shrinking;
 use glam::Vec2;
 use lapidary_assay::{Outcome, wgsl};
 
-/// A lattice's hash and value noise between its corners.
+/// Parts of a noise function: a lattice's hash, a fade and a rotation.
 const NOISE: &str = "
 fn hash(corner: vec2i) -> u32 {
     var bits = u32(corner.x) * 0x9e3779b9u + u32(corner.y) * 0x85ebca6bu;
@@ -55,7 +56,8 @@ fn fading_is_the_polynomial() -> Outcome {
         .oracle(exact_fade)
         .draws(|draws| (draws.between(0.0, 1.0),))
         .edge("near an end", |(t,)| t < 0.001)
-        // Of t: four roundings in each of two products of three, and a sum that cancels to a fifth.
+        // Four roundings in each of two products of three factors, and a sum that cancels to a
+        // tenth at t = 1.
         .within("40 ulp")
         .invariant(
             "between 0 and 1",
@@ -67,7 +69,7 @@ fn fading_is_the_polynomial() -> Outcome {
         .run()
 }
 
-/// Two products' signs are told apart, and the input that tells them is a simple one.
+/// A wrong sign between two products is found, and the message gives an input to paste.
 #[test]
 fn a_broken_shader_fails_with_an_input_to_paste() {
     let mirror = |point: Vec2, turns: f32| Vec2::from_angle(std::f32::consts::TAU * turns).rotate(point);

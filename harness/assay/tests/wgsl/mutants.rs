@@ -1,9 +1,10 @@
-//! Mutation by a function's own test.
+//! Mutation testing with a function's own test.
 
 use super::{NOISE, exact_fade, fade};
 use lapidary_assay::{Failure, wgsl};
 
-/// Over all of [0, 1] every change is seen; a test of too little lets mutants live, and says which.
+/// On all of [0, 1] every change is noticed; a test of too small a range lets mutants survive, and
+/// names them.
 #[test]
 fn a_test_of_too_little_lets_mutants_live() -> Result<(), Failure> {
     let test = |high: f32| {

@@ -1,4 +1,4 @@
-//! The tutorial's code is the example project's.
+//! The tutorial's code comes from the example project.
 
 use std::path::Path;
 

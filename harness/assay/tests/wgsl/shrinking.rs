@@ -1,4 +1,5 @@
-//! A counterexample is simple, whichever way its inputs come; and no test passes because nothing was tested.
+//! A counterexample is simple, whatever the source of its inputs; and no test passes because
+//! nothing was tested.
 
 use super::NOISE;
 use glam::IVec2;
@@ -7,7 +8,8 @@ use proptest::prelude::*;
 
 const STEP: &str = "fn step_from(x: i32, y: i32) -> i32 { if (x >= 700) { return y + 1; } return y; }";
 
-/// proptest's integers shrink by halving: to the edge itself, only if each step back is tested too.
+/// proptest shrinks integers by halving: down to the edge itself only if each step back is tested
+/// too.
 #[test]
 fn an_integer_of_a_strategy_shrinks_to_the_edge() {
     let test = wgsl(STEP, "step_from").mirror(|_: i32, y: i32| y).inputs((0i32..100_000, -50i32..50));
@@ -39,7 +41,7 @@ fn an_oracle_of_other_types_is_one_line() {
     assert_eq!(message, "fade: the oracle is (f32, f32) -> f32 with f64 for f32, the mirror (f32) -> f32");
 }
 
-/// Run by the two tests below, with another adapter asked for.
+/// Run by the two tests below, which ask for another adapter.
 #[test]
 fn the_hash_alone() -> Outcome {
     let corners = (any::<i32>(), any::<i32>()).prop_map(|(x, y)| (IVec2::new(x, y),));

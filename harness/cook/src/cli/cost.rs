@@ -2,7 +2,9 @@
 
 use super::{Context, Failure, Outcome, number, output, progress};
 use lapidary_cook::cost::gem::{self, views};
-use lapidary_cook::cost::{CostError, Ladder, Progress, Report, cdrf, effects, optical_path, page, restraint, sphere};
+use lapidary_cook::cost::{
+    CostError, Ladder, Options, Progress, Report, cdrf, effects, optical_path, page, restraint, sphere,
+};
 use lapidary_cook::text_file;
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
@@ -124,11 +126,11 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     match &arguments.technique {
         Technique::Gem(arguments) => gem(context, arguments),
         Technique::Cdrf(arguments) => {
-            let mut options = cdrf::Options::default();
-            set(&mut options.rounds, arguments.timed.rounds);
+            let mut rungs = cdrf::options().rungs;
             if !arguments.rungs.is_empty() {
-                options.rungs = arguments.rungs.iter().map(|rung| reflectance(*rung)).collect::<Result<_, _>>()?;
+                rungs = arguments.rungs.iter().map(|rung| reflectance(*rung)).collect::<Result<_, _>>()?;
             }
+            let options = Options { rungs, ..timed(cdrf::options(), arguments.timed.rounds) };
             let measure = |gpu: &Gpu, progress: Progress<'_>| cdrf::run(gpu, &options, progress);
             show(&cdrf::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
         }
@@ -141,15 +143,10 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
                 let names = optical_path::RUNGS.join(", ");
                 return Err(Failure(format!("`optical_path` has no rung {other}; there are {names}")));
             }
-            let mut options = optical_path::Options::default();
-            set(&mut options.rounds, arguments.timed.rounds);
-            replace(&mut options.rungs, &arguments.rungs);
-            let measure = |gpu: &Gpu, progress: Progress<'_>| optical_path::run(gpu, &options, progress);
-            show(&optical_path::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+            arguments.show(context, &optical_path::LADDER, optical_path::options(), optical_path::run)
         }
         Technique::Effects(arguments) => {
-            let mut options = effects::Options::default();
-            set(&mut options.rounds, arguments.rounds);
+            let options = timed(effects::options(), arguments.rounds);
             let measure = |gpu: &Gpu, progress: Progress<'_>| effects::run(gpu, &options, progress);
             show(&effects::LADDER, &arguments.shown, || on_gpu(context, measure))
         }
@@ -162,11 +159,7 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
             if arguments.timed.rounds == Some(0) {
                 return Err(Failure("`restraint` compares times; --rounds takes at least 1".to_owned()));
             }
-            let mut options = restraint::Options::default();
-            set(&mut options.rounds, arguments.timed.rounds);
-            replace(&mut options.rungs, &arguments.rungs);
-            let measure = |gpu: &Gpu, progress: Progress<'_>| restraint::run(gpu, &options, progress);
-            show(&restraint::LADDER, &arguments.timed.shown, || on_gpu(context, measure))
+            arguments.show(context, &restraint::LADDER, restraint::options(), restraint::run)
         }
         Technique::Sphere(arguments) => {
             let walk = |progress: Progress<'_>| Ok(sphere::run(arguments.walks, arguments.seed, progress));
@@ -175,15 +168,25 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     }
 }
 
-/// Sets an option that was given.
-fn set<T: Copy>(option: &mut T, given: Option<T>) {
-    *option = given.unwrap_or(*option);
+/// Returns the options with the number of rounds, if it was given.
+fn timed<R>(options: Options<R>, rounds: Option<u32>) -> Options<R> {
+    Options { rounds: rounds.unwrap_or(options.rounds), ..options }
 }
 
-/// Replaces a list if another one was given.
-fn replace<T: Clone>(list: &mut Vec<T>, given: &[T]) {
-    if !given.is_empty() {
-        *list = given.to_vec();
+impl Rungs {
+    /// Measures a ladder with the rungs and rounds that were given, and shows its report.
+    fn show(
+        &self,
+        context: &Context,
+        ladder: &Ladder,
+        options: Options,
+        run: fn(&Gpu, &Options, Progress<'_>) -> Result<Report, CostError>,
+    ) -> Result<Outcome, Failure> {
+        let mut options = timed(options, self.timed.rounds);
+        if !self.rungs.is_empty() {
+            options.rungs.clone_from(&self.rungs);
+        }
+        show(ladder, &self.timed.shown, || on_gpu(context, |gpu, progress| run(gpu, &options, progress)))
     }
 }
 
@@ -196,10 +199,12 @@ fn gem(context: &Context, Gem { views, profile, rungs }: &Gem) -> Result<Outcome
         )));
     }
     let mut options = gem::Options::default();
-    set(&mut options.rounds, timed.rounds);
+    options.rounds = timed.rounds.unwrap_or(options.rounds);
     // The further data that a page needs are measured only with the whole ladder.
     options.sizes = rungs.is_empty() && views.is_empty();
-    replace(&mut options.rungs, rungs);
+    if !rungs.is_empty() {
+        options.rungs.clone_from(rungs);
+    }
     if !views.is_empty() {
         (options.concave, options.views) = views.iter().partition(|view| views::CONCAVE.contains(view));
     }

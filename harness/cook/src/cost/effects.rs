@@ -3,7 +3,7 @@
 
 use super::table::{Table, figure};
 use super::timing::{self, Timed};
-use super::{CostError, Ladder, Progress, Report, Row};
+use super::{CostError, Ladder, Options, Progress, Report, Row};
 use lapidary_gpu::Gpu;
 use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
@@ -15,19 +15,9 @@ use lapidary_scene::{Environment, Light, Scene};
 pub const LADDER: Ladder =
     Ladder { name: "effects", tables: |report| vec![table(report)], plots: |_| Vec::new(), whole };
 
-/// How thoroughly to measure.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Rounds of timing; 0 skips timing.
-    pub rounds: u32,
-    /// Width and height of the timed frame in pixels.
-    pub frame: [u32; 2],
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { rounds: 7, frame: [480, 270] }
-    }
+/// Returns how to measure by default; there are no rungs to choose.
+pub fn options() -> Options {
+    Options { rounds: 7, frame: [480, 270], rungs: Vec::new() }
 }
 
 /// A scene and settings in which every listed effect is on.

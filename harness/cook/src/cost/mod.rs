@@ -22,11 +22,23 @@ pub use report::{Report, Row};
 pub use table::Table;
 pub use timing::{Timed, Timing};
 
+use lapidary_plan::Rung;
 use lapidary_specialise::SpecialiseError;
 use lapidary_specialise::spirv_counts::SpirvCountsError;
 
 /// Receives the current step of a measurement, the work done and the total.
 pub type Progress<'a> = &'a mut dyn FnMut(&'static str, u64, u64);
+
+/// What to measure, and how thoroughly.
+#[derive(Clone, Debug)]
+pub struct Options<R = Rung> {
+    /// Rounds of timing; 0 skips timing.
+    pub rounds: u32,
+    /// Width and height of the timed frame in pixels.
+    pub frame: [u32; 2],
+    /// The rungs to measure.
+    pub rungs: Vec<R>,
+}
 
 /// How a ladder's report is shown.
 pub struct Ladder {

@@ -1,14 +1,18 @@
-//! Every operator, comparison and constant of every module's functions, changed one at a time: the property tests of the module
-//! must notice each.
+//! Changes every operator, comparison and constant of every module's functions, one at a time. The
+//! property tests of the module must notice each change.
 //!
-//! Mutants run in child processes (this same program, as a worker), two at a time. One that gives no answer in time is asked once
-//! more, alone in a fresh worker and for longer; if it still gives none it has timed out, which is not to be caught: it fails. A
-//! mutant that no input can tell from the original is listed, with the reason, in `equivalent.txt`; at most 5 % may be.
+//! Mutants run in child processes (this same program, as a worker), two at a time. A mutant that
+//! gives no answer in time is judged once more, in a fresh worker and for longer. If it still
+//! gives none, it has timed out, which does not count as caught: it fails. A mutant that no input
+//! can tell from the original is listed, with the reason, in `equivalent.txt`; at most 5 % may be.
 //!
-//! A run judges what a change touches: all mutants of each module that is not as it was when the record was made
-//! (`docs/measurements/lavapipe/mutation.json`, which holds a hash of all that a score depends on), and all mutants of all where the engine or the device has
-//! changed. It says what it does not judge. A run that names a module or function judges all of its mutants. `LAPIDARY_MUTANTS=all` judges all, `record` all
-//! and writes the record, `sample` one in ten by the suite's seed, `listed` those that are listed.
+//! A run judges the mutants that a change touches: all mutants of each module that has changed
+//! since the record (`docs/measurements/lavapipe/mutation.json`, which holds a hash of everything
+//! that a score depends on), and all mutants of all modules if the engine or the device has
+//! changed. It reports the mutants that it does not judge. A run that names a module or function
+//! judges all of its mutants. `LAPIDARY_MUTANTS=all` judges all mutants, `record` judges all and
+//! writes the record, `sample` judges one in ten by the suite's seed, and `listed` judges the
+//! listed ones.
 
 mod record;
 
@@ -27,21 +31,22 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-/// How long to wait for an answer: at first, where a machine under load may be slow, and the second time.
+/// Time limits for an answer: the first time, with a margin for a machine under load, and the
+/// second time.
 const LIMITS: [Duration; 2] = [Duration::from_secs(20), Duration::from_secs(120)];
-/// Which mutants are judged.
+/// Environment variable that selects the judged mutants.
 const MUTANTS_VARIABLE: &str = "LAPIDARY_MUTANTS";
-/// How a reason begins that holds for this device alone.
+/// Beginning of a reason that holds for this device alone.
 const ANOTHER_DEVICE: &str = "Another device tells";
-/// One mutant in so many is in a sample.
+/// One mutant in this many is in a sample.
 const SAMPLE: u64 = 10;
-/// The start of a worker, its device and its first rows; not held against a mutant.
+/// Time limit for the start of a worker and its device. It does not count against a mutant.
 const START_LIMIT: Duration = Duration::from_secs(120);
-/// Worker processes.
+/// Number of worker processes.
 const WORKERS: usize = 2;
-/// Most mutants that may be listed as equivalent.
+/// Largest share of mutants that may be listed as equivalent.
 const MOST_EQUIVALENT: f64 = 0.05;
-/// The argument that makes this program a worker.
+/// Argument that makes this program a worker.
 const WORKER: &str = "--worker";
 
 fn main() -> ExitCode {
@@ -54,7 +59,7 @@ fn main() -> ExitCode {
         println!("mutation: test");
         return ExitCode::SUCCESS;
     }
-    // As libtest does: a name filters, here by module or function.
+    // As in libtest, a name is a filter, here for a module or function.
     let filter = arguments.iter().find(|argument| !argument.starts_with('-')).cloned().unwrap_or_default();
     let filter = if filter == "mutation" { "" } else { &filter };
     let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
@@ -71,24 +76,24 @@ fn main() -> ExitCode {
     coordinate(filter, choice, asked.as_deref() == Some("record"))
 }
 
-/// Which mutants are judged.
+/// Selection of the judged mutants.
 #[derive(Clone, Copy)]
 enum Choice {
-    /// The same share of every module's.
+    /// The same share of every module's mutants.
     Same(Share),
-    /// What has changed since the record.
+    /// All mutants of everything that has changed since the record.
     Touched,
 }
 
-/// How many of a module's mutants are judged.
+/// Share of a module's mutants that is judged.
 #[derive(Clone, Copy)]
 enum Share {
     All,
-    /// Those that are listed as equivalent.
+    /// The mutants that are listed as equivalent.
     Listed,
-    /// One in ten, by this seed.
+    /// One in ten, chosen by this seed.
     Sample(u64),
-    /// None: so many are as they were recorded.
+    /// No mutants: this many are as recorded.
     Recorded(usize),
 }
 
@@ -113,7 +118,7 @@ impl Share {
     }
 }
 
-/// Whether a mutant is in the sample of a seed.
+/// Returns whether a mutant is in the sample of a seed.
 fn in_sample(seed: u64, name: &str) -> bool {
     // FNV-1a: the same on every machine and in every version of Rust.
     let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325 ^ seed, |hash: u64, byte| {
@@ -123,12 +128,12 @@ fn in_sample(seed: u64, name: &str) -> bool {
     (hash ^ (hash >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32 < (1 << 32) / SAMPLE
 }
 
-/// In place of a mutant's number: the unchanged function, which must survive.
+/// Number of the unchanged function, in place of a mutant's. It must survive.
 const UNCHANGED: usize = usize::MAX;
-/// What a worker says once it has its device.
+/// A worker's message once it has its device.
 const READY: &str = "ready";
 
-/// A function's mutants, the same in coordinator and workers.
+/// Returns a function's mutants. They are the same in the coordinator and the workers.
 fn mutants_of(formula: &Formula) -> Mutants {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
     mutate::of_function(module.whole, module.name, formula.function).expect("the cookbook's WGSL is valid")
@@ -151,7 +156,8 @@ fn coordinate(filter: &str, choice: Choice, is_recorded: bool) -> ExitCode {
         invalid += mutants.invalid;
         for (position, mutant) in mutants.valid.iter().enumerate() {
             let name = mutant.to_string();
-            // A const is met again with every function that uses it, and judged by all of them at the first.
+            // A const appears again with every function that uses it. All of them judge it at its
+            // first appearance.
             let constant = mutant.owner != formula.function;
             if (constant && constants.contains(&name)) || !format!("{}::{name}", formula.module).contains(filter) {
                 continue;
@@ -179,11 +185,12 @@ fn coordinate(filter: &str, choice: Choice, is_recorded: bool) -> ExitCode {
         }
     }
     if total == 0 && !filter.is_empty() {
-        // A filter for other tests.
+        // The filter is for other tests.
         println!("\ntest result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 1 filtered out\n");
         return ExitCode::SUCCESS;
     }
-    // The unchanged functions go first: where one is caught, the harness is at fault and no score means anything.
+    // The unchanged functions go first: if one is caught, the harness is at fault and no score
+    // means anything.
     let concerned: BTreeSet<usize> = jobs.iter().map(|(formula, ..)| *formula).collect();
     let controls = concerned.iter().map(|index| (*index, UNCHANGED, formulas::all()[*index].function.to_owned()));
     let mut jobs: Vec<(usize, usize, String)> = controls.chain(jobs).collect();
@@ -245,7 +252,8 @@ fn report(
     let listed = equivalent_mutants();
     let (equivalent, missed): (Vec<&String>, Vec<&String>) =
         survived.iter().partition(|name| listed.contains_key(*name));
-    // One that is not judged here may well survive; one that is no mutant any more is found by a whole run.
+    // A listed mutant that is not judged here may well survive. A listed name that is no longer a
+    // mutant is found by a whole run.
     let stale: Vec<&String> =
         listed.keys().filter(|name| (whole || judged.contains(*name)) && !survived.contains(name)).collect();
     for name in timed_out {
@@ -272,11 +280,12 @@ fn report(
     missed.is_empty() && stale.is_empty() && timed_out.is_empty() && (!whole || share <= MOST_EQUIVALENT)
 }
 
-/// The lines of each module's listed mutants with their reasons.
+/// Returns the lines of each module's listed mutants, with their reasons.
 fn listed_by_module<'a>(modules: &[&'a str]) -> BTreeMap<&'a str, String> {
     let mut texts: BTreeMap<&str, String> = BTreeMap::new();
     for (name, reason) in equivalent_mutants() {
-        // A function begins with its module's name, a const with that in capitals; of two that fit, the longer.
+        // A function's name begins with its module's name, a const's name with the same in
+        // capitals. If two modules fit, the longer name counts.
         let lower = name.to_lowercase();
         let fits = modules.iter().filter(|module| lower.starts_with(&format!("{module}_")));
         let module = fits.max_by_key(|module| module.len()).unwrap_or_else(|| panic!("`{name}` is of no module"));
@@ -285,7 +294,7 @@ fn listed_by_module<'a>(modules: &[&'a str]) -> BTreeMap<&'a str, String> {
     texts
 }
 
-/// Name and reason of each listed mutant.
+/// Returns the name and reason of each listed mutant.
 fn equivalent_mutants() -> &'static BTreeMap<String, String> {
     static LISTED: OnceLock<BTreeMap<String, String>> = OnceLock::new();
     LISTED.get_or_init(|| parsed(include_str!("equivalent.txt")))
@@ -303,7 +312,7 @@ fn parsed(text: &str) -> BTreeMap<String, String> {
             continue;
         }
         match comment {
-            // A reason stands over the mutants that it is for, on one line or several.
+            // A reason stands above its mutants, on one line or several.
             Some(comment) if !first => reason = format!("{reason} {}", comment.trim()),
             Some(comment) => comment.trim().clone_into(&mut reason),
             None => {
@@ -321,7 +330,7 @@ enum Verdict {
     TimedOut,
 }
 
-/// A child and the lines that it answers.
+/// Worker process and the lines that it answers.
 struct Worker {
     child: Child,
     stdin: ChildStdin,
@@ -364,7 +373,8 @@ impl Drop for Worker {
 }
 
 fn judge(worker: &mut Option<Worker>, formula: usize, position: usize) -> Verdict {
-    // A worker may die of what an earlier mutant did to the driver: only one that dies again, fresh, is noticed by dying.
+    // A worker may die because of an earlier mutant's effect on the driver. Only a death at
+    // the second try counts as caught.
     for limit in LIMITS {
         let active = worker.get_or_insert_with(Worker::spawn);
         let asked = writeln!(active.stdin, "{formula} {position}").and_then(|()| active.stdin.flush());
@@ -402,7 +412,8 @@ fn worker() {
             continue;
         }
         let mutant = &listed.entry(index).or_insert_with(|| mutants_of(formula).valid)[position];
-        // The function's own tests first, then those of the functions that call it.
+        // The function's own tests first, then those of the module's other functions, which notice
+        // the mutant if they call it.
         let mut judges: Vec<&'static Formula> =
             formulas::all().iter().filter(|other| other.module == formula.module).collect();
         judges.sort_by_key(|other| other.function != formula.function);
@@ -413,7 +424,7 @@ fn worker() {
     }
 }
 
-/// The tests of a formula, kept for all of the mutants that they judge.
+/// Returns the tests of a formula, kept for all mutants that they judge.
 fn judge_of(gpu: &'static Gpu, formula: &'static Formula) -> Judge<'static> {
     let module = cookbook::module(formula.module).expect("a formula's module exists");
     let judge = Judge::new(gpu, formula, (module.whole, module.name), check::tolerance(gpu, formula), &[]);

@@ -1,4 +1,5 @@
-//! The record of the last whole run: for each module a hash of all that its score depends on. Where it is the same, the score is the same.
+//! Record of the last whole run: for each module, a hash of everything that its score depends on.
+//! If the hash is the same, the score is the same.
 
 use lapidary_cook::cookbook::release::text_hash;
 use lapidary_gpu::Gpu;
@@ -6,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What the score depends on, besides a module's own: the engine, this program, the versions of everything.
+/// Dependencies of every score in addition to a module's own: the engine, this program, and the
+/// versions of everything.
 const ENGINE: [&str; 12] = [
     "Cargo.lock",
     "Cargo.toml",
@@ -22,25 +24,25 @@ const ENGINE: [&str; 12] = [
     "harness/specialise/src",
 ];
 
-/// A whole run.
+/// Record of a whole run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Record {
-    /// The device.
+    /// Device of the run.
     pub(crate) adapter: String,
-    /// The hash of the engine's sources.
+    /// Hash of the engine's sources.
     pub(crate) engine: String,
-    /// The modules by name.
+    /// Modules by name.
     pub(crate) modules: BTreeMap<String, Module>,
 }
 
-/// A module of a whole run.
+/// Record of a module in a whole run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Module {
-    /// The hash of its WGSL, its crate and those of its formulas, and of what is listed of it.
+    /// Hash of its WGSL, its crate, the crates of its formulas, and its listed mutants.
     pub(crate) hash: String,
-    /// Its mutants.
+    /// Number of its mutants.
     pub(crate) mutants: usize,
-    /// Those that are listed as equivalent.
+    /// Number of its mutants that are listed as equivalent.
     pub(crate) listed: usize,
 }
 
@@ -53,13 +55,14 @@ fn file() -> PathBuf {
 }
 
 impl Record {
-    /// The committed one; an empty one where there is none.
+    /// Returns the committed record, or an empty one if there is no file.
     pub(crate) fn committed() -> Self {
         let Ok(text) = std::fs::read_to_string(file()) else { return Self::default() };
         serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file().display()))
     }
 
-    /// What a whole run would record now, but for the counts; `listed` are the equivalent mutants' lines of each module.
+    /// Returns the record of a whole run on the current sources, without the counts. `listed` holds
+    /// the lines of each module's equivalent mutants.
     pub(crate) fn of_sources(gpu: &Gpu, modules: &[&str], listed: &BTreeMap<&str, String>) -> Self {
         let engine = hash(&ENGINE.map(|path| root().join(path)));
         let module = |name: &&str| {
@@ -74,12 +77,12 @@ impl Record {
         Self { adapter: gpu.describe(), engine, modules: modules.iter().map(module).collect() }
     }
 
-    /// Whether the engine and the device are those of `other`.
+    /// Returns whether the engine and the device are the same as in `other`.
     pub(crate) fn is_of_the_engine_of(&self, other: &Self) -> bool {
         self.adapter == other.adapter && self.engine == other.engine
     }
 
-    /// Whether a module's own part is that of `other`.
+    /// Returns whether a module's own part is the same as in `other`.
     pub(crate) fn agrees(&self, other: &Self, module: &str) -> bool {
         let hash = |record: &Self| record.modules.get(module).map(|module| module.hash.clone());
         hash(self).is_some() && hash(self) == hash(other)
@@ -94,7 +97,7 @@ impl Record {
     }
 }
 
-/// The module's crate, and those that its formulas need.
+/// Returns the module's crate and the crates that its formulas need.
 fn crates_of(module: &str) -> Vec<String> {
     let manifest = root().join("crates").join(module).join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{}: {error}", manifest.display()));
@@ -106,7 +109,7 @@ fn crates_of(module: &str) -> Vec<String> {
     crates
 }
 
-/// One hash of all files below these paths, with their names.
+/// Returns one hash of all files below these paths, with their names.
 fn hash(paths: &[PathBuf]) -> String {
     let mut text = String::new();
     paths.iter().for_each(|path| collect(path, &mut text));

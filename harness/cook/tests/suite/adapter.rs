@@ -34,7 +34,8 @@ fn a_system_without_adapters_is_told_what_to_install() {
 
 #[test]
 fn an_empty_name_chooses_nothing() {
-    // As `--adapter "$GPU"` gives it where the variable is not set; every adapter's name holds the empty text.
+    // `--adapter "$GPU"` with an unset variable gives an empty name, which is a part of every
+    // adapter's name.
     let folder = tempfile::tempdir().expect("a temporary folder");
     let answer = cook(folder.path(), &["check", "refraction::reflect", "--cases", "1", "--adapter", ""]);
     assert_eq!(answer.code, Some(2), "{answer:?}");
@@ -46,7 +47,7 @@ fn a_process_with_a_device_does_not_pretend_to_be_on_another() {
     let error = Gpu::shared(&AdapterChoice::Named("no such GPU".to_owned())).expect_err("no such adapter");
     let message = error.to_string();
     assert!(message.contains(&open.info.name) && message.contains("`no such GPU`"), "{message}");
-    // The same device under another name is no second device.
+    // The same device under another name is not a second device.
     let again = Gpu::shared(&AdapterChoice::Named(open.info.name.to_uppercase())).expect("the device that is open");
     assert!(std::ptr::eq(open, again));
 }

@@ -1,5 +1,6 @@
-//! Bounds from theory: what every operation may be off by, carried to the result to first order, beside what each `Accuracy:` line states. Any device by what WGSL allows;
-//! the reference device by what its built-ins were measured to be off by.
+//! Bounds from theory: the largest error of every operation, propagated to the result to first
+//! order, against the bound of each `Accuracy:` line. For any device the errors are those that WGSL
+//! allows; for the reference device, the measured errors of its built-ins.
 
 use lapidary_assay::interpreter::Program;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
@@ -12,13 +13,15 @@ use lapidary_cook::formulas;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Bounds that are over 8 times what first order allows: function, field, and why. A line that is no longer true fails.
+/// Bounds that are over 8 times the first-order allowance: function, field and reason. A line that
+/// is no longer true fails.
 const WIDE: [(&str, &str, &str); 2] = [
     ("bvh_trace_triangle", "barycentrics", "all fields allow the same backward error, and the distance needs it"),
     ("voxelization_span", "", "few triangles are so nearly edge-on that half a width of 64 is taken from as much"),
 ];
 
-/// The fields whose bound is below the largest allowance, or over 8 times it; from a fixed seed.
+/// Returns the fields whose bound is below the largest allowance, or over 8 times the allowance that
+/// includes the method's error, from a fixed seed.
 fn unfitting(
     accuracy: &dyn Accuracy,
     tolerance: impl Fn(&lapidary_assay::formula::Formula) -> Tolerance,

@@ -1,15 +1,16 @@
-//! Edges of bright facets as they are seen: what lies between the two sides of one is between them in brightness too.
+//! Visible edges of bright facets: the brightness on an edge lies between that of its two sides.
 
 use lapidary_render as render;
 use lapidary_render::{Picture, ReferenceOptions, Settings};
 use lapidary_scene::Scene;
 
-/// A strong edge: display light changes by so much of white within three pixels, in one direction.
+/// Least change across a strong edge, in display light as a share of white: within three pixels and
+/// in one direction.
 const STRONG: f32 = 0.5;
-/// A step: so much of the change lies between two pixels.
+/// Least share of this change between two neighbouring pixels that counts as a step.
 const STEP: f32 = 0.9;
 
-/// How many strong edges are met along rows and columns, and how many of them are steps.
+/// Returns the number of strong edges along rows and columns, and the number of steps among them.
 fn edges(picture: &Picture) -> (usize, usize) {
     let light = |pixel: &[u8; 4]| {
         let color = glam::Vec3::from_array([0, 1, 2].map(|k| f32::from(pixel[k]) / 255.0));
@@ -22,7 +23,7 @@ fn edges(picture: &Picture) -> (usize, usize) {
         for four in line.windows(4) {
             let whole = four[3] - four[0];
             let [before, step, after] = [0, 1, 2].map(|k| whole.signum() * (four[k + 1] - four[k]));
-            // The largest of the three is in the middle, so that each edge counts once.
+            // The largest change is in the middle, so that each edge counts once.
             if whole.abs() >= STRONG && before >= 0.0 && after >= 0.0 && step >= before && step > after {
                 strong += 1;
                 steps += usize::from(step >= STEP * whole.abs());
@@ -44,9 +45,11 @@ fn share(name: &str, picture: &Picture) -> f64 {
     share
 }
 
-/// A pixel on a straight edge shows the two sides by their shares of it. Where the edge runs along the pixels' rows the share is anything from 0 to 1 alike, so
-/// that of two changes, to the pixel and from it, one is 0.9 of the whole for a fifth of all edges; a slanting one crosses more pixels and has fewer.
-/// Sixteen samples know the share to a quarter at worst: then 0 is all that is left of the fifth, for a quarter.
+/// A pixel on a straight edge mixes the two sides by coverage. If the edge runs along the rows of
+/// pixels, the coverage is uniform from 0 to 1. Then one of two changes, to the pixel or from it,
+/// is 0.9 of the whole for a fifth of all edges. A slanted edge crosses more pixels and has fewer
+/// steps. Sixteen samples resolve the coverage to a quarter at worst: then only a coverage of 0
+/// makes a step, for a quarter of all edges.
 const MOST_STEPS: f64 = 0.25;
 
 #[test]
@@ -62,7 +65,8 @@ fn bright_edges_are_no_staircases() {
         let settings = |samples| Settings { rung, exposure, samples, ..Settings::of_size(384, 384) };
         let picture = render::render(super::gpu(), &scene, &settings(4)).expect("rendered");
         assert!(share(name, &picture) <= MOST_STEPS, "{name}");
-        // One sample a pixel is a staircase, and the means of sixteen, tone-mapped afterwards, nearly one: the measure sees both.
+        // One sample per pixel gives a staircase. Means of sixteen samples, tone-mapped afterwards,
+        // nearly give one. The measure detects both.
         let one = render::render(super::gpu(), &scene, &settings(1)).expect("rendered");
         assert!(share(&format!("{name}, one sample"), &one) > 0.5, "{name}");
         if name != "vitrine" {
@@ -72,7 +76,7 @@ fn bright_edges_are_no_staircases() {
     }
 }
 
-/// With eight samples a side, and of the reference.
+/// Checks eight samples a side, and the reference.
 #[test]
 fn so_it_is_with_more_samples_and_with_the_reference() {
     let scene = Scene::named("brilliant").expect("built in");

@@ -1,5 +1,5 @@
-//! The hierarchy over a mesh, and the recipe that traces rays with it: whole buffers against the mirror's, and against
-//! f64 by brute force.
+//! The hierarchy over a mesh, and the recipe that traces rays with it: whole buffers, compared with
+//! the mirror's and with f64 by brute force.
 
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::draws::{Domain, Draws};
@@ -10,7 +10,7 @@ use lapidary_gpu::Gpu;
 use lapidary_render::compute::{self, Binding, RecipeRun};
 use lapidary_scene::{Bvh, Mesh, Scene};
 
-/// Rays a body.
+/// Rays per body.
 const RAYS: usize = 16_384;
 
 struct Query {
@@ -52,7 +52,7 @@ impl Body {
         )
     }
 
-    /// Reflects a ray at what it met.
+    /// Reflects a ray at its hit.
     fn reflected(&self, query: &Query, hit: &BvhTraceHit) -> Query {
         let [a, b, c] = self.corners(hit.triangle as usize).map(|p| p.as_dvec3());
         let normal = (b - a).cross(c - a).normalize();
@@ -64,8 +64,8 @@ impl Body {
         }
     }
 
-    /// Rays that start on the surface and go inwards: to a vertex or to a point of an edge that is not behind it, or
-    /// anywhere; and after some reflections.
+    /// Returns rays that start on the surface and go inwards: to a vertex, to a point of an edge
+    /// that is not behind the ray, or anywhere; and the same after some reflections.
     fn queries(&self, seed: u64, count: usize) -> Vec<Query> {
         (0..count as u64)
             .map(|row| {
@@ -99,7 +99,7 @@ impl Body {
                 1 => (from.lerp(to, draws.unit()) - origin.as_dvec3()).normalize(),
                 _ => draws.direction(),
             };
-            // Grazing rays too, but none that starts outwards.
+            // Grazing rays too, but no ray that starts outwards.
             if normal.dot(direction) < -1e-4 {
                 return Query { origin, direction: direction.as_vec3(), left };
             }
@@ -140,22 +140,24 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
     words.chunks_exact(6).map(hit).collect()
 }
 
-/// By how much a ray may pass a triangle and still meet it: the margin in the ray's own, slanted frame, √3 of it across and
-/// √3 for the slant.
+/// Returns the distance by which a ray may pass a triangle and still meet it: the margin in the
+/// ray's own, slanted frame, times √3 across and √3 for the slant.
 fn bound(body: &Body, query: &Query) -> f64 {
     let root = body.bvh.nodes[0];
     let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
     3.0 * f64::from(ray.margin)
 }
 
-/// Two planes that the ray meets at the same place up to the bound are at the same distance up to it over the cosine: that of a triangle's.
+/// Returns the tolerance of a distance. If a ray meets two planes at the same place up to the
+/// bound, its distances to them agree up to the bound over the cosine at the triangle.
 fn slack(body: &Body, query: &Query, triangle: u32) -> f64 {
     let [a, b, c] = body.corners(triangle as usize).map(|p| p.as_dvec3());
     let normal = (b - a).cross(c - a).normalize();
     bound(body, query) / normal.dot(query.direction.as_dvec3())
 }
 
-/// What f64 without any margin allows: no triangle that the ray meets clearly is missed, and none is made up.
+/// Compares a hit with f64 without a margin: no triangle that the ray clearly meets is missed, and
+/// none is made up.
 fn fault(body: &Body, positions: &[DVec3], query: &Query, hit: &BvhTraceHit) -> Option<String> {
     let bound = bound(body, query);
     let (origin, direction) = (query.origin.as_dvec3(), query.direction.as_dvec3());
@@ -199,8 +201,8 @@ fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
             body.bvh.nodes.len(),
             body.bvh.depth()
         );
-        // On lavapipe every operation rounds as the mirror's does, but for the order of a product of matrices, which is
-        // not here.
+        // On lavapipe every operation rounds as in the mirror, except for the order of a product of
+        // matrices, which this recipe does not use.
         if gpu.is_lavapipe() {
             assert_eq!(found, mirrored, "{}", body.name);
         }
@@ -219,8 +221,9 @@ fn a_loop_over_all_triangles_meets_the_same() {
         for ((query, tree), every) in
             queries.iter().zip(&by_tree).zip(&by_loop).filter(|((_, tree), every)| tree != every)
         {
-            // About an edge two triangles are met at one place up to the margin. The tree does not open the box of the one where the other was met
-            // nearer than the box begins, the loop takes whichever comes out nearer: either is right.
+            // Near an edge, a ray meets two triangles at one place, up to the margin. The tree does
+            // not open the box of one triangle if the hit on the other is nearer than the box. The
+            // loop takes the nearer hit. Either is right.
             others += 1;
             assert_ne!(tree.triangle, every.triangle, "{}: from {} to {}", body.name, query.origin, query.direction);
             for hit in [tree, every] {
@@ -229,11 +232,11 @@ fn a_loop_over_all_triangles_meets_the_same() {
             }
             let reach: f64 = [tree, every].map(|hit| slack(&body, query, hit.triangle).abs()).iter().sum();
             let apart = f64::from(tree.distance - every.distance).abs();
-            // A NaN does not hold.
+            // A NaN fails.
             assert!(apart <= reach, "{}: {tree:?} and {every:?} are {apart:e} apart, at most {reach:e}", body.name);
         }
         println!("{}: {others} of {} rays meet another triangle by the loop", body.name, queries.len());
-        // No bound, but a tree that leads elsewhere would be seen.
+        // Not a bound, but it detects a tree that leads elsewhere.
         assert!(others * 1000 <= queries.len(), "{}: {others} of {}", body.name, queries.len());
     }
 }
@@ -264,8 +267,8 @@ fn sixty_four_reflections_inside_the_bunny_lose_no_ray() {
     }
 }
 
-/// A mesh of any kind: random, of equal triangles, without area, huge, tiny, flat, with corners that are not finite or
-/// do not exist.
+/// Returns a mesh of any kind: random, of equal triangles, without area, huge, tiny, flat, or with
+/// corners that are not finite or do not exist.
 fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
     let count = 1 + draws.below(300);
     let size = draws.pick(&[1.0, 1e-30, 1e37, 1.0, 3e38]);
@@ -281,7 +284,7 @@ fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
             3 => [a, b, c].map(|p| Vec3::new(p.x, 0.0, p.z)),
             4 if draws.below(4) == 0 => [a, Vec3::NAN, c],
             4 if draws.below(4) == 0 => [a, b, Vec3::INFINITY],
-            // Ever smaller towards the origin, which clusters one by one.
+            // Smaller and smaller towards the origin, which clusters one by one.
             5 => [a, b, c].map(|p| p * 2f32.powi(-((positions.len() / 3) as i32))),
             _ => [a, b, c],
         };
@@ -295,7 +298,7 @@ fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
     Mesh { normals: vec![Vec3::Y; positions.len()], positions, indices, ..Mesh::default() }
 }
 
-/// What a shader relies on.
+/// Checks the properties that a shader relies on.
 fn check_hierarchy(mesh: &Mesh, bvh: &Bvh) {
     assert!(bvh.depth() <= BVH_TRACE_DEPTH, "{} deep", bvh.depth());
     assert_eq!(bvh.indices.len(), 3 * bvh.order.len());

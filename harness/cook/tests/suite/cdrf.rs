@@ -6,7 +6,7 @@ use lapidary_assay::extremum::largest;
 use lapidary_cdrf as mirror;
 use lapidary_cook::cost::Report;
 use lapidary_cook::cost::cdrf::error::{self, Distance, Samples};
-use lapidary_cook::cost::cdrf::{CIRCULAR, Options, SCREEN, SPHERICAL, TABLE};
+use lapidary_cook::cost::cdrf::{CIRCULAR, SCREEN, SPHERICAL, TABLE, options};
 use lapidary_render::cdrf::table::{self, Table};
 use lapidary_scene::solver::Format;
 use std::sync::OnceLock;
@@ -111,7 +111,7 @@ fn the_record_has_the_rungs_errors() {
         }
     };
     let spherical = Samples::of(mirror::oracle::spherical);
-    for reflectance in Options::default().rungs {
+    for reflectance in options().rungs {
         let name = reflectance.name();
         let function = error::function(super::gpu(), reflectance).unwrap_or_else(|error| panic!("{error}"));
         let definition = if name == SPHERICAL { &spherical } else { convolution() };

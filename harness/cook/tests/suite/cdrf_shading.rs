@@ -1,5 +1,5 @@
-//! The recipe `cdrf_shading` against what its parts promise: spheres, whose curvature is known, by every rung; the environment by quadrature;
-//! what is off; and what nobody should draw.
+//! The recipe `cdrf_shading` against the promises of its parts: spheres, whose curvature is known,
+//! for every rung; the environment by quadrature; effects that are off; and invalid scenes.
 
 use crate::pixels::on_the_ball;
 use glam::{DVec3, Vec3};
@@ -48,7 +48,8 @@ fn ball(radius: f64, sigma0: Vec3) -> Scene {
     scene.seen_from(80.0, 20.0)
 }
 
-/// What a pixel of a ball about the origin should show, by the oracle's convolution for each light.
+/// Returns the expected radiance at a point of a ball about the origin, by the oracle's convolution
+/// for each light.
 fn expected(scene: &Scene, position: DVec3, radius: f64, reflectance: impl Fn(f64, f64) -> f64) -> DVec3 {
     let material = &scene.objects[0].material;
     let normal = position.normalize();
@@ -62,13 +63,15 @@ fn expected(scene: &Scene, position: DVec3, radius: f64, reflectance: impl Fn(f6
     material.base_color.as_dvec3() * received * FRAC_1_PI
 }
 
-/// Normals interpolated over a mesh of 256 columns are off by (2 pi / 256)^2 / 8 = 7.5e-5 in length, less in direction; curvature by
-/// derivatives by .4 %, as the curvature's own test has it. Sigma times the largest slope of the function over sigma, .4, is what that does.
+/// Error of the mesh. Normals interpolated over 256 columns are off by (2 pi / 256)^2 / 8 = 7.5e-5
+/// in length, and by less in direction. Curvature from derivatives is off by a tenth of a per cent in
+/// the median, as in the curvature's own test. Its effect is that error times sigma times the
+/// function's largest slope over sigma, 0.4.
 const MESH: f64 = 5e-4;
 
 #[test]
 fn every_rung_shows_the_convolution_on_a_sphere() {
-    // The rungs' own largest errors: the page's table.
+    // The rungs' own largest errors, as in the page's table.
     let rungs = [
         ("lambert", 0.0),
         ("table-256-rgba8", 2.1e-3),
@@ -104,7 +107,8 @@ fn every_rung_shows_the_convolution_on_a_sphere() {
     }
 }
 
-/// A spot's light is a disc with a soft edge, on a ball that a sun lights too: every light of a scene with a spot goes through the cone's lines.
+/// Checks a spot, a disc of light with a soft edge, on a ball that a sun also lights: every light
+/// of a scene with a spot passes through the cone's lines.
 #[test]
 fn a_spot_shows_its_cone() {
     let radius = 10.0;
@@ -131,13 +135,14 @@ fn a_spot_shows_its_cone() {
             brightest = larger(brightest, truth.max_element());
         }
         println!("{rung}: off by {worst:.1e} where the brightest is {brightest:.2}, {soft} pixels of the soft edge");
-        // The position of a pixel of a flat triangle is off by (2 pi / 256)^2 / 8 of the radius, 7.5e-4, over 30 of distance; the steepest slope of the
-        // share is 2 / (cos .1 - cos .25) sin .25 = 19 a radian.
+        // The position of a pixel of a flat triangle is off by (2 pi / 256)^2 / 8 of the radius,
+        // 7.5e-4, at a distance of 30. The steepest slope of the share is
+        // 2 / (cos .1 - cos .25) sin .25 = 19 per radian.
         assert!(soft > 500 && worst < brightest * (MESH + 1e-3), "{rung}: {worst}");
     }
 }
 
-/// The smaller the sphere the further light creeps past the terminator, and red further than blue.
+/// The smaller the sphere, the further light creeps past the terminator, and red further than blue.
 #[test]
 fn light_creeps_further_on_smaller_spheres_and_red_further_than_blue() {
     let radii = [40.0, 24.0, 14.0, 8.0, 5.0];
@@ -161,7 +166,7 @@ fn light_creeps_further_on_smaller_spheres_and_red_further_than_blue() {
     assert!(past.iter().all(|share| share.x > share.y && share.y > share.z), "{past:?}");
 }
 
-/// The environment through the spherical form, summed over all directions.
+/// Checks the environment under the spherical form, summed over all directions.
 #[test]
 fn the_environment_is_the_integral_of_the_spherical_form() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
@@ -174,7 +179,7 @@ fn the_environment_is_the_integral_of_the_spherical_form() {
             environment: environment.clone(),
             ..settings("spherical")
         };
-        // All around alike: what the surface sends back is its albedo, at any width.
+        // With uniform radiance, the surface returns its albedo, at any width.
         for (_, found) in on_the_ball(&scene, &draw(&scene, &lit(&ones))) {
             assert!(largest((found - albedo).abs().to_array()) < 1e-5, "{found} {albedo}");
         }
@@ -194,13 +199,14 @@ fn the_environment_is_the_integral_of_the_spherical_form() {
             "at vertices {at_vertices}: widths .8, .3, 0: largest error {:.4}, rms {rms:.4}, of the brightest",
             worst / brightest
         );
-        // Of one small light alone the degrees that are left out hold up to .06; the studio has nine and a tent.
+        // For one small light alone, the omitted degrees hold up to 0.06. The studio has nine
+        // lights and a tent.
         assert!((worst / brightest).max_element() < 0.02, "{worst} {brightest}");
         assert!(rms.x < 0.003 && rms.x < rms.z, "{rms}");
     }
 }
 
-/// ∫ f_r L over the sphere for three widths, on a grid of 256 × 512 directions.
+/// Returns ∫ f_r L over the sphere for three widths, on a grid of 256 × 512 directions.
 fn integral(normal: DVec3, sigma: DVec3) -> DVec3 {
     const ROWS: u32 = 256;
     let mut sum = DVec3::ZERO;
@@ -220,8 +226,8 @@ fn integral(normal: DVec3, sigma: DVec3) -> DVec3 {
     sum
 }
 
-/// On a torus, curved one way much more than the other, the blur in the texture and the reflectance agree where the light comes along the tube's
-/// round; both leave Lambert's law far behind.
+/// On a torus that is curved much more one way than the other, the blur in the texture and the
+/// reflectance agree for light along the tube's round. Both are far from Lambert's law.
 #[test]
 fn the_blur_agrees_with_the_reflectance_on_a_slender_ring() {
     let mut scene = Scene::named("wax_ring").expect("built in");
@@ -257,7 +263,7 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
     let by_rung = rungs.map(|rung| (rung, Curvature::Mean));
     let by_curvature = Curvature::ALL.map(|curvature| ("accurate", curvature));
     for (rung, curvature) in by_rung.into_iter().chain(by_curvature) {
-        // Balls side by side, each of another kind.
+        // Balls side by side, each of a different kind.
         let mut scene = ball(10.0, Vec3::ONE);
         let sound = scene.objects[0].clone();
         let kinds: [(Vec3, Option<Vec3>); 8] = [
@@ -279,7 +285,7 @@ fn nothing_that_a_mesh_or_material_may_hold_makes_a_black_or_broken_pixel() {
                 if let Some(normal) = normal {
                     object.mesh.normals.fill(normal);
                 }
-                // A triangle without area among them.
+                // One of the triangles has no area.
                 object.mesh.indices.extend([0, 0, 0]);
                 object
             })
@@ -312,7 +318,7 @@ fn what_is_off_leaves_no_trace() {
     assert_eq!(draw(&matched, &reflecting).linear, bits(&settings("lambert")), "an index of 1 reflects nothing");
 }
 
-/// Bodies of other materials beside it change nothing about one.
+/// Bodies of other materials do not change the picture of a body.
 #[test]
 fn a_polished_and_a_rough_body_do_not_mix() {
     let of = |roughness: f32, place: f64| {
@@ -339,7 +345,7 @@ fn a_polished_and_a_rough_body_do_not_mix() {
     }
 }
 
-/// The forms that are nearer to one another than a mesh is to its sphere are still told apart.
+/// Forms that differ by less than a mesh differs from its sphere are still told apart.
 #[test]
 fn near_forms_are_as_near_as_their_errors() {
     let scene = ball(10.0, Vec3::new(3.4, 2.5, 1.0));
@@ -351,7 +357,8 @@ fn near_forms_are_as_near_as_their_errors() {
     };
     let (cheap, quadrature) = (apart(&cheap), apart(&quadrature));
     println!("from the accurate form: cheap {cheap:.1e}, quadrature {quadrature:.1e}");
-    // The cheap form may be off by 1.5e-5 times what the albedo leaves of both lights, the accurate one by a hundredth of that.
+    // The cheap form may be off by 1.5e-5 times the light of both lights after the albedo, the
+    // accurate form by a hundredth of that.
     assert!((1e-6..2e-5).contains(&cheap), "{cheap}");
     assert!(quadrature > 0.0 && quadrature < 2e-6, "{quadrature}");
 }
@@ -369,7 +376,7 @@ fn bad_input_is_refused() {
         matches!(error, RenderError::NoTextureCoordinates { .. }) && error.to_string().contains("TEXCOORD_0"),
         "{error}"
     );
-    // Neither a width nor what one follows from.
+    // Neither a width nor a medium to derive it from.
     (scene.objects[0].material.sigma0, scene.objects[0].material.medium) = (None, None);
     let error = refused(&scene, "accurate");
     assert!(matches!(error, RenderError::NoSigma0 { .. }) && error.to_string().contains("sigma0"), "{error}");
@@ -378,7 +385,8 @@ fn bad_input_is_refused() {
     assert!(matches!(refused(&stone, "cheap"), RenderError::NoSigma0 { .. }));
 }
 
-/// After each side's best single exposure the reflectance is nearer to the random walks than Lambert's law.
+/// With the best single exposure for each, the reflectance is nearer to the random walks than
+/// Lambert's law.
 #[test]
 fn the_reflectance_is_nearer_to_random_walks_than_lambert() {
     use lapidary_cook::snapshot::{EXR_SIDE, WalkedReference};

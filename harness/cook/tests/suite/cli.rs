@@ -1,4 +1,4 @@
-//! `cook` does what its help says.
+//! `cook` does as its help says.
 
 use crate::program::{cook, folder, succeeds};
 use lapidary_assay::dispatch;
@@ -35,7 +35,7 @@ fn every_command_has_help_with_an_example() {
     }
 }
 
-/// The keys that others read, and that they agree with one another.
+/// Checks the keys that other programs read, and that they agree with one another.
 #[test]
 fn plan_prints_one_json_document() {
     let answer = succeeds(folder().path(), &["plan", "vitrine", "--json"]);
@@ -52,7 +52,7 @@ fn plan_prints_one_json_document() {
     assert_eq!(on("ruby"), ["convex_trace", "absorption"]);
     assert_eq!(on("clear glass"), ["bvh_trace"]);
     for row in rows("objects") {
-        // Slate has one rung, and no ladder.
+        // Slate has one rung and no ladder.
         let measured = text(&row, "material") != "slate";
         let number = |key: &str| row[key].as_f64().is_some_and(|value| value > 0.0);
         assert!(row["quality"] == "good" && number("error") == measured && number("worst_error") == measured, "{row}");
@@ -70,7 +70,7 @@ fn plan_prints_one_json_document() {
         let bound = pass["resources"].as_array().expect("a list").clone();
         assert!(bound.iter().all(|name| name.as_str().is_some_and(|name| resources.contains(name))), "{pass}");
     }
-    // The same without effects that are left out, and with a technique that is asked for.
+    // The same with effects left out on request, and with a requested technique.
     let plan = |arguments: &[&str]| succeeds(folder().path(), &[&["plan"], arguments].concat()).stdout;
     assert!(plan(&["brilliant", "--without", "dispersion"]).contains("left out on request"));
     assert!(plan(&["bunny", "--with", "cdrf"]).contains("by rung cheap of recipe cdrf_shading"));
@@ -93,7 +93,7 @@ fn check_prints_one_json_document() {
         assert_eq!(row[field], value);
     }
     assert_eq!((row["failed"].as_u64(), row["nonfinite"].as_u64()), (Some(0), Some(0)));
-    // The hard cases come on top of the random ones.
+    // The hard cases are in addition to the random ones.
     assert!(row["cases"].as_u64().is_some_and(|cases| cases >= 1000), "{row}");
     for field in ["max_ulp", "p99_ulp", "median_ulp", "seconds"] {
         assert!(row[field].as_f64().is_some_and(|number| number >= 0.0), "{field}: {row}");
@@ -109,7 +109,7 @@ fn check_prints_one_json_document() {
     );
 }
 
-/// The cookbook's refraction with a changed reflection.
+/// Returns the cookbook's refraction with a changed reflection.
 fn changed_copy() -> String {
     let source = cookbook::module("refraction").expect("a module").source;
     assert_eq!(source.matches("2.0f * dot").count(), 1);
@@ -126,7 +126,7 @@ fn a_changed_copy_fails_and_names_an_input() {
     let answer = cook(folder.path(), &arguments);
     assert_eq!(answer.code, Some(1), "{answer:?}");
     assert!(answer.stdout.contains("FAIL refraction_reflect"), "{answer:?}");
-    // The user's failures are not the cookbook's.
+    // The user's failures are not stored as the cookbook's.
     assert_eq!(std::fs::read(&kept).ok(), before);
     let rows = json(&cook(folder.path(), &[arguments.as_slice(), &["--json"]].concat()).stdout);
     assert!(rows[0]["failed"].as_u64().is_some_and(|failed| failed > 100), "{rows:?}");
@@ -178,7 +178,7 @@ fn copied_modules_compile_as_one_file() {
     let text = std::fs::read_to_string(folder.path().join("optics.wgsl")).expect("the output");
     dispatch::parse(&text, "optics.wgsl").unwrap_or_else(|error| panic!("{error}"));
     assert!(text.contains("fn refraction_refract(") && text.contains("fn fresnel_dielectric("));
-    // Without --out the same goes to stdout.
+    // Without --out, the same text goes to stdout.
     assert_eq!(succeeds(folder.path(), &["copy", "refraction", "fresnel"]).stdout, text);
 }
 
@@ -242,7 +242,7 @@ fn a_picture_goes_where_no_name_is_given_to_the_scenes_own() {
     assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 1);
 }
 
-/// A file says what its scene is called, and never where a picture of it goes.
+/// A file names its scene, but never the place of its picture.
 #[test]
 fn a_file_does_not_choose_where_its_picture_goes() {
     let folder = folder();
@@ -258,7 +258,7 @@ fn a_file_does_not_choose_where_its_picture_goes() {
         assert_eq!(std::fs::read_dir(&inner).expect("a folder").count(), 1, "{name}");
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 2, "{name}");
     }
-    // Another word for a built-in is that built-in.
+    // An alias of a built-in scene stands for that scene.
     assert_eq!(succeeds(&inner, &["render", "diamond", "--size", "8x8", "--samples", "1"]).stdout, "brilliant.png\n");
 }
 
@@ -284,7 +284,7 @@ fn links_and_the_umask_hold_for_what_is_written() {
     }
 }
 
-/// To leave out what nothing calls for is to have what was wanted.
+/// Leaving out an effect that nothing calls for is accepted and changes nothing.
 #[test]
 fn what_nothing_calls_for_may_be_left_out() {
     let folder = folder();
@@ -298,7 +298,7 @@ fn what_nothing_calls_for_may_be_left_out() {
     succeeds(folder.path(), &["plan", "octahedron", "--without", "optical_path"]);
 }
 
-/// What should be known is said by both commands alike, in the plan's JSON too.
+/// Both commands give the same notes, in the plan's JSON too.
 #[test]
 fn render_and_plan_say_the_same_of_a_scene() {
     let folder = folder();
@@ -321,7 +321,8 @@ fn render_and_plan_say_the_same_of_a_scene() {
     assert_eq!(plan["notes"], serde_json::json!([note]));
 }
 
-/// An environment with negative parts, as lossy compression leaves them, is used, and both commands say how many there are.
+/// An environment with negative parts, as lossy compression leaves them, is used, and both commands
+/// state their number.
 #[test]
 fn negative_radiance_is_told_and_taken_as_none() {
     let folder = folder();
@@ -334,7 +335,7 @@ fn negative_radiance_is_told_and_taken_as_none() {
     assert!(succeeds(folder.path(), &[&["plan"], &asked[..]].concat()).stdout.contains(note));
 }
 
-/// A thousand bodies share all that is the same: what is left for each is its own mesh and material.
+/// A thousand bodies share everything that is equal. Each adds only its own mesh and material.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_thousand_gems_take_little_memory() {
@@ -351,12 +352,13 @@ fn a_thousand_gems_take_little_memory() {
         let arguments = ["render", name, "--rung", rung, "--size", "64x64", "--samples", "1", "--out", "out.png"];
         let peak = peak_kib(folder.path(), &arguments);
         println!("{name} by {rung}: {} MiB at most", peak / 1024);
-        // One gem takes some 110 MiB, the driver's and its compiler's. Unshared, each body took 3 MiB of it more.
+        // One gem takes about 110 MiB, for the driver and its compiler. Without sharing, each body
+        // took another 3 MiB.
         assert!(peak > 0 && peak <= 200 * 1024, "{name} by {rung}: {peak} KiB");
     }
 }
 
-/// The most memory that a run took, as the kernel saw it.
+/// Returns the peak memory of a run in KiB, as the kernel reports it.
 #[cfg(target_os = "linux")]
 fn peak_kib(folder: &Path, arguments: &[&str]) -> u64 {
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_cook"))

@@ -1,5 +1,5 @@
-//! The comparison and the search for counterexamples fail where they must: a suite whose comparator lets NaN pass, or whose
-//! generator misses its edges, checks nothing.
+//! The comparison and the search for counterexamples fail when they must. A suite whose comparator
+//! accepts NaN, or whose generator misses its edges, checks nothing.
 
 use crate::gpu;
 use glam::{DVec3, Vec3};
@@ -23,7 +23,7 @@ fn tolerance(arguments: &[Shape], result: &Shape, bound: Bound) -> Tolerance {
     Tolerance::new(arguments, result, &[FieldBound { field: None, bound }])
 }
 
-/// The verdict on a scalar result without arguments.
+/// Returns the verdict on a scalar result without arguments.
 fn judge(bound: Bound, gpu: f32, mirror: f32, exact: f64) -> Verdict {
     let oracle = |_: &[f64], _: &mut Vec<f64>| panic!("no bound asks for it again");
     tolerance(&[], &FLOAT, bound).judge(&[], &[gpu.to_bits()], &[mirror.to_bits()], &[exact], &oracle)
@@ -43,7 +43,7 @@ fn nan_never_passes() {
     assert!(!nan.holds() && nan.nonfinite);
     assert!(!judge(GENEROUS, f32::NAN, 1.0, 1.0).holds());
     let mirror = judge(GENEROUS, 1.0, f32::NAN, 1.0);
-    // The shader's results are counted as not finite, not the mirror's.
+    // Only the shader's results count as nonfinite, not the mirror's.
     assert!(!mirror.holds() && !mirror.nonfinite);
     let oracle = judge(GENEROUS, 1.0, 1.0, f64::NAN);
     assert!(!oracle.holds() && !oracle.nonfinite);
@@ -78,7 +78,8 @@ fn one_nan_component_fails_the_vector() {
 fn zero_has_no_sign_and_flushing_is_no_error() {
     assert!(judge(NONE, -0.0, 0.0, 0.0).holds());
     assert!(judge(NONE, 0.0, -0.0, -0.0).holds());
-    // What WGSL allows to be flushed, and the first number beyond it, of either sign.
+    // The largest number that WGSL allows to be flushed, and the first number beyond it, of either
+    // sign.
     for sign in [1.0f64, -1.0] {
         assert!(accepts(NONE, 0.0, sign * 2.0 * f64::from(f32::MIN_POSITIVE)));
         assert!(!accepts(NONE, sign as f32 * (2.0 * f32::MIN_POSITIVE).next_up(), 0.0));
@@ -92,7 +93,7 @@ fn an_error_at_the_bound_holds_and_one_ulp_above_fails() {
         assert!(accepts(three, sign * (1.0 + 3.0 * ULP), sign.into()));
         assert!(!accepts(three, sign * (1.0 + 4.0 * ULP), sign.into()));
     }
-    // Half an ulp is what a correctly rounded result is off by at most.
+    // A correctly rounded result is off by at most half an ulp.
     let half = Bound { ulp: 0.5, ..NONE };
     assert!(accepts(half, 1.0, 1.0 + 0.5 * f64::from(ULP)));
     assert!(!accepts(half, 1.0, 1.0 + 0.51 * f64::from(ULP)));
@@ -135,7 +136,7 @@ fn a_vectors_ulp_is_that_of_its_largest_component() {
     assert!(accepts([1024.0, edge, 2f32.powi(-13)]));
     assert!(!accepts([1024.0, edge.next_up(), 0.0]));
     assert!(!accepts([1024.0, 1.0, 2f32.powi(-13).next_up()]));
-    // In an array each element has an ulp of its own.
+    // In an array, each element has its own ulp.
     let array = tolerance(&[], &Shape::Array(Box::new(FLOAT), 3), Bound { ulp: 1.0, ..NONE });
     let words = [1024.0, edge, 0.0].map(f32::to_bits);
     assert!(!array.judge(&[], &words, &words, &exact, &oracle).holds());
@@ -174,7 +175,7 @@ fn a_discrete_difference_fails() {
 
 #[test]
 fn a_flag_may_differ_only_within_the_backward_bound_of_its_threshold() {
-    // Whether x = 1 exceeds a threshold a few ulp above it: the oracle says no.
+    // Whether x = 1 exceeds a threshold a few ulp above it; by the oracle it does not.
     let accepts = |backward: f64, ulps_away: f64, gpu: bool, mirror: bool| {
         let threshold = 1.0 + ulps_away * f64::from(ULP);
         let oracle = |numbers: &[f64], result: &mut Vec<f64>| result.push(f64::from(u8::from(numbers[0] >= threshold)));
@@ -192,7 +193,7 @@ fn a_flag_may_differ_only_within_the_backward_bound_of_its_threshold() {
 
 #[test]
 fn floats_beside_a_flag_are_those_of_the_same_case() {
-    // 0 below the threshold and 100 above it: whoever says "above" must also say 100.
+    // The value is 0 below the threshold and 100 above it: with "above" set, it must be 100.
     let shape = Shape::Struct("Hit".to_owned(), vec![("value".to_owned(), FLOAT), ("above".to_owned(), FLAG)]);
     let oracle = |numbers: &[f64], result: &mut Vec<f64>| {
         let above = numbers[0] >= 1.0 + f64::from(ULP);
@@ -207,7 +208,8 @@ fn floats_beside_a_flag_are_those_of_the_same_case() {
     assert!(!accepts(50.0, 1) && !accepts(0.0, 1) && !accepts(100.0, 0));
 }
 
-/// Verdicts on a value of a struct with a flag, of two inputs of 1: `oracle` is of how many ulp each is off.
+/// Returns verdicts on a value of a struct with a flag, for two inputs of 1. `oracle` takes the
+/// offset of each input in ulp.
 fn beside_a_flag(value: f32, oracle: impl Fn(f64, f64) -> Option<f64>) -> [Verdict; 2] {
     let shape = Shape::Struct("Hit".to_owned(), vec![("value".to_owned(), FLOAT), ("hit".to_owned(), FLAG)]);
     let of_inputs = |numbers: &[f64], result: &mut Vec<f64>| {
@@ -224,7 +226,8 @@ fn beside_a_flag(value: f32, oracle: impl Fn(f64, f64) -> Option<f64>) -> [Verdi
 
 #[test]
 fn an_extremum_where_a_case_ends_is_found() {
-    // A ray that comes ever nearer to a plane's direction, until it counts as parallel: at 18 / 0.37 there.
+    // A ray that approaches a plane's direction until it counts as parallel. There its value is
+    // 18 / 0.37.
     let oracle = |along: f64, height: f64| (along > 0.37).then(|| (10.0 + height) / along);
     assert!(beside_a_flag(18.0 / 0.37, oracle)[0].holds());
     assert!(!beside_a_flag(18.001 / 0.37, oracle)[1].holds());
@@ -233,7 +236,7 @@ fn an_extremum_where_a_case_ends_is_found() {
 #[test]
 fn the_highest_of_several_extrema_is_found_thoroughly() {
     let hill = |x: f64, y: f64, steep: f64| (-steep * (x * x + y * y)).exp();
-    // The way up from nearly everywhere leads to the lower one.
+    // From nearly everywhere, the way up leads to the lower one.
     let oracle = |x: f64, y: f64| Some(hill(x + 4.0, y + 4.0, 0.01) + 1.5 * hill(x - 3.3, y - 2.7, 8.0));
     let top = (hill(7.3, 6.7, 0.01) + 1.5) as f32;
     let [quick, thorough] = beside_a_flag(top - 2e-4, oracle);
@@ -243,7 +246,7 @@ fn the_highest_of_several_extrema_is_found_thoroughly() {
 
 #[test]
 fn a_case_too_thin_for_corners_is_found_thoroughly() {
-    // A triangle seen all but edge-on.
+    // A triangle seen almost edge-on.
     let oracle = |x: f64, y: f64| (0.0..0.02).contains(&(x - 1.03 * y - 0.3)).then_some(5.0 + x);
     let [quick, thorough] = beside_a_flag(6.0, oracle);
     assert!(!quick.holds() && thorough.holds(), "{quick:?}, {thorough:?}");
@@ -252,7 +255,7 @@ fn a_case_too_thin_for_corners_is_found_thoroughly() {
 
 #[test]
 fn backward_error_accepts_what_the_input_explains_and_no_more() {
-    // x - 1 near 1: an ulp of the input is 1024 of the result.
+    // x - 1 near 1: an ulp of the input is 1024 ulp of the result.
     let input = 1.0 + 2f32.powi(-10);
     let oracle = |numbers: &[f64], result: &mut Vec<f64>| result.push(numbers[0] - 1.0);
     let accepts = |backward: f64, value: f32| {
@@ -271,7 +274,7 @@ fn backward_error_accepts_what_the_input_explains_and_no_more() {
 
 #[test]
 fn backward_error_reaches_an_extremum_inside_the_box() {
-    // (x - y)²: no corner of the box gives the 0 that lies in it.
+    // (x - y)²: no corner of the box gives the 0 that lies inside it.
     let oracle = |numbers: &[f64], result: &mut Vec<f64>| result.push((numbers[0] - numbers[1]).powi(2));
     let inputs = [1.0 + ULP, 1.0];
     let exact = f64::from(ULP).powi(2);
@@ -287,7 +290,8 @@ fn backward_error_reaches_an_extremum_inside_the_box() {
 
 #[test]
 fn backward_error_reaches_the_one_corner_of_many_where_the_extremum_is() {
-    // x₁ - x₂ + x₃ - …: one corner of 65,536 has the greatest sum, and it lies at the end of every input.
+    // x₁ - x₂ + x₃ - …: one corner of 65,536 has the greatest sum, and it lies at the end of every
+    // input.
     const INPUTS: usize = 16;
     let oracle = |numbers: &[f64], result: &mut Vec<f64>| {
         result.push(numbers.chunks_exact(2).map(|pair| pair[0] - pair[1]).sum());
@@ -313,7 +317,7 @@ fn backward_error_explains_nothing_where_the_input_does_not_matter() {
     assert!(accepts(1.0) && !accepts(1.0 + ULP));
 }
 
-/// How much longer than the right one a wrong reflection is: far above any tolerance.
+/// Length of a wrong reflection relative to the right one, far above any tolerance.
 const TOO_LONG: f64 = 1.0 + 1.0 / 64.0;
 
 fn right_mirror(incident: Vec3, normal: Vec3) -> Vec3 {
@@ -334,7 +338,8 @@ fn wrong_oracle(incident: DVec3, normal: DVec3) -> DVec3 {
     right_oracle(incident, normal) * if octant { TOO_LONG } else { 1.0 }
 }
 
-/// Normals along the axes, where the reflection is exact, so that only what is wrong on purpose fails.
+/// Returns normals along the axes, for which the reflection is exact, so that only deliberate
+/// errors fail.
 fn inputs(draws: &mut Draws<'_>) -> (Vec3, Vec3) {
     let incident = Vec3::new(draws.signed(-8, 8), draws.signed(-8, 8), draws.signed(-8, 8));
     (incident, draws.pick(&[Vec3::X, Vec3::Y, Vec3::Z]))
@@ -356,7 +361,7 @@ fn in_octant(row: &Words) -> bool {
     row[..3].iter().all(|word| f32::from_bits(*word) > 0.0)
 }
 
-/// Mantissa bits that are set: few in a simple input.
+/// Returns the number of set mantissa bits: few in a simple input.
 fn complexity(row: &Words) -> u32 {
     row.iter().map(|word| (word & 0x007f_ffff).count_ones()).sum()
 }
@@ -388,7 +393,7 @@ fn a_formula_that_is_wrong_in_one_octant_is_caught_there() {
         let shrunk = report.shrunk.expect("a failure is shrunk");
         assert!(in_octant(&report.worst) && in_octant(&shrunk), "{shrunk:x?}");
         assert!(complexity(&shrunk) < complexity(&report.worst) / 2, "{:x?} was shrunk to {shrunk:x?}", report.worst);
-        // What was shrunk still fails, alone.
+        // The shrunk input still fails, alone.
         let alone = run(&wrong, Settings { cases: 0, ..SETTINGS }, &[shrunk]);
         assert_eq!((alone.cases, alone.failed), (1, 1));
     }
@@ -427,7 +432,7 @@ fn a_broken_invariant_is_reported_by_name() {
     let report = run(&formula, SETTINGS, &[]);
     assert_eq!(report.failed, SETTINGS.cases);
     assert_eq!(report.reason.as_deref(), Some("never holds: so it is"));
-    // Where everything fails, the simplest input of all is found: each generator's first choice.
+    // If everything fails, the simplest input of all is found: each generator's first choice.
     let simplest = [1.0, 1.0, 1.0, 1.0, 0.0, 0.0f32].map(f32::to_bits);
     assert_eq!(report.shrunk.as_deref(), Some(simplest.as_slice()));
 }
@@ -462,7 +467,7 @@ fn kept_failures_are_replayed_before_all_others() {
     let alone = run(&wrong, Settings { cases: 0, ..SETTINGS }, &rows);
     assert_eq!((alone.cases, alone.failed), (1, 1));
     assert_eq!(alone.shrunk.as_ref(), Some(&kept));
-    // All rows fail alike: the one that is named is the first.
+    // All rows fail alike, and the reported row is the first.
     let all_fail = formula(MODULE, FUNCTION, right_mirror, right_oracle, inputs)
         .invariant("never holds", |_, _: Vec3| Err("so it is".to_owned()))
         .build();

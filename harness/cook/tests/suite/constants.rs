@@ -1,5 +1,5 @@
-//! Every `const` of every module has its mirror's value to the bit, also where no function reads it; those that stand for
-//! something measured are near what others published.
+//! Every `const` of every module has its mirror's value to the bit, even if no function reads it.
+//! Constants of measured quantities are near published values.
 
 use lapidary_assay::dispatch;
 use lapidary_assay::value::Value;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The mirrors' consts, by module and name.
 macro_rules! mirrored {
     ($($module:ident, $krate:ident: $($name:ident)*;)*) => {
-        /// Name and words of each mirror's consts.
+        /// Returns the words of each mirror's consts, by module and name.
         fn mirrors() -> BTreeMap<(&'static str, &'static str), Vec<u32>> {
             let mut found = BTreeMap::new();
             $($({
@@ -60,7 +60,7 @@ fn words(module: &Module, expression: Handle<Expression>, out: &mut Vec<u32>) {
     }
 }
 
-/// The consts of a module's text that differ from the mirrors', or that have none.
+/// Lists the consts of a module's text that differ from the mirror's or are missing there.
 fn differences(name: &str, source: &str) -> Vec<String> {
     let (module, _) = dispatch::parse(source, name).unwrap_or_else(|error| panic!("{error}"));
     let mirrors = mirrors();
@@ -111,8 +111,9 @@ fn a_changed_const_is_noticed_though_no_function_reads_it() {
     }
 }
 
-/// What others measured, and not with these coefficients: gemmologists' tables of the refractive index at D and of dispersion,
-/// n_G - n_B (Webster, "Gems"; Read, "Gemmology": to two digits, and of the ordinary ray), and Schott's catalogue for the glass.
+/// Compares with measurements by others that do not rest on these coefficients: gemmologists'
+/// tables of the refractive index at D and of dispersion, n_G - n_B (Webster, "Gems"; Read,
+/// "Gemmology": to two digits, and of the ordinary ray), and Schott's catalogue for the glass.
 #[test]
 fn materials_have_the_published_index_and_dispersion() {
     use lapidary_dispersion as mirror;

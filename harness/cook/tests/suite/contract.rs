@@ -1,4 +1,4 @@
-//! The module contract: the cookbook keeps it, and each rule notices a module that does not.
+//! The module contract: the cookbook keeps it, and each rule detects a module that breaks it.
 
 use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::dispatch::signature::Signature;
@@ -130,14 +130,14 @@ fn sample_halved(first: f32, second: f32) -> SamplePair {
 }
 ";
 
-/// The line before which a statement can be put into the function's body.
+/// The line of the function's body before which a statement can be inserted.
 const BODY: &str = "    return SamplePair(";
 
 fn spell(findings: &[Finding]) -> String {
     findings.iter().map(|finding| format!("{finding}\n")).collect()
 }
 
-/// The sample with every `from` replaced by `to`.
+/// Returns the sample with every `from` replaced by `to`.
 fn changed(from: &str, to: &str) -> String {
     assert!(SAMPLE.contains(from), "the sample holds no `{from}`");
     SAMPLE.replace(from, to)
@@ -173,7 +173,7 @@ fn invalid_wgsl_is_found() {
     breaks(Rule::Valid, "second * SAMPLE_HALF", "second * missing");
     breaks(Rule::Valid, "second * SAMPLE_HALF", "second * 2u");
     breaks(Rule::Valid, "return SamplePair", "retrun SamplePair");
-    // naga refuses two underscores at the start by itself.
+    // naga itself refuses two leading underscores.
     statement_breaks(Rule::Valid, "let __half = first;");
 }
 
@@ -199,9 +199,10 @@ fn a_wrong_function_comment_is_found() {
         ("// Domain: any.\n", "// Domain: any.\n// Domain: all.\n"),
         ("// Units: none.", "// Units:"),
         ("// Halves both numbers.\n", ""),
-        // A blank line parts the comment from its function.
+        // A blank line separates the comment from its function.
         ("\nfn sample_halved", "\n\nfn sample_halved"),
-        // A function that does not start its line is not seen, and must not pass for that.
+        // A function that does not start its line is not recognised, and must not pass for that
+        // reason.
         ("\nfn sample_halved", "\n@must_use fn sample_halved"),
         ("lavapipe first 1 ulp, second 1 ulp", "lavapipe first 1 cm, second 1 ulp"),
         ("lavapipe first 1 ulp, second 1 ulp; portable", "portable"),
@@ -234,7 +235,7 @@ fn anything_but_functions_structs_and_consts_is_found() {
 
 #[test]
 fn a_directive_is_found() {
-    // Directives stand before every declaration.
+    // Directives precede every declaration.
     for directive in [
         "requires readonly_and_readwrite_storage_textures;",
         "diagnostic(off, derivative_uniformity);",
@@ -262,22 +263,22 @@ fn a_name_that_would_be_changed_is_found() {
     breaks(Rule::Identifier, "second", "second_");
     breaks(Rule::Identifier, "SamplePair", "SamplePair_");
     breaks(Rule::Identifier, "sample_halved", "sample__halved");
-    // A member, which is also an argument here; only for the member does the last digit matter.
+    // A member that is also an argument here. The last digit matters only for the member.
     let findings = breaks(Rule::Identifier, "first", "first1");
     assert_eq!(findings.len(), 1, "{}", spell(&findings));
 }
 
 #[test]
 fn a_name_lost_among_others_is_found() {
-    // naga keeps one name an expression: here that of the second `let`.
+    // naga keeps one name per expression: here that of the second `let`.
     statement_breaks(Rule::Identifier, "let half_ = first * 2.0f;\n    let whole = half_;");
-    // And it keeps no name of a const.
+    // It keeps no name of a const.
     statement_breaks(Rule::Identifier, "const HALF_ = 2.0f;");
 }
 
 #[test]
 fn a_literal_without_a_type_is_found() {
-    // The last ends in a digit that looks like a suffix.
+    // The last literal ends in a digit that looks like a suffix.
     for literal in ["1.0", "1", "1.", "0x10", "1e5", "1e-5", ".5", "0xff"] {
         statement_breaks(Rule::Literal, &format!("let number = {literal};"));
     }
@@ -380,7 +381,7 @@ fn modules_that_clash_are_found() {
     assert!(lint_composition(&[("sample", SAMPLE), ("other", &other)]).is_empty());
     let clash = other.replace("OtherPair", "SamplePair");
     let findings = lint_composition(&[("sample", SAMPLE), ("other", &clash)]);
-    // In this order and in the other.
+    // In this order and in the reverse one.
     assert_eq!(
         findings.iter().map(|finding| finding.rule).collect::<Vec<_>>(),
         [Rule::Composition; 2],

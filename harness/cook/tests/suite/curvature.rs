@@ -1,4 +1,5 @@
-//! Curvature where it is used: from dpdx and dpdy, on meshes with smooth normals, drawn by the device. Closed forms say what is right.
+//! Curvature in use: from dpdx and dpdy, on meshes with smooth normals, drawn by the device. The
+//! expected values are closed forms.
 
 use glam::camera::rh;
 use glam::{DVec3, Vec3};
@@ -6,12 +7,12 @@ use lapidary_cook::cookbook;
 use lapidary_gpu::Gpu;
 use wgpu::util::DeviceExt as _;
 
-/// Pixels along an edge of the picture.
+/// Side of the picture in pixels.
 const SIZE: u32 = 256;
-/// Quads of the mesh around and along.
+/// Quads of the mesh, around and along.
 const AROUND: u32 = 512;
 
-/// Draws position and curvatures. Normals are left as scaling and interpolation make them, of any length.
+/// Draws position and curvatures. Scaling and interpolation leave the normals at any length.
 const SHADER: &str = "
 struct View {
     clip_from_world: mat4x4f,
@@ -57,13 +58,13 @@ fn fragment(surface: Surface) -> Answer {
 }
 ";
 
-/// A surface of the test: a mesh, its scale, and its curvatures in closed form at a point of it.
+/// A test surface: a mesh, its scale, and its curvatures in closed form.
 struct Shape {
     name: &'static str,
     /// Position and normal at two angles.
     at: fn(f64, f64) -> (DVec3, DVec3),
     axes: Vec3,
-    /// Mean and Gaussian.
+    /// Mean and Gaussian curvature at a point.
     known: fn(DVec3) -> (f64, f64),
 }
 
@@ -107,7 +108,7 @@ const SHAPES: [Shape; 3] = [
     },
 ];
 
-/// Triangles as position and normal at each corner.
+/// Returns triangles as position and normal at each corner.
 fn mesh(at: fn(f64, f64) -> (DVec3, DVec3)) -> Vec<[f32; 6]> {
     let corner = |i: u32, j: u32| {
         let turn = std::f64::consts::TAU / f64::from(AROUND);
@@ -127,9 +128,9 @@ fn mesh(at: fn(f64, f64) -> (DVec3, DVec3)) -> Vec<[f32; 6]> {
 /// A pixel of the surface.
 struct Pixel {
     position: DVec3,
-    /// Of the normal's angle to the line of sight.
+    /// Cosine of the angle between the normal and the line of sight.
     cosine: f64,
-    /// By differences of unit normals, and by projected ones.
+    /// Mean curvature from differences of unit normals, and from projected normal derivatives.
     mean: [f64; 2],
     gaussian: f64,
     naive: f64,
@@ -286,7 +287,7 @@ fn draw(gpu: &Gpu, mesh: &[[f32; 6]], axes: Vec3, eye: Vec3) -> Vec<Pixel> {
         .collect()
 }
 
-/// The value that a share of the others does not exceed.
+/// Returns the value that `share` of the values do not exceed.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values[((values.len() - 1) as f64 * share) as usize]
@@ -311,12 +312,13 @@ fn meshes_have_the_curvature_of_their_surfaces_from_every_side() {
             let summary = errors.each_mut().map(|errors| [0.5, 0.99, 1.0].map(|share| quantile(errors, share)));
             println!("{} from {eye}: median, 99 %, worst of {}: {summary:.4?}", shape.name, errors[0].len());
             let [differenced, projected, gaussian, usual] = summary;
-            // A pixel is 0.01 wide, and up to 0.04 long at this cosine: the first order of what a curvature of up to 1/0.3 changes by there.
+            // A pixel is 0.01 wide, and up to 0.04 long at this cosine. The bounds are the
+            // first-order change of a curvature of up to 1/0.3 over that length.
             assert!(differenced[0] <= 0.005 && differenced[2] <= 0.04, "{} {differenced:?}", shape.name);
             assert!(gaussian[0] <= 0.005 && gaussian[2] <= 0.06, "{} {gaussian:?}", shape.name);
             assert!(projected[0] <= 0.001 && projected[2] <= 0.006, "{} {projected:?}", shape.name);
             assert_eq!(usual[1] > 0.2, shape.name != "sphere", "{} {usual:?}", shape.name);
-            // Silhouettes: still no more than a few times what the surface has anywhere.
+            // Silhouettes: still at most a few times the largest curvature of the surface.
             let most = pixels.iter().map(|pixel| pixel.mean[0].abs().max(pixel.mean[1].abs())).fold(0.0, f64::max);
             println!("    at most {most:.2}");
             assert!(most < 10.0, "{} {most}", shape.name);

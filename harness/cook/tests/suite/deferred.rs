@@ -1,4 +1,4 @@
-//! The deferred way against the forward one (the paper's sections 4.3.1 and 4.3.4).
+//! Deferred against forward rendering (the paper's sections 4.3.1 and 4.3.4).
 
 use glam::{Vec3, Vec4};
 use lapidary_assay::extremum::larger;
@@ -42,8 +42,9 @@ fn check(scene: &str, settings: Settings) {
     let deferred = render::render(super::gpu(), &scene, &deferred).expect("rendered");
     let errors = Errors::between(&deferred, &forward);
     println!("{} {rung}: {errors:?}", scene.name);
-    // A normal in half floats is off by up to 2^-11, so what is reflected by 2^-10 rad. The studio's lights fade over 0.06 rad or more,
-    // which such an angle changes by 1.6 % at the steepest: up to a step of the display's 255 in the mean over their edges.
+    // A normal in half floats is off by up to 2^-11, so a reflection is off by 2^-10 rad. The
+    // studio's lights fade over 0.06 rad or more. Such an angle changes them by 1.6 % at the
+    // steepest: up to a step of the display's 255, in the mean over their edges.
     assert!(errors.flip <= 0.006, "{} {rung}: {errors:?}", scene.name);
     assert!(errors.rmse <= 0.005, "{} {rung}: {errors:?}", scene.name);
     assert!(errors.energy.abs() <= 0.001, "{} {rung}: {errors:?}", scene.name);
@@ -52,8 +53,9 @@ fn check(scene: &str, settings: Settings) {
     }
 }
 
-/// What 32-bit depth keeps of a position: with the near and far planes about the scene, its own rounding, 2^-24 of the depth range,
-/// and that of the matrix product: a few units in the last place of the distance.
+/// Precision of a position from 32-bit depth, with the near and far planes about the scene: the
+/// rounding of the depth, 2^-24 of its range, and of the matrix product. The error is a few units
+/// in the last place of the distance.
 #[test]
 fn a_position_comes_back_from_depth() {
     for name in ["brilliant", "prism", "bunny_stone"] {

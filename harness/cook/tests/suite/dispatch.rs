@@ -12,13 +12,13 @@ use lapidary_assay::value::Value;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 
-/// Signatures made at run time.
+/// Number of signatures made at run time.
 const SIGNATURES: u64 = 200;
-/// Rows that each is called with.
+/// Number of rows per call.
 const ROWS: usize = 5;
-/// Words of all arguments together at most: the time to compile grows with them.
+/// Limit of the words of all arguments together: the time to compile grows with them.
 const MOST_WORDS: usize = 64;
-/// Structs and arrays inside one another at most.
+/// Deepest nesting of structs and arrays.
 const DEEPEST: u32 = 3;
 const SEED: u64 = 0xec40;
 const SCALARS: [Scalar; 4] = [Scalar::F32, Scalar::I32, Scalar::U32, Scalar::Bool];
@@ -29,7 +29,7 @@ struct Generator {
     structs: Vec<Shape>,
 }
 
-/// `prefix` and a letter: a name that ends in a digit would be changed on the way.
+/// Returns `prefix` and a letter: a name that ends in a digit would change on the way.
 fn named(prefix: &str, index: usize) -> String {
     let letter = |index: usize| char::from(b'a' + (index % 26) as u8);
     if index < 26 {
@@ -64,7 +64,7 @@ impl Generator {
         }
     }
 
-    /// An argument's shape: a new one, or a struct that is there already.
+    /// Returns an argument's shape: a new one, or an existing struct.
     fn argument(&mut self, most: usize) -> Shape {
         let fitting: Vec<Shape> = self.structs.iter().filter(|shape| shape.words() <= most).cloned().collect();
         if !fitting.is_empty() && self.draws.below(4) == 0 {
@@ -73,7 +73,7 @@ impl Generator {
         self.shape(0, most)
     }
 
-    /// Any bits that the shape's scalar may hold and that every device keeps: no NaN, no subnormal.
+    /// Returns any bits that the scalar may hold and that every device keeps: no NaN, no subnormal.
     fn word(&mut self, scalar: Scalar) -> u32 {
         match scalar {
             Scalar::F32 => {
@@ -86,14 +86,14 @@ impl Generator {
     }
 }
 
-/// The declaration of a struct.
+/// Returns the declaration of a struct.
 fn declaration(shape: &Shape) -> String {
     let Shape::Struct(name, members) = shape else { unreachable!("only structs are declared") };
     let members: String = members.iter().map(|(name, shape)| format!("    {name}: {shape},\n")).collect();
     format!("struct {name} {{\n{members}}}\n\n")
 }
 
-/// Levels of structs and arrays.
+/// Returns the nesting of structs and arrays.
 fn depth(shape: &Shape) -> u32 {
     match shape {
         Shape::Array(element, _) => 1 + depth(element),
@@ -102,7 +102,7 @@ fn depth(shape: &Shape) -> u32 {
     }
 }
 
-/// The types without parts of other types that a shape is made of.
+/// Collects the types without component types that a shape is made of.
 fn kinds(shape: &Shape, found: &mut BTreeSet<String>) {
     match shape {
         Shape::Array(element, _) => {
@@ -211,7 +211,7 @@ fn matrices_come_back_column_by_column() {
     comes_back(&[Mat2::from_cols_slice(&numbers), Mat2::IDENTITY]);
     comes_back(&[Mat3::from_cols_slice(&numbers), Mat3::IDENTITY]);
     comes_back(&[Mat4::from_cols_slice(&numbers), Mat4::IDENTITY]);
-    // The identity function cannot tell a transposed matrix; its first column can.
+    // The identity function cannot detect a transposed matrix; its first column can.
     let source = "fn first(matrix: mat3x3f) -> vec3f {\n    return matrix[0];\n}\n";
     let columns: Vec<Vec3> =
         dispatch::call(gpu(), source, "first", &[(Mat3::from_cols_slice(&numbers),)]).expect("valid WGSL");
@@ -221,7 +221,7 @@ fn matrices_come_back_column_by_column() {
 #[test]
 fn arrays_come_back() {
     comes_back(&[[1.0f32, 2.0, 3.0], [-1.0, -2.0, -3.0]]);
-    // Elements of three words lie four apart.
+    // Elements of three words have a stride of four.
     comes_back(&[[Vec3::X, Vec3::Y], [Vec3::Z, Vec3::NEG_ONE]]);
     comes_back(&[[[true, false], [false, false], [true, true]]]);
     comes_back(&[[Mat3::IDENTITY, Mat3::from_cols(Vec3::X, Vec3::ONE, Vec3::Z)]]);
@@ -304,7 +304,7 @@ fn a_kernel_serves_batches_of_any_size() {
     let mut kernel = Kernel::new(gpu(), KernelModule::reflect(source, "twice.wgsl", "twice").expect("valid WGSL"))
         .expect("compiles");
     let mut results = vec![9];
-    // Growing, shrinking and empty: nothing of an earlier batch may remain.
+    // Growing, shrinking and empty: no data of an earlier batch may remain.
     for rows in [3u32, 1000, 1, 0, 65, 64] {
         let arguments: Vec<u32> = (0..rows).collect();
         kernel.run(&arguments, &mut results).expect("runs");
@@ -344,7 +344,7 @@ fn reflected(function: &str) -> Result<Signature, String> {
         .map_err(|error| error.to_string())
 }
 
-/// What is said of a function whose Rust side expects these shapes.
+/// Returns the message for a function whose Rust side expects these shapes.
 fn mismatch(function: &str, arguments: &[Shape], result: &Shape) -> String {
     reflected(function).expect("it can be dispatched").expect(arguments, result).expect_err("a mismatch").to_string()
 }
@@ -405,13 +405,13 @@ fn broken_source_is_said_with_line_and_column() {
     let error = KernelModule::reflect("fn f() -> f32 {\n    return missing;\n}\n", "broken.wgsl", "f")
         .expect_err("invalid WGSL");
     assert!(error.to_string().contains("broken.wgsl:2:12"), "{error}");
-    // Valid to the parser, not to the validator.
+    // Valid to the parser, but not to the validator.
     let error = KernelModule::reflect("fn f() -> f32 {\n    if (true) { return 1.0f; }\n}\n", "broken.wgsl", "f")
         .expect_err("invalid WGSL");
     assert!(error.to_string().contains("broken.wgsl:"), "{error}");
 }
 
-/// Turns of a pseudo-random sequence, which no compiler writes as a formula.
+/// A pseudo-random sequence after a number of turns. No compiler writes it as a formula.
 const SEQUENCE: &str = "fn after(turns: u32) -> u32 {\n    var state = 1u;\n    for (var turn = 0u; turn < turns; turn++) {\n\
     state = state * 1664525u + 1013904223u;\n    }\n    return state;\n}\n";
 
@@ -421,7 +421,8 @@ fn after(turns: u32) -> u32 {
 
 #[test]
 fn rows_are_not_cut_short_by_their_neighbours() {
-    // lavapipe counts the turns of a group of rows together: here each row takes 40,000, and all together 80,000.
+    // lavapipe counts the turns of a group of rows together: here each row takes 40,000, and the
+    // group 80,000.
     let source = format!(
         "{SEQUENCE}fn both(row: u32) -> u32 {{\n    var sum = 0u;\n    if (row % 2u == 0u) {{ sum = after(40000u + row); }}\n\
          if (row % 2u == 1u) {{ sum = after(40000u + row); }}\n    return sum;\n}}\n"
@@ -441,7 +442,7 @@ fn turns_are_counted_to_the_limit_and_no_further() {
     let module = KernelModule::reflect(SEQUENCE, "after.wgsl", "after").expect("valid WGSL");
     let mut kernel = Kernel::new(gpu(), module).expect("compiles");
     let limit = kernel.turn_limit().expect("it has a loop");
-    // The turn after the last, at which the condition is asked, counts too.
+    // The turn after the last, which evaluates the condition, counts too.
     let arguments = [0, 1, 7, limit - 1, limit, limit + 100, u32::MAX];
     let mut results = Vec::new();
     kernel.run(&arguments, &mut results).expect("runs");
@@ -450,7 +451,7 @@ fn turns_are_counted_to_the_limit_and_no_further() {
     for (turns, result) in arguments.iter().zip(&results).take(4) {
         assert_eq!(*result, after(*turns), "{turns} turns");
     }
-    // Nothing is counted where there is no loop.
+    // Nothing is counted if there is no loop.
     let plain = "fn twice(value: u32) -> u32 {\n    return 2u * value;\n}\n";
     let mut kernel =
         Kernel::new(gpu(), KernelModule::reflect(plain, "twice.wgsl", "twice").expect("valid")).expect("compiles");

@@ -1,12 +1,13 @@
-//! The property tests of every formula, at the default number of cases, and of every naive form on its benign domain: from the
-//! suite's seed, and from a second one.
+//! The property tests of every formula, at the default number of cases, and of every naive form on
+//! its benign domain: from the suite's seed, and from a second one.
 
 use lapidary_assay::property::{Check, DEFAULT_CASES, Settings};
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::formulas;
 use lapidary_cook::seed::SuiteSeed;
 
-/// A line for each formula that does not hold; it ends with the command that runs the same inputs again.
+/// Returns a line for each formula that does not hold. It ends with the command that runs the same
+/// inputs again.
 fn faults(seed: u64) -> Vec<String> {
     let gpu = super::gpu();
     let mut faults = Vec::new();
@@ -46,7 +47,7 @@ fn every_formula_holds_over_its_domain() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// The random inputs alone: promises and branches do not wait for a rare one.
+/// Checks the random inputs only: promises and branches do not depend on a rare input.
 #[test]
 fn every_formula_holds_over_its_domain_from_a_second_seed() {
     super::seed();

@@ -10,7 +10,8 @@ use lapidary_render::{GemOptions, Settings, frame, render};
 use lapidary_scene::Scene;
 use serde_json::Value;
 
-/// What another host draws and what the renderer does: linear radiance and coverage, and the encoded picture's bytes.
+/// Returns the pictures of another host and of the renderer: linear radiance and coverage, and the
+/// bytes of the encoded picture.
 fn both(name: &str, settings: &Settings) -> [(Vec<f32>, Vec<u8>); 2] {
     let scene = Scene::named(name).expect("built in");
     let folder = tempfile::tempdir().expect("a folder");
@@ -37,7 +38,7 @@ fn another_host_draws_the_same_pictures() {
     let by_material = by_material();
     let of_rung = |rung: &str| Settings { rung: rung.parse().expect(rung), ..by_material.clone() };
     let cases = [
-        // Of eight samples, more than one tile.
+        // Eight samples, more than one tile.
         ("brilliant", Settings { samples: 8, width: 300, height: 270, ..by_material.clone() }),
         ("bunny", of_rung("tiled-26-64")),
         ("dragon", of_rung("ping-pong-6-32")),
@@ -52,7 +53,8 @@ fn another_host_draws_the_same_pictures() {
     }
 }
 
-/// Godunov's scheme rounds by the order in which tiles are taken up, which no two runs share, the renderer's own neither.
+/// The rounding of Godunov's scheme depends on the order in which tiles are processed. It differs
+/// between any two runs, also of the renderer itself.
 #[test]
 fn another_host_draws_the_bunny_as_near_as_a_second_run_does() {
     let [(host, host_encoded), (own, own_encoded)] = both("bunny", &by_material());
@@ -69,7 +71,8 @@ fn another_host_is_small() {
     assert!(lines < 300, "{lines} lines");
 }
 
-/// Everything that is referred to is there, contents have their resources' sizes, and fields lie within their structs.
+/// Everything that a frame refers to is there, contents have their resources' sizes, and fields lie
+/// within their structs.
 #[test]
 fn a_frame_is_whole() {
     let settings = by_material();
@@ -101,11 +104,11 @@ fn a_frame_is_whole() {
         { "name": "eye", "type": "vec3<f32>", "offset": 64 },
     ]);
     assert_eq!(view["layout"]["fields"], expected);
-    // A second time there is something in it.
+    // The folder is not empty any more.
     assert!(std::fs::read_dir(folder.path()).expect("a folder").count() == 3, "nothing else is left there");
     let refused = frame.write(folder.path()).expect_err("taken").to_string();
     assert!(refused.ends_with("is there and not empty; name a new folder"), "{refused}");
-    // And of what is looked at, nothing is written that cannot be run.
+    // A frame made without a device is for inspection: it is not written, because it cannot be run.
     let table = Settings { rung: "table-256-rgba8".parse().expect("a rung"), ..settings };
     let seen = lapidary_render::frame(None, &Scene::named("wax").expect("built in"), &table).expect("a frame");
     let elsewhere = folder.path().join("elsewhere");

@@ -1,5 +1,6 @@
-//! The white furnace: surrounded by radiance 1, a clear stone shows radiance 1 wherever one looks, for what its surface does not
-//! reflect comes from inside, and what is still inside when a ray ends is taken from the environment as well.
+//! The white furnace. Surrounded by radiance 1, a clear stone shows radiance 1 everywhere: light
+//! that its surface does not reflect comes from inside, and the light still inside at the end of a
+//! ray is taken from the environment as well.
 
 use lapidary_plan::Rung;
 use lapidary_render as render;
@@ -7,7 +8,8 @@ use lapidary_render::Settings;
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene};
 
-/// Sums of products whose weights add up to 1, each rounded, one for every hit, over the 16 samples of a pixel.
+/// Returns a bound on the rounding of sums of products with weights that add up to 1: one product
+/// for every hit, over the 16 samples of a pixel.
 fn bound(rung: Rung) -> f32 {
     (16 + 8 * rung.hits()) as f32 * f32::EPSILON
 }

@@ -1,4 +1,5 @@
-//! The gem recipes as wholes: scale and place, dispersion's order, energy with more bounces.
+//! The gem recipes as wholes: scale and position, dispersion and size, energy with more bounces, the
+//! limit of loops, and thin walls.
 
 use glam::Vec3;
 use lapidary_assay::extremum::{larger, largest};
@@ -14,7 +15,7 @@ fn picture(scene: &Scene, rung: &str) -> Picture {
     render::render(super::gpu(), scene, &settings).expect("rendered")
 }
 
-/// The same scene, `scale` times as large and then moved.
+/// Returns the same scene, `scale` times as large and then moved.
 fn moved(scene: &Scene, scale: f32, offset: Vec3) -> Scene {
     let place = |point: Vec3| scale * point + offset;
     let mut scene = scene.clone();
@@ -41,14 +42,16 @@ fn size_does_not_matter() {
         for scale in [1e-4, 1e4] {
             let errors = Errors::between(&picture(&moved(&scene, scale, Vec3::ZERO), rung), &expected);
             println!("{name} {rung} x {scale:e}: {errors:?}");
-            // Scaling by a number that is no power of two rounds every position: rays at facet edges part.
+            // Scaling by a number other than a power of two rounds every position: rays at facet
+            // edges part.
             assert!(errors.flip <= 0.005 && errors.rmse <= 0.1, "{name} {rung} x {scale:e}: {errors:?}");
         }
     }
 }
 
-/// 1e4 units from the origin a stone of size 1 is known to 5e-4 at best, and its facets are no longer flat to more: still the same stone to
-/// look at, and nothing that is not finite. Planes are another matter: they want the stone's own coordinates (docs/convex_trace.md).
+/// At 1e4 units from the origin, a stone of size 1 is known to 5e-4 at best, and its facets are
+/// flat only to that. It still looks the same, and all values are finite. Planes are excluded: they
+/// need the stone's own coordinates (docs/convex_trace.md).
 #[test]
 fn far_from_the_origin_nothing_breaks() {
     for (rung, most_flip) in [("proxy-1", 0.1), ("proxy-4+tracker", 0.1), ("bvh-2", 0.1)] {
@@ -62,7 +65,8 @@ fn far_from_the_origin_nothing_breaks() {
     }
 }
 
-/// The paper's tracker multiplies by the length of the path, so that a larger stone of the same shape has other colours.
+/// The paper's tracker multiplies by the length of the path, so a larger stone of the same shape
+/// has other colours.
 #[test]
 fn the_papers_dispersion_depends_on_size() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -74,7 +78,8 @@ fn the_papers_dispersion_depends_on_size() {
     assert!(exact < 0.02, "{exact}");
 }
 
-/// More hits leave less to guess: what is dropped at the end falls with each.
+/// With more hits, less light is left to estimate: the remainder dropped at the end falls with each
+/// hit.
 #[test]
 fn less_is_left_after_more_hits() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -96,8 +101,9 @@ fn less_is_left_after_more_hits() {
     }
 }
 
-/// After a bounce the proxy's next plane may lie behind the ray, which then leaves through the plane that it came from, or along it. Both
-/// are misses with a stated result; without the cases the ray would go backwards, or nowhere.
+/// After a bounce, the proxy's next plane may lie behind the ray, which then leaves through the
+/// plane of its last hit, or along it. Both are misses with a stated result. Without these cases
+/// the ray would go backwards, or nowhere.
 #[test]
 fn a_ray_that_a_tile_turns_from_the_next_plane_meets_nothing() {
     use lapidary_proxy_geometry as proxy;
@@ -111,7 +117,7 @@ fn a_ray_that_a_tile_turns_from_the_next_plane_meets_nothing() {
     let next = proxy::next_plane(centre, proxy::facet(plane, proxy::cell(coordinates)));
     let meet = |direction: Vec3| proxy::intersect(hit.point, direction, next.origin, normal);
     let naive = |direction: Vec3| proxy::intersect_naive(hit.point, direction, next.origin, normal);
-    // Back up it meets the triangle's own plane.
+    // On the way back up it meets the triangle's own plane.
     assert!(meet(Vec3::new(0.6, 0.8, 0.0)).distance == 2.5);
     for away in [Vec3::new(0.6, -0.8, 0.0), Vec3::NEG_Y, Vec3::X, Vec3::new(0.0, -0.0, 1.0)] {
         let hit_next = meet(away);
@@ -119,14 +125,16 @@ fn a_ray_that_a_tile_turns_from_the_next_plane_meets_nothing() {
         let wrong = naive(away);
         assert!(wrong.distance < 0.0 || !wrong.distance.is_finite(), "{away}: {wrong:?}");
     }
-    // The whole recipe goes on from there: every value of a proxy of many hits is finite, also where its rays ended so.
+    // The whole recipe continues from there: every value of a proxy with many hits is finite, also
+    // after such an end of a ray.
     let scene = Scene::named("octahedron").expect("built in");
     assert!(
         picture(&scene, "proxy-64+tracker").linear.iter().flatten().all(|value| value.is_finite() && *value >= 0.0)
     );
 }
 
-/// lavapipe ends the loops of an invocation after 65,535 turns together: the picture would lack the last wavelengths.
+/// lavapipe ends the loops of an invocation after 65,535 turns in total: the picture would lack the
+/// last wavelengths.
 #[test]
 fn a_rung_whose_loops_the_driver_would_end_is_refused() {
     let gpu = super::gpu();
@@ -142,8 +150,9 @@ fn a_rung_whose_loops_the_driver_would_end_is_refused() {
     }
 }
 
-/// What is behind a wall without an inside is seen as it is, below the reflection: by the mirrors, pixel by pixel. Away from facets' edges, where
-/// the device and the mirror may see another facet.
+/// A wall without an interior shows the undistorted background below the reflection. The mirrors
+/// give the expected value, pixel by pixel. Pixels at facet edges are skipped, because the device
+/// and the mirror may see different facets there.
 #[test]
 fn a_thin_wall_shows_what_is_behind_it() {
     const SIDE: u32 = 96;
@@ -174,6 +183,7 @@ fn a_thin_wall_shows_what_is_behind_it() {
         seen += 1;
     }
     println!("{seen} pixels, off by {worst:.1e}");
-    // A pixel's ray is off by the rounding of its place, some 2e-7 of the distance; the studio's steepest edge rises by 20 over a twentieth of a radian.
+    // A pixel's ray is off by the rounding of its place, about 2e-7 of the distance. The studio's
+    // steepest edge rises by 20 over a twentieth of a radian.
     assert!(seen > 1500 && worst < 20.0 * 20.0 * 8.0 * 2e-7, "{seen} pixels, {worst}");
 }

@@ -1,5 +1,5 @@
-//! The catalogue of hard cases, on both sides: the stable form holds its limit, and the naive form fails there by as much as is
-//! stated. Where nothing fails, it is no hard case.
+//! The catalogue of hard cases, on both sides: the stable form keeps to its limit, and the naive
+//! form fails by at least the stated error. A case without a failure is not hard.
 
 use lapidary_assay::examination::distance_from_limit;
 use lapidary_assay::runner::Runner;
@@ -18,7 +18,7 @@ fn each_stable_form_holds_and_each_naive_form_fails() {
             let name = format!("{}: {}", formula.function, case.name);
             let mut stable = check::kernel(gpu, formula, Source::Cookbook).expect("the cookbook's WGSL compiles");
             let distance = distance_from_limit(&mut stable, formula, &case.arguments, &case.limit).expect("runs");
-            // A NaN does not hold.
+            // A NaN fails.
             if distance.is_nan() || distance > case.bound {
                 faults.push(format!("{name}: the stable form is off by {distance:e}, at most {:e}", case.bound));
             }
@@ -49,7 +49,8 @@ fn each_module_has_hard_cases() {
     }
 }
 
-/// Continuity: an input's last place moved, up or down, moves the result as it moves the mathematics.
+/// Continuity: moving an input by its last place, up or down, moves the result as the mathematics
+/// does.
 #[test]
 fn beside_each_hard_case_the_stable_form_follows_the_mathematics() {
     let gpu = super::gpu();

@@ -1,11 +1,12 @@
-//! The launcher `./cook`, with a toolchain and a binary that stand in: what is tested is what it does with them.
+//! The launcher `./cook`, with stand-ins for the toolchain and the binary: the tests cover its use
+//! of them.
 
 use crate::program::folder;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// A clone with the real launcher, a built binary and a cargo of these lines.
+/// A clone with the real launcher, and scripts in place of the built binary and of cargo.
 struct Clone {
     folder: tempfile::TempDir,
 }
@@ -35,7 +36,7 @@ impl Clone {
         self.folder.path().join(name)
     }
 
-    /// The launcher, in an environment without HOME and without a folder for the run time.
+    /// Returns the launcher, in an environment without HOME and without a runtime folder.
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(self.at("cook"));
         let tools = format!("{}:/usr/local/bin:/usr/bin:/bin", self.at("tools").display());
@@ -63,7 +64,7 @@ fn the_program_takes_the_launchers_place() {
     let child = clone.command(&["list"]).stdout(Stdio::piped()).spawn().expect("it starts");
     let id = child.id();
     let output = child.wait_with_output().expect("it ends");
-    // A signal to the launcher is one to the program, and none is left running.
+    // A signal to the launcher reaches the program, and no process is left running.
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), id.to_string());
 }
 
@@ -89,7 +90,7 @@ fn what_is_built_runs_where_nothing_can_be_built() {
         "{stderr}"
     );
     assert_eq!(stderr.lines().count(), 1, "{stderr}");
-    // Not what was built of other sources.
+    // A binary built from other sources does not run.
     let later = std::time::SystemTime::now() + std::time::Duration::from_secs(10);
     std::fs::File::open(clone.at("harness/lib.rs")).and_then(|file| file.set_modified(later)).expect("set");
     let (code, stdout, stderr) = clone.run(&["list"]);
@@ -101,7 +102,7 @@ fn what_is_built_runs_where_nothing_can_be_built() {
 fn what_is_built_runs_without_a_toolchain() {
     let clone = Clone::new("exit 0", "echo ran");
     std::fs::remove_file(clone.at("tools/cargo")).expect("removed");
-    // Nor one in the user's own folder.
+    // There is no toolchain in the user's own folder either.
     let (code, stdout, stderr) = clone.answer(clone.command(&["list"]).env("HOME", clone.at("temporary")));
     assert_eq!((code, stdout.as_str(), stderr.as_str()), (Some(0), "ran\n", ""));
 }

@@ -1,4 +1,4 @@
-//! The tests that need the whole harness: a GPU, the compiled-in cookbook, or the real `cook` binary.
+//! Tests that need the whole harness: a GPU, the compiled-in cookbook, or the real `cook` binary.
 
 mod adapter;
 mod allowance;
@@ -57,23 +57,26 @@ use lapidary_cook::seed::{SEED_VARIABLE, SuiteSeed};
 use lapidary_gpu::{AdapterChoice, Gpu};
 use std::io::Write as _;
 
-/// The seed of the property tests. What it is stands in the output of every test that uses it and fails.
+/// Returns the seed of the property tests. The output of every failing test that uses it states its
+/// value.
 fn seed() -> u64 {
     let seed = SuiteSeed::of_environment().unwrap_or_else(|error| panic!("{error}"));
     eprintln!("seed {}, {}; again with {SEED_VARIABLE}={}", seed.value, seed.origin, seed.value);
     seed.value
 }
 
-/// Set, the suite leaves nothing to samples; `./cook test --whole` and `.ci/full` set it.
+/// Variable that, if set, makes the suite run every case instead of samples. `./cook test --whole`
+/// and `.ci/full` set it.
 const WHOLE_VARIABLE: &str = "LAPIDARY_WHOLE";
 
-/// Whether the suite leaves nothing to samples.
+/// Whether the suite runs every case instead of samples.
 fn whole() -> bool {
     std::env::var_os(WHOLE_VARIABLE).is_some()
 }
 
-/// Of what takes long one item in so many, chosen by the suite's seed, so that another change meets others; at least one, and all where the
-/// suite is run whole. Standard error says which.
+/// Selects about one in `one_in` of the items of a slow test, but at least one, and all if the
+/// suite is run whole. The suite's seed decides, so that another change tests other items. Standard
+/// error names the selected ones.
 fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
     let items: Vec<T> = items.into_iter().collect();
     if whole() {
@@ -83,13 +86,14 @@ fn sampled<T>(items: impl IntoIterator<Item = T>, one_in: u64) -> Vec<T> {
     let certain = usize::try_from(seed % count.max(1) as u64).unwrap_or_default();
     let is_chosen = |index: &usize| *index == certain || mix(seed ^ mix(*index as u64)).is_multiple_of(one_in);
     let chosen: Vec<usize> = (0..count).filter(is_chosen).collect();
-    // To the stream itself: what a passing test prints is not shown.
+    // Straight to the stream: the captured output of a passing test is not shown.
     let name = std::thread::current().name().unwrap_or_default().to_owned();
     let _ = writeln!(std::io::stderr(), "{name}: of {count} cases numbers {chosen:?}; all with {WHOLE_VARIABLE}=1");
     items.into_iter().enumerate().filter(|(index, _)| chosen.contains(index)).map(|(_, item)| item).collect()
 }
 
-/// The process's one device. A missing adapter fails the test: a suite that skips itself checks nothing.
+/// Returns the process's only device. A missing adapter fails the test: a suite that skips itself
+/// checks nothing.
 fn gpu() -> &'static Gpu {
     Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"))
 }

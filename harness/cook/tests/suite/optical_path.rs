@@ -1,4 +1,5 @@
-//! The optical path's solvers: against Dijkstra's algorithm, against the ball, against each other, and where bodies are hard.
+//! The optical path's solvers: against Dijkstra's algorithm, against the ball, against each other,
+//! and on difficult bodies.
 
 mod ball;
 mod bodies;
@@ -16,12 +17,13 @@ use std::sync::{Mutex, PoisonError};
 
 const STENCILS: [Stencil; 3] = [Stencil::Faces, Stencil::Edges, Stencil::Corners];
 
-/// Enough for any path of a small body, however it winds.
+/// Enough passes for any path of a small body, however it winds.
 const ENOUGH: u32 = 256;
 
-/// The costs of a case, with a density by voxel where it has one, and how far the solve came.
+/// Returns the costs of a case, and the progress of the solve. The density varies by voxel if the
+/// case has one.
 fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f32>, Status) {
-    /// One that was compiled once serves every body of one extinction in its grid.
+    /// Compiled solvers. Each serves every body of one extinction in its grid.
     static SOLVERS: Mutex<BTreeMap<String, LoneSolver<'static>>> = Mutex::new(BTreeMap::new());
     let heterogeneous = case.density.iter().any(|density| *density != 1.0);
     let mut solvers = SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -38,20 +40,21 @@ fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f
     (solver.costs().expect("a device"), solver.status().expect("a device"))
 }
 
-/// The same at the fixpoint.
+/// Returns the costs at the fixpoint.
 fn solve(case: &Case, method: Method) -> Vec<f32> {
     let (costs, status) = solve_within(case, method, Some(ENOUGH));
     assert_eq!(status.active, 0, "{method}: {status:?}");
     costs
 }
 
-/// Dijkstra's, from the same seeds.
+/// Returns Dijkstra's costs from the same seeds.
 fn truth<N: Number>(case: &Case, stencil: Stencil, seeds: &[N]) -> Vec<N> {
     let extinctions = case.extinctions();
     dijkstra(&case.body(&extinctions), stencil.neighbours(), seeds)
 }
 
-/// The first voxel at which two lists of costs differ by more than `share` of the cost, or of 1 where that is more.
+/// Returns the first voxel at which two lists of costs differ by more than `share` of the cost, or
+/// of 1 if that is larger.
 fn differs(one: &[f32], other: &[f32], share: f32) -> Option<String> {
     let apart = |(one, other): (&f32, &f32)| {
         let near = (one - other).abs() <= share * one.abs().max(1.0);
@@ -84,7 +87,7 @@ fn min_plus_is_dijkstras_to_the_bit() {
     }
 }
 
-/// Each step rounds once, and the edge, a sum times a length, twice more, of itself.
+/// Each step rounds once. The edge, a sum times a length, rounds twice more, relative to itself.
 #[test]
 fn rounding_grows_with_the_steps_of_a_path_at_most() {
     let case = Case::random(4, 32, true);
@@ -109,7 +112,7 @@ fn the_papers_solver_is_dijkstras_with_edges_of_length_one() {
     for heterogeneous in [false, true] {
         let mut case = Case::random(5, 24, heterogeneous);
         let wanted = truth(&case, Stencil::Faces, &case.seeds);
-        // How fine the grid is does not matter to it: what the paper leaves out.
+        // The spacing of the grid has no effect on the solver: the paper omits it.
         for spacing in [1.0, 0.125] {
             case.grid.spacing = spacing;
             assert_same("paper", &solve(&case, Method::Paper), &wanted, 0.0);
@@ -147,7 +150,8 @@ fn passes_are_the_mirrors() {
     while kernels::upwind(&body, &mut wanted, sweeps % 2 == 1) > 1e-6 {
         sweeps += 1;
     }
-    // What falls short of the tolerance is not passed on; it adds up along a path, over a tenth of the steps at most.
+    // Changes below the tolerance are not passed on. They add up along a path, over a tenth of the
+    // steps at most.
     assert_same("upwind", &solve(&case, Method::Godunov), &wanted, 5e-5);
 }
 

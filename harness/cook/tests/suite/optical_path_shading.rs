@@ -1,4 +1,5 @@
-//! Translucent stone as a whole, from the mesh to the picture: against closed forms, ray queries and itself, and where bodies are hard.
+//! Translucent stone as a whole, from the mesh to the picture: against closed forms, ray queries
+//! and itself, and with difficult bodies.
 
 mod ball;
 mod hard;
@@ -14,12 +15,13 @@ use lapidary_render::{OpticalPathOptions, Picture, Settings};
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Light, Material, Medium, Mesh, Object, Scene};
 
-/// Of pictures whose pixels are compared one by one.
+/// Side of pictures that are compared pixel by pixel.
 const SIDE: u32 = 160;
-/// The radius of the balls.
+/// Radius of the balls.
 const RADIUS: f64 = 10.0;
 
-/// Paths and lights alone: neither the environment nor a surface that reflects. Media count as they are.
+/// Returns settings for paths and lights only: no environment, no reflecting surface. Media are not
+/// scaled.
 fn settings(rung: &str) -> Settings {
     Settings {
         rung: rung.parse().expect(rung),
@@ -30,7 +32,7 @@ fn settings(rung: &str) -> Settings {
     }
 }
 
-/// The same in a coarse grid and a small picture, for what only has to be sound.
+/// Returns the same with a coarse grid and a small picture, for tests of soundness only.
 fn coarse() -> Settings {
     Settings { width: 64, height: 64, ..settings("godunov-32") }
 }
@@ -39,7 +41,7 @@ fn draw(scene: &Scene, settings: &Settings) -> Picture {
     render::render(super::gpu(), scene, settings).expect("rendered")
 }
 
-/// White, so that radiance times π is what arrives.
+/// Returns a white body, so that radiance times π is the irradiance that arrives.
 fn stone(name: &str, mesh: Mesh, extinction: Vec3) -> Object {
     let skin = Scene::named("skin").expect("built in").objects.swap_remove(0);
     let medium = Some(Medium::isotropic(extinction, Vec3::ZERO));
@@ -51,7 +53,7 @@ fn scene(objects: Vec<Object>, lights: Vec<Light>) -> Scene {
     Scene { objects, lights, ..Scene::named("skin").expect("built in") }.seen_from(80.0, 20.0)
 }
 
-/// A ball about the origin of a grey medium, so many optical depths in radius.
+/// Returns a ball about the origin of a grey medium, with a radius of `depth` optical depths.
 fn ball(depth: f32, lights: Vec<Light>) -> Scene {
     scene(vec![stone("ball", sphere(RADIUS, 256), Vec3::splat(depth / RADIUS as f32))], lights)
 }
@@ -60,12 +62,12 @@ fn sun() -> Light {
     Light::Directional { toward: Vec3::new(-0.8, 0.6, 0.0), irradiance: Vec3::splat(2.0) }
 }
 
-/// Off the ball by one and a half of its radii.
+/// Returns a lamp at one and a half radii from the ball.
 fn lamp() -> Light {
     Light::Point { position: Vec3::new(-20.0, 12.0, 9.0), intensity: Vec3::splat(800.0) }
 }
 
-/// From the same place on a part of the ball.
+/// Returns a spot at the same place, directed at a part of the ball.
 fn spot() -> Light {
     let position = Vec3::new(-20.0, 12.0, 9.0);
     Light::Spot {
@@ -77,7 +79,7 @@ fn spot() -> Light {
     }
 }
 
-/// How many pixels show a body. None may be less than nothing, infinite or not a number.
+/// Returns the number of pixels that show a body. No value may be negative, infinite or NaN.
 fn covered(what: &str, picture: &Picture) -> usize {
     for pixel in &picture.linear {
         assert!(pixel.iter().all(|value| value.is_finite() && *value >= 0.0), "{what}: {pixel:?}");
@@ -85,7 +87,8 @@ fn covered(what: &str, picture: &Picture) -> usize {
     picture.linear.iter().filter(|pixel| pixel[3] == 1.0).count()
 }
 
-/// The largest difference of two pictures' channels, relative to the second's and to a thousandth of its brightest.
+/// Returns the largest difference of two pictures' channels, relative to the second's and to a
+/// thousandth of its brightest.
 fn apart(one: &Picture, other: &Picture) -> f32 {
     let channels = |picture: &Picture| picture.linear.iter().flat_map(|pixel| pixel[..3].to_vec()).collect::<Vec<_>>();
     let (one, other) = (channels(one), channels(other));

@@ -1,5 +1,5 @@
-//! The `Outside:` lines: each clause is a promise that is tested, with every formula, or is said to promise nothing; and a promise that does not hold
-//! is noticed.
+//! The `Outside:` lines: each clause is a promise that is tested, with every formula, or is
+//! declared to promise nothing. A false promise is detected.
 
 use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::outside::{Promise, accurate, any_bits, finite, holds, like};
@@ -41,7 +41,7 @@ fn every_clause_of_every_outside_line_is_a_promise_or_is_said_to_be_none() {
     assert!(tested >= 140, "{tested}");
 }
 
-/// One of each kind, all false.
+/// Checks one promise of each kind, all false.
 #[test]
 fn a_promise_that_does_not_hold_is_noticed() {
     const FUNCTION: &str = "cdrf_lambert";
@@ -78,6 +78,6 @@ fn a_promise_that_does_not_hold_is_noticed() {
         },
     );
     assert_eq!(faults_of(wrong).len(), 1);
-    // And one of them true.
+    // One that is true.
     assert!(faults_of(finite(FUNCTION, "finite", |draws| (draws.between(0.1, 0.5),))).is_empty());
 }

@@ -1,4 +1,5 @@
-//! The whole path of a pixel on the GPU against the same path in Rust from the mirrors, at random pixels.
+//! Compares the whole path of a pixel on the GPU with the same path through the Rust mirrors, at
+//! random pixels.
 
 mod compare;
 
@@ -14,16 +15,19 @@ use lapidary_scene::{Environment, Scene};
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;
 const SIDE: u32 = 192;
-/// Share of pixels whose rays rounding may send to other facets. A facet of a fiftieth of the stone's size has an edge within the drift of 1e-6 of it for 2e-4 of
-/// all rays; 64 hits make that a hundredth.
+/// Largest share of pixels whose rays rounding may send to other facets. For a facet with a
+/// fiftieth of the stone's size, 2e-4 of all rays lie within the drift of an edge, which is 1e-6 of
+/// the stone's size. Over 64 hits the share is a hundredth.
 const MOST_PARTING: f64 = 0.01;
 
-/// Where a recipe's fragment begins, ...
+/// First line of a recipe's fragment shader.
 const FRAGMENT: &str = "fn gem_fragment(input: GemVertex) -> @location(0) vec4f {\n";
-/// ... and what it returns there instead: the point of the surface that it shades. The condition, which always holds, keeps what follows in use.
+/// Statement inserted after [`FRAGMENT`] that returns the shaded point of the surface. Its
+/// condition always holds, and keeps the following code in use.
 const POSITION: &str = "    if (input.position.x < 1e30f) { return vec4f(input.position, 1.0f); }\n";
 
-/// The recipe's picture, or that of a text with a fault in it, against the mirror.
+/// Compares the recipe's picture with the mirror. `faulty` replaces the recipe's text with one that
+/// holds a fault.
 fn parity(scene: &Scene, settings: &Settings, faulty: Option<&str>) -> Parity {
     let source = lapidary_wgsl::recipe_source(settings.rung.recipe());
     assert_eq!(source.matches(FRAGMENT).count(), 1);
@@ -43,7 +47,7 @@ fn of_rung(rung: &str) -> Settings {
     Settings { rung: rung.parse().expect(rung), gem, ..Settings::of_size(SIDE, SIDE) }
 }
 
-/// The same with other options.
+/// Returns the settings of [`of_rung`] with other options.
 fn with(rung: &str, set: impl FnOnce(&mut GemOptions)) -> Settings {
     let mut settings = of_rung(rung);
     set(&mut settings.gem);
@@ -66,10 +70,12 @@ fn check(scene: &str, what: &str, parity: &Parity) {
     );
     assert!(parity.compared > 300, "{scene} {what}: {} pixels", parity.compared);
     assert!(parity.failed.is_empty(), "{scene} {what}: {:?}", &parity.failed[..parity.failed.len().min(3)]);
-    // The pixels are drawn by chance: four standard deviations of a count, and one for a count of none.
+    // The pixels are random: four standard deviations of the count, and one for an expected count
+    // of 0.
     let most_at_an_edge = expected + 4.0 * expected.sqrt() + 1.0;
     assert!(parity.at_an_edge as f64 <= most_at_an_edge, "{scene} {what}: {} at an edge", parity.at_an_edge);
-    // Either side may be shown; what is shown must lie in the span of the sides, but for one where more than two meet.
+    // The GPU may show either side. Its value must lie in the span of the sides, except for one
+    // pixel where more than two meet.
     assert!(parity.differing_at_an_edge <= 1, "{scene} {what}: {}", parity.differing_at_an_edge);
     assert!(of_compared(parity.parting) <= MOST_PARTING, "{scene} {what}: {}", parity.parting);
     assert!(parity.silhouette <= PIXELS / 500, "{scene} {what}: {} at the silhouette", parity.silhouette);
@@ -131,7 +137,7 @@ fn so_it_is_with_every_choice() {
     check("brilliant", "a map", &compare("brilliant", mapped));
 }
 
-/// A fault that is planted in a recipe's text.
+/// Fault planted in a recipe's text.
 struct Fault {
     scene: &'static str,
     rung: &'static str,
@@ -229,8 +235,9 @@ fn a_wrong_picture_is_seen() {
     }
 }
 
-/// Near the critical angle one channel leaves and its neighbour does not. The tracker decides for each channel as a ray of that channel's own
-/// does; one index decides for all at once, and is wrong for some.
+/// Near the critical angle one channel leaves the stone and its neighbour does not. The tracker
+/// decides for each channel as a separate ray of that channel does. A single index decides for all
+/// channels at once, and is wrong for some.
 #[test]
 fn total_reflection_is_decided_for_each_channel() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -258,7 +265,8 @@ fn total_reflection_is_decided_for_each_channel() {
         one_agrees += usize::from(alike.pixel(&stone, seen, eye).rays[0][hit].total * 0b111 == by_channel);
         let [r, g, b, _] = picture.linear[(row * SIDE + column) as usize];
         let apart = largest((glam::Vec3::new(r, g, b) - pixel.radiance).abs().to_array());
-        // Beside its edge a channel's reflectance changes from 1 as a root does: by 0.1 for an angle off by 2^-13.
+        // At the critical angle a channel's reflectance departs from 1 like a square root: by 0.1
+        // for an angle off by 2^-13.
         assert!(apart <= 0.05 * pixel.radiance.max_element().max(1.0), "{column} {row}: {apart}");
     }
     println!("{mixed} pixels; the tracker decides {agree} as separate rays do, one index {one_agrees}");

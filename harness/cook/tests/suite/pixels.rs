@@ -1,10 +1,10 @@
-//! What a picture's pixels show, and where that lies.
+//! Values of a picture's pixels, with the rays and places that they belong to.
 
 use glam::DVec3;
 use lapidary_render::Picture;
 use lapidary_scene::Scene;
 
-/// For each pixel the unit direction in which the camera looks through its middle, and what it found.
+/// Returns, for each pixel, the unit direction of the camera ray through its centre, and its value.
 pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {
     let (width, height) = (picture.width, picture.height);
     let world_from_clip = lapidary_scene::clip_from_world(scene, width, height).as_dmat4().inverse();
@@ -18,14 +18,15 @@ pub(crate) fn rays(scene: &Scene, picture: &Picture) -> Vec<(DVec3, [f32; 4])> {
     (0..).zip(&picture.linear).map(ray).collect()
 }
 
-/// The pixels that lie wholly on the ball about the origin, with their places on it: where a ray through the pixel's middle meets the sphere.
+/// Returns the colours of the pixels that lie wholly on the ball about the origin, each with its
+/// place on the ball: the intersection of the sphere with the ray through the pixel's centre.
 pub(crate) fn on_the_ball(scene: &Scene, picture: &Picture) -> Vec<(DVec3, DVec3)> {
     let radius = scene.objects[0].mesh.positions[0].as_dvec3().length();
     let eye = scene.camera.eye.as_dvec3();
     let mut found = Vec::new();
     for (direction, [r, g, b, alpha]) in rays(scene, picture) {
         let (along, beside) = (-eye.dot(direction), eye.cross(direction).length());
-        // Away from the silhouette, where the mesh's outline is not the sphere's.
+        // Skip the silhouette, where the outlines of mesh and sphere differ.
         if beside < 0.99 * radius && alpha == 1.0 {
             let place = eye + (along - (radius * radius - beside * beside).sqrt()) * direction;
             found.push((place, DVec3::new(r.into(), g.into(), b.into())));

@@ -1,4 +1,4 @@
-//! Plans, and that what a scene does not call for does not exist: of what is drawn, everything is listed.
+//! Plans list everything that is drawn. Nothing exists that the scene does not need.
 
 use crate::gpu;
 use glam::Vec3;
@@ -20,7 +20,7 @@ fn of_rung(rung: &str) -> Settings {
     Settings { rung: rung.parse().expect(rung), ..settings() }
 }
 
-/// What is made and run on the real device.
+/// Returns the listing of everything that is made and run on the real device.
 fn drawn(scene: &Scene, settings: &Settings) -> Listing {
     let executor = render::frame(Some(gpu()), scene, settings).map(|frame| Executor::new(gpu(), frame).expect("made"));
     let executor = executor.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
@@ -28,7 +28,7 @@ fn drawn(scene: &Scene, settings: &Settings) -> Listing {
     Listing::of(executor.frame())
 }
 
-/// So what is listed is all that there is.
+/// Nothing else creates device objects, so the listing is complete.
 #[test]
 fn the_executor_alone_makes_things_of_a_device() {
     let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/src");
@@ -55,7 +55,7 @@ fn named(name: &str) -> Scene {
     Scene::named(name).expect("built in")
 }
 
-/// A small image of a sky.
+/// Returns a small image of a sky.
 fn sky() -> Environment {
     let pixels = (0..8 * 4).map(|pixel| [0.1 * (pixel % 5) as f32, 0.5, 1.0, 1.0]).collect();
     Environment::Map(EnvironmentMap { width: 8, height: 4, pixels })
@@ -100,7 +100,7 @@ fn names(listing: &Listing) -> BTreeSet<&str> {
     listing.resources.iter().map(|resource| resource.name.as_str()).collect()
 }
 
-/// Recipe and entry points of each pipeline.
+/// Returns the recipe and the entry points of each pipeline.
 fn compiled(listing: &Listing) -> BTreeSet<(&str, &[String])> {
     listing.pipelines.iter().map(|pipeline| (pipeline.recipe.as_str(), &pipeline.entries[..])).collect()
 }
@@ -109,16 +109,16 @@ fn passes(listing: &Listing) -> BTreeSet<&str> {
     listing.steps.iter().map(|step| step.pass.as_str()).collect()
 }
 
-/// An effect where it is on, and what goes with it.
+/// Effect in a scene that needs it, and the items that disappear with it.
 struct Case {
     effect: Effect,
     scene: Scene,
     settings: Settings,
-    /// Names of resources, without the object's; recipes; passes.
+    /// Names of resources (without the object's name), recipes and passes.
     goes: [Vec<&'static str>; 3],
 }
 
-/// One body of a built-in scene.
+/// Returns a built-in scene with its first body alone.
 fn one(name: &str) -> Scene {
     let scene = named(name);
     Scene { objects: scene.objects[..1].to_vec(), ..scene }
@@ -264,7 +264,7 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
         let on = drawn(&scene, &settings);
         let off = drawn(&scene, &Settings { without: Effects::of(&[effect]), ..settings.clone() });
         let [resources, recipes, gone_passes] = goes;
-        // Whatever is in the one and not in the other is the effect's, and all of the effect's is.
+        // The listings differ in exactly the effect's own items.
         let short = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();
         let gone: BTreeSet<String> = names(&on).difference(&names(&off)).map(|name| short(name)).collect();
         assert_eq!(gone, resources.iter().map(|name| (*name).to_owned()).collect(), "{effect}: resources");
@@ -273,7 +273,7 @@ fn an_effect_that_is_left_out_leaves_nothing_behind() {
         assert_eq!(gone, recipes.into_iter().collect(), "{effect}: recipes");
         let gone: BTreeSet<&str> = passes(&on).difference(&passes(&off)).copied().collect();
         assert_eq!(gone, gone_passes.into_iter().collect(), "{effect}: passes");
-        // What is left of every pipeline is compiled without it, and smaller where it was compiled with it.
+        // The remaining pipelines are compiled without the effect, and are smaller than with it.
         let value = |listing: &Listing, value: f64| {
             let name = effect.override_name();
             let of = listing.pipelines.iter().flat_map(|pipeline| &pipeline.overrides);
@@ -302,7 +302,7 @@ fn a_materials_variant_runs_on_its_own_draw_alone() {
     assert_eq!(effects("ruby"), ["EFFECT_CONVEX_TRACE", "EFFECT_ABSORPTION", "EFFECT_DISPERSION"]);
 }
 
-/// The reason for which an effect is off.
+/// Returns the reason why an effect is off.
 fn off(scene: &Scene, settings: &Settings, effect: Effect) -> String {
     let plan = Plan::of(scene, settings).expect("a plan");
     let decisions = &plan.objects[0].decisions.effects;
@@ -348,7 +348,7 @@ fn what_is_off_says_why() {
         medium.density = Density::Uniform;
     }
     assert_eq!(off(&grey, &settings, Effect::Color), "scattering, absorption and lights are grey");
-    // A body all of whose facets are flat has no curvature.
+    // A body with only flat facets has no curvature.
     let mut flat = one("wax");
     let mesh = named("octahedron").objects.remove(0).mesh;
     let positions = mesh.indices.iter().map(|index| mesh.positions[*index as usize]).collect::<Vec<_>>();
@@ -361,12 +361,13 @@ fn what_is_off_says_why() {
     assert_eq!(reason, "left out on request, though Sellmeier equation of diamond (V_d 55.3)");
 }
 
-/// Resources by name and bytes, pipelines by what they are compiled with, steps by what they do.
+/// Resources by name and bytes, pipelines by the inputs of their compilation, steps by their
+/// contents.
 type Parts = (BTreeSet<Resource>, BTreeSet<String>, BTreeSet<String>);
 
 fn parts(scene: &Scene) -> Parts {
     let listing = planned(scene, &settings());
-    // Pipelines are numbered in the order in which they come, so by their contents.
+    // Pipelines are numbered in the order of their creation, so they are compared by contents.
     let key = |name: &str| {
         let pipeline = listing.pipelines.iter().find(|pipeline| pipeline.name == name);
         pipeline.map(|p| format!("{} {:?} {:?} {}", p.recipe, p.entries, p.overrides, p.instructions))
@@ -378,7 +379,8 @@ fn parts(scene: &Scene) -> Parts {
     (listing.resources.iter().cloned().collect(), pipelines.collect(), steps.collect())
 }
 
-/// A set of objects takes what each of them takes alone, and nothing else: so that removing one removes exactly what none of the others needs.
+/// A set of objects takes the parts that each object takes alone, and no others. Removing an object
+/// thus removes exactly the parts that no other object needs.
 #[test]
 fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
     let vitrine = named("vitrine");
@@ -400,7 +402,7 @@ fn every_subset_of_the_vitrine_takes_what_its_objects_take() {
         }
         assert_eq!((resources, pipelines, steps), expected, "subset {kept:b}");
     }
-    // And each has something of its own.
+    // Each object also has a resource of its own.
     for (object, parts) in vitrine.objects.iter().zip(&alone) {
         let own = |name: &str| name.starts_with(&format!("{}/", object.name));
         assert!(parts.0.iter().any(|resource| own(&resource.name)), "{}", object.name);
@@ -413,7 +415,7 @@ fn the_vitrine_is_drawn_as_planned_and_explained() {
     assert_eq!(drawn(&vitrine, &settings()), planned(&vitrine, &settings()));
     let usual = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(512, 512) };
     let plan = Plan::of(&vitrine, &usual).expect("a plan").to_string();
-    // Multiples of time come from a record that is measured again and again.
+    // The multiples of time are left out: their record is measured again and again.
     let untimed = |line: &str| match line.split_once("; ") {
         Some((quality, _)) if quality.starts_with("  quality") => quality.to_owned() + "\n",
         _ => line.to_owned() + "\n",
@@ -421,7 +423,8 @@ fn the_vitrine_is_drawn_as_planned_and_explained() {
     insta::assert_snapshot!("vitrine_plan", plan.lines().map(untimed).collect::<String>());
 }
 
-/// As many objects as a large file has, all of one name: each is planned under a name of its own, and none takes the longer the more there are.
+/// Plans as many objects as a large file has, all with one name. Each is planned under a name of
+/// its own, and the time for each does not grow with their number.
 #[test]
 fn thousands_of_objects_are_planned() {
     const COUNT: usize = 4_000;
@@ -443,7 +446,8 @@ fn the_reference_takes_nothing_of_a_device() {
     assert!(plan.to_string().contains("on the CPU"), "{plan}");
 }
 
-/// Where no light is followed through a body, nothing stands by for it; and without any light the maps are a texel.
+/// If no light is followed through a body, no resources are made for that. Without any light the
+/// maps are one texel each.
 #[test]
 fn ways_that_are_left_out_take_nothing_along() {
     let left_out = Settings { without: Effects::of(&[Effect::OpticalPath]), ..settings() };
@@ -458,7 +462,8 @@ fn ways_that_are_left_out_take_nothing_along() {
     assert!(passes(&listing).iter().all(|pass| !["voxelization", "seeds", "solve"].contains(pass)));
 }
 
-/// The proxy is drawn where it is asked for and nowhere else; quality chooses within a technique, and a named rung stands above it.
+/// The proxy is drawn only on request. Quality chooses within a technique, and a named rung
+/// overrides it.
 #[test]
 fn shape_and_quality_choose_the_rung() {
     let rung = |scene: &Scene, quality| {
@@ -478,7 +483,7 @@ fn shape_and_quality_choose_the_rung() {
         assert_eq!(all(&one(name)), wanted, "{name}");
         assert!(wanted[0] != wanted[1] && !wanted.iter().any(|rung| rung.contains("proxy")));
     }
-    // A mesh with a hole is drawn by its triangles, and says so.
+    // A mesh with a hole is drawn by its triangles, and the plan says so.
     let mut open = one("octahedron");
     open.objects[0].mesh.indices.truncate(21);
     let plan = Plan::of(&open, &settings()).expect("a plan");
@@ -494,7 +499,7 @@ fn shape_and_quality_choose_the_rung() {
     assert_eq!(all(&named), ["accurate"; 3]);
 }
 
-/// A plan says what the chosen rung costs and how far off it is, by the committed ladder.
+/// A plan states the cost and the error of the chosen rung, from the committed ladder.
 #[test]
 fn a_plan_says_what_quality_stands_for() {
     let of = |quality| Plan::of(&one("ruby"), &Settings { quality, ..settings() }).expect("a plan").to_string();

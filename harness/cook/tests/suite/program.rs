@@ -4,10 +4,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::process::Command;
 
-/// What a run of `cook` answered.
+/// Result of a run of `cook`.
 #[derive(Debug)]
 pub(crate) struct Answer {
-    /// The exit code; none where a signal ended it.
+    /// Exit code; `None` if a signal ended the process.
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
@@ -18,9 +18,10 @@ pub(crate) fn cook(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Answer {
     cook_in(folder, arguments, &[])
 }
 
-/// The same, with changes to its environment.
+/// Like [`cook`], with changes to the environment.
 pub(crate) fn cook_in(folder: &Path, arguments: &[impl AsRef<OsStr>], environment: &[(&str, &str)]) -> Answer {
-    // Without it the Vulkan drivers complain on stderr, which some tests read to the last line.
+    // Without XDG_RUNTIME_DIR the Vulkan drivers complain on stderr, which some tests compare in
+    // full.
     let runtime = tempfile::tempdir().expect("a temporary folder");
     let output = Command::new(env!("CARGO_BIN_EXE_cook"))
         .args(arguments)
@@ -33,14 +34,14 @@ pub(crate) fn cook_in(folder: &Path, arguments: &[impl AsRef<OsStr>], environmen
     Answer { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
 }
 
-/// Runs `cook` in `folder` and asserts that it succeeds without a word on stderr.
+/// Runs `cook` in `folder`, and asserts success and an empty stderr.
 pub(crate) fn succeeds(folder: &Path, arguments: &[&str]) -> Answer {
     let answer = cook(folder, arguments);
     assert_eq!((answer.code, answer.stderr.as_str()), (Some(0), ""), "{arguments:?}: {}", answer.stdout);
     answer
 }
 
-/// A folder that goes when it is dropped.
+/// Returns a folder that is removed on drop.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }

@@ -1,4 +1,5 @@
-//! Whole walks through a slab on the GPU: against the mirror decision by decision, and in the mean against what is known without walks.
+//! Whole walks through a slab on the GPU: compared with the mirror decision by decision, and in the
+//! mean with results known without walks.
 
 use glam::Vec3;
 use lapidary_random_walk::slab::{self, Slab, SlabExit};
@@ -12,7 +13,7 @@ const UNIFORM: VeinsPattern =
 const MARBLED: VeinsPattern =
     VeinsPattern { frequency: 0.4, width: 0.2, least: 0.25, greatest: 2.0, octaves: 3, seed: 5 };
 
-/// A half space, for all that walks can tell.
+/// Returns a slab so thick that walks cannot tell it from a half space.
 fn deep(albedo: f32) -> Slab {
     Slab {
         entry_cosine: 1.0,
@@ -27,7 +28,7 @@ fn deep(albedo: f32) -> Slab {
     }
 }
 
-/// What the recipe says of each walk.
+/// Returns the recipe's result for each walk.
 fn walked(slab: &Slab, pattern: VeinsPattern, walks: u32) -> Vec<SlabExit> {
     let words = [
         slab.entry_cosine.to_bits(),
@@ -64,7 +65,7 @@ fn walked(slab: &Slab, pattern: VeinsPattern, walks: u32) -> Vec<SlabExit> {
     words.chunks_exact(4).map(exit).collect()
 }
 
-/// The share of walks with an outcome, and its standard error.
+/// Returns the share of walks with an outcome, and its standard error.
 fn share(exits: &[SlabExit], outcome: u32) -> (f64, f64) {
     let count = exits.len() as f64;
     let share = exits.iter().filter(|exit| exit.outcome == outcome).count() as f64 / count;
@@ -116,7 +117,7 @@ fn half_spaces_reflect_as_chandrasekhar_has_it() {
     }
 }
 
-/// Null collisions change nothing: a majorant of three times the density gives the same half space.
+/// Null collisions change nothing: a majorant three times the density gives the same half space.
 #[test]
 fn a_majorant_too_large_changes_nothing_but_time() {
     // Without octaves the density is `greatest`; `least` raises the majorant alone.
@@ -126,7 +127,8 @@ fn a_majorant_too_large_changes_nothing_but_time() {
     assert!((found - 0.414947).abs() < 4.0 * error);
 }
 
-/// What absorbs only lets through e to the minus the optical depth along the way, here through veins by the oracle's quadrature.
+/// A purely absorbing medium transmits exp(-d) along a path of optical depth d. Here the oracle's
+/// quadrature gives the depth through veins.
 #[test]
 fn the_mean_transmittance_of_veins_is_beers() {
     let slab = Slab { thickness: 2.5, scattering: 0.0, absorption: 0.8, ..deep(0.5) };
@@ -148,7 +150,8 @@ fn the_mean_transmittance_of_veins_is_beers() {
     assert!((found - (-depth).exp()).abs() < 4.0 * error && (0.3..3.0).contains(&depth));
 }
 
-/// Nothing is lost where nothing is absorbed; a boundary, veins and forward scattering change where light leaves, not how much.
+/// Without absorption nothing is lost. A boundary, veins and forward scattering change where light
+/// leaves, not how much.
 #[test]
 fn what_absorbs_nothing_gives_all_back() {
     let slab = Slab { thickness: 4.0, relative_index: 1.5, anisotropy: 0.6, greatest: 2.0, ..deep(1.0) };
@@ -169,7 +172,8 @@ fn half_spaces_behind_glass_reflect_as_the_reflection_function_has_it() {
     }
 }
 
-/// Similarity: what scatters forwards reflects, under diffuse light and at high albedo, about as what scatters to all sides and (1 - g) as often.
+/// Similarity: in an oblique beam and at high albedo, a forward scattering medium reflects about
+/// as much as an isotropic one that scatters (1 - g) times as often.
 #[test]
 fn forward_scattering_is_like_less_scattering() {
     let absorption = 0.01;

@@ -1,4 +1,5 @@
-//! Long checks by the real binary: in parts, on several machines, ended and taken up again; and a machine without a browser.
+//! Long checks by the real binary: in parts, on several machines, ended and resumed; and a machine
+//! without a browser.
 
 use crate::program::{cook, cook_in, folder, succeeds};
 
@@ -23,13 +24,13 @@ fn shards_become_one_and_a_run_goes_on_where_it_ended() {
         file
     };
     let [one, two] = ["1/2", "2/2"].map(shard);
-    // Three parts of 2^20, two and one.
+    // Three parts of 2^20 cases: two in one shard and one in the other.
     let merged = succeeds(folder.path(), &["check", "--merge", &one, &two, "--record", "all.json", "--json"]);
     assert_eq!(cases(&merged.stdout), 3 << 20);
     let short = cook(folder.path(), &["check", "--merge", &one]);
     assert_eq!(short.code, Some(2), "{short:?}");
     assert!(short.stderr.contains("2 of 3 parts are done"), "{}", short.stderr);
-    // What one shard has done is not done again: the whole is what was missing, and the row says all.
+    // The parts of one shard are not repeated: only the missing part runs, and the row counts all.
     std::fs::copy(folder.path().join(&one), folder.path().join("half.json")).expect("copied");
     let gone_on = succeeds(folder.path(), &with(&["--record", "half.json", "--json"]));
     assert_eq!(cases(&gone_on.stdout), 3 << 20);

@@ -1,5 +1,5 @@
-//! The reference against the GPU, where both follow the same light: what a stone's surface reflects. That holds camera,
-//! sample places, environment and reflectance of one to those of the other.
+//! The reference against the GPU where both follow the same light: the reflection by a stone's
+//! surface. This checks that both agree on camera, sample positions, environment and reflectance.
 
 use lapidary_assay::extremum::larger;
 use lapidary_cook::cost::gem::views::{CONCAVE, SHOWN, VIEWS};
@@ -12,14 +12,16 @@ use lapidary_scene::{Dispersion, Environment, Scene};
 
 const SIDE: u32 = 96;
 
-/// A map with a different colour in every texel, none so bright that an edge matters more than a facet.
+/// Returns a map with a different colour in every texel, none bright enough for an edge to matter
+/// more than a facet.
 fn map() -> Environment {
     let texel = |k: u32| [0, 7, 13].map(|shift| ((k * 37 + shift * 11) % 64) as f32 / 64.0);
     let pixels = (0..128).map(texel).map(|[red, green, blue]| [red, green, blue, 1.0]);
     Environment::Map(EnvironmentMap { width: 16, height: 8, pixels: pixels.collect() })
 }
 
-/// What is no number differs from nothing by more than a bound, and counts as light or as no light by chance.
+/// Checks that all values are finite. A NaN never differs by more than a bound, and counts as light
+/// or as no light by chance.
 fn require_finite(drawn: &[[f32; 4]], followed: &[[f32; 4]]) {
     for (which, pixels) in [("the GPU's", drawn), ("the reference's", followed)] {
         let broken = pixels.iter().position(|pixel| !pixel.iter().all(|value| value.is_finite()));
@@ -27,7 +29,7 @@ fn require_finite(drawn: &[[f32; 4]], followed: &[[f32; 4]]) {
     }
 }
 
-/// One pixel that is no number, in either picture and any channel.
+/// Plants one non-finite value, in either picture and in several channels.
 #[test]
 fn what_is_no_number_is_seen() {
     let sound = [[0.5; 4]; 9];
@@ -46,7 +48,7 @@ fn surfaces_reflect_alike() {
     for environment in [Environment::Studio, map()] {
         for name in ["brilliant", "octahedron", "step_cut", "prism"] {
             let mut scene = Scene::named(name).expect("built in");
-            // The surface rung reflects by one index.
+            // The surface rung uses one index for all channels.
             for object in &mut scene.objects {
                 object.material.dispersion = Dispersion::None;
             }
@@ -65,7 +67,8 @@ fn surfaces_reflect_alike() {
             let followed = spectral::render(&scene, &settings, &|_, _| {}).expect("rendered");
             let pairs = || drawn.linear.iter().zip(&followed.linear);
             let covered = pairs().filter(|(drawn, _)| drawn[3] > 0.0).count();
-            // A sample on an edge may fall to either side; the rasteriser rounds corners to 1/256 of its pixels.
+            // A sample on an edge may fall to either side; the rasteriser rounds corners to 1/256
+            // of its pixels.
             let apart = |&(drawn, followed): &(&[f32; 4], &[f32; 4])| {
                 !(0..4).all(|k| (drawn[k] - followed[k]).abs() <= 1e-4 * followed[k].abs().max(1.0))
             };
@@ -77,7 +80,7 @@ fn surfaces_reflect_alike() {
     }
 }
 
-/// The rectangle of that size nearest to the middle of a picture that a stone covers wholly.
+/// Returns the rectangle of this size nearest to the picture's centre that a stone covers wholly.
 fn covered(picture: &Picture, width: u32, height: u32) -> spectral::Window {
     let full = |left: u32, top: u32| {
         let pixels = (top..top + height).flat_map(|row| (left..left + width).map(move |column| (row, column)));
@@ -91,7 +94,8 @@ fn covered(picture: &Picture, width: u32, height: u32) -> spectral::Window {
     spectral::Window { left, top, width, height }
 }
 
-/// The committed pictures are what the reference sees: a crop of each, as near to the middle as the stone is, rendered again.
+/// The reference reproduces the committed pictures. A crop of each, as near to the centre as the
+/// stone allows, is rendered again.
 #[test]
 fn the_committed_references_are_remade() {
     for view in VIEWS.into_iter().chain(CONCAVE).chain(SHOWN) {
@@ -105,7 +109,8 @@ fn the_committed_references_are_remade() {
             let expected_line = &picture.linear[start..][..line.len()];
             require_finite(line, expected_line);
             for (found, expected) in line.iter().zip(expected_line) {
-                // Half floats keep 11 bits; another processor's f64 functions may send a ray to the other side of an edge.
+                // Half floats keep 11 bits; the f64 functions of another processor may send a ray
+                // to the other side of an edge.
                 let apart =
                     (0..4).map(|k| (found[k] - expected[k]).abs() / expected[k].abs().max(0.01)).fold(0.0, larger);
                 assert!(apart <= 0.002, "{} row {row}: {found:?}, committed {expected:?}", view.name);
@@ -114,8 +119,8 @@ fn the_committed_references_are_remade() {
     }
 }
 
-/// What comes from inside, too: followed far enough, the exact planes' separate wavelengths on the GPU show what the reference
-/// shows, though one is f32 and a loop and the other f64 and a tree.
+/// Transmission agrees, too. With enough hits, the exact planes with separate wavelengths on the
+/// GPU show the same as the reference, although one is a loop in f32 and the other a tree in f64.
 #[test]
 fn stones_transmit_alike() {
     for name in ["brilliant", "step_cut", "sapphire", "quartz", "octahedron"] {
@@ -139,8 +144,9 @@ fn stones_transmit_alike() {
         errors.sort_by(f32::total_cmp);
         let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
         println!("{name}: {} pixels, median {:e}, nine of ten {:e}", errors.len(), quantile(0.5), quantile(0.9));
-        // The reference drops less than 1e-4 of a ray, which a light of 20 makes 2e-3; where rays part at edges, or are caught for more
-        // than 64 hits, a pixel is another one. That is rare in an index of 1.5 and not in a diamond.
+        // The reference drops less than 1e-4 of a ray, or 2e-3 under a light of 20. A pixel differs
+        // if its rays part at edges or are caught for more than 64 hits. That is rare at an index
+        // of 1.5, but not in a diamond.
         assert!(errors.len() > 500 && quantile(0.5) <= 5e-4 && quantile(0.9) <= 0.02, "{name}");
     }
 }

@@ -1,7 +1,7 @@
-//! Releases: every module states which it is, the tables hold what the modules are, the changelog names what changed, and
-//! an old copy is recognised however it was pasted.
+//! Releases: every module states its release, the tables match the modules, the changelog names the
+//! changed functions, and an old copy is recognised however it was pasted.
 //!
-//! After a change to a module: `./cook test --refresh`.
+//! After a change to a module, run `./cook test --refresh`.
 
 use crate::program::{cook, folder, succeeds};
 use lapidary_assay::tokens::{items, tokens};
@@ -10,7 +10,7 @@ use lapidary_cook::cookbook::{module, modules};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Where it is set, the lines and the table are written instead of compared.
+/// Environment variable; if set, the lines and the table are written instead of compared.
 const REFRESH: &str = "LAPIDARY_REFRESH_RELEASE";
 const COMMAND: &str = "./cook test --refresh";
 
@@ -22,12 +22,13 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../wgsl")
 }
 
-/// The table is being written: what is compiled in is the one before, so that nothing can be said of it until the next build.
+/// Returns whether the table is being written. The compiled table is then still the previous one,
+/// so it cannot be judged until the next build.
 fn is_refreshing() -> bool {
     std::env::var_os(REFRESH).is_some()
 }
 
-/// Compares a file with what it ought to hold, or writes it.
+/// Compares a file with its expected text, or writes it.
 fn holds(path: &Path, wanted: &str) {
     let found = std::fs::read_to_string(path).unwrap_or_default();
     if found == wanted {
@@ -45,7 +46,8 @@ fn holds(path: &Path, wanted: &str) {
 #[test]
 fn every_module_states_its_release_and_the_table_holds_it() {
     let mut hashes = BTreeMap::new();
-    // From the files, which a refresh may just have changed; what is compiled in is the state before.
+    // Read the files, which a refresh may just have changed; the compiled modules are the state
+    // before.
     for module in modules() {
         let path = root().join(format!("{}.wgsl", module.name));
         let source = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -69,7 +71,7 @@ fn the_tables_are_those_in_the_folder_and_end_with_this_release() {
     assert_eq!(history().releases.last().map(|release| release.release.as_str()), Some(CURRENT));
 }
 
-/// The functions that differ between two releases, and the modules that are new.
+/// Returns the functions that differ between two releases, and the new modules.
 fn changed(before: &Release, after: &Release) -> BTreeSet<String> {
     let is_new = |module: &&String| !before.modules.contains_key(*module);
     let new: BTreeSet<String> = after.modules.keys().filter(is_new).cloned().collect();
@@ -99,7 +101,7 @@ fn the_changelog_names_every_function_that_changed() {
             changed(&pair[0], &pair[1]).into_iter().filter(|name| !named.contains(name.as_str())).collect();
         assert!(silent.is_empty(), "CHANGELOG.md, release {}, does not name {silent:?}", pair[1].release);
     }
-    // Nor does it name what no release has.
+    // Nor does it name anything that no release has.
     let known: BTreeSet<&str> = history()
         .releases
         .iter()
@@ -123,10 +125,10 @@ fn a_changed_or_new_function_is_noticed() {
     assert_eq!(changed(&release(source), &release(source)), none);
     let other = source.replace("2.0f * dot", "2.1f * dot");
     assert_eq!(changed(&release(source), &release(&other)), ["refraction_reflect".to_owned()].into());
-    // A new module counts by its name.
+    // A new module is reported by its name.
     let nothing = Release { release: String::new(), modules: BTreeMap::new() };
     assert_eq!(changed(&nothing, &release(source)), ["refraction".to_owned()].into());
-    // A struct counts with each function that uses it; a comment does not count.
+    // A changed struct counts for each function that uses it; a changed comment does not count.
     let struct_changed = source.replace("    total: bool,", "    is_total: bool,");
     assert!(changed(&release(source), &release(&struct_changed)).contains("refraction_refract"));
     assert_eq!(changed(&release(source), &release(&source.replace("// ", "// so "))), none);
@@ -134,7 +136,7 @@ fn a_changed_or_new_function_is_noticed() {
 
 #[test]
 fn the_hash_of_a_text_is_stable() {
-    // FNV-1a's published value for no input.
+    // FNV-1a's published value for an empty input.
     assert_eq!(release::text_hash(""), "cbf29ce484222325");
     let text = "// a: b.\n// SPDX-License-Identifier: x\nfn a() {}\n";
     let stated = release::with_version(text);
@@ -156,7 +158,8 @@ fn changelog_entries_are_read_with_their_functions() {
     assert_eq!(release::parse_changes(text), wanted);
 }
 
-/// `refraction_reflect` as release 0.1.0 had it, laid out by somebody else and pasted into a larger file.
+/// `refraction_reflect` of release 0.1.0, reformatted by someone else and pasted into a larger
+/// file.
 const OLD_REFLECTION: &str = "\
 @group(0) @binding(0) var<uniform> normal: vec3f;
 
@@ -171,7 +174,7 @@ fn refraction_reflect(
 }
 ";
 
-/// `proxy_geometry_face_normal` as release 0.1.0 had it.
+/// `proxy_geometry_face_normal` of release 0.1.0.
 const OLD_FACE_NORMAL: &str = "\
 fn proxy_geometry_face_normal(position_first: vec3f, position_second: vec3f, position_third: vec3f) -> vec3f {
     let edge_first = position_second - position_first;
@@ -229,7 +232,8 @@ fn an_old_copy_is_recognised_in_whatever_file_it_is() {
     assert!(answer.stderr.contains("cook: note: this is refraction of release "), "{answer:?}");
 }
 
-/// A function whose text was right and whose promise was not: who copied it then is told, who copied it now need not be.
+/// The text of this function was right, but its promise was wrong. A user with an old copy is told;
+/// a user with a current copy is not.
 #[test]
 fn a_promise_that_changed_is_told_to_an_old_copy_of_the_same_text() {
     let told = history().standing("refraction", &["refraction_reflect"], OLD_REFLECTION).describe();
@@ -271,7 +275,7 @@ fn what_was_mended_since_is_said() {
         )
     );
     assert_eq!(says(&middle), format!("this is sample of release 0.2.0; the cookbook's is 0.3.0{halved}"));
-    // A const counts with the functions that use it.
+    // A changed const counts for the functions that use it.
     let changed = new.replace("0.5f", "0.6f");
     assert_eq!(
         says(&changed),

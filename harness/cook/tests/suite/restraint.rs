@@ -1,4 +1,5 @@
-//! Rays that end when what they carry can no longer be seen: the bound on the picture, and what the bound rests on.
+//! Rays that end once their contribution is invisible: the bound on the picture's error, and its
+//! assumptions.
 
 use glam::{DVec3, Vec3};
 use lapidary_assay::draws::Draws;
@@ -14,9 +15,10 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::{Environment, Scene, spectrum};
 
 const SIDE: u32 = 96;
-/// Where the recipe compares, ...
+/// Comparison of the recipe.
 const COMPARISON: &str = ">= material.throughput_limit";
-/// ... and where it never ends a ray, compiled the same way, so that until then both compute the same numbers.
+/// Comparison that never ends a ray. It is compiled the same way, so both pictures use the same
+/// numbers until a ray ends.
 const NEVER: &str = ">= 0.0f * material.throughput_limit";
 
 fn settings(rung: &str, rest_from_environment: bool) -> Settings {
@@ -33,8 +35,9 @@ fn rendered(scene: &Scene, settings: &Settings, comparison: &str) -> Picture {
     render::render_with(super::gpu(), scene, settings, &source).expect("rendered")
 }
 
-/// What rounding may add: each ray's sum and product rounds once for each hit that is followed and some ten times about it; what is rounded
-/// is at most the largest radiance times the sum of all weights' magnitudes; and the rays are added up.
+/// Returns a bound on the rounding error. The sum and product of each ray round once per followed
+/// hit, and about ten times outside of the hits. The rounded values are at most the largest
+/// radiance times the sum of the weights' magnitudes. The rays are added up.
 fn rounding(scene: &Scene, settings: &Settings) -> f64 {
     let rung = settings.rung;
     let rays = if let Spectrum::Separate(count) = rung.spectrum() { count } else { 1 };
@@ -43,7 +46,8 @@ fn rounding(scene: &Scene, settings: &Settings) -> f64 {
     f64::from(2 * rung.hits() + rays + 16) * f64::from(f32::EPSILON) * largest
 }
 
-/// The largest difference of radiance times exposure, the least (below 0 where light is lost), and the share of covered pixels that differ.
+/// Returns the largest and the least difference of radiance times exposure (below 0 if light is
+/// lost), and the share of covered pixels that differ.
 fn difference(one: &Picture, other: &Picture, exposure: f32) -> (f64, f64, f64) {
     let (mut largest, mut least, mut changed, mut covered) = (0f64, 0f64, 0, 0);
     for (a, b) in one.linear.iter().zip(&other.linear).filter(|(a, _)| a[3] > 0.0) {
@@ -90,12 +94,14 @@ fn the_picture_differs_by_less_than_can_be_seen() {
                 100.0 * changed
             );
             assert!(largest <= bound && -least <= bound, "{name} {rung}: {least:e} to {largest:e}, {bound:e}");
-            // What is dropped can only be missing, but for wavelengths that weigh a channel negatively.
+            // Dropped light can only be missing, except with wavelengths that have a negative
+            // weight in a channel.
             if !rest_from_environment && !matches!(settings.rung.spectrum(), Spectrum::Separate(4..)) {
                 assert!(largest <= rounding(&scene, &settings), "{name} {rung}: {largest:e}");
             }
             assert!(changed > 0.02, "{name} {rung}: {changed}");
-            // Without the override there is no limit, and the same picture as with one that no ray falls below.
+            // Without the override there is no limit, and the picture is the same as with a limit
+            // that no ray falls below.
             let without =
                 Settings { gem: GemOptions { limit_throughput: Some(false), ..settings.gem }, ..settings.clone() };
             let without = render::render(super::gpu(), &scene, &without).expect("rendered");
@@ -110,7 +116,7 @@ fn the_picture_differs_by_less_than_can_be_seen() {
     }
 }
 
-/// The bound is no formality: rays that end with thirty times what may be left exceed it.
+/// The bound is not a formality: rays that end at thirty times the permitted remainder exceed it.
 #[test]
 fn a_limit_too_large_is_seen() {
     for rung in ["convex-16", "convex-16+tracker", "convex-16+3"] {
@@ -124,7 +130,7 @@ fn a_limit_too_large_is_seen() {
     }
 }
 
-/// Directions evenly over the sphere.
+/// Returns directions spread evenly over the sphere.
 fn directions(count: u32) -> impl Iterator<Item = Vec3> {
     (0..count).map(move |k| {
         let y = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count);
@@ -136,7 +142,7 @@ fn directions(count: u32) -> impl Iterator<Item = Vec3> {
 
 #[test]
 fn the_studio_is_nowhere_brighter_than_stated() {
-    // The smallest light is 0.18 wide, with its soft edges; two directions are 0.006 apart.
+    // The smallest light is 0.18 wide with its soft edges; neighbouring directions are 0.006 apart.
     let largest = directions(400_000).map(|direction| environment::studio(direction).max_element()).fold(0.0, larger);
     println!("{largest}");
     assert!(largest <= STUDIO_LARGEST && largest > 0.98 * STUDIO_LARGEST, "{largest}");
@@ -156,11 +162,11 @@ fn a_map_is_nowhere_brighter_than_its_largest_texel() {
     let shading = Shading::new(&scene.objects[0].material, &settings);
     let found = directions(100_000).map(|direction| shading.environment(direction).max_element()).fold(0.0, larger);
     println!("{found} of {texels}");
-    // A mixture rounds three times, twice over.
+    // A mix rounds three times, and two follow each other.
     assert!(found <= texels * (1.0 + 6.0 * f32::EPSILON) && found > 0.98 * texels, "{found} {texels}");
 }
 
-/// A map brighter than the studio ends fewer rays, and darkness all.
+/// A map brighter than the studio ends fewer rays, and darkness ends all of them.
 #[test]
 fn the_limit_goes_by_environment_and_exposure() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -174,7 +180,8 @@ fn the_limit_goes_by_environment_and_exposure() {
     assert!(dim < 0.95 * bright && bright == exposed && dark == 1.0, "{dim} {bright} {exposed} {dark}");
 }
 
-/// Each row of all matrices adds up to 1, so that its magnitudes add up to more where one entry is negative.
+/// Each row of all matrices together sums to 1, so its magnitudes sum to more if an entry is
+/// negative.
 #[test]
 fn weights_of_wavelengths_add_up_to_more_than_one() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -191,7 +198,7 @@ fn weights_of_wavelengths_add_up_to_more_than_one() {
     }
 }
 
-/// White surroundings stay white: what a ray still carries at its end is taken from the environment.
+/// White surroundings stay white: the remainder of a ray at its end is taken from the environment.
 #[test]
 fn the_white_furnace_stays_white() {
     let ones = || Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });

@@ -1,11 +1,12 @@
-//! Rewrites that are the same on paper and lose what a comment sells: a user's copy with one of them fails its check, where the
-//! tolerance of backward error alone would forgive most.
+//! Rewrites that are equal on paper, but lose a property that a comment promises. A user's copy
+//! with one of them fails its check, although the tolerance of backward error alone would forgive
+//! most.
 
 use lapidary_assay::property::Settings;
 use lapidary_cook::check::{self, Source};
 use lapidary_cook::{cookbook, formulas};
 
-/// Function, what stands there, what one might write instead.
+/// Function, its expression, and a naive replacement.
 const REWRITES: &[(&str, &str, &str)] = &[
     ("refraction_radicand", PRODUCT, SQUARE),
     ("refraction_refract", PRODUCT, SQUARE),
@@ -32,7 +33,7 @@ const REWRITES: &[(&str, &str, &str)] = &[
 const PRODUCT: &str = "(relative_index - 1.0f) * (relative_index + 1.0f)";
 const SQUARE: &str = "(relative_index * relative_index - 1.0f)";
 
-/// The module's text with one function rewritten.
+/// Returns the module's text with one function rewritten.
 fn rewritten(function: &str, before: &str, after: &str) -> String {
     let formula = formulas::of_function(function).unwrap_or_else(|| panic!("no formula of `{function}`"));
     let source = cookbook::module(formula.module).expect("a module").whole;
@@ -53,7 +54,7 @@ fn a_copy_with_a_naive_rewrite_fails_its_check() {
         let settings = Settings { cases: 4_096, seed: crate::seed() };
         let row = check::run(gpu, formula, Source::Copy("mine.wgsl", &text), settings).expect("the check runs");
         println!("{function}: {after}: {} failed, {:?}", row.failed, row.broken_hard_cases);
-        // Not a random input that happens to tell: the hard case that is there for it.
+        // A failing random input is not enough: the hard case made for the rewrite must fail.
         if row.broken_hard_cases.is_empty() {
             passed.push(format!("{function}: `{after}` instead of `{before}` breaks no hard case"));
         }

@@ -22,7 +22,7 @@ fn promised() -> impl Iterator<Item = &'static Formula> {
     formulas::all().iter().filter(|formula| formula.benign.is_none())
 }
 
-/// The seams of a promised function of the cookbook, found once for all tests.
+/// Returns the seams of a promised function of the cookbook. They are found once for all tests.
 fn seams_of(function: &str) -> &'static [Seam] {
     static SEAMS: OnceLock<BTreeMap<&'static str, Vec<Seam>>> = OnceLock::new();
     let all =
@@ -30,7 +30,7 @@ fn seams_of(function: &str) -> &'static [Seam] {
     &all[function]
 }
 
-/// From enough seeds that no branch is missed by chance.
+/// Finds the seams with enough seeds that no branch is missed by chance.
 fn seams(program: &Program, formula: &Formula) -> Vec<Seam> {
     (0..2).flat_map(|seed| seams::find(program, formula, seed).expect("the interpreter runs it")).collect()
 }
@@ -60,8 +60,8 @@ fn the_interpreter_computes_what_the_shaders_do() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// A branch that compares floats is straddled, and the mathematics goes on there, or the list of exceptions says why not. A line of it that is no
-/// longer true is a fault too.
+/// Every branch that compares floats is straddled and the function is continuous there, or the list
+/// of exceptions says why not. An outdated line of the list is a fault too.
 #[test]
 fn every_branch_is_straddled_and_continuous_or_says_why_not() {
     let gpu = super::gpu();
@@ -100,7 +100,7 @@ fn every_branch_is_straddled_and_continuous_or_says_why_not() {
     assert!(lines.is_empty(), "\n{}", lines.join("\n"));
 }
 
-/// What seams find in `function` of a source in which `from` has become `to`.
+/// Returns the faults that seams find in `function` of a source with `from` replaced by `to`.
 fn planted(function: &str, from: &str, to: &str) -> Vec<Fault> {
     let gpu = super::gpu();
     let formula = formulas::of_function(function).expect("a formula");
@@ -116,9 +116,10 @@ fn planted(function: &str, from: &str, to: &str) -> Vec<Fault> {
 #[test]
 fn a_planted_jump_is_found_at_its_branch() {
     let plants = [
-        // Beyond 0.3 the form at one edge is ever less accurate.
+        // Beyond 0.3 the form for a single edge becomes less and less accurate.
         ("cdrf_accurate", "const CDRF_SWITCH: f32 = 0.3f;", "const CDRF_SWITCH: f32 = 0.45f;", "sigma < CDRF_SWITCH"),
-        // A knee that is off by a thousandth, where the two pieces are a few parts in a million apart.
+        // A knee that is off by a twelfth. There the two pieces differ by three parts in a
+        // thousand.
         ("srgb_encode", "0.0031308f", "0.0034f", "0.0034f"),
     ];
     for (function, from, to, at) in plants {

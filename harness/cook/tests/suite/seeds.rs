@@ -1,4 +1,4 @@
-//! A failure can be run again from what is printed, and work can be shared out.
+//! A failure can be reproduced with the printed command, and work can be divided into shards.
 
 use crate::program::{cook, succeeds};
 use lapidary_assay::property::persistence::Regressions;

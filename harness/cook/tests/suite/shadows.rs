@@ -1,4 +1,5 @@
-//! Cast shadows of what is drawn by its surface: what the lights' maps let through, pixel by pixel, is what rays through a hierarchy of the triangles find.
+//! Cast shadows of bodies that are drawn by their surface. Pixel by pixel, the lights' maps agree
+//! with rays through a hierarchy of the triangles.
 
 use crate::pixels::rays;
 use glam::{DVec3, Vec3};
@@ -12,9 +13,10 @@ use lapidary_scene::{Bvh, Light, Material, Mesh, Object, Scene};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 const SIDE: u32 = 200;
-/// Texels of a map along a side, as the renderer has them.
+/// Texels along a side of a map, as in the renderer.
 const TEXELS: f64 = 1024.0;
-/// The least cosine, towards light and eye, at which pixels are compared: of grazing ones the mesh has its own view.
+/// Least cosine of compared pixels towards the eye, and towards the light for a verdict. At grazing
+/// angles the facets of the mesh decide.
 const GRAZING: f64 = 0.2;
 
 fn settings(rung: &str) -> Settings {
@@ -26,7 +28,8 @@ fn settings(rung: &str) -> Settings {
     }
 }
 
-/// A ring that lies, and a ball in the air over its rim: each throws shadows on itself or on the other.
+/// Returns a lying ring and a ball in the air over its rim: each casts shadows on itself or on the
+/// other.
 fn scene(light: Light) -> Scene {
     let skin = Scene::named("skin").expect("built in");
     let material = Material { sigma0: Some(Vec3::splat(1.0)), ..skin.objects[0].material.clone() };
@@ -36,7 +39,7 @@ fn scene(light: Light) -> Scene {
     Scene { objects, lights: vec![light], ..skin }.seen_from(40.0, 120.0)
 }
 
-/// All of a scene's triangles.
+/// All triangles of a scene.
 struct Triangles {
     mesh: Mesh,
     bvh: Bvh,
@@ -49,7 +52,8 @@ impl Triangles {
             let first = mesh.positions.len() as u32;
             mesh.positions.extend(&object.mesh.positions);
             mesh.normals.extend(&object.mesh.normals);
-            // The hierarchy's rays leave a solid through its triangles. Turned over, they are what a ray from outside meets.
+            // The hierarchy's rays leave a solid through its triangles. A ray from outside meets
+            // them if they are turned over.
             let turned = object.mesh.indices.chunks_exact(3).flat_map(|corners| [corners[0], corners[2], corners[1]]);
             mesh.indices.extend(turned.map(|index| first + index));
         }
@@ -64,30 +68,32 @@ impl Triangles {
         met(&hit).then_some(hit)
     }
 
-    /// The normal where a ray met them, as the recipe has it.
+    /// Returns the normal at a hit, interpolated as in the recipe.
     fn normal(&self, hit: &BvhTraceHit) -> DVec3 {
         let corner = |k: usize| self.mesh.normals[self.bvh.indices[3 * hit.triangle as usize + k] as usize].as_dvec3();
         let [second, third] = hit.barycentrics.to_array().map(f64::from);
         ((1.0 - second - third) * corner(0) + second * corner(1) + third * corner(2)).normalize()
     }
 
-    /// Whether anything stands between a place and a light, `distance` away.
+    /// Returns whether anything stands between a place and a light at this distance.
     fn is_hidden(&self, place: DVec3, toward: DVec3, distance: f64) -> bool {
         self.trace(place, toward).is_some_and(|hit| f64::from(hit.distance) < distance)
     }
 }
 
-/// What rays say of a pixel.
+/// Visibility of the light from a pixel, according to rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Seen {
     Lit,
     Dark,
-    /// So near to a shadow's edge, or to what throws it, that a map of texels cannot tell.
+    /// Too near to a shadow's edge, or to the body that casts it, for a map of texels to tell.
     Between,
 }
 
-/// From a point and eight about it, three texels away: all see the light or none does. A bias of a texel's width forgives what stands out less, so rays
-/// that must be free start as high over the surface, and rays that must be hidden twice as high.
+/// Returns whether a point and eight points about it, three texels away, all see the light or all
+/// do not. The map's bias is a texel's width and ignores lower obstacles. Rays that must be free
+/// therefore start at that height over the surface, and rays that must be hidden start twice as
+/// high.
 fn seen(triangles: &Triangles, [point, normal]: [DVec3; 2], light: &Light, texel: f64) -> Seen {
     let along = normal.any_orthonormal_vector();
     let across = normal.cross(along);
@@ -110,7 +116,8 @@ fn seen(triangles: &Triangles, [point, normal]: [DVec3; 2], light: &Light, texel
     }
 }
 
-/// A pixel that is far enough from edges: what it shows, the cosine, what a white surface square to the light would show, and what rays say.
+/// A pixel that is not seen at a grazing angle: its value, the cosine towards the light, the value of
+/// the same surface square to the light, and the verdict of the rays.
 struct Compared {
     found: f64,
     cosine: f64,
@@ -119,7 +126,8 @@ struct Compared {
     index: usize,
 }
 
-/// Width of a texel in the world, for a point that a light sees: of a sun's map, or of one of a lamp's, whose half angle's tangent is at most 1.5.
+/// Returns the width of a texel in the world at a point that a light sees. A lamp has several maps,
+/// and the tangent of their half angle is at most 1.5.
 fn texel(scene: &Scene, light: &Light, point: DVec3) -> f64 {
     match light {
         Light::Directional { .. } => 2.0 * f64::from(scene.bounds().radius()) / TEXELS,
@@ -163,13 +171,15 @@ fn compared(scene: &Scene, light: &Light, pixels: &[[f32; 4]]) -> Vec<Compared> 
     all
 }
 
-/// How many are lit, dark, between, and how many of the first two the picture has otherwise.
+/// Returns the numbers of lit, dark and undecided pixels, and the number of lit or dark pixels that
+/// the picture shows otherwise.
 fn judged(all: &[Compared]) -> [usize; 4] {
     let count = |seen: Seen| all.iter().filter(|one| one.seen == seen && one.cosine >= GRAZING).count();
     let is_wrong = |one: &&Compared| {
         let share = one.found / (one.cosine * one.full);
-        // Interpolated in f32 and by perspective, against f64: a pixel's place is off by 1e-6 of its distance, 40, its cosine by that over the radius. In a
-        // spot's soft edge light falls off by all of itself in a fifth of a radian.
+        // The picture interpolates with perspective in f32, the rays use f64. A pixel's place is
+        // off by 1e-6 of its distance of 40, and its cosine by that over the radius. In a spot's
+        // soft edge, the light falls to 0 within a fifth of a radian.
         match one.seen {
             Seen::Lit => (share - 1.0).abs() > 2e-3,
             Seen::Dark => share > 1e-6,
@@ -187,7 +197,7 @@ fn lights() -> [(&'static str, Light); 4] {
         ("sun", Light::Directional { toward: Vec3::new(0.5, 0.7, 0.5).normalize(), irradiance: Vec3::splat(2.0) }),
         ("lamp", Light::Point { position, intensity: Vec3::splat(1500.0) }),
         ("spot", Light::Spot { position, direction, intensity: Vec3::splat(1500.0), inner_angle, outer_angle }),
-        // Amid the bodies: six views.
+        // Among the bodies: six views.
         ("lamp amid the bodies", Light::Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: Vec3::splat(300.0) }),
     ]
 }
@@ -208,7 +218,8 @@ fn shadows_are_those_that_rays_find() {
         println!("{name}: {lit} lit, {dark} dark, {between} between, {wrong} wrong");
         assert_eq!(wrong, 0, "{name}");
         assert!(lit > 1000 && dark > 150 && between < (lit + dark) / 2, "{name}: {lit} {dark} {between}");
-        // A bias that forgives what stands two bodies high, one that forgives nothing, and a map that is turned over.
+        // A bias that ignores obstacles two bodies high, one that ignores none, and an inverted
+        // map.
         for planted in [
             recipe.replace(bias, &bias.replace("2.0f *", "2000.0f *")),
             recipe.replace(bias, &bias.replace("2.0f *", "-2.0f *")),
@@ -221,7 +232,8 @@ fn shadows_are_those_that_rays_find() {
     }
 }
 
-/// A reflectance loses what fell on the point itself; what creeps in from beside it stays, so that nothing changes at the terminator and behind it.
+/// In a shadow, a reflectance loses the light that falls on the point itself. Light that scatters
+/// in from its surroundings remains, so nothing changes at and behind the terminator.
 #[test]
 fn a_reflectance_loses_what_fell_on_the_point_itself() {
     let light = lights()[0].1;
@@ -247,11 +259,11 @@ fn a_reflectance_loses_what_fell_on_the_point_itself() {
         }
         assert!(taken > 150 && kept > 300, "{rung}: {taken} {kept}");
     }
-    // Lambert's law is the reflectance without a width.
+    // Lambert's law is the reflectance with a width of 0.
     assert_eq!(draw(true, "lambert"), draw(false, "lambert-shadowed"));
 }
 
-/// Without lights there is nothing to cast, and what lies behind clear stone is not in its shadow.
+/// Without lights there are no shadows, and clear stone casts none on the objects behind it.
 #[test]
 fn shadows_are_made_only_where_something_is_in_them() {
     use lapidary_render::plan::Plan;

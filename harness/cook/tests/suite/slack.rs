@@ -1,4 +1,4 @@
-//! Slack: every function's portable bounds, held to on devices that err as far as WGSL lets them.
+//! Slack: every function keeps its portable bounds on devices that err as far as WGSL allows.
 
 use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::property::{DEFAULT_CASES, Settings};
@@ -11,7 +11,7 @@ fn examined(function: &str, source: Source<'_>, settings: Settings) -> Row {
     check::run(On::Slack(Reassociation::Written), formula, source, settings).expect("the interpreter runs it")
 }
 
-/// What is wrong, and how to see it again.
+/// Describes the failure and how to reproduce it.
 fn described(row: &Row) -> String {
     let Row { function, failed, worst_ratio, reason, worst_choices, reproduce, .. } = row;
     let broken: Vec<&String> =
@@ -27,7 +27,7 @@ fn every_function_holds_on_every_device_that_wgsl_allows() {
     let mut faults = Vec::new();
     for formula in formulas::all().iter().filter(|formula| formula.benign.is_none()) {
         let row = examined(formula.function, Source::Cookbook, settings);
-        // Edges are the adapters' runs' to reach.
+        // Reaching the edges is left to the runs on adapters.
         if !row.is_right() {
             faults.push(described(&row));
         }
@@ -35,8 +35,9 @@ fn every_function_holds_on_every_device_that_wgsl_allows() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// WGSL lets a compiler take sums of three and more terms, and products, in another order. A function whose portable bound needs the written one says so in its
-/// `Accuracy:` line, and does fail without it, from a fixed seed.
+/// WGSL lets a compiler reorder sums of three and more terms, and products. A function whose
+/// portable bound needs the written order says so in its `Accuracy:` line, and does fail in another
+/// order, from a fixed seed.
 #[test]
 fn what_reassociation_breaks_is_named() {
     let mut faults = Vec::new();
@@ -60,26 +61,27 @@ fn what_reassociation_breaks_is_named() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
-/// A change that the reference device forgives.
+/// Change that the reference device forgives.
 struct Forgiven {
     function: &'static str,
     from: &'static str,
     to: &'static str,
 }
 
-/// Each passes on lavapipe, which rounds to nearest, fuses nothing and keeps NaNs, and fails on another device.
+/// Changes that pass on lavapipe, which rounds to nearest, fuses nothing and keeps NaNs, but fail
+/// on another device.
 const FORGIVEN: [Forgiven; 4] = [
-    // A NaN that is known by not being itself.
+    // A NaN recognised as unequal to itself.
     Forgiven { function: "cdrf_finite", from: "if magnitude > 0x7f800000u {", to: "if !(value == value) {" },
-    // A quotient of equals that must be 1.
+    // A quotient of equal numbers that must be 1.
     Forgiven {
         function: "fresnel_dielectric",
         from: "return min(0.5f * (s * s + p * p), 1.0f);",
         to: "return 0.5f * (s * s + p * p);",
     },
-    // Total reflection by a quotient that must be exact.
+    // Total reflection recognised by a quotient that must be exact.
     Forgiven { function: "random_walk_boundary", from: "if g == 0.0f || u <", to: "if u <" },
-    // A floor of what is rounded, taken from what is fused.
+    // The floor of a rounded value, subtracted from a fused one.
     Forgiven { function: "cdrf_texels", from: "max(at - floor(at), vec2f(0.0f))", to: "at - floor(at)" },
 ];
 

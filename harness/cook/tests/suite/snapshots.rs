@@ -1,4 +1,5 @@
-//! The committed pictures: new ones are the same, planted errors are seen, and a missing reference fails.
+//! The committed pictures: new ones match them, planted errors are seen, and a missing reference
+//! fails.
 
 use lapidary_cook::snapshot::{self, Committed, Comparison, SHOTS, Shot, SnapshotError};
 use lapidary_render as render;
@@ -6,7 +7,7 @@ use lapidary_render::Picture;
 use lapidary_scene::Scene;
 use std::path::Path;
 
-/// One picture in so many is compared as it is seen, or spoilt, where the suite is not run whole.
+/// Unless the suite is run whole, one picture in this many is compared as displayed, or spoilt.
 const ONE_IN: u64 = 8;
 
 fn source() -> String {
@@ -17,7 +18,7 @@ fn brilliant() -> &'static Shot {
     SHOTS.iter().find(|shot| shot.name == "brilliant").expect("the shot exists")
 }
 
-/// The committed folder's copy, so that a planted failure leaves its pictures elsewhere.
+/// Copies the committed folder, so that a planted failure leaves its pictures elsewhere.
 fn copy_of(folder: &Path) -> tempfile::TempDir {
     let copy = tempfile::tempdir().expect("a folder");
     for entry in std::fs::read_dir(folder).expect("the committed pictures") {
@@ -30,7 +31,8 @@ fn copy_of(folder: &Path) -> tempfile::TempDir {
     copy
 }
 
-/// What is seen takes longer to draw than linear radiance, which is compared of every picture below.
+/// A displayed picture takes longer to draw than linear radiance, which is compared for every
+/// picture below.
 #[test]
 fn pictures_are_as_they_were() {
     for committed in super::sampled(Committed::all(), ONE_IN) {
@@ -53,7 +55,8 @@ fn linear_radiance_is_as_it_was() {
     }
 }
 
-/// Compares a picture with something wrong in it; its new picture and the difference must be left beside the reference.
+/// Compares a picture that has an error. If the comparison fails, the new picture and the
+/// difference must be left next to the reference.
 fn planted(scene: &Scene, source: &str) -> Comparison {
     let copy = copy_of(&brilliant().folder());
     let pictures = snapshot::render_scene(super::gpu(), brilliant(), scene, source).expect("rendered");
@@ -94,7 +97,7 @@ fn swapped_channels_are_seen() {
     assert!(!comparison.holds(), "{comparison:?}");
 }
 
-/// A committed picture as it was rendered, from its files.
+/// Returns a committed picture as it was rendered, from its files.
 fn committed(name: &str, folder: &Path) -> [Picture; 2] {
     let open = |extension: &str| image::open(folder.join(format!("{name}.{extension}"))).expect(name);
     let [seen, linear] = [open("png"), open("exr")];
@@ -109,7 +112,7 @@ fn committed(name: &str, folder: &Path) -> [Picture; 2] {
     })
 }
 
-/// The committed pictures with something wrong in them, put beside the untouched.
+/// Spoils the committed pictures and compares them with the originals.
 fn spoilt(name: &str, folder: &Path, spoil: impl Fn(&mut [Picture; 2])) -> Result<Comparison, SnapshotError> {
     let copy = tempfile::tempdir().expect("a folder");
     for extension in ["png", "exr"] {
@@ -121,7 +124,7 @@ fn spoilt(name: &str, folder: &Path, spoil: impl Fn(&mut [Picture; 2])) -> Resul
     snapshot::compare(name, &pictures, copy.path())
 }
 
-/// The upper left corner of the brightest square of that side.
+/// Returns the upper left corner of the brightest square with this side.
 fn brightest(picture: &Picture, side: usize) -> (usize, usize) {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let places =
@@ -133,7 +136,8 @@ fn brightest(picture: &Picture, side: usize) -> (usize, usize) {
     places.max_by_key(light).expect("a square")
 }
 
-/// What the eye cannot miss: a hole in what is seen, though it is a 256th of the picture and its linear radiance has none.
+/// The eye cannot miss a hole in the displayed picture, although it covers only 1/256 of the
+/// picture and the linear radiance has none.
 #[test]
 fn a_black_square_is_seen() {
     for picture in super::sampled(Committed::all(), ONE_IN) {
@@ -160,7 +164,7 @@ fn what_is_no_number_is_refused() {
             assert!(matches!(error, SnapshotError::NotFinite { .. }), "{error}");
         }
     }
-    // Such a picture is no reference either, and is not made one.
+    // Such a picture is no valid reference either, and is not accepted as one.
     let copy = copy_of(&folder);
     let before = std::fs::read(copy.path().join("brilliant.exr")).expect("a reference");
     let mut pictures = committed(brilliant, &folder);
@@ -174,7 +178,8 @@ fn what_is_no_number_is_refused() {
     assert!(error.to_string().contains("brilliant.exr: pixel (210, 4)"), "{error}");
 }
 
-/// Coverage is 1 where the body is dark: with it in the reference's power, light of the wrong strength hardly counted.
+/// Coverage is 1 even if the body is dark. With coverage in the reference's power, light of the
+/// wrong strength hardly counted.
 #[test]
 fn dim_light_is_compared_by_itself() {
     for picture in super::sampled(Committed::all(), ONE_IN) {
@@ -187,7 +192,8 @@ fn dim_light_is_compared_by_itself() {
     }
 }
 
-/// In every picture, of what is seen and of linear radiance alone. A picture without colour has none to swap.
+/// Checks every picture, as displayed and in linear radiance alone. A picture without colour has no
+/// channels to swap.
 #[test]
 fn channels_are_told_apart() {
     for picture in super::sampled(Committed::all(), ONE_IN) {
@@ -200,11 +206,12 @@ fn channels_are_told_apart() {
     }
 }
 
-/// A driver's vertices may lie on another grid, and its samples a 256th of their distance beside ours.
+/// Another driver may snap vertices to another grid, and place samples 1/256 of their distance away
+/// from ours.
 #[test]
 fn another_drivers_samples_pass() {
     let mut failed = Vec::new();
-    // The rungs with the most edges for a pixel, and one of each other recipe.
+    // The rungs with the most edges per pixel, and one of each other recipe.
     let chosen =
         ["brilliant", "brilliant_separate", "exact_separate", "bunny_stone", "prism", "skin_bunny", "jade", "bunny"];
     for shot in super::sampled(SHOTS.iter().filter(|shot| chosen.contains(&shot.name)), ONE_IN) {
@@ -246,7 +253,7 @@ fn an_unreadable_reference_fails() {
 
 #[test]
 fn the_committed_pictures_are_small() {
-    // By name, since another test may have left a failure's pictures beside them.
+    // By name, because another test may have left the pictures of a failure in the folder.
     let files = Committed::all().flat_map(|committed| {
         ["png", "exr"].map(|extension| committed.folder().join(format!("{}.{extension}", committed.name())))
     });
@@ -256,7 +263,8 @@ fn the_committed_pictures_are_small() {
     assert!(sizes.iter().sum::<u64>() <= 24 << 20);
 }
 
-/// What the gallery shows as a picture's command leaves out nothing that nothing calls for, which `cook` refuses.
+/// The gallery shows a command for each picture. The command must not leave out an effect that the
+/// scene does not need, because `cook` refuses that.
 #[test]
 fn the_pictures_commands_are_taken() {
     let mut left_out = 0;

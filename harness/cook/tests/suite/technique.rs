@@ -1,4 +1,4 @@
-//! `cook new`: the files of a technique, all of them or none. `.ci/full` builds and tests one.
+//! `cook new` writes all files of a technique or none. `.ci/full` builds and tests one.
 
 use crate::program::{cook, folder, succeeds};
 use lapidary_cook::cookbook::header::{parse_functions, parse_header};
@@ -7,7 +7,7 @@ use lapidary_cook::cookbook::release::with_version;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What `cook new` changes, copied from the cookbook.
+/// Copies the files of the cookbook that `cook new` changes.
 fn cookbook() -> tempfile::TempDir {
     let copy = folder();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -19,7 +19,7 @@ fn cookbook() -> tempfile::TempDir {
     copy
 }
 
-/// Every file below a folder, with its text.
+/// Returns every file below a folder, with its text.
 fn files(folder: &Path) -> BTreeMap<PathBuf, String> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {

@@ -1,5 +1,5 @@
-//! What users rely on in text: every signature and every promised accuracy. A change of either is a change of the cookbook's
-//! interface, and is to be seen in review. `./cook test --refresh` accepts it.
+//! The interface as text: every signature and every promised accuracy, on which users rely. A
+//! change of either must be visible in review. `./cook test --refresh` accepts it.
 
 use crate::program::succeeds;
 use lapidary_assay::dispatch;
@@ -29,7 +29,7 @@ fn signatures_and_accuracies_are_as_they_were() {
     });
 }
 
-/// The page of drivers shows what the records hold.
+/// The page of drivers shows the values of the records.
 #[test]
 fn the_drivers_are_as_recorded() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
@@ -49,7 +49,8 @@ fn the_drivers_are_as_recorded() {
     }
 }
 
-/// The README's table is what `./cook list --markdown` prints. `./cook test --refresh` writes it anew.
+/// The README's table is the output of `./cook list --markdown`. `./cook test --refresh` rewrites
+/// it.
 #[test]
 fn the_readme_lists_the_modules() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");

@@ -1,5 +1,5 @@
-//! Texture-space diffusion on the device, against the exact convolution on a cylinder: how many taps that takes, charts with empty space
-//! between them, seams.
+//! Texture-space diffusion on the device, against the exact convolution on a cylinder: the number
+//! of taps that it needs, charts with empty space between them, and seams.
 
 use glam::Vec3;
 use lapidary_assay::extremum::larger;
@@ -16,16 +16,17 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 type Half = exr::prelude::f16;
 
-/// Texels round the cylinder.
+/// Texels around the cylinder.
 const AROUND: u32 = 1024;
-/// What the page promises.
+/// Largest error that the page promises.
 const BOUND: f64 = 1e-3;
-/// Radians under a texel of a cylinder of radius 1.
+/// Angle of a texel on a cylinder of radius 1, in radians.
 const TEXEL: f64 = TAU / AROUND as f64;
-/// The narrowest Gaussian, in radians, that a bilinear lookup of 1024 texels shows to 1e-3.
+/// Width of the narrowest Gaussian, in radians, that a bilinear lookup of 1024 texels shows to
+/// 1e-3.
 const RESOLVED: f64 = 0.005;
 
-/// The texture as `f` says it, row by row.
+/// Returns a texture filled by `f`, row by row.
 fn filled<T>(size: [u32; 2], f: impl Fn(u32, u32) -> T) -> Vec<T> {
     (0..size[1])
         .flat_map(|row| (0..size[0]).map(move |column| (column, row)))
@@ -33,7 +34,8 @@ fn filled<T>(size: [u32; 2], f: impl Fn(u32, u32) -> T) -> Vec<T> {
         .collect()
 }
 
-/// Lets the device blur `irradiance` (red, green, blue and coverage) and returns the same.
+/// Blurs `irradiance` (red, green, blue and coverage) on the device and returns the result in the
+/// same form.
 fn diffuse(
     gpu: &Gpu,
     size: [u32; 2],
@@ -63,14 +65,15 @@ fn diffuse(
     found
 }
 
-/// Light on a cylinder at a texel's middle.
+/// Returns the light on a cylinder at a texel's centre.
 fn lit(column: u32) -> f32 {
     (TAU * (f64::from(column) + 0.5) / f64::from(AROUND)).cos().max(0.0) as f32
 }
 
-/// The convolution at every half texel from the light on to the side away from it: texels' edges first, then their middles.
+/// Returns the convolution at every half texel from the lit side to the side away from the light.
+/// The edge of each texel comes before its centre.
 fn wanted(sigma: f64) -> Arc<Vec<f64>> {
-    // Asked for again with every number of taps.
+    // Cached, because every number of taps needs the same values.
     static KNOWN: LazyLock<Mutex<HashMap<u64, Arc<Vec<f64>>>>> = LazyLock::new(Mutex::default);
     if let Some(known) = KNOWN.lock().expect("no panic inside").get(&sigma.to_bits()) {
         return known.clone();
@@ -81,7 +84,8 @@ fn wanted(sigma: f64) -> Arc<Vec<f64>> {
     found
 }
 
-/// Largest errors of a row of texels as a bilinear lookup shows it: at the texels' middles alone, and at their edges too.
+/// Returns the largest errors of a row of texels under a bilinear lookup: at the texels' centres
+/// alone, and at their edges too.
 fn errors(texels: &[f64], sigma: f64) -> [f64; 2] {
     let wanted = wanted(sigma);
     let mut most = [0.0f64; 2];
@@ -97,10 +101,12 @@ fn errors(texels: &[f64], sigma: f64) -> [f64; 2] {
     [most[0], most[0].max(most[1])]
 }
 
-/// Offset in the widest channel's standard deviations and weights of the pairs of taps, index 0 with them.
+/// Offset, in standard deviations of the widest channel, and weights of a pair of taps. Index 0 is
+/// the centre tap.
 type Placement = fn(u32, u32, Vec3) -> mirror::TextureDiffusionTap;
 
-/// A pass as the recipe has it, along a row of a cylinder lit by `light`, in f32 and kept in halves. `width` is the widest channel's, in texels.
+/// Runs a pass as in the recipe, in f32 with results kept in halves, along a row of a cylinder lit
+/// by `light`. `width` is the widest channel's, in texels.
 fn blurred(placement: Placement, pairs: u32, channels: Vec3, width: f32, light: &[f32]) -> Vec<Vec3> {
     let light: Vec<f32> = light.iter().map(|value| Half::from_f32(*value).to_f32()).collect();
     let count = light.len() as i32;
@@ -126,17 +132,17 @@ fn blurred(placement: Placement, pairs: u32, channels: Vec3, width: f32, light: 
         .collect()
 }
 
-/// Channels of a ratio: the widest, one of two between, the narrowest.
+/// Returns the channels of a ratio: the widest, one of two intermediate ones, and the narrowest.
 fn materials(ratio: f32) -> Vec<Vec3> {
     [0.35, 0.7].map(|share: f32| Vec3::new(1.0, ratio.powf(share), ratio)).to_vec()
 }
 
-/// Widths of the widest channel in radians, most of them where errors are largest.
+/// Returns widths of the widest channel in radians, most of them near the largest errors.
 fn sigmas() -> Vec<f64> {
     [0.05, 0.1, 0.2, 0.4, 0.6, 0.7].into_iter().chain((150..=200).map(|k| f64::from(k) * 0.005)).collect()
 }
 
-/// Largest error over the materials of a ratio and those widths.
+/// Returns the largest error over the materials of a ratio and the given widths.
 fn worst(placement: Placement, pairs: u32, ratio: f32, sigmas: &[f64]) -> f64 {
     let light: Vec<f32> = (0..AROUND).map(lit).collect();
     let cases: Vec<(f64, Vec3)> =
@@ -155,7 +161,8 @@ fn worst(placement: Placement, pairs: u32, ratio: f32, sigmas: &[f64]) -> f64 {
         .reduce(|| 0.0, larger)
 }
 
-/// The same beside the edge of a shadow: light that is 1 on one half of the circle and 0 on the other, blurred over 0.5 radians.
+/// Like [`worst`], but at the edge of a shadow: the light is 1 on one half of the circle and 0 on
+/// the other, and is blurred over 0.5 radians.
 fn worst_at_an_edge(pairs: u32, ratio: f32) -> f64 {
     let light: Vec<f32> = (0..AROUND).map(|column| if column < AROUND / 2 { 1.0 } else { 0.0 }).collect();
     let sigma = 0.5;
@@ -175,7 +182,7 @@ fn worst_at_an_edge(pairs: u32, ratio: f32) -> f64 {
     most
 }
 
-/// The table of docs/texture_diffusion.md, and that the number of taps is the fewest.
+/// Checks the table of docs/texture_diffusion.md, and that the number of taps is minimal.
 #[test]
 fn taps_are_as_few_as_the_error_allows() {
     let mut rows = String::new();
@@ -183,7 +190,7 @@ fn taps_are_as_few_as_the_error_allows() {
         let pairs = mirror::pairs(Vec3::new(1.0, 1.0, ratio));
         let [error, fewer] = [pairs, pairs - 1].map(|pairs| worst(mirror::tap, pairs, ratio, &sigmas()));
         let is_even_enough = |pairs: &u32| {
-            // The first alone says so of most numbers.
+            // The first width alone rejects most numbers.
             [&[1.0], sigmas().as_slice()]
                 .into_iter()
                 .all(|sigmas| worst(mirror::tap_naive, *pairs, ratio, sigmas) < BOUND)
@@ -207,7 +214,8 @@ fn taps_are_as_few_as_the_error_allows() {
     assert!(page.contains(&rows), "docs/texture_diffusion.md should hold:\n{rows}");
 }
 
-/// At the lower end of every step of the ladder, where its number has most to do.
+/// Tests the lower end of every step of the ladder, which is the hardest for the step's number of
+/// taps.
 #[test]
 fn every_ratio_has_enough_taps() {
     for ratio in [0.8, 0.695, 0.6, 0.42, 0.345, 0.3, 0.248, 0.198, 0.17, 0.149, 0.124, 0.104, 0.087, 0.073] {
@@ -218,7 +226,8 @@ fn every_ratio_has_enough_taps() {
     }
 }
 
-/// A cylinder of radius 1 that is unrolled along u or along v, blurred by the device with its three channels.
+/// Blurs a cylinder of radius 1, unrolled along u or along v, with three channels on the device.
+/// Returns one line around it.
 fn cylinder(gpu: &Gpu, axis: usize, taps: &Taps) -> Vec<[f32; 4]> {
     let size = if axis == 0 { [AROUND, 8] } else { [8, AROUND] };
     let irradiance = filled(size, |column, row| {
@@ -228,7 +237,7 @@ fn cylinder(gpu: &Gpu, axis: usize, taps: &Taps) -> Vec<[f32; 4]> {
     let stretch = vec![[TEXEL as f32; 2]; irradiance.len()];
     let chart = Chart { low: [0, 0], high: size };
     let texels = diffuse(gpu, size, [axis == 0, axis == 1], (&irradiance, &stretch), taps, &[chart]);
-    // One line round the cylinder, in the middle of it.
+    // One line around the cylinder, at half its height.
     let line = |at: u32| if axis == 0 { texels[(4 * AROUND + at) as usize] } else { texels[(8 * at + 4) as usize] };
     (0..AROUND).map(line).collect()
 }
@@ -263,7 +272,8 @@ fn a_cylinder_gets_the_exact_convolution() {
     assert!(fewer > BOUND, "{fewer:e} with one pair fewer");
 }
 
-/// Narrower than RESOLVED it is the lookup that is off, not the blur: 1024 texels show an unblurred terminator to π / 2048.
+/// Below [`RESOLVED`] the error is the lookup's, not the blur's: 1024 texels show an unblurred
+/// terminator to π / 2048.
 #[test]
 fn what_is_narrower_than_a_texel_is_lost_in_the_lookup() {
     let line: Vec<f64> = (0..AROUND).map(|column| f64::from(lit(column))).collect();
@@ -288,7 +298,7 @@ fn stretch_makes_the_width_right_on_every_circle() {
     let size = [AROUND, 32];
     let radius = |row: u32| 0.2 + 0.05 * f64::from(row);
     let irradiance = filled(size, |column, _| [lit(column), lit(column), lit(column), 1.0]);
-    // Circles are looked at one by one: no diffusion from one to the next.
+    // Each circle is tested by itself: there is no diffusion from one to the next.
     let along = f32::INFINITY;
     let chart = Chart { low: [0, 0], high: size };
     let taps = Taps::new(Vec3::new(0.2, 0.1, 0.05));
@@ -308,7 +318,8 @@ fn stretch_makes_the_width_right_on_every_circle() {
     assert!(most[0] < BOUND && most[1] > 0.05, "{most:?}");
 }
 
-/// Charts of several shapes, with empty space between and in them: the rectangle, whether a texel's middle is covered, and its light.
+/// Chart with empty space around and in it: the rectangle, whether a texel's centre is covered, and
+/// its light.
 struct Patch {
     chart: Chart,
     covers: fn(f32, f32) -> bool,
@@ -321,7 +332,7 @@ const PATCHES: [Patch; 3] = [
         covers: |x, y| (x - 32.0).hypot(y - 32.0) < 28.0,
         light: [0.75, 0.5, 0.25],
     },
-    // A triangle, its long side aslant to the texels.
+    // A triangle with its long side oblique to the texels.
     Patch {
         chart: Chart { low: [64, 8], high: [124, 58] },
         covers: |x, y| x > 64.0 && y > 8.0 && 5.0 * (x - 64.0) + 6.0 * (y - 8.0) < 300.0,
@@ -350,7 +361,7 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
         None => [0.0; 4],
     });
     let stretch = vec![[0.01; 2]; irradiance.len()];
-    // Up to a width of 40 texels, wider than the charts.
+    // Standard deviations of up to 40 texels: the taps reach beyond the charts.
     for sigma0 in [Vec3::new(0.4, 0.2, 0.1), Vec3::splat(0.02), Vec3::new(0.005, 0.0, 0.05)] {
         let taps = Taps::new(sigma0);
         let charts = PATCHES.each_ref().map(|patch| patch.chart);
@@ -364,7 +375,8 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
                     let light = patch.light.map(|value| Half::from_f32(value).to_f32());
                     let [r, g, b] = light;
                     assert_eq!(at(column, row), [r, g, b, 1.0], "{sigma0}: texel {column}, {row}");
-                    // All that a bilinear lookup at this texel may read is filled; where charts come close, by one of them or a mean.
+                    // All texels that a bilinear lookup may read here are filled: between close
+                    // charts, with the value of one of them or with a mean.
                     let near = (-1..=1i32).flat_map(|y| (-1..=1i32).map(move |x| (x, y)));
                     for (x, y) in near {
                         let next = at(column.wrapping_add_signed(x), row.wrapping_add_signed(y));
@@ -377,7 +389,7 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
         assert!(covered > 5000 && at(2, 1) == [0.0; 4], "{covered}");
         assert_eq!(gutter, 0, "charts are four texels apart");
         if sigma0.x > 0.1 {
-            // One rectangle round all charts: the wide Gaussian reaches over the gap.
+            // One rectangle around all charts: the wide Gaussian reaches across the gap.
             let whole = Chart { low: [0, 0], high: size };
             let leaking = diffuse(super::gpu(), size, [false; 2], (&irradiance, &stretch), &taps, &[whole]);
             let most = leaking.iter().zip(&texels).map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, larger);
@@ -387,7 +399,7 @@ fn charts_neither_darken_at_their_edges_nor_leak() {
     }
 }
 
-/// What is left of a texel's light where the blur does not ask what is covered: half of it at a straight edge.
+/// Without coverage, a texel keeps only a part of its light: half of it at a straight edge.
 #[test]
 fn without_coverage_edges_darken() {
     let light: Vec<f32> = (0..AROUND).map(|column| if column < AROUND / 2 { 1.0 } else { 0.0 }).collect();
@@ -409,8 +421,9 @@ fn a_texture_that_repeats_has_no_seam() {
         });
         diffuse(super::gpu(), size, [repeats, false], (&irradiance, &stretch), &taps, &[chart])
     };
-    // The seam is wherever the texture begins: on the other side of the cylinder nothing must be seen of that. Coordinates are rounded
-    // otherwise there, which may round a half float the other way.
+    // The seam lies where the texture begins. In the turned texture it lies elsewhere on the
+    // cylinder, so a visible seam makes the two differ. Coordinates round differently there, which
+    // may round a half float the other way.
     let apart = |repeats| {
         let [one, other] = [turned(0, repeats), turned(turn, repeats)];
         let pairs = (0..AROUND).map(|column| (one[((column + turn) % AROUND) as usize], other[column as usize]));

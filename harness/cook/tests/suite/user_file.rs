@@ -1,4 +1,5 @@
-//! `cook check --wgsl` on other people's files: what is in them is found and said, whatever they hold ends in an answer.
+//! `cook check --wgsl` on other people's files: it finds and reports their contents, and gives an
+//! answer for any file.
 
 use crate::program::{Answer, cook, cook_in, folder, succeeds};
 use lapidary_assay::dispatch;
@@ -8,7 +9,7 @@ use lapidary_cook::{cookbook, formulas};
 use serde_json::Value;
 use std::path::Path;
 
-/// `refraction_reflect` with another body.
+/// Returns `refraction_reflect` with another body.
 fn reflection(body: &str) -> String {
     format!("fn refraction_reflect(incident: vec3f, normal: vec3f) -> vec3f {{\n{body}\n}}\n")
 }
@@ -39,7 +40,7 @@ fn a_function_is_found_however_it_is_laid_out() {
         assert!(answer.stdout.contains("FAIL refraction_reflect"), "{head}: {answer:?}");
         assert_eq!(check(&reflection(RIGHT).replace("fn refraction_reflect(", head), &[]).code, Some(0), "{head}");
     }
-    // One in a comment is none.
+    // A function in a comment does not count.
     let answer = check(&format!("// {}", reflection(RIGHT).replace('\n', " ")), &[]);
     assert_eq!(answer.code, Some(2), "{answer:?}");
 }
@@ -66,12 +67,12 @@ fn what_the_file_lacks_or_has_besides_is_said() {
         assert_eq!(rows(&answer).as_array().map(Vec::len), Some(1));
         assert!(said.iter().all(|part| answer.stderr.contains(part)), "{answer:?}");
     }
-    // One function that is asked for is the only one of interest.
+    // A single requested function is the only one of interest.
     let one = check(&text, &["refraction::reflect"]);
     assert!(!one.stdout.contains("lacks") && !one.stdout.contains("radicant"), "{one:?}");
 }
 
-/// A loop of so many turns before the result.
+/// Returns the right function with a loop of `turns` iterations before the result.
 fn with_turns(turns: &str) -> String {
     reflection(&format!(
         "    var state = 1u;\n    for (var turn = 0u; turn < {turns}; turn++) {{ state = state * 1664525u + 1013904223u; }}\n\
@@ -94,7 +95,7 @@ fn a_loop_without_an_end_fails_for_that_reason() {
         let reason = rows[0]["reason"].as_str().unwrap_or_default();
         assert!(reason.starts_with("took over 65000 turns of its loops") && reason.contains("endless"), "{reason}");
     }
-    // In a function that it calls as well.
+    // Also in a function that it calls.
     let called = format!(
         "fn turns() -> u32 {{ var turn = 0u; loop {{ turn += 2u; if (turn == 1u) {{ break; }} }} return turn; }}\n{}",
         reflection(&format!("    if (turns() == 0u) {{ return incident; }}\n{RIGHT}"))
@@ -111,7 +112,7 @@ fn a_right_loop_is_judged_up_to_the_limit_and_named_beyond() {
     assert_eq!(beyond.code, Some(1), "{beyond:?}");
     assert!(beyond.stdout.contains("or one too long to be judged here"), "{beyond:?}");
     assert!(beyond.stdout.contains("lavapipe itself would end them without a word after 65535"), "{beyond:?}");
-    // A wrong one within the limit fails for its own sake.
+    // A wrong function within the limit fails because it is wrong.
     let wrong = check(&with_turns("600u").replace("2.0f", "1.9f"), &[]);
     assert!(
         wrong.stdout.contains("inputs fail; the worst: unit length") && !wrong.stdout.contains("turns"),
@@ -119,7 +120,7 @@ fn a_right_loop_is_judged_up_to_the_limit_and_named_beyond() {
     );
 }
 
-/// A file that must be refused with one line that holds these words.
+/// Checks that a file is refused with one line that contains all of `says`.
 fn refused(text: &[u8], says: &[&str]) {
     let folder = folder();
     std::fs::write(folder.path().join("mine.wgsl"), text).expect("a file");
@@ -161,13 +162,13 @@ fn sizes_that_no_device_has_are_refused() {
         &["`refraction_reflect` needs 1600000000 bytes of variables"],
     );
     refused(variable("array<f32, 20000>").as_bytes(), &["at most 65536"]);
-    // Together, and through calls.
+    // Sizes add up, also through calls.
     let halves = format!(
         "fn half() -> f32 {{ var a: array<f32, 9000>; return a[3]; }}\n{}",
         reflection(&format!("var a: array<f32, 9000>;\nif (half() + a[5] > 1.0f) {{ return normal; }}\n{RIGHT}"))
     );
     refused(halves.as_bytes(), &["needs 72000 bytes"]);
-    // Each calls the one before twice: inlined, more than a million million.
+    // Each function calls the previous one twice: inlined, that is more than 10^12 expressions.
     let mut doubling = "fn level0(x: f32) -> f32 { return x * 0.5f; }\n".to_owned();
     for level in 1..40 {
         let below = level - 1;
@@ -243,7 +244,7 @@ fn odd_but_valid_files_are_checked() {
         plain.replace('\n', "\r\n"),
         format!("diagnostic(off, derivative_uniformity);\n{plain}"),
         format!("{plain}{many}"),
-        // Words that the kernel's text holds too, where they mean nothing.
+        // Names that the kernel's text also uses, without a special meaning here.
         format!("fn compute() -> f32 {{ return 1.0f; }}\nconst x = 1.0f;\nstruct row {{ result: f32 }}\n{plain}"),
         // Large, but never reached.
         format!("var<private> big: array<f32, 400000000>;\nfn far() -> f32 {{ return big[3]; }}\n{plain}"),
@@ -263,7 +264,7 @@ fn failing_inputs_go_where_they_are_asked_to_and_never_into_a_users_check() {
         let arguments = [&["check", "refraction::reflect", "--wgsl", "mine.wgsl", "--cases", "500"], more].concat();
         cook(folder.path(), &arguments)
     };
-    // Nothing is written unasked.
+    // Nothing is written without a request.
     let answer = run(&reflection(WRONG), &[]);
     assert_eq!(answer.code, Some(1), "{answer:?}");
     assert!(!answer.stdout.contains("kept in") && !regressions.exists(), "{answer:?}");
@@ -271,11 +272,11 @@ fn failing_inputs_go_where_they_are_asked_to_and_never_into_a_users_check() {
     let answer = run(&reflection(WRONG), &["--failures", "kept"]);
     assert!(answer.stdout.contains("the input is kept in kept/refraction_reflect.txt"), "{answer:?}");
     assert!(kept.is_file());
-    // What is kept there would fail every check that read it: the words are no input of the domain.
+    // The kept words are no input of the domain, and would fail every check that reads them.
     let nan = ["7fc00000"; 6].join(" ");
     std::fs::write(&kept, nan).expect("a file");
     assert_eq!(run(&reflection(RIGHT), &["--failures", "kept"]).code, Some(0));
-    // The cookbook's own is tested with it.
+    // The cookbook's own function is tested with them.
     let own = cook(folder.path(), &["check", "refraction::reflect", "--cases", "500", "--failures", "kept"]);
     assert_eq!(own.code, Some(1), "{own:?}");
     assert!(own.stdout.contains("kept in kept/refraction_reflect.txt"), "{own:?}");
@@ -340,11 +341,12 @@ fn hard_cases_and_missed_edges_are_shown() {
     let (cases, edges) = (formula.hard_cases.len(), formula.edges.len());
     assert!(cases > 0 && edges > 1, "a formula with both");
     assert!(line.contains(&format!(" {cases}/{cases} ")), "{line}");
-    // One input cannot reach them all.
+    // One input cannot reach all edges.
     assert!(answer.stdout.contains("edge missed: the inputs never reached "), "{}", answer.stdout);
 }
 
-/// The text without what differs from run to run: the adapter, and the seconds at the end of a row.
+/// Returns the text without the parts that differ from run to run: the adapter, and the seconds at
+/// the end of a row.
 fn settled(text: &str) -> Vec<String> {
     let line = |line: &str| match line.split_once("shader on ") {
         Some((start, _)) => start.to_owned(),
@@ -356,7 +358,7 @@ fn settled(text: &str) -> Vec<String> {
     text.trim().lines().map(line).collect()
 }
 
-/// The page's example is what the command prints. `LAPIDARY_REFRESH_PAGES=1` writes it anew.
+/// The page's example is the output of the command. `LAPIDARY_REFRESH_PAGES=1` rewrites it.
 #[test]
 fn the_page_shows_what_the_command_prints() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/check.md");

@@ -1,11 +1,11 @@
-//! The vitrine: a body for each technique, all of them in view.
+//! The vitrine: a body for each technique, all in view.
 
 use lapidary_plan::Decisions;
 use lapidary_render::Settings;
 use lapidary_render::pixel::Viewer;
 use lapidary_scene::{Object, Scene};
 
-/// The rule decides, by what the file gives of the candle and what is measured of the figure.
+/// The rule decides from the candle's data in the file and from measurements of the figure.
 #[test]
 fn each_body_calls_for_a_technique_of_its_own() {
     let scene = Scene::named("vitrine").expect("built in");
@@ -16,7 +16,7 @@ fn each_body_calls_for_a_technique_of_its_own() {
     assert_eq!(rungs, ["lambert", stone, stone, "cheap", "godunov-64", "bvh-8+tracker"]);
 }
 
-/// In a picture of 4:3, by a ray through every tenth pixel of 640 by 480.
+/// Uses a 4:3 picture, with a ray through every tenth pixel of 640 by 480.
 #[test]
 fn the_camera_sees_every_body() {
     let (columns, rows) = (64, 48);
@@ -38,6 +38,6 @@ fn the_camera_sees_every_body() {
     let shares: Vec<_> = scene.objects.iter().zip(&seen).map(|(o, n)| (&o.name, f64::from(*n) / 3072.0)).collect();
     println!("{shares:?}");
     assert!(shares.iter().all(|(_, share)| *share > 0.012), "{shares:?}");
-    // The table goes on beyond the picture.
+    // The table extends beyond the picture.
     assert_eq!(at_an_edge, [true, false, false, false, false, false]);
 }

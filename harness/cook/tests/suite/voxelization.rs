@@ -1,4 +1,5 @@
-//! Voxels of meshes on the device, against volumes, winding numbers in f64, the mirror, and one another.
+//! Voxels of meshes on the device, against volumes, winding numbers in f64, the mirror, and one
+//! another.
 
 use glam::{DQuat, DVec3, UVec3, Vec3};
 use lapidary_render::frame::{Builder, Executor};
@@ -9,11 +10,12 @@ use lapidary_scene::{Bounds, Mesh, Scene};
 use lapidary_voxelization::{kernels, oracle};
 use rayon::prelude::*;
 
-/// How near to the surface a centre may lie for rounding and the lattice to decide, in voxels: in a grid of 64, on lavapipe, vertices are off by 2 units of 2^-18 in each coordinate, by 2^-15 more in y and in
-/// z, and the depth by 6 units: 1.3e-5 + 4.3e-5 + 2.3e-5.
+/// Largest distance, in voxels, from a centre to the surface at which rounding and the lattice may
+/// decide. In a grid of 64 on lavapipe, vertices are off by 2 units of 2^-18 in each coordinate and
+/// by 2^-15 more in y and z, and the depth is off by 6 units: 1.3e-5 + 4.3e-5 + 2.3e-5.
 const BAND: f64 = 1e-4;
 
-/// What a frame leaves on the device.
+/// Results of a frame on the device.
 struct Voxels {
     grid: VoxelGrid,
     matter: Vec<u32>,
@@ -31,13 +33,13 @@ impl Voxels {
         self.has(&self.matter, voxel)
     }
 
-    /// The numbers of voxels with matter.
+    /// Returns the indices of the voxels with matter.
     fn filled(&self) -> Vec<usize> {
         (0..self.grid.count()).filter(|index| self.matter(self.grid.voxel(*index))).collect()
     }
 }
 
-/// A mesh made voxels so many times in a row.
+/// Returns a frame that voxelizes a mesh `times` times in a row.
 fn frame(mesh: &Mesh, grid: VoxelGrid, effects: &[(&str, f64)], times: u32) -> (Executor<'static>, Voxelizer) {
     let mut builder = Builder::new(Some(super::gpu()));
     let voxelizer = Voxelizer::new(&mut builder, grid, mesh, effects).expect("the recipe");
@@ -50,7 +52,7 @@ fn frame(mesh: &Mesh, grid: VoxelGrid, effects: &[(&str, f64)], times: u32) -> (
 }
 
 fn voxels_with(mesh: &Mesh, grid: VoxelGrid, surface: bool) -> Voxels {
-    // Twice: a frame must not see the one before.
+    // Twice: a frame must not depend on the previous one.
     let (executor, voxelizer) = frame(mesh, grid, &[("EFFECT_SURFACE", f64::from(u8::from(surface)))], 2);
     executor.run(|_, _| {}).expect("run");
     let words = |buffer| executor.words(buffer).expect("read back");
@@ -68,7 +70,7 @@ fn voxels(mesh: &Mesh, grid: VoxelGrid) -> Voxels {
     voxels_with(mesh, grid, true)
 }
 
-/// Voxels whose centre is inside alone.
+/// Returns only the voxels whose centre is inside.
 fn solid(mesh: &Mesh, grid: VoxelGrid) -> Voxels {
     voxels_with(mesh, grid, false)
 }
@@ -77,7 +79,7 @@ fn bunny() -> Mesh {
     Scene::named("skin_bunny").expect("built in").objects.swap_remove(0).mesh
 }
 
-/// A mesh without normals, which nothing here reads.
+/// Returns a mesh without normals, which these tests do not read.
 fn mesh(positions: Vec<Vec3>, indices: Vec<u32>) -> Mesh {
     Mesh { positions, indices, ..Mesh::default() }
 }
@@ -105,19 +107,20 @@ fn about(mesh: &Mesh, cells: u32) -> VoxelGrid {
     VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells)
 }
 
-/// The grid of unit voxels about the world's origin.
+/// Returns the grid of unit voxels about the world's origin.
 fn centred(cells: u32) -> VoxelGrid {
     VoxelGrid { origin: Vec3::splat(-0.5 * cells as f32), spacing: 1.0, cells }
 }
 
-/// Corners of the triangles in the grid's coordinates.
+/// Returns the triangles' corners in the grid's coordinates.
 fn triangles(mesh: &Mesh, grid: VoxelGrid) -> Vec<[DVec3; 3]> {
     let local = |p: Vec3| (p.as_dvec3() - grid.origin.as_dvec3()) / f64::from(grid.spacing);
     mesh.triangles().map(|corners| corners.map(local)).collect()
 }
 
-/// How often a closed mesh winds about a point: the sum of its triangles' solid angles. Van Oosterom and Strackee, "The Solid Angle of a Plane
-/// Triangle", IEEE Transactions on Biomedical Engineering 30(2), 1983.
+/// Returns the winding number of a closed mesh about a point: the sum of its triangles' solid
+/// angles over 4π. Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE
+/// Transactions on Biomedical Engineering 30(2), 1983.
 fn winding(triangles: &[[DVec3; 3]], point: DVec3) -> f64 {
     let angles = triangles.iter().map(|corners| {
         let [a, b, c] = corners.map(|corner| corner - point);
@@ -128,7 +131,8 @@ fn winding(triangles: &[[DVec3; 3]], point: DVec3) -> f64 {
     angles.sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// From a point to the nearest of the triangles. Ericson, "Real-Time Collision Detection", 5.1.5.
+/// Returns the distance from a point to the nearest of the triangles. Ericson, "Real-Time Collision
+/// Detection", 5.1.5.
 fn distance(triangles: &[[DVec3; 3]], point: DVec3) -> f64 {
     let to_segment = |a: DVec3, b: DVec3| {
         let share = ((point - a).dot(b - a) / (b - a).length_squared().max(1e-300)).clamp(0.0, 1.0);
@@ -147,7 +151,7 @@ fn centre(voxel: UVec3) -> DVec3 {
     voxel.as_dvec3() + 0.5
 }
 
-/// A triangle soup, each triangle alone.
+/// Returns a triangle soup without shared vertices.
 fn soup(count: u32, size: f32) -> Mesh {
     let number = |k: u32| (k.wrapping_mul(2_654_435_769) >> 8) as f32 / (1 << 24) as f32;
     let positions = (0..3 * count).map(|k| {
@@ -164,7 +168,7 @@ fn the_kernels_are_the_mirrors() {
         (sphere(6.3, 24), centred(16)),
         (torus(7.0, 3.1, 40, 20), centred(24)),
         (bunny(), about(&bunny(), 40)),
-        // Open, small and large, partly outside.
+        // Open meshes with small and large triangles, partly outside the grid.
         (soup(200, 3.0), centred(16)),
         (soup(60, 40.0), centred(24)),
         (cuboid(Vec3::new(-20.0, -21.3, -9.2), Vec3::new(13.1, 18.4, 55.0)), centred(40)),
@@ -196,9 +200,10 @@ fn counts_are_those_of_the_bits() {
     }
 }
 
-/// Only voxels that the surface touches can be wrong, each by its share outside or inside: a sum of as many numbers between -1 and 1 with mean 0
-/// and a standard deviation of at most 1/2, which is off by 4 times the root of their number but by a chance of 1e-15. The grid stands askew, so that
-/// of a body's two halves not both are wrong alike.
+/// Only voxels that the surface touches can be wrong, each by its share outside or inside. These
+/// are as many numbers between -1 and 1, with mean 0 and a standard deviation of at most 1/2. The
+/// probability is 1e-15 that their sum is off by more than 4 times the root of their number. The
+/// grid is askew, so that a body's two halves do not both err alike.
 #[test]
 fn volumes_are_the_meshes() {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7);
@@ -243,7 +248,7 @@ fn centres_are_inside_as_winding_numbers_say() {
         let grid = about(&mesh, 64);
         let (inside, all) = (solid(&mesh, grid), voxels(&mesh, grid));
         let local = triangles(&mesh, grid);
-        // Every other one near the surface.
+        // Every other sample lies near the surface.
         let near: Vec<usize> = (0..grid.count()).filter(|index| all.has(&all.surface, grid.voxel(*index))).collect();
         let wrong: Vec<(UVec3, f64)> = (0..20_000usize)
             .into_par_iter()
@@ -259,7 +264,8 @@ fn centres_are_inside_as_winding_numbers_say() {
     }
 }
 
-/// Whether a triangle touches the voxel as far as rounding does not decide it: with the voxel made smaller or larger by a thousandth.
+/// Returns whether a triangle touches the voxel, or `None` if rounding decides: then a voxel that
+/// is smaller by a thousandth and one that is larger give different answers.
 fn clearly_touched(triangles: &[[DVec3; 3]], voxel: UVec3) -> Option<bool> {
     let touched = |margin: f64| triangles.iter().any(|t| oracle::touches(*t, voxel.as_dvec3(), margin));
     let (narrow, wide) = (touched(-1e-3), touched(1e-3));
@@ -282,7 +288,7 @@ fn the_surface_is_what_clipping_leaves() {
     assert!(decided > grid.count() * 99 / 100, "{decided}");
 }
 
-/// All 48 ways in which a cube comes to lie on itself: which axis goes where, and which are turned round.
+/// Returns all 48 symmetries of a cube: the order of the axes, and which of them are reversed.
 fn symmetries() -> Vec<([usize; 3], [bool; 3])> {
     let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
     orders.into_iter().flat_map(|order| (0..8).map(move |k| (order, [k & 1 == 1, k & 2 == 2, k & 4 == 4]))).collect()
@@ -294,7 +300,8 @@ fn turned_and_mirrored_meshes_have_turned_and_mirrored_voxels() {
     let shape = bunny();
     let extent = Bounds::of(shape.positions.iter().copied());
     let scale = 28.0 / (extent.max - extent.min).max_element();
-    // On multiples of 2^-12, so that positions are exact in the grid's coordinates whichever way they are turned.
+    // On multiples of 2^-12, so that positions are exact in the grid's coordinates for every
+    // symmetry.
     let place = |p: &Vec3| (scale * (*p - extent.centre()) * 4096.0).round() / 4096.0;
     let upright = mesh(shape.positions.iter().map(place).collect(), shape.indices.clone());
     let [inside, all] = [solid(&upright, grid), voxels(&upright, grid)];
@@ -334,7 +341,7 @@ fn an_open_mesh_makes_no_streaks() {
         assert!(torn.matter.iter().zip(&whole.matter).all(|(torn, whole)| torn & !whole == 0));
         assert!(torn.status.odd_columns > cells * cells / 10, "{:?}", torn.status);
         assert!(torn.status.solid < whole.status.solid);
-        // One sheet: every column that meets it is odd, and nothing is left but the sheet.
+        // A single sheet: every column that meets it is odd, and only the sheet remains.
         let sheet = mesh(vec![Vec3::ZERO, Vec3::Y, Vec3::Z], vec![0, 1, 2]);
         let found = voxels(&sheet, grid);
         assert!(found.status.solid == 0 && found.status.odd_columns > 0, "{:?}", found.status);
@@ -351,7 +358,8 @@ fn no_mesh_leaves_nothing() {
     }
 }
 
-/// A body on the grid's border is that of a larger grid, cut off, on the low side as well, where its columns begin outside.
+/// A body on the grid's border equals the same body in a larger grid, cut off. This also holds on
+/// the low side, where its columns begin outside.
 #[test]
 fn what_lies_outside_is_cut_off() {
     let ball = sphere(6.2, 32);
@@ -377,7 +385,7 @@ fn what_lies_outside_is_cut_off() {
     assert_eq!(around.status, Status { solid: 4096, surface: 0, odd_columns: 0 });
 }
 
-/// Corners beyond the lattice bend what reaches there, and open nothing.
+/// Vertices beyond the lattice bend the triangles that reach them, but open no holes.
 #[test]
 fn a_vertex_beyond_the_lattice_opens_nothing() {
     let near = [Vec3::new(-3.1, -2.2, -4.3), Vec3::new(4.4, -1.1, -3.7), Vec3::new(0.3, 4.9, 5.1)];
@@ -390,7 +398,7 @@ fn a_vertex_beyond_the_lattice_opens_nothing() {
     }
 }
 
-/// More vertices than threads may stand in a line: each takes several.
+/// There are more vertices than threads in one dimension of a dispatch: each thread takes several.
 #[test]
 fn the_last_of_many_vertices_is_met() {
     let body = cuboid(Vec3::splat(-4.5), Vec3::splat(3.5));
@@ -424,7 +432,7 @@ fn triangles_without_area_change_nothing_inside() {
     let wanted = solid(&ball, grid);
     let mut more = ball.clone();
     let count = ball.positions.len() as u32;
-    // Points, and there and back along a line.
+    // Points, and lines there and back.
     more.indices.extend((0..count).flat_map(|k| [k, k, k]));
     more.indices.extend((1..count).flat_map(|k| [k, k - 1, k]));
     let found = solid(&more, grid);
@@ -441,7 +449,8 @@ fn positions_that_are_no_numbers_stay_within_the_buffers() {
     assert!(found.status.solid <= 4096 && found.status.surface <= 4096, "{:?}", found.status);
 }
 
-/// Parity adds up: apart, bodies stand side by side; where two overlap there is a hollow; a face that two share is none.
+/// Parity adds up: separate bodies stand side by side, an overlap of two is hollow, and a shared
+/// face disappears.
 #[test]
 fn bodies_that_meet() {
     let grid = centred(32);
@@ -462,7 +471,7 @@ fn bodies_that_meet() {
     }
 }
 
-/// The least and the median of 40 frames, in milliseconds.
+/// Returns the least and the median time of 40 frames, in milliseconds.
 fn time(mesh: &Mesh, cells: u32, constants: &[(&str, f64)]) -> [f64; 2] {
     let (executor, _) = frame(mesh, about(mesh, cells), constants, 1);
     let frame = || {
@@ -476,7 +485,7 @@ fn time(mesh: &Mesh, cells: u32, constants: &[(&str, f64)]) -> [f64; 2] {
     [times[0], times[20]]
 }
 
-/// What docs/voxelization.md says of times.
+/// Measures the times in docs/voxelization.md.
 #[test]
 #[ignore = "measures times"]
 fn how_long_a_frame_takes() {

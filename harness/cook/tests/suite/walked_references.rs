@@ -1,4 +1,4 @@
-//! The committed pictures by random walks.
+//! The committed pictures that were rendered with random walks.
 
 use lapidary_assay::extremum::larger;
 use lapidary_cook::exposure::exposed_distance;
@@ -10,8 +10,8 @@ use lapidary_render as render;
 use lapidary_render::{OpticalPathOptions, Settings};
 use lapidary_scene::Scene;
 
-/// Each committed reference, followed again with a sixteenth of its pixels and few walks: means of the picture's quarters agree within what the
-/// walks leave open.
+/// Follows each committed reference again with a sixteenth of its pixels and few walks. The means
+/// of the picture's quarters agree within the uncertainty of the walks.
 #[test]
 fn the_committed_references_are_walked_again() {
     for reference in &WALKED {
@@ -48,7 +48,8 @@ fn the_committed_references_are_walked_again() {
                     .filter(|(place, _)| inside(place / EXR_SIDE, place % EXR_SIDE, EXR_SIDE))
                     .map(|(_, pixel)| f64::from(pixel[channel]) / 16.0)
                     .sum();
-                // The committed picture's own error is small beside it: it has a hundred times the walks or more.
+                // The committed picture's own error is small in comparison: it has at least a
+                // hundred times the walks.
                 assert!(sum.is_finite() && variance.is_finite(), "{}", reference.scene);
                 let off = (sum - expected).abs() / (variance.sqrt() + 2e-3 * expected).max(f64::MIN_POSITIVE);
                 worst = larger(worst, off);
@@ -60,8 +61,10 @@ fn the_committed_references_are_walked_again() {
     }
 }
 
-/// From the walks, after each side's best single exposure, as docs/optical_path_shading.md has it: Lambert's law, the same with the shadows that it casts,
-/// which is what one would use instead, and the cheapest ways. Half of the second was the aim, which the figure alone meets.
+/// Distances from the walks, after each side's best single exposure, as in
+/// docs/optical_path_shading.md: Lambert's law, Lambert's law with the shadows that it casts (the
+/// usual alternative), and the cheapest paths. The aim was half of the second distance, which only
+/// the figure meets.
 const DISTANCES: [(&str, [f64; 3]); 4] = [
     ("bunny", [0.493, 0.274, 0.223]),
     ("dragon", [0.911, 0.907, 0.470]),
@@ -69,7 +72,8 @@ const DISTANCES: [(&str, [f64; 3]); 4] = [
     ("wax_bunny", [0.484, 0.340, 0.306]),
 ];
 
-/// Whether a distance is the one on the page, which has three digits. Another driver's pixels at shadows' edges are others.
+/// Returns whether a distance equals the one on the page, which has three digits. Another driver
+/// gives other pixels at the edges of shadows.
 fn is_recorded(gpu: &Gpu, found: f64, recorded: f64) -> bool {
     let allowed = if gpu.is_lavapipe() { 0.0006 } else { 0.003 };
     (found - recorded).abs() < allowed
@@ -83,7 +87,7 @@ fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
         let truth = reference.picture(gpu).expect(reference.scene).linear;
         let scene = Scene::named(reference.scene).expect("built in");
         let distance = |rung: &str| {
-            // The ladder's picture: one sample a pixel, twice as wide as the walks'.
+            // The ladder's picture: one sample per pixel, twice as wide as the walks' picture.
             let side = 2 * EXR_SIDE;
             let settings = Settings { width: side, height: side, samples: 1, ..beside_walks::settings(rung) };
             let picture = render::render(gpu, &scene, &settings).expect("rendered");
@@ -104,7 +108,8 @@ fn the_cheapest_ways_are_nearer_to_random_walks_than_lambert_with_shadows() {
     }
 }
 
-/// The fit of the extinction's scale, as docs/optical_path_shading.md has it: Lambert's law, the same with shadows, then `godunov-64` at three scales.
+/// Fit of the extinction's scale, as in docs/optical_path_shading.md: Lambert's law, the same with
+/// shadows, then `godunov-64` at three scales.
 const FIT: [(&str, [f64; 5]); 4] = [
     ("bunny", [0.492, 0.269, 0.283, 0.218, 0.208]),
     ("dragon", [0.907, 0.901, 0.491, 0.467, 0.491]),

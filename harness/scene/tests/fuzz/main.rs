@@ -1,9 +1,9 @@
 //! Fuzzing of the glTF loader: valid files, broken in many ways.
 //!
-//! Every run takes [`SUITE_CASES`], a long one, `--ignored`, [`LONG_CASES`]; both call [`run`]. A case is a
-//! list of [`Edit`]s to one of the [`seeds`]. It fails where the loader panics, or where a scene takes
-//! more memory than [`gltf::MAX_SCENE_BYTES`] allows or breaks what [`Mesh`], `Material` or
-//! [`Light`] promises.
+//! Every run takes [`SUITE_CASES`] cases; a long one (`--ignored`) takes [`LONG_CASES`]. Both call
+//! [`run`]. A case is a list of [`Edit`]s to one of the [`seeds`]. It fails if the loader panics,
+//! or if a scene takes more memory than [`gltf::MAX_SCENE_BYTES`] allows or breaks a promise of
+//! [`Mesh`], `Material` or [`Light`].
 
 mod checks;
 
@@ -14,10 +14,10 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, Test
 
 use lapidary_scene::{Light, Mesh, MeshDiagnosis, Scene, SceneError, glb, gltf};
 
-/// Cases of the test suite: seconds.
+/// Cases of the test suite, which take seconds.
 pub const SUITE_CASES: u32 = 5_000;
 
-/// Cases of a long run: minutes.
+/// Cases of a long run, which take minutes.
 pub const LONG_CASES: u32 = 100_000;
 
 /// One change to a file.
@@ -29,21 +29,21 @@ pub enum Edit {
     Truncate(Index),
     /// Inserts a copy of a range, of at most 64 bytes, at another place.
     Duplicate {
-        /// Where the range starts.
+        /// Start of the range.
         from: Index,
-        /// How long it is.
+        /// Length of the range, in bytes.
         length: u8,
-        /// Where the copy goes.
+        /// Place of the copy.
         to: Index,
     },
-    /// Replaces a digit inside the JSON by another, so that the JSON stays valid.
+    /// Replaces a digit inside the JSON with another, so that the JSON stays valid.
     Digit(Index, u8),
-    /// Replaces a whole number inside the JSON by one of [`HOSTILE_NUMBERS`], and mends the lengths of
-    /// a .glb, so that the number reaches the loader's checks.
+    /// Replaces a number inside the JSON with one of [`HOSTILE_NUMBERS`], and corrects the
+    /// lengths of a .glb, so that the number reaches the loader's checks.
     Number(Index, Index),
 }
 
-/// Numbers that overflow, wrap, are not whole, or just pass an end.
+/// Numbers that overflow, wrap, are not whole, or lie just beyond a limit.
 pub const HOSTILE_NUMBERS: [&str; 18] = [
     "0",
     "1",
@@ -65,10 +65,10 @@ pub const HOSTILE_NUMBERS: [&str; 18] = [
     "1e39",
 ];
 
-/// A second seed, which reaches what [`glb::write`] does not write: base64 buffers, strips, fans, short
-/// indices, no normals, texture coordinates as floats and as bytes, a hierarchy with a matrix and with translation,
-/// rotation and scale, three lights, instances, a material with attenuation and an Abbe number, one whose Sellmeier equation is named,
-/// and one with a medium.
+/// A second seed, with features that [`glb::write`] does not write: base64 buffers, strips, fans,
+/// short indices, no normals, texture coordinates as floats and as bytes, a hierarchy with a matrix
+/// and with translation, rotation and scale, three lights, instances, a material with attenuation
+/// and an Abbe number, one with a named Sellmeier equation, and one with a medium.
 const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_ior",
 "KHR_texture_transform","EXT_mesh_gpu_instancing","KHR_materials_volume","KHR_materials_dispersion","KHR_lights_punctual"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":3},
@@ -98,17 +98,18 @@ const DOCUMENT: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_
 {"buffer":0,"byteOffset":48,"byteLength":6}],
 "buffers":[{"byteLength":54,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAECAgED"}]}"#;
 
-/// The valid files that are broken: an octahedron as .glb, and a small hand-written .gltf.
+/// Returns the valid files to be broken: an octahedron as .glb, and a small hand-written .gltf.
 ///
 /// # Errors
-/// None: both are made from constants. The type is that of the functions which make them.
+/// Never fails: both files are made from constants. The type comes from the functions that make
+/// them.
 pub fn seeds() -> Result<[Vec<u8>; 2], SceneError> {
     let octahedron = Scene::named("octahedron")?;
     let written = glb::write(&octahedron).unwrap_or_default();
     Ok([written, DOCUMENT.as_bytes().to_vec()])
 }
 
-/// Lists of 1 to 64 edits, most of them short, so that a good part of the files stays readable far in.
+/// Returns lists of 1 to 64 edits. Most are short, so that many files stay readable for a long way.
 pub fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let edit = prop_oneof![
         4 => (any::<Index>(), any::<u8>()).prop_map(|(place, byte)| Edit::Byte(place, byte)),
@@ -124,7 +125,7 @@ pub fn edits() -> impl Strategy<Value = Vec<Edit>> {
     ]
 }
 
-/// `bytes` after all `edits`, in order.
+/// Returns `bytes` after all `edits`, in order.
 #[must_use]
 pub fn mutate(bytes: &[u8], edits: &[Edit]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
@@ -166,7 +167,7 @@ fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
             let value = value.get(&HOSTILE_NUMBERS);
             changed.splice(place.get(&numbers).clone(), value.bytes());
             *bytes = match binary {
-                // A file too large for its container stays as it is; none here is.
+                // A file too large for its container would become empty; none here is.
                 Some(binary) => glb::container(&changed, &bytes[binary]).unwrap_or_default(),
                 None => changed,
             };
@@ -176,7 +177,7 @@ fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
 
 type Range = std::ops::Range<usize>;
 
-/// Where the JSON lies, and the binary chunk if the container is sound.
+/// Returns the range of the JSON, and the range of the binary chunk if the container is sound.
 fn parts(bytes: &[u8]) -> (Range, Option<Range>) {
     let word = |at: usize| {
         let word = bytes.get(at..)?.first_chunk()?;
@@ -191,7 +192,7 @@ fn parts(bytes: &[u8]) -> (Range, Option<Range>) {
     sound().unwrap_or((0..bytes.len(), None))
 }
 
-/// The runs of digits, signs, points and exponents that stand where a JSON value may.
+/// Returns the runs of digits, signs, points and exponents in places of JSON values.
 fn numbers(json: &[u8]) -> Vec<Range> {
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
     let mut found = Vec::new();
@@ -207,7 +208,7 @@ fn numbers(json: &[u8]) -> Vec<Range> {
     found
 }
 
-/// How the cases of a run ended.
+/// Outcomes of the cases of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
     /// Files that gave a scene.
@@ -216,10 +217,10 @@ pub struct Tally {
     pub refused: u32,
 }
 
-/// Loads one broken file. True where it gave a scene.
+/// Loads one broken file. Returns true if it gives a scene.
 ///
 /// # Errors
-/// What is wrong with the scene or with the error's message.
+/// Returns the fault of the scene or of the error's message.
 pub fn check(bytes: &[u8]) -> Result<bool, String> {
     match gltf::parse(bytes, None) {
         Ok(scene) => check_scene(&scene, bytes.len() as u64).map(|()| true),
@@ -249,7 +250,7 @@ fn check_scene(scene: &Scene, file_bytes: u64) -> Result<(), String> {
     if let Some(object) = wrong {
         return Err(format!("a broken mesh: {object:?}"));
     }
-    // Whatever loads must be fit to be looked through.
+    // No mesh is taken for solid while it has open edges.
     let looked_through = scene.objects.iter().map(|object| MeshDiagnosis::of(&object.mesh));
     if let Some(found) = looked_through.into_iter().find(|found| found.is_solid() && found.open_edges > 0) {
         return Err(format!("a diagnosis that contradicts itself: {found:?}"));
@@ -271,10 +272,10 @@ fn is_sound(mesh: &Mesh) -> bool {
         && mesh.normals.iter().all(|normal| normal.is_normalized())
 }
 
-/// Runs `cases` cases, the same ones each time, half of them on each seed.
+/// Runs `cases` cases, the same each time, half of them on each seed.
 ///
 /// # Errors
-/// The shrunk list of edits that makes the loader panic or break a promise, in words.
+/// Returns, in words, the shrunk list of edits that makes the loader panic or break a promise.
 pub fn run(cases: u32) -> Result<Tally, String> {
     let seeds = seeds().map_err(|error| error.to_string())?;
     let tally = std::cell::Cell::new(Tally::default());

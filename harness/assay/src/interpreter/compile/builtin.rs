@@ -1,4 +1,5 @@
-//! WGSL's built-in functions: what inherits its accuracy from an expression is that expression.
+//! WGSL's built-in functions. A function that inherits its accuracy from an expression is compiled
+//! to that expression.
 
 use super::Compiler;
 use crate::interpreter::Stopped;
@@ -7,7 +8,7 @@ use crate::interpreter::machine::Site;
 use naga::{BinaryOperator, MathFunction as Fun, ScalarKind};
 
 impl Compiler<'_> {
-    /// The registers of a built-in function's result.
+    /// Compiles a built-in function and returns the registers of its result.
     pub(super) fn builtin(
         &mut self,
         fun: Fun,
@@ -77,7 +78,7 @@ impl Compiler<'_> {
         })
     }
 
-    /// Component by component; a scalar among vectors stands for as many.
+    /// Applies `of` component by component; a scalar is repeated to match the vectors.
     fn each(
         &mut self,
         arguments: &[Vec<Register>],
@@ -127,7 +128,7 @@ impl Compiler<'_> {
         self.function(Float::Sqrt, squared, squared, site)
     }
 
-    /// A function of floats.
+    /// Compiles a function of float scalars; `None` if the interpreter lacks it.
     fn scalar(&mut self, fun: Fun, operands: &[Register], site: Site) -> Option<Register> {
         let x = operands[0];
         let y = operands.get(1).copied().unwrap_or(x);

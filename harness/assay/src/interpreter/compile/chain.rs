@@ -1,7 +1,9 @@
-//! Reassociation: sums of three and more terms, and products of three and more factors, in another order.
+//! Reassociation: sums of three or more terms, and products of three or more factors, in another
+//! order.
 //!
-//! Within an expression, `let` included, as the standard has it: (a + b) + c as a + (b + c), (a - b) + c as (a + c) - b, (a * b) / c as (a / c) * b. What passes through
-//! a `var` or a call keeps its order.
+//! The standard allows it within an expression, `let` included: `(a + b) + c` as `a + (b + c)`,
+//! `(a - b) + c` as `(a + c) - b`, `(a * b) / c` as `(a / c) * b`. A value that passes through a
+//! `var` or a call keeps its order.
 
 use super::value::Value;
 use super::{Call, Compiler};
@@ -10,24 +12,25 @@ use crate::interpreter::Stopped;
 use crate::interpreter::code::{Op, Register};
 use naga::{BinaryOperator, Expression, Handle, ScalarKind, UnaryOperator};
 
-/// Operands of a chain; those beyond stay together.
+/// Most operands of a chain; operands beyond that number stay together.
 const MOST_LINKS: usize = 64;
 
-/// Sums or products.
+/// Kind of chain.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Sum,
     Product,
 }
 
-/// An operand of a chain; inverse where it is subtracted, or divided by.
+/// An operand of a chain; inverse if it is subtracted or is a divisor.
 struct Link {
     handle: Handle<Expression>,
     inverse: bool,
 }
 
 impl<'a> Compiler<'a> {
-    /// The value of a chain in the order that the seed gives; none where the expression is no chain, or there is no seed.
+    /// Returns the value of a chain in the order that the seed gives, or `None` if the expression
+    /// is no chain or there is no seed.
     pub(super) fn reordered(
         &mut self,
         call: &mut Call<'a>,
@@ -55,7 +58,7 @@ impl<'a> Compiler<'a> {
         let length = operands.iter().map(Vec::len).max().unwrap_or(0);
         let site = call.site(handle);
         let seed = mix(order ^ mix(u64::from(site.function) << 32 | u64::from(site.expression)));
-        // The same order for every component: a compiler sees vectors whole.
+        // All components have the same order: a compiler sees whole vectors.
         let components = (0..length).map(|index| {
             let terms = operands.iter().zip(&links);
             let terms = terms.map(|(registers, link)| (registers[index % registers.len()], link.inverse)).collect();
@@ -64,10 +67,11 @@ impl<'a> Compiler<'a> {
         Ok(Some(Value::Words(components.collect())))
     }
 
-    /// The operands of the chain that an expression ends.
+    /// Collects the operands of the chain that ends in an expression.
     fn links(&self, call: &Call<'a>, kind: Kind, handle: Handle<Expression>, inverse: bool, links: &mut Vec<Link>) {
         let float = |handle: Handle<Expression>| self.kind(call, handle) == Some(ScalarKind::Float);
-        // Of matrices a factor has words of another number; and what is shared counts each time.
+        // Matrices are excluded, since their factors differ in the number of words. The number of
+        // links is limited, since a shared expression counts each time.
         let is_float = links.len() < MOST_LINKS
             && float(handle)
             && match call.function.expressions[handle] {
@@ -96,7 +100,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The sum of `terms`: from the first to the last, or as the seed has it.
+    /// Sums `terms` from first to last, or in the order that the seed gives.
     pub(super) fn sum_of(&mut self, terms: Vec<Register>) -> Register {
         match self.order {
             Some(order) => {
@@ -107,7 +111,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Joins two of the terms that are left, whichever the seed says, until one is left.
+    /// Joins two of the remaining terms, chosen by the seed, until one remains.
     fn tree(&mut self, kind: Kind, mut terms: Vec<(Register, bool)>, mut seed: u64) -> Register {
         while terms.len() > 1 {
             seed = mix(seed);

@@ -1,5 +1,5 @@
-//! Compiles a function of naga's IR to code on scalars: calls are inlined, vectors and structs are lists of registers, so that taking them apart and
-//! putting them together costs nothing.
+//! Compiles a function of naga's IR to code on scalars. Calls are inlined; vectors and structs are
+//! lists of registers, so splitting and composing them costs nothing.
 
 mod builtin;
 mod chain;
@@ -15,7 +15,7 @@ use naga::{
 };
 use value::{Value, constant, part, words_of};
 
-/// The code of `function`; with a seed, chains of sums and of products are taken in another order.
+/// Compiles `function`; with a seed, chains of sums and of products are reordered.
 pub(super) fn compile(
     module: &Module,
     info: &ModuleInfo,
@@ -51,18 +51,18 @@ struct Call<'a> {
     function: &'a Function,
     info: &'a FunctionInfo,
     arguments: Vec<Value>,
-    /// Of each expression, once it has one.
+    /// Value of each expression, once it is compiled.
     values: Vec<Option<Value>>,
-    /// Where each local variable starts.
+    /// First register of each local variable.
     locals: Vec<Register>,
     result: Vec<Register>,
-    /// Jumps to the call's end.
+    /// Jumps to the end of the call.
     returns: Vec<Label>,
-    /// The loops and switches around a statement.
+    /// Loops and switches around the current statement.
     around: Vec<Around>,
 }
 
-/// A loop or a switch: the jumps to its end, and to a loop's continuing block.
+/// A loop or a switch: the jumps to its end, and to the continuing block of a loop.
 struct Around {
     breaks: Vec<Label>,
     continues: Option<Vec<Label>>,
@@ -75,14 +75,14 @@ impl Call<'_> {
 }
 
 impl<'a> Compiler<'a> {
-    /// So many new registers in a row.
+    /// Allocates `length` consecutive registers and returns the first.
     fn fresh(&mut self, length: usize) -> Register {
         let start = self.code.registers.len() as Register;
         self.code.registers.resize(self.code.registers.len() + length, 0);
         start
     }
 
-    /// A register that holds `word`, and that nothing writes to.
+    /// Allocates a register that holds `word` and is never overwritten.
     fn constant(&mut self, word: u32) -> Register {
         self.code.registers.push(word);
         self.code.registers.len() as Register - 1
@@ -92,7 +92,7 @@ impl<'a> Compiler<'a> {
         self.code.ops.push(op);
     }
 
-    /// Appends the operation that `op` makes of a new register, and returns that.
+    /// Appends the operation that `op` makes for a new register, and returns the register.
     fn result(&mut self, op: impl FnOnce(Register) -> Op) -> Register {
         let to = self.fresh(1);
         self.push(op(to));
@@ -103,7 +103,7 @@ impl<'a> Compiler<'a> {
         self.code.ops.len()
     }
 
-    /// Appends a jump whose target is still to come.
+    /// Appends a jump without a target, and returns its place.
     fn jump(&mut self) -> Label {
         self.push(Op::Jump { target: Label::MAX });
         self.here() - 1
@@ -114,7 +114,7 @@ impl<'a> Compiler<'a> {
         self.here() - 1
     }
 
-    /// Lets a jump lead here.
+    /// Directs a jump to the next operation.
     fn land(&mut self, jump: Label) {
         let here = self.here();
         match &mut self.code.ops[jump] {
@@ -127,7 +127,7 @@ impl<'a> Compiler<'a> {
         jumps.into_iter().for_each(|jump| self.land(jump));
     }
 
-    /// The registers of a call's result.
+    /// Inlines a call and returns the registers of its result.
     fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Vec<Register>, Stopped> {
         let function = &self.module.functions[handle];
         let length = |ty: Handle<naga::Type>| words_of(self.module, &self.module.types[ty].inner);
@@ -146,7 +146,7 @@ impl<'a> Compiler<'a> {
             returns: Vec::new(),
             around: Vec::new(),
         };
-        // A call in a loop finds its variables as they were at the first.
+        // Each run of a call in a loop starts with the initial values of its variables.
         for (index, (_, local)) in function.local_variables.iter().enumerate() {
             let zero = self.constant(0);
             let from = match local.init {
@@ -274,7 +274,7 @@ impl<'a> Compiler<'a> {
                 self.here() - 1
             }));
         }
-        // Beyond them is the default, or the end.
+        // If no case matches, the default or the end follows.
         let otherwise = self.jump();
         let mut has_default = false;
         for (case, entry) in cases.iter().zip(entries) {
@@ -298,7 +298,8 @@ impl<'a> Compiler<'a> {
         Ok(())
     }
 
-    /// What an expression was compiled to; constants, arguments and variables at their first use.
+    /// Returns the compiled value of an expression; constants, arguments and variables are compiled
+    /// at their first use.
     fn value(&mut self, call: &mut Call<'a>, handle: Handle<Expression>) -> Result<Value, Stopped> {
         if let Some(value) = &call.values[handle.index()] {
             return Ok(value.clone());
@@ -308,12 +309,12 @@ impl<'a> Compiler<'a> {
         Ok(value)
     }
 
-    /// The register of a scalar.
+    /// Returns the register of a scalar.
     fn word(&mut self, call: &mut Call<'a>, handle: Handle<Expression>) -> Result<Register, Stopped> {
         Ok(self.value(call, handle)?.registers()[0])
     }
 
-    /// An expression's type; of a pointer, what it points to.
+    /// Returns the type of an expression, or the pointee for a pointer.
     fn inner(&self, call: &Call<'a>, handle: Handle<Expression>) -> TypeInner {
         value::pointee(self.module, call.info[handle].ty.inner_with(&self.module.types))
     }
@@ -407,7 +408,7 @@ impl<'a> Compiler<'a> {
                 Value::Words(all.into_iter().collect())
             }
             Expression::As { expr, convert: None, .. } => {
-                // Reinterpreted bits are no product any more.
+                // Reinterpreted bits no longer count as a product.
                 let zero = self.constant(0);
                 let from = self.value(call, *expr)?.registers().to_vec();
                 let op = BinaryOperator::InclusiveOr;
@@ -445,7 +446,7 @@ impl<'a> Compiler<'a> {
         Value::Words(each.collect())
     }
 
-    /// An element whose index is not known before it runs.
+    /// Returns an element with an index known only at run time.
     fn access(
         &mut self,
         call: &mut Call<'a>,
@@ -453,7 +454,7 @@ impl<'a> Compiler<'a> {
         index: Handle<Expression>,
     ) -> Result<Value, Stopped> {
         let inner = self.inner(call, base);
-        // Beyond the end WGSL gives any element: the last, here.
+        // For an index beyond the end, WGSL allows any element: here the last.
         let count = match &inner {
             TypeInner::Vector { size, .. } => *size as u32,
             TypeInner::Matrix { columns, .. } => *columns as u32,
@@ -465,7 +466,7 @@ impl<'a> Compiler<'a> {
         let (start, from, is_pointer) = match self.value(call, base)? {
             Value::Pointer { start, offset } => (start, offset, true),
             Value::Words(registers) => {
-                // In a row, so that an index finds them.
+                // Consecutive, so that an index can address them.
                 let start = self.fresh(registers.len());
                 registers.into_iter().zip(start..).for_each(|(from, to)| self.push(Op::Copy { to, from }));
                 (start, None, false)

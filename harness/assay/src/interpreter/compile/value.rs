@@ -1,13 +1,13 @@
-//! What an expression is compiled to, and how many words its type has.
+//! Compiled values of expressions, and the number of words of each type.
 
 use crate::interpreter::code::Register;
 use naga::{ArraySize, Expression, Handle, Literal, Module, ScalarKind, TypeInner};
 
-/// The registers of a value, or the place that a pointer names.
+/// The registers of a value, or the place to which a pointer refers.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Words(Vec<Register>),
-    /// The first register, and one that holds how many words beyond it.
+    /// First register, and a register with the offset from it in words.
     Pointer {
         start: Register,
         offset: Option<Register>,
@@ -15,7 +15,7 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// So many registers in a row.
+    /// Returns the value in `length` consecutive registers.
     pub(super) fn words(start: Register, length: usize) -> Value {
         Value::Words((start..start + length as Register).collect())
     }
@@ -28,7 +28,7 @@ impl Value {
     }
 }
 
-/// What a pointer's type points to; any other type itself.
+/// Returns the pointee of a pointer type, or any other type itself.
 pub(super) fn pointee(module: &Module, inner: &TypeInner) -> TypeInner {
     match inner {
         TypeInner::Pointer { base, .. } => module.types[*base].inner.clone(),
@@ -38,7 +38,7 @@ pub(super) fn pointee(module: &Module, inner: &TypeInner) -> TypeInner {
     }
 }
 
-/// The kind of a type's scalars; none of a struct's or an array's.
+/// Returns the kind of a type's scalars, or `None` for a matrix, a struct or an array.
 pub(super) fn kind(inner: &TypeInner) -> Option<ScalarKind> {
     match inner {
         TypeInner::Scalar(scalar) | TypeInner::Vector { scalar, .. } => Some(scalar.kind),
@@ -46,7 +46,7 @@ pub(super) fn kind(inner: &TypeInner) -> Option<ScalarKind> {
     }
 }
 
-/// How many words a value of a type has.
+/// Returns the number of words in a value of a type.
 pub(super) fn words_of(module: &Module, inner: &TypeInner) -> usize {
     match inner {
         TypeInner::Vector { size, .. } => *size as usize,
@@ -61,7 +61,7 @@ pub(super) fn words_of(module: &Module, inner: &TypeInner) -> usize {
     }
 }
 
-/// Where part `index` of a composite lies in it, and how long it is.
+/// Returns the offset and the length of part `index` of a composite, in words.
 pub(super) fn part(module: &Module, inner: &TypeInner, index: usize) -> (usize, usize) {
     match inner {
         TypeInner::Matrix { rows, .. } => (index * *rows as usize, *rows as usize),
@@ -77,7 +77,7 @@ pub(super) fn part(module: &Module, inner: &TypeInner, index: usize) -> (usize, 
     }
 }
 
-/// The words of an expression that is constant.
+/// Returns the words of a constant expression.
 pub(super) fn constant(
     module: &Module,
     expressions: &naga::Arena<Expression>,

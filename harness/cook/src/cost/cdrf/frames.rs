@@ -141,7 +141,7 @@ fn frames(reflectance: Reflectance, size: [u32; 2]) -> Vec<(Part, Option<Curvatu
 pub(super) fn measure(
     gpu: &Gpu,
     scenes: &Scenes,
-    options: &Options,
+    options: &Options<Reflectance>,
     errors: &[Option<[f64; MEASURES.len()]>],
     report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),

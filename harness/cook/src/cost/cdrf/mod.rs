@@ -9,7 +9,7 @@ mod shader;
 mod tables;
 mod walks;
 
-use super::{CostError, Ladder, Progress, Report, Row};
+use super::{CostError, Ladder, Options, Progress, Report, Row};
 use error::Samples;
 use lapidary_cdrf::oracle;
 use lapidary_gpu::Gpu;
@@ -47,22 +47,10 @@ pub const TABLE: &str = "lookup table";
 /// The view of the spherical form compared with the others' definition.
 pub const CIRCULAR: &str = "circular";
 
-/// What to measure, and how thoroughly.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Rounds of timing; 0 skips timing.
-    pub rounds: u32,
-    /// Width and height of the timed frame in pixels.
-    pub frame: [u32; 2],
-    /// The rungs to measure.
-    pub rungs: Vec<Reflectance>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let rung = |name: &&str| if let Ok(Rung::Diffuse(rung)) = name.parse() { Some(rung) } else { None };
-        Self { rounds: 7, frame: [1920, 1080], rungs: RUNGS.iter().filter_map(rung).collect() }
-    }
+/// Returns what to measure by default.
+pub fn options() -> Options<Reflectance> {
+    let rung = |name: &&str| if let Ok(Rung::Diffuse(rung)) = name.parse() { Some(rung) } else { None };
+    Options { rounds: 7, frame: [1920, 1080], rungs: RUNGS.iter().filter_map(rung).collect() }
 }
 
 /// Measures the ladder. The time rows of [`VIEWS`] have the bytes of a rung's textures for one
@@ -72,7 +60,7 @@ impl Default for Options {
 /// # Errors
 ///
 /// Returns an error if the record of spheres is missing or if the device fails.
-pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Report, CostError> {
+pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) -> Result<Report, CostError> {
     let spheres = walks::record(&walks::record_file())?;
     let scenes = frames::Scenes::new()?;
     let [width, height] = options.frame;

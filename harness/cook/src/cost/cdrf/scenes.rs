@@ -43,7 +43,7 @@ fn settings(reflectance: Reflectance, shadows: bool) -> Settings {
 /// Returns an error if a committed picture is missing or damaged, or if the device fails.
 pub(super) fn measure(
     gpu: &Gpu,
-    options: &Options,
+    options: &Options<Reflectance>,
     report: &mut Report,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(), CostError> {
@@ -81,7 +81,7 @@ mod tests {
     fn shadows_bring_the_bunny_nearer() {
         let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
         let rungs = vec![Reflectance::Lambert, Reflectance::Accurate];
-        let options = Options { rounds: 0, rungs, ..Options::default() };
+        let options = Options { rounds: 0, frame: [1; 2], rungs };
         let mut report = Report::default();
         measure(gpu, &options, &mut report, &mut |_, _| {}).expect("measured");
         assert_eq!(report.rows.len(), SCENES.len() * 4);

@@ -22,7 +22,7 @@ pub(super) fn counts(scene: &Scene, settings: &Settings, reflectance: Reflectanc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::cdrf::{Options, RUNGS};
+    use crate::cost::cdrf::{RUNGS, options};
     use lapidary_assay::dispatch;
     use lapidary_plan::{Effect, Effects, Rung};
     use lapidary_render::{Curvature, DiffuseOptions};
@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn what_a_rung_does_not_use_is_not_counted() {
         let scene = Scene::named("skin").expect("built in");
-        let options = Options::default();
+        let options = options();
         let counted = |curvature, without| -> Vec<u32> {
             let of = |&reflectance: &Reflectance| {
                 let rung = Rung::Diffuse(reflectance);

@@ -57,7 +57,7 @@ fn dominated(report: &Report) -> Vec<String> {
 
 #[test]
 fn every_rung_is_one_of_the_renderers() {
-    let options = Options::default();
+    let options = options();
     assert_eq!(options.rungs.iter().map(|rung| rung.name()).collect::<Vec<_>>(), RUNGS);
 }
 

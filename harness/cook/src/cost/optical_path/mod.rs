@@ -8,7 +8,7 @@ mod walks;
 
 pub use views::{COMPARED, VIEWS, WALKED};
 
-use super::{CostError, Ladder, Progress, Report};
+use super::{CostError, Ladder, Options, Progress, Report};
 use lapidary_gpu::Gpu;
 use lapidary_plan::Rung;
 use lapidary_scene::solver::{Method, Paths};
@@ -71,21 +71,9 @@ const RGB: &str = "rgb";
 /// The view whose stages are timed separately, in white.
 const STAGED: &str = "bunny";
 
-/// What to measure, and how thoroughly.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Rounds of timing; 0 skips timing.
-    pub rounds: u32,
-    /// Width and height of the timed frame in pixels.
-    pub frame: [u32; 2],
-    /// The rungs to measure: Lambert's law, optical paths through voxels, and the reference.
-    pub rungs: Vec<Rung>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { rounds: 5, frame: [512, 512], rungs: RUNGS.iter().filter_map(|name| name.parse().ok()).collect() }
-    }
+/// Returns what to measure by default; slow rungs have fewer rounds.
+pub fn options() -> Options {
+    Options { rounds: 5, frame: [512, 512], rungs: RUNGS.iter().filter_map(|name| name.parse().ok()).collect() }
 }
 
 /// The settings that a row of the ladder is drawn with.

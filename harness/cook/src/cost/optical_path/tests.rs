@@ -60,7 +60,7 @@ fn set(report: &mut Report, rung: &str, view: &str, measure: &str, value: f64) {
 
 #[test]
 fn every_rung_is_one_of_the_renderers() {
-    let options = Options::default();
+    let options = options();
     assert_eq!(options.rungs.iter().map(Rung::to_string).collect::<Vec<_>>(), RUNGS);
     let names: Vec<String> = Measured::all(&options.rungs).into_iter().map(Measured::name).collect();
     assert_eq!(names.iter().filter(|name| !RUNGS.contains(&name.as_str())).collect::<Vec<_>>(), [UNSCALED]);

@@ -8,9 +8,8 @@ mod variants;
 
 pub use limit::facets;
 
-use super::{CostError, Ladder, Progress, Report};
+use super::{CostError, Ladder, Options, Progress, Report};
 use lapidary_gpu::Gpu;
-use lapidary_plan::Rung;
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -21,22 +20,9 @@ pub const RUNGS: [&str; 6] = ["proxy-4", "proxy-8", "convex-8", "convex-16", "co
 /// The scenes: a stone with total reflection, an absorbing one, and one with few facets.
 pub const SCENES: [&str; 3] = ["brilliant", "ruby", "prism"];
 
-/// What to measure, and how thoroughly.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Rounds of timing, at least 1.
-    pub rounds: u32,
-    /// Width and height of the timed frame in pixels.
-    pub frame: [u32; 2],
-    /// Rungs for clear stones.
-    pub rungs: Vec<Rung>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let rungs = RUNGS.iter().filter_map(|name| name.parse().ok()).collect();
-        Self { rounds: 5, frame: [480, 270], rungs }
-    }
+/// Returns what to measure by default; there is at least one round.
+pub fn options() -> Options {
+    Options { rounds: 5, frame: [480, 270], rungs: RUNGS.iter().filter_map(|name| name.parse().ok()).collect() }
 }
 
 /// Measures all kinds of restraint. A rung's name is followed by the way of work; values are

@@ -1,4 +1,5 @@
-//! Every function in Chromium, to its portable bounds: Tint's translation on SwiftShader, a second compiler and a second driver.
+//! Every function in Chromium, to its portable bounds: Tint's translation on SwiftShader, a second
+//! compiler and a second driver.
 
 use super::{browser, found};
 use lapidary_assay::dispatch::KernelText;
@@ -10,7 +11,8 @@ use lapidary_cook::check::in_browser::InBrowser;
 use lapidary_cook::check::{self, On, Row, Source};
 use lapidary_cook::{cookbook, formulas};
 
-/// Random inputs a function, beside the hard cases: a look at each. `.ci/full` has 65,536, promises and branches: `./cook check --browser`.
+/// Random inputs per function, besides the hard cases: a brief look at each. `.ci/full` runs
+/// `./cook check --browser` with 65,536 inputs, promises and branches.
 const CASES: u64 = 1_024;
 
 #[test]
@@ -38,7 +40,7 @@ fn every_function_holds_in_chromium() {
     assert!(faults.is_empty(), "{}:\n{}", browser.adapter(), faults.join("\n"));
 }
 
-/// A copy that computes something else fails there too.
+/// A copy that computes something else fails in Chromium too.
 #[test]
 fn another_function_is_told_from_the_cookbooks() {
     let Some(browser) = found(browser(), "a changed function") else { return };

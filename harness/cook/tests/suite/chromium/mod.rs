@@ -1,8 +1,9 @@
-//! Chromium's WGSL compiler, Tint, takes what the cookbook hands out, modules and recipes, and what specialising makes of
-//! recipes and of random programs. naga, which everything else here goes through, lets some of what the language forbids pass. And the functions run there.
+//! Chromium's WGSL compiler, Tint, accepts the cookbook's modules and recipes, and the results of
+//! specialising recipes and random programs. naga, which all other tests use, accepts some texts
+//! that the language forbids. The functions also run in Chromium.
 //!
-//! Where there is no Chromium with WebGPU these tests say so and pass; with `LAPIDARY_CHROMIUM=required`, as in
-//! `.ci/run`, they fail.
+//! If there is no Chromium with WebGPU, these tests say so and pass. With
+//! `LAPIDARY_CHROMIUM=required`, as in `.ci/run`, they fail.
 
 mod functions;
 
@@ -15,18 +16,18 @@ use std::io::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Instant;
 
-/// `required`: a missing Chromium is a failure.
+/// Variable with the value `required` if a missing Chromium is a failure.
 const VARIABLE: &str = "LAPIDARY_CHROMIUM";
 
-/// Random programs that are specialised.
+/// Number of random programs that are specialised.
 const PROGRAMS: u64 = 300;
 
 /// A text that WGSL forbids.
 struct Planted {
     text: &'static str,
-    /// A word of what Chromium says of it.
+    /// A word of Chromium's message.
     word: &'static str,
-    /// Whether naga lets it pass.
+    /// Whether naga accepts it.
     passes_naga: bool,
 }
 
@@ -54,7 +55,7 @@ fn ragged(@location(0) x: f32) -> @location(0) vec4f {
     Planted { text: "fn lost() -> u32 {\n    return nowhere;\n}\n", word: "unresolved", passes_naga: false },
 ];
 
-/// A text and what Chromium says of it.
+/// A text and Chromium's messages about it.
 struct Judged {
     name: String,
     text: String,
@@ -62,7 +63,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// The messages of a kind, each with the text's name and the line that it points at.
+    /// Returns the messages of a kind, each with the text's name and the line that it points at.
     fn of_kind(&self, kind: &str) -> impl Iterator<Item = String> {
         self.messages.iter().filter(move |message| message.kind == kind).map(|message| {
             let line = message.line.checked_sub(1).and_then(|line| self.text.lines().nth(line)).unwrap_or_default();
@@ -71,7 +72,7 @@ impl Judged {
     }
 }
 
-/// All that is asked, in one start of Chromium: the planted texts first.
+/// Returns all texts to judge in one start of Chromium, the planted ones first.
 fn texts() -> Vec<(String, String)> {
     let planted = PLANTED.iter().map(|planted| (format!("planted: {}", planted.word), planted.text.to_owned()));
     let each = modules().iter().map(|module| (module.name.to_owned(), module.whole.to_owned()));
@@ -83,7 +84,7 @@ fn texts() -> Vec<(String, String)> {
     planted.chain(each).chain([together]).chain(whole).chain(special).chain(programs).collect()
 }
 
-/// The browser of the tests that run now; it ends with the last of them.
+/// Returns the browser that the running tests share. It ends with the last of them.
 fn browser() -> Result<Arc<Browser>, String> {
     static SHARED: Mutex<Weak<Browser>> = Mutex::new(Weak::new());
     let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -97,13 +98,14 @@ fn browser() -> Result<Arc<Browser>, String> {
     Ok(browser)
 }
 
-/// What a test found, or none where there is no Chromium and none is required; then it says so.
+/// Returns the result of a test. Without Chromium, if it is not required, reports the skip and
+/// returns nothing.
 fn found<T, E: std::fmt::Display>(found: Result<T, E>, skipped: &str) -> Option<T> {
     found
         .inspect_err(|error| {
             let required = std::env::var_os(VARIABLE).is_some_and(|value| value == "required");
             assert!(!required, "{VARIABLE}=required: {error}");
-            // Past the test's own capture, which shows nothing of a test that passes.
+            // Bypasses the test's own capture, which shows nothing of a passing test.
             let _ = writeln!(std::io::stderr(), "{skipped} not checked in Chromium: {error}");
         })
         .ok()
@@ -123,7 +125,8 @@ fn judge() -> Result<Vec<Judged>, String> {
     Ok(judged.map(|((name, text), messages)| Judged { name, text, messages }).collect())
 }
 
-/// The planted texts and the others, judged; none where there is no Chromium and none is required.
+/// Returns the planted texts and the others, judged; nothing without Chromium, if it is not
+/// required.
 fn judged() -> Option<(&'static [Judged], &'static [Judged])> {
     static JUDGED: OnceLock<Result<Vec<Judged>, String>> = OnceLock::new();
     let judged = JUDGED.get_or_init(judge).as_ref();

@@ -1,5 +1,5 @@
-//! SPIR-V in a form in which only what it does is left: ids, and the order in which types, constants and variables are
-//! declared, say nothing.
+//! SPIR-V reduced to its behaviour: ids, and the order in which types, constants and variables are
+//! declared, have no meaning.
 
 use naga::back::spv;
 use naga::valid::ModuleInfo;
@@ -10,15 +10,15 @@ use std::collections::BTreeMap;
 /// One entry point of a shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Canonical {
-    /// Everything outside of functions, each line spelt out to the last type, in alphabetical order.
+    /// All lines outside of functions, each spelt out to the last type, in alphabetical order.
     pub declarations: Vec<String>,
-    /// The instructions of the functions that the entry point reaches, in the order in which it does. Ids inside a
-    /// function are numbered as they appear.
+    /// The instructions of the functions that the entry point reaches, in the order of first use.
+    /// Ids inside a function are numbered by appearance.
     pub body: Vec<String>,
 }
 
 impl Canonical {
-    /// The first line in which another differs, of both; nothing where none does.
+    /// Returns the first line at which the two forms differ, of both; nothing if they are equal.
     pub fn difference(&self, other: &Canonical) -> Option<String> {
         let parts = [(&self.declarations, &other.declarations), (&self.body, &other.body)];
         parts.into_iter().find_map(|(left, right)| {
@@ -30,7 +30,8 @@ impl Canonical {
     }
 }
 
-/// The canonical form of an entry point, as naga writes it without names, bounds and turned axes.
+/// Returns the canonical form of an entry point, as naga writes it without names, loop bounds and
+/// flipped axes.
 pub fn canonical(ir: &Module, info: &ModuleInfo, shader_stage: ShaderStage, entry_point: &str) -> Canonical {
     let options = spv::Options { flags: spv::WriterFlags::empty(), force_loop_bounding: false, ..Default::default() };
     let pipeline = spv::PipelineOptions { shader_stage, entry_point: entry_point.to_owned() };
@@ -38,10 +39,10 @@ pub fn canonical(ir: &Module, info: &ModuleInfo, shader_stage: ShaderStage, entr
     of_words(&words)
 }
 
-/// The canonical form of a module with one entry point.
+/// Returns the canonical form of a module with one entry point.
 pub fn of_words(words: &[u32]) -> Canonical {
     let mut instructions = Vec::new();
-    // Behind the magic number, version, generator, bound and schema.
+    // After the magic number, version, generator, bound and schema.
     let mut rest = &words[5..];
     while let Some(first) = rest.first() {
         let (instruction, behind) = rest.split_at((first >> 16) as usize);
@@ -93,7 +94,7 @@ pub fn of_words(words: &[u32]) -> Canonical {
     Canonical { declarations, body }
 }
 
-/// The instructions of each function by its id, from `OpFunction` to `OpFunctionEnd`.
+/// Returns the instructions of each function by its id, from `OpFunction` to `OpFunctionEnd`.
 fn functions(instructions: &[Instruction]) -> BTreeMap<u32, &[Instruction]> {
     let parts = instructions.split_inclusive(|instruction| instruction.op == Op::FunctionEnd);
     parts.map(|part| (part[0].result.expect("a function has an id"), part)).collect()
@@ -110,7 +111,7 @@ enum Operand {
 struct Instruction {
     op: Op,
     result: Option<u32>,
-    /// Without the result, with its type.
+    /// Operands with the type of the result, without the result.
     operands: Vec<Operand>,
 }
 
@@ -120,7 +121,7 @@ impl Instruction {
         let mut instruction = Instruction { op, result: None, operands: Vec::new() };
         let mut kinds = form(op).chars();
         let mut words = &words[1..];
-        // A kind before `*` is that of all further words; before two of them, the two take turns.
+        // A kind before `*` applies to all further words. For a pair, the two kinds alternate.
         let mut last = Vec::new();
         while let Some((&word, behind)) = words.split_first() {
             let kind = kinds.next().or(form(op).ends_with('*').then_some('*'));
@@ -154,8 +155,9 @@ impl Instruction {
     }
 }
 
-/// The kinds of an instruction's words, as the specification's section 3 has them: `r` the result, `i` an id, `l` a
-/// literal, `s` a text, `p` pairs of literal and id; `*` the same for all that follow. One that is not listed fails.
+/// Returns the kinds of an instruction's words, as in section 3 of the specification: `r` the
+/// result, `i` an id, `l` a literal, `s` a text, `p` pairs of literal and id; `*` repeats the last
+/// for all that follow. An unlisted instruction fails.
 fn form(op: Op) -> &'static str {
     use Op::*;
     match op {
@@ -205,20 +207,20 @@ fn form(op: Op) -> &'static str {
     }
 }
 
-/// What ids stand for.
+/// Meanings of the ids.
 #[derive(Default)]
 struct Names {
     decorations: BTreeMap<u32, Vec<String>>,
-    /// Of what stands outside of functions: all that it is made of.
+    /// Full description of each id outside of functions.
     global: BTreeMap<u32, String>,
-    /// Functions, in the order in which they are met.
+    /// Functions, in the order of first use.
     reached: Vec<u32>,
-    /// Of what stands inside the function at hand.
+    /// Number of each id inside the current function.
     local: BTreeMap<u32, usize>,
 }
 
 impl Names {
-    /// Spells a declaration out, and remembers it as its id's name.
+    /// Spells a declaration out, and stores it as its id's name.
     fn declare(&mut self, instruction: &Instruction) -> String {
         let mut text = self.spell_instruction(instruction);
         if let Some(result) = instruction.result {
@@ -231,8 +233,8 @@ impl Names {
         text
     }
 
-    /// The instructions of a function, with those sorted that fetch what the function needs of the bindings before it does
-    /// anything: naga writes them in the order in which the bindings are declared.
+    /// Returns the instructions of a function, with the initial loads of its bindings sorted: naga
+    /// writes them in the order of the bindings' declarations.
     fn in_order<'a>(&mut self, function: &'a [Instruction]) -> Vec<&'a Instruction> {
         let opens =
             |it: &&Instruction| matches!(it.op, Op::Function | Op::FunctionParameter | Op::Label | Op::Variable);
@@ -264,7 +266,7 @@ impl Names {
         let mut text = format!("{:?}", instruction.op);
         for (place, operand) in instruction.operands.iter().enumerate() {
             let operand = match operand {
-                // Behind the result's type.
+                // After the result's type.
                 Operand::Id(function) if called == 1 && place == 1 => format!("function {}", self.function(*function)),
                 other => self.spell(other),
             };
@@ -274,7 +276,7 @@ impl Names {
         text
     }
 
-    /// The place of a function in the order in which they are met.
+    /// Returns the place of a function in the order of first use.
     fn function(&mut self, function: u32) -> usize {
         self.reached.iter().position(|known| *known == function).unwrap_or_else(|| {
             self.reached.push(function);

@@ -1,8 +1,10 @@
-//! An effect that is off costs nothing: what is left of a recipe is what is left of its text without the effect's lines.
+//! An effect that is off costs nothing: a specialised recipe equals its specialised text without
+//! the effect's lines.
 //!
-//! The lines are cut by their marks (`docs/contract.md`), which knows nothing of WGSL. Both shaders then become SPIR-V,
-//! which is compared instruction for instruction. The overrides that the cut text still has, `specialise` applies; that it
-//! leaves no more than naga alone does of a text without any effect's lines is a test of its own.
+//! The lines are cut by their marks (`docs/contract.md`), without knowledge of WGSL. Both shaders
+//! then become SPIR-V, which is compared instruction for instruction. `specialise` applies the
+//! overrides that the cut text still has. A separate test shows that it leaves no more than naga
+//! alone leaves of a text without any effect's lines.
 
 mod canonical;
 
@@ -17,7 +19,8 @@ use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
 use naga::{Literal, Module, ShaderStage};
 
-/// The text without the lines that are there for one of `off`, and with those that are there in their place.
+/// Returns the text without the lines for any effect of `off`, and with the lines that replace
+/// them.
 fn cut(source: &str, off: &[&str]) -> String {
     let lines = marks::lines(source).unwrap_or_else(|fault| panic!("line {}: {}", fault.line, fault.message));
     let is_off = |effects: &[&str]| effects.iter().any(|effect| off.contains(effect));
@@ -29,7 +32,8 @@ fn parse(source: &str) -> Module {
     dispatch::parse(source, "recipe").unwrap_or_else(|error| panic!("{error}")).0
 }
 
-/// What runs together: each fragment entry point with the vertex entry point, each compute entry point alone.
+/// Returns the entry points that run together: each fragment entry point with the vertex entry
+/// point, each compute entry point alone.
 fn passes(module: &Module) -> Vec<Vec<String>> {
     let of = |stage| module.entry_points.iter().filter(move |entry| entry.stage == stage);
     let fragments = of(ShaderStage::Fragment).flat_map(|fragment| {
@@ -38,7 +42,7 @@ fn passes(module: &Module) -> Vec<Vec<String>> {
     fragments.chain(of(ShaderStage::Compute).map(|kernel| vec![kernel.name.clone()])).collect()
 }
 
-/// The values of overrides that enumerate forms.
+/// Values of overrides that enumerate forms.
 const FORMS: [(&str, &[f64]); 4] = [
     ("DISPERSION_FORM", &[0.0, 1.0, 2.0]),
     ("CDRF_FORM", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
@@ -46,8 +50,9 @@ const FORMS: [(&str, &[f64]); 4] = [
     ("OPTICAL_PATH_STENCIL", &[6.0, 18.0, 26.0]),
 ];
 
-/// Values for a recipe's overrides, those that are not named keeping their defaults: all defaults; all effects off; all
-/// on; and with all effects on each form, and each switch that is no effect turned over.
+/// Returns values for a recipe's overrides; unnamed ones keep their defaults. The choices are: all
+/// defaults; all effects off; all on; and, with all effects on, each form, and each non-effect
+/// switch inverted.
 fn choices(module: &Module) -> Vec<Vec<(String, f64)>> {
     let named = || module.overrides.iter().filter_map(|(_, over)| Some((over.name.clone()?, over.init)));
     let effects = |value| named().filter(|(name, _)| name.starts_with("EFFECT_")).map(move |(name, _)| (name, value));
@@ -67,7 +72,7 @@ fn choices(module: &Module) -> Vec<Vec<(String, f64)>> {
     choices
 }
 
-/// What is left of some entry points: the bindings, and the SPIR-V of each.
+/// The remainder of some entry points: the bindings, and the SPIR-V of each.
 #[derive(Debug)]
 struct Left {
     bindings: Vec<(u32, u32)>,
@@ -97,7 +102,7 @@ impl Left {
     }
 }
 
-/// The shader with those of `values` that it declares.
+/// Specialises the shader by those of `values` that it declares.
 fn specialised(module: &Module, values: &[(String, f64)], pass: &[String]) -> (Module, ModuleInfo) {
     let values: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let values = lapidary_specialise::declared(module, &values);
@@ -105,14 +110,14 @@ fn specialised(module: &Module, values: &[(String, f64)], pass: &[String]) -> (M
     specialise(module.clone(), &values, &pass).unwrap_or_else(|error| panic!("{pass:?} with {values:?}: {error}"))
 }
 
-/// `values` with an effect's own set to off.
+/// Returns `values` with the override of an effect set to off.
 fn with_off(values: &[(String, f64)], effect: &str) -> Vec<(String, f64)> {
     let name = override_of(effect);
     let others = values.iter().filter(|(other, _)| *other != name).cloned();
     others.chain([(name.clone(), 0.0)]).collect()
 }
 
-/// The differences between a recipe with an effect off and its text without the effect.
+/// Returns the differences between a recipe with an effect off and its text without the effect.
 fn differences(whole: &str, without: &str, effect: &str) -> Vec<String> {
     let modules = [whole, without].map(parse);
     let mut found = Vec::new();
@@ -126,7 +131,7 @@ fn differences(whole: &str, without: &str, effect: &str) -> Vec<String> {
     found
 }
 
-/// A recipe with the effects that it declares.
+/// Returns each recipe with the effects that it declares.
 fn recipes_with_effects() -> impl Iterator<Item = (&'static Recipe, String, Vec<String>)> {
     RECIPES.iter().filter_map(|recipe| {
         let source = recipe.compose();
@@ -152,7 +157,7 @@ fn an_effect_that_is_off_leaves_the_recipe_without_it() {
     assert!(found.is_empty(), "{} differences, the first:\n{}", found.len(), found[..found.len().min(8)].join("\n"));
 }
 
-/// What naga leaves of a text by itself, with the defaults of its overrides.
+/// Returns the text as naga alone compacts it, with the defaults of its overrides.
 fn by_naga(source: &str, pass: &[String]) -> (Module, ModuleInfo) {
     let mut module = parse(source);
     module.entry_points.retain(|entry| pass.contains(&entry.name));
@@ -165,7 +170,7 @@ fn by_naga(source: &str, pass: &[String]) -> (Module, ModuleInfo) {
     (module, info)
 }
 
-/// With every effect's lines cut there is nothing left that `specialise` must remove for an effect's sake.
+/// With every effect's lines cut, `specialise` has nothing to remove for an effect.
 #[test]
 fn with_all_effects_off_no_more_is_left_than_of_the_text_without_any() {
     for (recipe, source, effects) in recipes_with_effects() {
@@ -197,13 +202,13 @@ fn with_all_effects_off_no_more_is_left_than_of_the_text_without_any() {
     }
 }
 
-/// A comparison that passes whatever is left checks nothing.
+/// A comparison that passes on any remainder checks nothing.
 #[test]
 fn what_is_left_of_an_effect_is_seen() {
     let source = lapidary_wgsl::recipe_source("texture_irradiance");
     let without = cut(&source, &["spot"]);
     assert_eq!(differences(&source, &without, "spot"), Vec::<String>::new());
-    // A stretch of lines that is not marked.
+    // A range of lines without marks.
     let unmarked = |line: &str| {
         let line = line.replace("if (EFFECT_SPOT) {", "{");
         if line.contains("override") { line } else { line.replace("  //+spot", "") }
@@ -212,7 +217,7 @@ fn what_is_left_of_an_effect_is_seen() {
     let kept = cut(&planted, &["spot"]);
     assert!(kept.contains("power *= share * share;") && !kept.contains("EFFECT_SPOT"));
     assert!(!differences(&source, &kept, "spot").is_empty());
-    // One constant more, one operation for another, and the same in another order.
+    // Another constant, another operation, and an extra operation.
     for (right, wrong) in [
         ("squared < 1.1754944e-38f", "squared < 1.1754942e-38f"),
         ("received += part", "received -= part"),
@@ -224,7 +229,8 @@ fn what_is_left_of_an_effect_is_seen() {
     }
 }
 
-/// A binding that nothing reads is not in the SPIR-V, but in the layout that a renderer takes from the module.
+/// A binding that nothing reads is absent from the SPIR-V, but present in the layout that a
+/// renderer takes from the module.
 #[test]
 fn a_binding_that_is_kept_is_seen() {
     let source = lapidary_wgsl::recipe_source("gem");

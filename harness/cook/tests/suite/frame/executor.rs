@@ -1,4 +1,4 @@
-//! Another host: runs what `cook frame` wrote, and knows the files alone. Nothing here is the project's.
+//! Another host: runs the files of `cook frame`, knows nothing else, and uses no project code.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ struct Host<'a> {
     groups: Vec<BindGroup>,
 }
 
-/// Runs the frame in a folder, and gives its pictures by their names.
+/// Runs the frame in a folder, and returns its pictures by name.
 pub fn run(device: &Device, queue: &Queue, folder: &Path) -> BTreeMap<String, Picture> {
     let text = std::fs::read_to_string(folder.join("frame.json")).expect("frame.json");
     let frame: Value = serde_json::from_str(&text).expect("JSON");
@@ -67,7 +67,7 @@ fn numbers<const N: usize>(value: &Value) -> [u32; N] {
     std::array::from_fn(|place| number(&value[place]))
 }
 
-/// What a name stands for.
+/// Returns the value that a name stands for.
 fn named<T: Copy>(value: &Value, known: &[(&str, T)]) -> T {
     let name = string(value);
     known.iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("{name}")).1

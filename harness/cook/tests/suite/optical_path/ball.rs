@@ -7,15 +7,15 @@ use lapidary_optical_path::oracle;
 use lapidary_optical_path::{OPTICAL_PATH_UNREACHED, relax, seed, through};
 use lapidary_scene::solver::{Method, Stencil};
 
-/// Voxels along the ball's radius.
+/// Radius of the ball in voxels.
 const RADIUS: f32 = 30.0;
-/// Optical depths along it.
+/// Radius of the ball in optical depths.
 const DEPTH: f32 = 8.0;
 /// Points along an edge of the shadow map.
 const MAP: u32 = 512;
 
-/// The ball in 64³ voxels, lit along -z by the points of a shadow map: each seeds the 27 voxels about it, by its distance to their middles, as the recipe
-/// does.
+/// Returns the ball in 64³ voxels, lit along -z by the points of a shadow map. Each point seeds the
+/// 27 voxels about it, by its distance to their centres, as in the recipe.
 fn lit() -> Case {
     let middle = Vec3::splat(32.0);
     let inside = |voxel: UVec3| (voxel.as_vec3() + 0.5 - middle).length() <= RADIUS;
@@ -27,7 +27,7 @@ fn lit() -> Case {
             continue;
         }
         let normal = Vec3::new(across.x, across.y, height.sqrt());
-        // A hair inside, so that the point lies in matter where the voxel of its middle does.
+        // Slightly inside, so that the point lies in matter if the centre of its voxel does.
         let point = middle + (RADIUS - 0.5) * normal;
         if !case.matter[case.grid.index(point.floor().as_uvec3())] {
             continue;
@@ -43,13 +43,14 @@ fn lit() -> Case {
     case
 }
 
-/// The voxels about a point.
+/// Returns the voxels about a point.
 fn about(point: Vec3) -> impl Iterator<Item = UVec3> {
     let first = point.floor().as_ivec3() - 1;
     (0..27).map(move |place| (first + glam::IVec3::new(place % 3, place / 3 % 3, place / 9)).as_uvec3())
 }
 
-/// What a shaded point at the surface sees: itself, where it is lit, and the voxels about it.
+/// Returns the cost at a shaded point of the surface: the least of its own light and the voxels
+/// about it.
 fn looked_up(case: &Case, costs: &[f32], normal: Vec3) -> f32 {
     let point = Vec3::splat(32.0) + RADIUS * normal;
     let own = seed(normal.z, case.extinction, 0.0);
@@ -59,7 +60,8 @@ fn looked_up(case: &Case, costs: &[f32], normal: Vec3) -> f32 {
     })
 }
 
-/// Root mean square errors of the costs in nats: at the ball's surface, as they are looked up there, and in its voxels.
+/// Returns the root mean square errors of the costs in nats: at the ball's surface, as looked up
+/// there, and in its voxels.
 fn rms(case: &Case, method: Method) -> [f64; 2] {
     let costs = solve(case, method);
     let inside: Vec<f64> = (0..costs.len())
@@ -88,7 +90,7 @@ fn rms(case: &Case, method: Method) -> [f64; 2] {
 #[test]
 fn godunov_finds_the_balls_costs_and_stencils_their_own() {
     let case = lit();
-    // As docs/optical_path.md has them.
+    // From docs/optical_path.md.
     let stated = [
         (Method::Tiled(Stencil::Faces), [1.066, 1.302]),
         (Method::Tiled(Stencil::Edges), [0.326, 0.266]),
@@ -104,7 +106,7 @@ fn godunov_finds_the_balls_costs_and_stencils_their_own() {
     }
 }
 
-/// Without the way between voxel and lit point the far side is too bright.
+/// Without the distance between voxel and lit point, the far side is too bright.
 #[test]
 fn offsets_count() {
     let case = lit();
@@ -121,6 +123,6 @@ fn offsets_count() {
     let without = solve(&naive, Method::Godunov)[case.grid.index(pole)];
     println!("far pole: {exact} exact, {with} with offsets, {without} without");
     assert!((with - exact).abs() < 0.05, "{exact}: {with} with");
-    // By e^0.7, about twice.
+    // By a factor of e^0.7, about two.
     assert!((0.6..0.8).contains(&(exact - without)), "{exact}: {without} without");
 }

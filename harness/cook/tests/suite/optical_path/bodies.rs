@@ -11,17 +11,17 @@ use lapidary_scene::{Bounds, Scene};
 #[derive(Clone, Debug)]
 pub struct Case {
     pub grid: VoxelGrid,
-    /// By voxel.
+    /// Whether there is matter, by voxel.
     pub matter: Vec<bool>,
-    /// By voxel, a factor on the extinction.
+    /// Factor on the extinction, by voxel.
     pub density: Vec<f32>,
-    /// By voxel.
+    /// Seeded cost, by voxel.
     pub seeds: Vec<f32>,
     pub extinction: f32,
 }
 
 impl Case {
-    /// A cube of `cells` voxels 1 wide, with matter where `is_matter` says and no seeds.
+    /// Returns a cube of `cells` voxels 1 wide, with matter as `is_matter` says and no seeds.
     pub fn of(cells: u32, extinction: f32, is_matter: impl Fn(UVec3) -> bool) -> Self {
         let grid = VoxelGrid { origin: Vec3::ZERO, spacing: 1.0, cells };
         let matter: Vec<bool> = (0..grid.count()).map(|index| is_matter(grid.voxel(index))).collect();
@@ -29,7 +29,8 @@ impl Case {
         Self { grid, matter, density, seeds, extinction }
     }
 
-    /// A union of balls with holes, voxels 1 wide, extinctions up to 1 and a seed here and there. `heterogeneous`: with a density by voxel.
+    /// Returns a union of balls with holes: voxels 1 wide, extinctions up to 1, and scattered
+    /// seeds. If `heterogeneous`, the density varies by voxel.
     pub fn random(seed: u64, cells: u32, heterogeneous: bool) -> Self {
         let mut draws = Draws::of_row(seed, 0);
         let side = cells as f32;
@@ -52,14 +53,15 @@ impl Case {
         case
     }
 
-    /// The bunny, lit along x, `depth` optical depths wide.
+    /// Returns the bunny, lit along x, `depth` optical depths wide.
     pub fn bunny(cells: u32, depth: f32) -> Self {
         let scene = Scene::named("skin_bunny").expect("a built-in scene");
         let mesh = &scene.objects[0].mesh;
         let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
         let side = cells as usize;
         let mut matter = vec![false; grid.count()];
-        // Each triangle flips the voxels behind it. Rays pass voxels' middles by a hair, so that they meet no edge.
+        // Each triangle flips the voxels behind it. Rays pass slightly off the voxel centres, so
+        // that they meet no edge.
         for corners in mesh.triangles() {
             let [a, b, c] = corners.map(|corner| ((corner - grid.origin) / grid.spacing).as_dvec3());
             let least = a.min(b).min(c).floor().max(glam::DVec3::ZERO);
@@ -96,17 +98,17 @@ impl Case {
         case
     }
 
-    /// As the mirrors of the kernels take it, with these extinctions.
+    /// Returns the case for the kernels' mirrors, with these extinctions.
     pub fn body<'a>(&'a self, extinction: &'a [f32]) -> Body<'a> {
         Body { cells: self.grid.cells, spacing: self.grid.spacing, matter: &self.matter, extinction }
     }
 
-    /// Each voxel's extinction.
+    /// Returns each voxel's extinction.
     pub fn extinctions(&self) -> Vec<f32> {
         self.density.iter().map(|density| self.extinction * density).collect()
     }
 
-    /// A bit for each voxel, in rows of words.
+    /// Returns a bit for each voxel, in rows of words.
     pub fn bits(&self) -> Vec<u32> {
         let words = self.grid.words_per_row() as usize;
         let side = self.grid.cells as usize;

@@ -1,4 +1,4 @@
-//! Bodies and seeds at which solvers go wrong.
+//! Bodies and seeds that are difficult for solvers.
 
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve, solve_within, truth};
@@ -62,7 +62,7 @@ fn extinctions_of_every_size_keep_costs_finite() {
 fn what_is_no_cost_is_no_seed() {
     let mut case = ball(16, 0.5);
     let inside: Vec<usize> = (0..case.matter.len()).filter(|index| case.matter[*index]).collect();
-    // Not a number is no light; less than nothing is nothing.
+    // NaN, infinity and huge costs are no light. Negative costs are 0.
     for (place, seed) in [f32::NAN, -f32::NAN, f32::INFINITY, 3e38].into_iter().enumerate() {
         case.seeds[inside[100 * place]] = seed;
     }
@@ -95,7 +95,8 @@ fn light_does_not_cross_the_air() {
     }
 }
 
-/// A corridor that winds through the whole grid, two voxels wide, walls between its turns: its length is some hundred times the grid's.
+/// Returns a corridor, two voxels wide, that winds through the whole grid with walls between its
+/// turns. Its length is some seventy times the grid's for 24 cells.
 fn labyrinth(cells: u32) -> Case {
     let last = cells - 1;
     let mut case = Case::of(cells, 0.02, |voxel| {
@@ -142,7 +143,7 @@ fn a_labyrinth_ends_at_the_fixpoint_or_says_how_far_off_it_is() {
 
 #[test]
 fn concave_bodies_are_solved_within_the_passes_that_are_granted_by_default() {
-    // A slab bent round three times.
+    // A slab bent three times.
     let case = {
         let mut case = Case::of(64, 0.2, |voxel| {
             voxel.y % 16 < 12 || if voxel.y / 16 % 2 == 0 { voxel.x > 57 } else { voxel.x < 6 }

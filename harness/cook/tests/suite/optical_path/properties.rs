@@ -1,4 +1,4 @@
-//! What the mathematics says of costs at two related inputs.
+//! Mathematical properties of the costs at two related inputs.
 
 use super::bodies::Case;
 use super::{STENCILS, assert_same, solve};
@@ -7,10 +7,10 @@ use lapidary_assay::draws::Draws;
 use lapidary_optical_path::OPTICAL_PATH_UNREACHED;
 use lapidary_scene::solver::{Method, Stencil};
 
-/// Of Godunov's costs: what the tolerance of its passes adds up to.
+/// Accumulated tolerance of Godunov's passes, as a share of the cost.
 const GODUNOV: f32 = 1e-4;
 
-/// The methods and what share of a cost two solves of the same body may differ by.
+/// The methods, and the share of a cost by which two solves of the same body may differ.
 const METHODS: [(Method, f32); 4] = [
     (Method::Tiled(Stencil::Faces), 0.0),
     (Method::Tiled(Stencil::Edges), 0.0),
@@ -59,7 +59,7 @@ fn four_times_the_extinction_is_four_times_the_cost() {
     }
 }
 
-/// The distance from a voxel, as costs with no other seed.
+/// Returns the distances from a voxel, as costs with no other seed.
 fn from(case: &Case, voxel: usize, method: Method) -> Vec<f32> {
     let mut alone = case.clone();
     alone.seeds.fill(OPTICAL_PATH_UNREACHED);
@@ -70,7 +70,7 @@ fn from(case: &Case, voxel: usize, method: Method) -> Vec<f32> {
 #[test]
 fn no_way_is_shorter_by_a_third_voxel() {
     let case = Case::random(15, 16, true);
-    // Sums that are rounded at every step.
+    // Sums are rounded at every step.
     let rounding = 1.0 + 64.0 * f32::EPSILON;
     let inside: Vec<usize> = (0..case.matter.len()).filter(|index| case.matter[*index]).collect();
     let [a, b] = [inside[0], inside[inside.len() / 2]];
@@ -85,7 +85,7 @@ fn no_way_is_shorter_by_a_third_voxel() {
     }
 }
 
-/// The cube's 48 symmetries: which axis becomes which, and which are turned round.
+/// Applies one of the cube's 48 symmetries: a permutation of the axes, and the reversal of some.
 fn turned(case: &Case, symmetry: usize) -> (Case, Vec<usize>) {
     let order = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]][symmetry / 8];
     let last = case.grid.cells as i32 - 1;

@@ -9,24 +9,25 @@ use lapidary_render::voxel_grid::VoxelGrid;
 use lapidary_scene::{Light, Scene};
 use std::f64::consts::PI;
 
-/// Optical depths along the ball's radius.
+/// Radius of the ball in optical depths.
 const DEPTH: f64 = 8.0;
-/// Costs beyond this many nats are not compared.
+/// Largest compared cost in nats.
 const DEEPEST: f64 = 12.0;
 
-/// What enters the ball at the end of a unit vector.
+/// Returns the irradiance that enters the ball at the end of a unit vector.
 fn entering(light: &Light, place: DVec3) -> f64 {
     let arrival = light.arrival(RADIUS * place);
     arrival.irradiance.x * place.dot(arrival.direction).max(0.0)
 }
 
-/// The most that comes to a point in the ball of radius 1 along any chord: the best of `places`, then a search about it.
+/// Returns the most light that reaches a point in the ball of radius 1 along any chord: the best of
+/// `places`, then a search about it.
 fn along_chords(light: &Light, places: &[(DVec3, f64)], point: DVec3) -> f64 {
     let past = |place: DVec3| (-DEPTH * place.distance(point)).exp();
     let from = |place: DVec3| entering(light, place) * past(place);
     let best = places.iter().max_by(|a, b| (a.1 * past(a.0)).total_cmp(&(b.1 * past(b.0)))).expect("some").0;
     let (mut best, mut most) = (best, from(best));
-    // Light falls on the surface alone.
+    // Light falls only on the surface.
     if point.is_normalized() && from(point) > most {
         (best, most) = (point, from(point));
     }
@@ -60,8 +61,8 @@ fn lit_ball(light: Light) -> Scene {
     ball(DEPTH as f32, vec![light])
 }
 
-/// What the grid adds, at first order in the voxel, to the cost at a point of the ball's surface that no light falls on; `cost` is the true one of
-/// points in the ball of radius 1.
+/// Returns the grid's contribution, at first order in the voxel, to the cost at an unlit point of
+/// the ball's surface. `cost` is the true cost of points in the ball of radius 1.
 fn of_grid(point: DVec3, grid: VoxelGrid, cost: &dyn Fn(DVec3) -> f64) -> f64 {
     let voxel = f64::from(grid.spacing) / RADIUS;
     let shift = 0.0025;
@@ -74,8 +75,10 @@ fn of_grid(point: DVec3, grid: VoxelGrid, cost: &dyn Fn(DVec3) -> f64) -> f64 {
     };
     let end = (1.0 - 2.0 * shift) * point;
     let way = differences(end).0.normalize();
-    // Godunov's update takes backward differences: each axis' is off by half a voxel times the second derivative, and the cost by their sum, weighted by
-    // the first over the slope of the cost, along the way. The way is a chord, and in the voxels about its beginning seeds are exact.
+    // Godunov's update takes backward differences. On each axis these are off by half a voxel times
+    // the second derivative. The cost is off by their sum along the way, weighted by the first
+    // derivatives over the slope of the cost. The way is a chord, and in the voxels about its
+    // beginning the seeds are exact.
     let length = (2.0 * end.dot(way) - voxel).max(0.0);
     let steps = 16;
     let step = length / f64::from(steps);
@@ -84,7 +87,8 @@ fn of_grid(point: DVec3, grid: VoxelGrid, cost: &dyn Fn(DVec3) -> f64) -> f64 {
         first.abs().dot(second) / DEPTH
     };
     let solver = 0.5 * voxel * step * (0..steps).map(growth).sum::<f64>();
-    // The way from the best of the nodes about the point to the point is straight too, but not along the chord.
+    // The way from the best node about the point to the point is straight too, but not along the
+    // chord.
     let origin = grid.origin.as_dvec3() / RADIUS;
     let own = ((point - origin) / voxel).floor();
     let nodes = (0..27).map(|index| DVec3::new(f64::from(index % 3), f64::from(index / 3 % 3), f64::from(index / 9)));
@@ -95,19 +99,21 @@ fn of_grid(point: DVec3, grid: VoxelGrid, cost: &dyn Fn(DVec3) -> f64) -> f64 {
 
 /// Errors of a picture of the ball.
 struct Errors {
-    /// The root mean square of those of the costs, in nats, over all pixels, ...
+    /// Root mean square error of the costs in nats, over all pixels.
     nats: f64,
-    /// ... and what [`of_grid`] says of them.
+    /// The same according to [`of_grid`].
     theory: f64,
-    /// The largest relative one where a pixel's own light is more than what comes from anywhere else by a tenth.
+    /// Largest relative error of pixels whose cheapest path begins at the pixel itself, with at least
+    /// a tenth of the brightest light that enters.
     lit: f64,
 }
 
 impl Errors {
-    /// Higher orders in the voxel add less than this part.
+    /// Upper limit of the relative contribution of higher orders in the voxel.
     const HIGHER_ORDERS: f64 = 0.35;
 
-    /// Of every so many pixels. `cost` is that of points in the ball of radius 1, 0 where the most light enters.
+    /// Compares one pixel in `every`. `cost` is the cost of points in the ball of radius 1, 0 at
+    /// the point that the most light enters.
     fn of(light: Light, cells: u32, every: usize, cost: &dyn Fn(DVec3) -> f64) -> Self {
         let scene = lit_ball(light);
         let grid = VoxelGrid::about(scene.bounds(), cells);
@@ -147,8 +153,9 @@ impl Errors {
     }
 }
 
-/// A pixel's place on the mesh of 256 columns is off the sphere by (2π / 256)² / 8 of its radius, and so are interpolated normals by less; at a cosine of
-/// a tenth that is 3e-3 with the slant at which the camera sees it.
+/// Largest relative error of lit pixels. The place of a pixel on the mesh of 256 columns is off the
+/// sphere by (2π / 256)² / 8 of its radius, and interpolated normals are off by less. At a cosine
+/// of a tenth this gives 3e-3, with the slant at which the camera sees it.
 const LIT: f64 = 3e-3;
 
 #[test]
@@ -178,7 +185,7 @@ fn balls_under_a_lamp_and_under_a_spot_are_the_best_of_all_chords() {
     }
 }
 
-/// A finer grid is nearer: what is left is the grid's.
+/// A finer grid is more accurate: the remaining error is the grid's.
 #[test]
 fn errors_fall_with_the_voxels() {
     let Light::Directional { toward, irradiance } = sun() else { panic!("a sun") };

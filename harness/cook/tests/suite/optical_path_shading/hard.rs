@@ -1,4 +1,4 @@
-//! Bodies, lights and media at which a renderer of voxels goes wrong.
+//! Bodies, lights and media that are difficult for a voxel renderer.
 
 use super::{RADIUS, apart, ball, coarse, covered, draw, lamp, scene, settings, spot, stone, sun};
 use crate::pixels::on_the_ball;
@@ -54,7 +54,8 @@ fn a_lamp_buried_in_a_solid_body_lights_nothing() {
     }
 }
 
-/// On its surface a lamp is as near as can be: distances of 0, and the largest irradiance that there is.
+/// A lamp on the surface is as near as possible: distances of 0, and the largest possible
+/// irradiance.
 #[test]
 fn lamps_on_the_surface_and_beyond_all_measure_stay_finite() {
     let places = [Vec3::Y * 10.0, Vec3::Y * 10.0001, Vec3::Y * 1e6];
@@ -67,7 +68,7 @@ fn lamps_on_the_surface_and_beyond_all_measure_stay_finite() {
     }
 }
 
-/// A shell between two spheres with a lamp in its middle: everywhere the same, what is left after the shell.
+/// A shell between two spheres with a lamp at its centre: uniform light, attenuated by the shell.
 #[test]
 fn a_hollow_ball_glows_from_inside() {
     let (inner, extinction) = (6.0, 0.5f32);
@@ -87,7 +88,7 @@ fn a_hollow_ball_glows_from_inside() {
     }
     let rms = (squares / pixels.len() as f64).sqrt();
     println!("rms {rms:.3} nats, {worst:.3} at most");
-    // Two optical depths, of which a voxel is 0.16.
+    // Two optical depths; a voxel is 0.16.
     assert!(rms < 0.1 && worst < 0.3, "{rms} {worst}");
     assert!(picture.notes.is_empty(), "{:?}", picture.notes);
 }
@@ -98,7 +99,7 @@ fn light_that_grazes_everywhere_lights_nothing() {
     scene.objects[0].mesh.normals.fill(Vec3::X);
     let picture = draw(&scene, &coarse());
     assert!(covered("grazing", &picture) > 1000 && is_black(&picture));
-    // Nor do normals of no length make any.
+    // Normals of length zero leave every pixel finite and not negative.
     scene.objects[0].mesh.normals.fill(Vec3::ZERO);
     assert!(covered("no normals", &draw(&scene, &coarse())) > 1000);
 }
@@ -112,13 +113,13 @@ fn extinctions_of_every_size_have_their_limit() {
         assert!(covered(&format!("{extinction_scale}"), &picture) > 5000);
         on_the_ball(&scene, &picture)
     };
-    // Nothing is lost: all is as bright as the brightest voxel.
+    // No loss: all is as bright as the brightest voxel.
     for scale in [0.0, 1e-8] {
         for (_, found) in of(scale) {
             assert!((PI * found.x / 2.0 - 1.0).abs() < 1e-3, "{scale}: {found}");
         }
     }
-    // Nothing passes: Lambert's law.
+    // No transmission: Lambert's law.
     let toward = Vec3::new(-0.8, 0.6, 0.0).as_dvec3();
     for scale in [1e8, 1e30, f32::MAX] {
         for (position, found) in of(scale) {
@@ -128,7 +129,7 @@ fn extinctions_of_every_size_have_their_limit() {
     }
 }
 
-/// Filled from end to end, turned, moved far away, and of every number of voxels.
+/// Checks bodies that fill the grid, are rotated, or lie far away, with 16 to 256 voxels a side.
 #[test]
 fn a_body_leaves_the_grids_outermost_voxels_free() {
     let mut solid = 0;
@@ -138,7 +139,8 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
         for (cells, offset) in [(16, 0.0), (40, 1.0), (64, 1000.0), (128, -0.3), (256, 30_000.0)] {
             let mesh = mesh.placed(DQuat::IDENTITY, DVec3::splat(offset));
             let grid = VoxelGrid::about(Bounds::of(mesh.positions.iter().copied()), cells);
-            // What the surface alone touches may lie in the outermost voxels by rounding: a face lies on their border.
+            // Voxels that only the surface touches may be outermost by rounding: a face lies on
+            // their border.
             let effects = [("EFFECT_SURFACE", 0.0)];
             let matter = voxelization::matter(gpu, grid, &mesh, &effects).expect("made");
             let mut filled = 0;
@@ -157,7 +159,7 @@ fn a_body_leaves_the_grids_outermost_voxels_free() {
     assert!(solid > 10_000, "{solid}");
 }
 
-/// Far from the world's origin a body looks as it does there.
+/// A body far from the world's origin looks the same as at the origin.
 #[test]
 fn a_body_that_stands_far_away_looks_the_same() {
     let lit = |offset: Vec3| {
@@ -174,7 +176,7 @@ fn a_body_that_stands_far_away_looks_the_same() {
     assert!(off.len() > 1000 && many < off.len() / 50, "{many} of {}", off.len());
 }
 
-/// A plate of a sixth of a voxel: the dark side is lit through it.
+/// A plate of a sixth of a voxel: its dark side is lit through it.
 #[test]
 fn light_passes_a_plate_thinner_than_a_voxel() {
     let extinction = 0.5;
@@ -189,7 +191,8 @@ fn light_passes_a_plate_thinner_than_a_voxel() {
         let [least, most] =
             bright.fold([f32::INFINITY, 0.0], |[least, most], value| [least.min(value), most.max(value)]);
         println!("{axis}: {least:.3} to {most:.3} through the plate");
-        // As near as the plate is thick, as far as from the lit side to a voxel's middle and back: at most a voxel's diagonal, of 0.58 to 0.67.
+        // The shortest way is the plate's thickness. The longest is from the lit side to a voxel's
+        // centre and back: at most a voxel's diagonal, for voxels of 0.58 to 0.67.
         assert!(
             most <= (-extinction * 0.1).exp() * 1.001 && least > (-extinction * 1.2).exp(),
             "{axis}: {least} {most}"
@@ -204,19 +207,19 @@ fn a_mesh_of_nothing_is_a_picture_of_nothing() {
     assert_eq!(covered("nothing", &picture), 0);
     let alone = draw(&scene(Vec::new(), vec![sun()]), &coarse());
     assert_eq!(covered("nobody", &alone), 0);
-    // Beside a body it leaves that as it is; vertices without triangles too.
+    // Neither an empty mesh nor vertices without triangles change another body.
     let mut points = nothing.clone();
     points.mesh.positions = vec![Vec3::ONE; 3];
     points.mesh.normals = vec![Vec3::X; 3];
     let one = ball(4.0, vec![sun()]);
     let mut three = one.clone();
     three.objects.extend([nothing, points]);
-    // Whose costs are the same to the bit in every run.
+    // The costs of this rung are the same to the bit in every run.
     let settings = Settings { rung: "tiled-26-32".parse().expect("a rung"), ..coarse() };
     assert!(draw(&three, &settings).linear == draw(&one, &settings).linear);
 }
 
-/// A triangle of no area, and one of a single point.
+/// Checks a triangle without area, and one that is a single point.
 #[test]
 fn broken_triangles_break_nothing_else() {
     let one = ball(4.0, vec![sun()]);
@@ -229,7 +232,7 @@ fn broken_triangles_break_nothing_else() {
     assert!(apart(&broken, &one) < 1e-3);
 }
 
-/// Its voxels are a fifteenth of the large one's, whose shadow map it shares.
+/// The small body's voxels are a fifteenth of the large one's, and both share a shadow map.
 #[test]
 fn a_small_body_beside_a_large_one_is_lit_all_over() {
     let mut small = stone("small", sphere(0.7, 128), Vec3::splat(6.0));
@@ -239,7 +242,7 @@ fn a_small_body_beside_a_large_one_is_lit_all_over() {
     let alone = scene(vec![small.clone()], vec![light]);
     let both = Scene { objects: vec![small, large], ..alone.clone() };
     let [alone, both] = [alone, both].map(|scene| draw(&scene, &settings("godunov-64")));
-    // Before the small one there is nothing, and it is the first to be seen.
+    // Nothing is in front of the small body: it is the first that the camera sees.
     let pairs = alone.linear.iter().zip(&both.linear).filter(|(pixel, _)| pixel[3] == 1.0);
     let (mut squares, mut count) = (0.0, 0);
     for (alone, both) in pairs {
@@ -248,7 +251,8 @@ fn a_small_body_beside_a_large_one_is_lit_all_over() {
     }
     let rms = (squares / f64::from(count)).sqrt();
     println!("{count} pixels, {rms:.3} nats");
-    // Voxels that no texel seeds are reached from others, and cost up to a voxel's 0.13 nats more.
+    // Voxels without a seeding texel are reached from others, and cost up to a voxel's 0.13 nats
+    // more.
     assert!(count > 3000 && rms < 0.05, "{count} {rms}");
 }
 
@@ -271,8 +275,9 @@ fn a_body_in_anothers_shadow_stays_black() {
         let picture = draw(&scene, &coarse());
         covered("two", &picture);
         assert!(brightest(&picture, false) > 0.3, "{light:?}");
-        // Where light all but grazes it, the body before it stands less out of its tangent plane than shadows are biased by, a texel, and another texel by which
-        // those that are looked up lie aside: each is some 0.33 wide, 20 away. No more than that share of the light is left.
+        // In grazing light, the front body rises out of the tangent plane of the other by less than
+        // the shadow bias of a texel, plus the offset of the looked-up texels, another texel. Each
+        // is about 0.33 wide, at a distance of 20. At most that share of the light remains.
         let leak = brightest(&picture, true);
         println!("in the shadow at most {leak:.1e}");
         assert!(leak <= 0.66 / 20.0 / PI as f32, "{light:?}: {leak}");
@@ -284,13 +289,14 @@ fn a_body_in_anothers_shadow_stays_black() {
         }
         assert!(black > 10 * other && black > 100, "{light:?}: {black} black, {other} not");
     }
-    // From the other side both are lit: almost nothing is lost inside.
+    // From the other side both are lit: almost no light is lost inside.
     let scene = scene(vec![before, behind], vec![light(1.0)]).seen_from(90.0, 0.0);
     let picture = draw(&scene, &coarse());
     assert!(brightest(&picture, true) > 0.3 && brightest(&picture, false) > 0.2);
 }
 
-/// The bunny with a hole where a ball of this radius about its point farthest to a side cuts it.
+/// Returns the closed bunny, the bunny with a hole, and the hole's centre: the farthest point to a
+/// side. A ball of this radius about it cuts the hole.
 fn open_bunny(side: Vec3, radius: f32) -> (Scene, Scene, Vec3) {
     let closed = Scene::named("bunny").expect("built in");
     let mut open = closed.clone();
@@ -316,7 +322,7 @@ fn a_hole_in_the_bunny_leaves_no_streaks() {
         assert!(whole.notes.is_empty(), "{:?}", whole.notes);
         let [Note::Open { odd_columns, columns, .. }] = &holed.notes[..] else { panic!("{:?}", holed.notes) };
         assert!(*odd_columns > 10 && columns / odd_columns > 10, "{odd_columns} of {columns}");
-        // Three radii about the hole may show it.
+        // The hole may show within three of its radii.
         let to_clip = lapidary_scene::clip_from_world(&open, whole.width, whole.height);
         let on_screen = |point: Vec3| {
             let clip = to_clip.project_point3(point);
@@ -342,7 +348,7 @@ fn a_hole_in_the_bunny_leaves_no_streaks() {
     }
 }
 
-/// A tube of this radius about a path, closed at its ends.
+/// Returns a tube of this radius about a path, closed at its ends.
 fn tube(path: impl Fn(f64) -> DVec3, radius: f64, rings: u32) -> Mesh {
     const SIDES: u32 = 12;
     let mut positions = Vec::new();
@@ -373,10 +379,10 @@ fn tube(path: impl Fn(f64) -> DVec3, radius: f64, rings: u32) -> Mesh {
     if mesh.volume_and_area().0 > 0.0 { mesh } else { inside_out(&mesh) }
 }
 
-/// Of the spring: its radius, the tube's, its pitch.
+/// Radius of the spring, radius of its tube, and pitch.
 const SPRING: [f64; 3] = [26.0, 2.2, 8.0];
 
-/// A spring of so many turns about the y axis, lit from above near its upper end alone.
+/// Returns a spring about the y axis, lit from above only near its upper end, and its path.
 fn spring(turns: f64, extinction: f32) -> (Scene, impl Fn(f64) -> DVec3) {
     let [radius, thickness, pitch] = SPRING;
     let path = move |share: f64| {
@@ -387,7 +393,7 @@ fn spring(turns: f64, extinction: f32) -> (Scene, impl Fn(f64) -> DVec3) {
     let light = Light::Spot {
         position: lit + 100.0 * Vec3::Y,
         direction: Vec3::NEG_Y,
-        // 1 at the top of the tube.
+        // Irradiance 1 at the top of the tube.
         intensity: Vec3::splat((100.0 - thickness as f32).powi(2)),
         inner_angle: 0.005,
         outer_angle: 0.01,
@@ -396,7 +402,7 @@ fn spring(turns: f64, extinction: f32) -> (Scene, impl Fn(f64) -> DVec3) {
     (scene(vec![body], vec![light]).seen_from(75.0, 10.0), path)
 }
 
-/// Where along the spring the light falls.
+/// Returns the position of the light along the spring, from 0 to 1.
 fn lit_share(turns: f64) -> f64 {
     1.0 - 0.05 / turns
 }
@@ -411,7 +417,8 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     let [Note::StoppedEarly { object, bound }] = &picture.notes[..] else { panic!("{:?}", picture.notes) };
     assert!(object == "spring" && *bound > 0.0 && *bound < 0.1, "{bound}");
 
-    // Where each pixel lies along the spring, and what the longest and the shortest way of the tube would leave for it.
+    // The position of each pixel along the spring, and the light that the longest and the shortest
+    // way through the tube would leave for it.
     let samples: Vec<DVec3> = (0..2000).map(|k| path(f64::from(k) / 2000.0)).collect();
     let nearest = |point: DVec3| {
         let distances = samples.iter().map(|sample| sample.distance_squared(point)).enumerate();
@@ -421,7 +428,8 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     let turn = (2.0 * PI * radius).hypot(pitch);
     let (mut black, mut right) = (0, 0);
     for (direction, pixel) in crate::pixels::rays(&scene, &picture).into_iter().filter(|(_, pixel)| pixel[3] == 1.0) {
-        // The mesh's tube has twelve sides: what lies between the circles about and within them is left out.
+        // The mesh's tube has twelve sides: pixels between its inscribed and circumscribed circles
+        // are skipped.
         let hits = [1.0, (PI / 12.0).cos()].map(|inscribed| {
             let mut along = eye.length() - 70.0;
             (0..60).find_map(|_| {
@@ -437,7 +445,8 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
         }
         let length = turn * turns * (lit_share(turns) - share).abs();
         let light = |length: f64| (-f64::from(extinction) * length).exp() / PI;
-        // Along the outer wall, with the solver's own excess and the way across; along the inner wall, the ends' light being at hand.
+        // The longest way is along the outer wall, with the solver's own excess and the way across.
+        // The shortest is along the inner wall, less its ends, which are near the light.
         let least = light(1.1 * length * (radius + thickness) / radius + 15.0);
         let most = light((length - 8.0).max(0.0) * (radius - thickness) / radius);
         let found = f64::from(pixel[0]);
@@ -449,7 +458,7 @@ fn a_spring_that_winds_on_says_how_far_off_its_picture_is() {
     println!("bound {bound:.1e}; {black} pixels that no path reached, {right} that are right");
     assert!(black > 50 && right > 50, "{black} {right}");
 
-    // Two turns are within what is granted.
+    // Two turns are within the granted passes.
     let picture = draw(&spring(2.0, extinction).0, &coarse_of(64));
     assert!(picture.notes.is_empty() && !is_black(&picture), "{:?}", picture.notes);
 }

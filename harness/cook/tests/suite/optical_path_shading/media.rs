@@ -1,4 +1,4 @@
-//! What lights, colours and densities do to one another's pictures.
+//! Effects of lights, colours and densities on one another's pictures.
 
 use super::{apart, ball, coarse, covered, draw, lamp, settings, spot, sun};
 use glam::{UVec3, Vec3};
@@ -7,10 +7,11 @@ use lapidary_scene::{Density, DensityGrid, Light, Medium, Scene};
 use lapidary_veins::VeinsPattern;
 use std::sync::Arc;
 
-/// Godunov's solver ends where a pass would lower costs by less than a ten thousandth of them, here of up to 9 nats; and which voxel is first is not said.
+/// Relative tolerance of Godunov's solver, which ends when a pass would lower costs by less than
+/// 1e-5, here of up to 9 nats. The order of voxels is not specified.
 const SOLVED: f32 = 1e-3;
 
-/// A ball whose medium is changed.
+/// Returns a ball with a changed medium.
 fn with_medium(lights: Vec<Light>, change: impl FnOnce(Medium) -> Medium) -> Scene {
     let mut scene = ball(4.0, lights);
     let material = &mut scene.objects[0].material;
@@ -65,7 +66,7 @@ fn another_light_darkens_no_pixel() {
 fn each_colour_goes_its_own_way() {
     let extinction = Vec3::new(0.1, 0.3, 0.9);
     let of = |extinction: Vec3| with_medium(vec![sun(), lamp()], |_| Medium::isotropic(extinction, Vec3::ZERO));
-    // Whose least costs are the same to the bit whichever voxel is first.
+    // The least costs of this rung are the same to the bit for any order of voxels.
     let rung = "tiled-26-64";
     let colored = draw(&of(extinction), &settings(rung));
     for (channel, grey) in extinction.to_array().into_iter().enumerate() {
@@ -79,7 +80,7 @@ fn each_colour_goes_its_own_way() {
     }
 }
 
-/// Light of one colour alone, and a light of each colour from its own side.
+/// Checks light of a single colour, and a light of each colour from its own side.
 #[test]
 fn coloured_lights_do_not_mix() {
     let of = |lights: Vec<Light>| draw(&ball(4.0, lights), &settings("tiled-26-32"));
@@ -118,12 +119,12 @@ fn a_density_of_two_is_twice_the_extinction() {
     assert!(apart(&once, &twice) > 1.0, "and not once");
 }
 
-/// A wall of dense matter through the middle: light goes by its sides or not at all.
+/// A wall of dense matter through the middle: light passes around it or not at all.
 #[test]
 fn dense_matter_throws_a_shadow_inside() {
     let mut densities = vec![0.25f32; 1000];
     for (index, density) in densities.iter_mut().enumerate() {
-        // Square to x, from the bottom to the top.
+        // Perpendicular to x, from the bottom to the top.
         if index % 10 == 5 {
             *density = 20.0;
         }

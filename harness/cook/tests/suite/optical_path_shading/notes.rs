@@ -1,4 +1,4 @@
-//! What is said about a picture.
+//! Notes about a picture.
 
 use super::{ball, coarse, draw, stone, sun};
 use crate::program::{cook, folder, succeeds};
@@ -7,7 +7,7 @@ use lapidary_plan::Note;
 use lapidary_scene::surfaces::sphere;
 use lapidary_scene::{Scene, glb};
 
-/// The ball without what lies far to the right: columns along x pass the rest once.
+/// Returns the ball without its far right part: columns along x cross the remainder once.
 fn open() -> Scene {
     let mut scene = ball(1.0, vec![sun()]);
     scene.objects[0].mesh = sphere(10.0, 64);

@@ -1,4 +1,4 @@
-//! A picture of the GPU against the mirrors, pixel by pixel.
+//! Compares a picture of the GPU with the mirrors, pixel by pixel.
 
 use glam::Vec3;
 use lapidary_assay::draws::Draws;
@@ -8,60 +8,68 @@ use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 use lapidary_render::{Picture, RenderError, Settings};
 use lapidary_scene::Scene;
 
-/// How far, in pixels, a rasteriser may have put a pixel's middle beside where it is: Vulkan devices snap vertices to a grid, of
-/// 1/256 pixel on lavapipe and every desktop GPU (at least 1/16 is guaranteed).
+/// Largest distance in pixels between a pixel's centre and the point that a rasteriser samples.
+/// Vulkan devices snap vertices to a grid: of 1/256 pixel on lavapipe and every desktop GPU (at
+/// least 1/16 is guaranteed).
 pub const SNAP: f64 = 1.0 / 256.0;
-/// Rounding moves a ray that starts where the GPU's does by so much of the stone's size at each hit: a plane's two products, the distance's quotient and the
-/// point's product and sum are five roundings of 2^-24, which add up as a root does, as those of one hit and the next.
+/// Drift of a ray at each hit, relative to the stone's size, if it starts at the GPU's point. A
+/// plane's two products, the distance's quotient and the point's product and sum are five roundings
+/// of 2^-24. Roundings add up as a square root, within a hit and from one hit to the next.
 const DRIFT: f32 = 2.5 / 16_777_216.0;
-/// Rounding of the shading itself: the environment's sharpest light changes by 20 over an angle of 0.06, so that a direction's
-/// error of 2^-20 after some bounces weighs 3e-4.
+/// Absolute rounding error of the shading. The environment's sharpest light changes by 20 over an
+/// angle of 0.06, so a direction's error of 2^-20 after several bounces contributes 3e-4.
 const ABSOLUTE: f32 = 3e-4;
-/// And of sums and products, relative to what the pixel holds.
+/// Rounding error of sums and products, relative to the pixel's value.
 const RELATIVE: f32 = 1.0 / 4096.0;
-/// The paper's tracker takes a difference over an epsilon of 2e-4, which knows a direction to 2^-22 / 2e-4 = 1.2e-3; times 0.344, blue's
-/// share, times a path of 4, and a light's edge, 25 of its radiance a radian: 4 % of what the pixel holds.
+/// Relative error of the paper's tracker. It divides a difference by an epsilon of 2e-4, so a
+/// direction is known to 2^-22 / 2e-4 = 1.2e-3. Times 0.344 (blue's share), a path of 4 and a
+/// light's edge (25 of its radiance per radian), that is 4 % of the pixel's value.
 const PAPER: f32 = 0.04;
 
-/// What became of the pixels that were compared.
+/// Outcome of a comparison of pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parity {
-    /// Pixels that show the stone in the picture and to the mirror.
+    /// Number of pixels that show the stone in the picture and in the mirror.
     pub compared: usize,
-    /// Of them, those with an edge of the mesh within [`SNAP`] of their middle: the GPU may show either side.
+    /// Number of compared pixels with an edge of the mesh within [`SNAP`] of their centre. The GPU
+    /// may show either side.
     pub at_an_edge: usize,
-    /// The share of such pixels that the mesh's edges can touch: their length in the picture times the widest band about them, over what is covered.
+    /// Share of the pixels that the mesh's edges can touch: their length in the picture times the
+    /// widest band about them, over the covered area.
     pub edge_share: f64,
-    /// Away from the mesh's edges, those whose rays meet other facets inside when rounding moves them, and show something else there.
+    /// Number of pixels away from the mesh's edges whose rays, moved by rounding, meet other facets
+    /// inside and show another value.
     pub parting: usize,
-    /// Of both, the ones whose value lies outside of the span of the values around.
+    /// Number of pixels of both kinds with a value outside the span of the values around.
     pub differing_at_an_edge: usize,
-    /// Of the others, those beyond the tolerance.
+    /// Other pixels beyond the tolerance.
     pub failed: Vec<Failure>,
-    /// The largest difference of these others, in tolerances.
+    /// Largest difference of the pixels within the tolerance, in tolerances.
     pub worst: f32,
-    /// Pixels of the silhouette: covered for one and not for the other.
+    /// Number of silhouette pixels, covered in the picture or in the mirror but not in both.
     pub silhouette: usize,
-    /// Farthest in pixels that the GPU's point of the surface shows from the middle of its pixel, away from the mesh's edges.
+    /// Largest distance in pixels between a pixel's centre and the GPU's point of the surface, away
+    /// from the mesh's edges.
     pub misplaced: f64,
 }
 
-/// A pixel that differs.
+/// Pixel that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// Column and row.
     pub pixel: (u32, u32),
     /// The GPU's radiance.
     pub found: Vec3,
-    /// The mirror's.
+    /// The mirror's radiance.
     pub expected: Vec3,
 }
 
-/// Compares `count` random pixels of a picture that was rendered with one sample a pixel. The mirror starts where the GPU does, at the `positions` of the
-/// surface that the same pixels of another picture hold in place of radiance: then only rounding parts a ray from its mirror.
+/// Compares `count` random pixels of a picture with one sample per pixel. The mirror starts at the
+/// GPU's points of the surface. `positions` is another picture that holds them in place of
+/// radiance. Only rounding then separates a ray from its mirror.
 ///
 /// # Errors
-/// Where the rung is none for the scene's stone.
+/// Fails if the rung does not apply to the scene's stone.
 pub fn compare(
     scene: &Scene,
     settings: &Settings,
@@ -78,7 +86,8 @@ pub fn compare(
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
     let drift = DRIFT * size * ((1 + settings.rung.hits()) as f32).sqrt();
     let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).count();
-    // A square of side 2 SNAP meets a line in a band about it that is widest, by a root of 2, where the line runs along its diagonal.
+    // A square of side 2 SNAP meets a line within a band about the line. The band is widest, by a
+    // factor of root 2, if the line runs along the square's diagonal.
     let band = 2.0 * SNAP * 2f64.sqrt();
     let edge_share = band * viewer.edge_length(&object.mesh) / covered as f64;
     let mut parity = Parity { edge_share, ..Parity::default() };
@@ -97,7 +106,7 @@ pub fn compare(
         parity.compared += 1;
         let corners = [(-SNAP, -SNAP), (SNAP, -SNAP), (-SNAP, SNAP), (SNAP, SNAP)];
         let beside = corners.map(|(dx, dy)| viewer.see(&object.mesh, x + dx, y + dy));
-        // Another triangle beside it may be what the GPU shows.
+        // The GPU may show a neighbouring triangle instead.
         let at_an_edge = beside.iter().any(|other| other.is_none_or(|other| other.triangle != seen.triangle));
         let [x_world, y_world, z_world, _] = positions.linear[index];
         let own = SurfacePoint { position: Vec3::new(x_world, y_world, z_world), ..seen };
@@ -105,7 +114,7 @@ pub fn compare(
             [Some(seen)].into_iter().chain(beside).flatten().collect::<Vec<_>>()
         } else {
             let place = viewer.place(own.position);
-            // A NaN is far away.
+            // A NaN counts as far away.
             parity.misplaced = larger(parity.misplaced, (place.x - x).abs());
             parity.misplaced = larger(parity.misplaced, (place.y - y).abs());
             let (right, up) = (own.position - eye).normalize().any_orthonormal_pair();
@@ -118,10 +127,11 @@ pub fn compare(
         let high = around.iter().map(|pixel| pixel.radiance).fold(Vec3::NEG_INFINITY, Vec3::max);
         let relative = if settings.rung.spectrum() == Spectrum::Paper { PAPER } else { RELATIVE };
         let tolerance = Vec3::splat(ABSOLUTE) + relative * high;
-        // Rays that part where nothing of it can be seen are compared as if they had not.
+        // If the parting of the rays is not visible, the pixel is compared as if they had not
+        // parted.
         let parts = around.iter().any(|pixel| pixel.rays != around[0].rays) && (high - low).cmpgt(tolerance).any();
         let beyond = ((low - found).max(found - high) / tolerance).to_array().into_iter().fold(f32::MIN, larger);
-        // A NaN does not hold.
+        // A NaN fails.
         let holds = beyond <= 1.0;
         if at_an_edge || parts {
             parity.at_an_edge += usize::from(at_an_edge);

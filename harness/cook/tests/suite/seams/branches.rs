@@ -1,20 +1,20 @@
-//! Branches that continuity does not hold for, each with a reason: `tests/branches.txt`.
+//! Branches without continuity, each with a reason, from `tests/branches.txt`.
 
 use std::sync::LazyLock;
 
-/// What a line of the list excepts.
+/// Kind of exception in a line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exception {
-    /// No two neighbouring inputs of the domain lie on both sides of a condition.
+    /// No two neighbouring inputs of the domain lie on different sides of a condition.
     NotStraddled,
-    /// The mathematics itself jumps, where no discrete result says so.
+    /// The function itself jumps, and no discrete result says so.
     Jumps,
-    /// Floats beside a line's branch are outside of the domain.
+    /// Floats next to a line's branch are outside of the domain.
     LeavesTheDomain,
 }
 
 impl Exception {
-    /// As the list has it.
+    /// Returns the name in the list.
     pub fn name(self) -> &'static str {
         match self {
             Exception::NotStraddled => "not straddled",
@@ -31,20 +31,20 @@ impl Exception {
 /// A line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Line {
-    /// Of which function.
+    /// Name of the function.
     pub function: &'static str,
-    /// What.
+    /// Kind of exception.
     pub exception: Exception,
-    /// Where: a condition, or the line that a branch is on, as the WGSL has it.
+    /// A condition, or the line of a branch, as written in the WGSL.
     pub place: &'static str,
-    /// Why.
+    /// Cause of the exception.
     pub reason: &'static str,
 }
 
-/// The whole list.
+/// Returns the whole list.
 ///
 /// # Panics
-/// Where a line is not `function | what | where | why`, which a test forbids.
+/// Panics if a line is not `function | what | where | why`, which a test forbids.
 pub fn all() -> &'static [Line] {
     static ALL: LazyLock<Vec<Line>> = LazyLock::new(|| {
         let text = include_str!("../../branches.txt");
@@ -61,7 +61,7 @@ fn read(line: &'static str) -> Option<Line> {
     Some(Line { function, exception: Exception::named(what)?, place, reason })
 }
 
-/// Whether the list excepts this.
+/// Returns whether the list contains this exception.
 pub fn excepts(function: &str, exception: Exception, place: &str) -> bool {
     all().iter().any(|line| (line.function, line.exception, line.place) == (function, exception, place))
 }

@@ -1,4 +1,4 @@
-//! A specialised shader does what the whole one does: to the bit, on the device, whatever it is made of.
+//! A specialised shader gives the same bits on the device as the whole one, whatever its contents.
 
 mod program;
 mod recipes;
@@ -14,14 +14,14 @@ use naga::back;
 use program::{random_constants, random_program};
 
 const SEED: u64 = 0x5bec;
-/// Programs that are run; each is compiled twice.
+/// Number of programs to run. Each is compiled twice.
 const RUN: u64 = 60;
-/// Programs that are specialised and written.
+/// Number of programs to specialise and write.
 const WRITTEN: u64 = 300;
-/// Calls of each.
+/// Number of calls of each program.
 const ROWS: usize = 256;
 
-/// The kernel of a random program, with values for its overrides.
+/// Returns the source and kernel of a random program, with values for its overrides.
 fn kernel(row: u64) -> (String, KernelModule, Vec<(&'static str, f64)>) {
     let mut draws = Draws::of_row(SEED ^ crate::seed(), row);
     let source = random_program(&mut draws);
@@ -37,20 +37,20 @@ fn specialised(kernel: &KernelModule, constants: &[(&str, f64)]) -> KernelModule
     special
 }
 
-/// A random program, specialised, as WGSL.
+/// Returns a random program, specialised, as WGSL.
 pub(crate) fn specialised_program(row: u64) -> String {
     let (_, kernel, constants) = kernel(row);
     written(&specialised(&kernel, &constants).module, row)
 }
 
-/// A valid module as WGSL.
+/// Returns a valid module as WGSL.
 fn written(module: &naga::Module, row: u64) -> String {
     let info = lapidary_specialise::validate(module).unwrap_or_else(|error| panic!("program {row}: {error}"));
     back::wgsl::write_string(module, &info, back::wgsl::WriterFlags::empty())
         .unwrap_or_else(|error| panic!("program {row}: {error}"))
 }
 
-/// `x`, `n` of each call.
+/// Returns `x` and `n` of each call.
 fn arguments(draws: &mut Draws<'_>) -> Vec<u32> {
     (0..ROWS).flat_map(|_| [draws.between(-2.0, 2.0).to_bits(), draws.bits()]).collect()
 }
@@ -82,7 +82,7 @@ fn a_specialised_program_gives_the_same_bits() {
             );
         }
         varied += u32::from(whole.chunks(2).any(|outcome| outcome != &whole[..2]));
-        // Now and then, that other values would have been seen.
+        // Now and then, check that other override values would have been seen.
         if row % 6 == 0 {
             let turned: Vec<_> = constants.iter().map(|(name, value)| (*name, 1.0 - value.min(1.0))).collect();
             others += 1;
@@ -93,12 +93,13 @@ fn a_specialised_program_gives_the_same_bits() {
     assert!(sensitive * 2 > others, "only {sensitive} of {others} programs depend on their overrides");
 }
 
-/// Branches, switches and loops in WGSL text.
+/// Counts the branches, switches and loops in WGSL text.
 fn decisions(text: &str) -> usize {
     ["if ", "switch ", "for ", "loop "].iter().map(|word| text.matches(word).count()).sum()
 }
 
-/// What is left can be written as SPIR-V and as WGSL, read back, and specialised again without a change.
+/// A specialised program can be written as SPIR-V and as WGSL, read back, and specialised again
+/// without a change.
 #[test]
 fn a_specialised_program_can_be_written_and_is_final() {
     let (mut before, mut after) = (0, 0);

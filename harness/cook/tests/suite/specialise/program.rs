@@ -1,14 +1,15 @@
-//! Random shaders: nested branches, switches, loops and calls whose conditions mix overrides with what is known only at
-//! run time, in every proportion.
+//! Random shaders: nested branches, switches, loops and calls whose conditions mix overrides and
+//! run-time values in every proportion.
 
 use lapidary_assay::draws::Draws;
 use std::fmt::Write as _;
 
-/// Branches, switches and loops inside one another at most.
+/// Greatest nesting depth of branches, switches and loops.
 const DEEPEST: u32 = 2;
 
-/// The function `subject(x: f32, n: u32) -> Outcome`, all that it calls, and the overrides that it reads. Its outcome
-/// always depends on `n`: a kernel that reads no argument would lose the binding of its arguments.
+/// Returns the function `subject(x: f32, n: u32) -> Outcome`, all functions that it calls, and the
+/// overrides that it reads. The outcome always depends on `n`: a kernel that reads no argument
+/// would lose the binding of its arguments.
 pub fn random_program(draws: &mut Draws<'_>) -> String {
     let mut writer = Writer { draws, text: PRELUDE.to_owned(), names: 0, helpers: 0, in_helper: false };
     for name in HELPERS {
@@ -27,7 +28,7 @@ pub fn random_program(draws: &mut Draws<'_>) -> String {
     writer.text
 }
 
-/// The overrides, with values at random.
+/// Returns the overrides with random values.
 pub fn random_constants(draws: &mut Draws<'_>) -> Vec<(&'static str, f64)> {
     let mut constants: Vec<_> = SWITCHES.iter().map(|name| (*name, f64::from(draws.below(2)))).collect();
     constants.push(("COUNT", f64::from(draws.below(4))));
@@ -73,7 +74,7 @@ impl Writer<'_, '_> {
         self.text.push_str("    var value = 0.5f;\n    var hash = 7u;\n    var state = false;\n");
     }
 
-    /// A few statements; `result` is what an early return hands back.
+    /// Writes a few statements. An early return returns `result`.
     fn statements(&mut self, depth: u32, result: &str) {
         for _ in 0..2 + self.draws.below(4) {
             self.statement(depth, result);
@@ -166,7 +167,7 @@ impl Writer<'_, '_> {
         self.line("}");
     }
 
-    /// A call whose flags are mostly alike in every call.
+    /// Writes a call. The flags are mostly the same in every call.
     fn call(&mut self) {
         let Some(helper) = self.helpers.checked_sub(1) else { return self.line("hash += 3u;") };
         let helper = HELPERS[self.draws.below(helper as u32 + 1) as usize];

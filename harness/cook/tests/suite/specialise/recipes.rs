@@ -1,6 +1,6 @@
-//! The same of what the cookbook's recipes are made of: those of their functions that depend on an override, read no
-//! binding and take no derivative run on the device by themselves. There are few; the others are held to their cut texts and pictures
-//! (`effects_off`).
+//! The same for the functions of the cookbook's recipes. Those that depend on an override, read no
+//! binding and take no derivative run on the device by themselves. They are few; the others are
+//! tested through their cut texts and pictures (`effects_off`).
 
 use super::{ROWS, SEED, outcomes, specialised};
 
@@ -14,11 +14,11 @@ use naga::{Expression, Function, Handle, Literal, Module, Statement, back};
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-/// What a function and those that it calls refer to.
+/// References of a function and of the functions that it calls.
 #[derive(Default)]
 struct Reach {
     overrides: BTreeSet<String>,
-    /// It reads a binding, or takes a derivative, which is a fragment's alone.
+    /// Whether it reads a binding, or takes a derivative, which only a fragment shader can do.
     needs_more: bool,
 }
 
@@ -67,12 +67,12 @@ fn called(block: &naga::Block, calls: &mut Vec<Handle<Function>>) {
     }
 }
 
-/// The override's default, and another value.
+/// Returns the override's default and another value.
 fn values(module: &Module, name: &str) -> [f64; 2] {
     let (_, over) = module.overrides.iter().find(|(_, over)| over.name.as_deref() == Some(name)).expect("declared");
     match over.init.map(|init| &module.global_expressions[init]) {
         Some(Expression::Literal(Literal::Bool(value))) => [f64::from(u8::from(*value)), f64::from(u8::from(!value))],
-        // Of the stencils.
+        // An override of the stencils.
         Some(Expression::Literal(Literal::U32(value))) => [f64::from(*value), 18.0],
         other => panic!("{name}: {other:?}"),
     }
@@ -88,14 +88,14 @@ fn a_recipes_function_gives_the_same_bits_specialised() {
             let Reach { overrides, needs_more } = Reach::of(&module, handle);
             let name = function.name.clone().unwrap_or_default();
             let dispatches = Signature::reflect(&module, &name).is_ok();
-            // Parts are in several recipes.
+            // Several recipes share parts.
             if overrides.is_empty() || needs_more || !dispatches || !run.insert(name.clone()) {
                 continue;
             }
             let kernel = KernelModule::reflect(&source, recipe.name, &name).unwrap_or_else(|error| panic!("{error}"));
             let words = dispatch::Kernel::new(crate::gpu(), kernel.clone()).expect("compiles").argument_words();
             let mut draws = Draws::of_row(SEED ^ crate::seed(), run.len() as u64);
-            // Row by row floats, and single bits: any other pattern sets every flag that there is.
+            // Rows alternate between floats and single bits: any other pattern sets every flag.
             let mut word = |place: usize| match place / words % 2 {
                 0 => draws.between(-2.0, 2.0).to_bits(),
                 _ => draws.pick(&[0, 1]) << draws.below(32),
@@ -117,16 +117,16 @@ fn a_recipes_function_gives_the_same_bits_specialised() {
     assert!(run.contains("light_arrival") && run.contains("optical_path_affected"), "{run:?}");
 }
 
-/// A recipe that was specialised, as WGSL.
+/// Specialised recipe as WGSL.
 pub(crate) struct SpecialisedText {
-    /// The recipe, its entry points and its override values.
+    /// Recipe, entry points and override values.
     pub(crate) name: String,
     pub(crate) text: String,
     entry_points: usize,
 }
 
-/// Each recipe with its effects as they are, all off and all on, its entry points all together, and each by itself; and
-/// with each effect alone.
+/// Returns each recipe with its effects as they are, all off and all on, for all entry points
+/// together and for each by itself; and with each effect alone.
 pub(crate) fn specialised_texts() -> &'static [SpecialisedText] {
     static TEXTS: OnceLock<Vec<SpecialisedText>> = OnceLock::new();
     TEXTS.get_or_init(|| RECIPES.iter().flat_map(texts_of).collect())
@@ -153,7 +153,7 @@ fn texts_of(recipe: &Recipe) -> Vec<SpecialisedText> {
     passes.chain(effects().map(|effect| text(&entries, &alone(effect)))).collect()
 }
 
-/// Chromium's word on the same texts: `chromium`.
+/// The module `chromium` tests the same texts in Chromium.
 #[test]
 fn specialised_recipes_are_valid_text() {
     for SpecialisedText { name, text, entry_points } in specialised_texts() {
