@@ -261,8 +261,8 @@ fn the_tests_own_hierarchy_is_shallow() {
 }
 
 /// A body is a million times its size away from the world's origin. f32 resolves only quarters
-/// to thirty-seconds there, so the mesh loses its shape. In the body's own coordinates the ray hits the same point as
-/// in f64, as far as its origin is exact.
+/// to thirty-seconds there, so the mesh loses its shape. In the body's own coordinates the ray hits
+/// the same point as in f64, as far as its origin is exact.
 #[test]
 fn a_body_far_away_is_traced_in_its_own_coordinates() {
     let body = sphere();

@@ -1,7 +1,8 @@
 //! The oracle in f64. The convolution follows its definition, an integral over the Gaussian by
 //! Gaussian quadrature, one lit half turn at a time; if the Gaussian is wider than a radian, the
 //! integral is over the wrapped Gaussian instead. The Fourier series of the shader is not used, and
-//! a closed form only if no terminator is in reach. The spherical form sums Laplace's integral for the Legendre polynomials.
+//! a closed form only if no terminator is in reach. The spherical form sums Laplace's integral for
+//! the Legendre polynomials.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -147,7 +147,7 @@ pub fn column(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     VoxelizationColumn { inside: true, depth: depth.clamp(a.x.min(b.x.min(c.x)), a.x.max(b.x.max(c.x))) }
 }
 
-/// [`column`] in floats, as usually written.
+/// [`column()`] in floats, as usually written.
 pub fn column_naive(a: Vec3, b: Vec3, c: Vec3, column: Vec2) -> VoxelizationColumn {
     let p = a.yz() - column;
     let q = b.yz() - column;

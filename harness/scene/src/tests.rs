@@ -132,9 +132,9 @@ fn prisms_share_normals_within_themselves_alone() {
         let positions: HashSet<_> = vertices(&scene.objects).map(|p| p.to_array().map(f32::to_bits)).collect();
         assert_eq!(positions.len(), scene.objects[0].mesh.positions.len(), "{name}: two prisms touch");
         for body in bodies(&scene) {
-            // Averaged over the prism's own faces: by angle, so that the diagonals of its sides do
-            // not count; from positions rounded some units from the origin, hence not to the last
-            // bit.
+            // Normals are averaged by angle over the prism's own faces, so the diagonals of its
+            // sides do not count. The positions are rounded some units from the origin, so the last
+            // bits differ.
             let alone = Mesh::with_shared_normals(body.positions.clone(), body.indices.clone(), Averaging::Angle);
             for (shared, alone) in body.normals.iter().zip(&alone.normals) {
                 assert!(shared.distance(*alone) < 2e-5, "{name}: {shared} and {alone}");
@@ -190,8 +190,7 @@ fn every_prism_of_the_chain_hangs_at_an_angle_of_its_own() {
     };
     let turns: Vec<f32> = links.iter().zip(&axes).map(turn).collect();
     for (k, turn) in turns.iter().enumerate() {
-        // Multiples of 31°, reduced by whole pentagons, come within 10° of an earlier turn, and no
-        // nearer.
+        // Multiples of 31°, modulo 72°, come as close as 10° to an earlier turn, but no closer.
         let apart = |other: &f32| (turn - other).abs().min(72.0 - (turn - other).abs());
         assert!(turns[k + 1..].iter().all(|other| apart(other) > 9.9), "{turns:?}");
     }
@@ -274,7 +273,7 @@ fn averagings_change_the_normals_alone() {
 
 #[test]
 fn built_in_cameras_frame_their_stones_tightly() {
-    // The vitrine's camera is set by hand; its own test says what it sees.
+    // The vitrine's camera is set by hand and has its own test.
     for built_in in BUILT_IN.iter().filter(|built_in| built_in.name != "vitrine") {
         let scene = Scene::named(built_in.name).unwrap();
         let camera = scene.camera;

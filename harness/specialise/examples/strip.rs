@@ -1,6 +1,10 @@
-//! A shader with values for its overrides, as WGSL on standard output; what that has taken away, on standard error.
+//! Prints a shader with the given values of its overrides as WGSL on standard output, and the
+//! counts before and after on standard error.
 //!
-//! `cargo run -p lapidary-specialise --example strip -- shader.wgsl EFFECT_DISPERSION=0 EFFECT_ABSORPTION=1`
+//! ```sh
+//! cargo run -p lapidary-specialise --example strip -- \
+//!   shader.wgsl EFFECT_DISPERSION=0 EFFECT_ABSORPTION=1
+//! ```
 
 use lapidary_specialise::spirv_counts::instructions;
 use lapidary_specialise::{parse, specialise};
@@ -34,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Instructions, functions and bindings of a module without overrides.
+/// Counts the instructions, functions and bindings of a module without overrides.
 fn sizes((module, info): &(naga::Module, naga::valid::ModuleInfo)) -> [usize; 3] {
     let bindings = module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()).count();
     [instructions(module, info), module.functions.len(), bindings]

@@ -1,10 +1,11 @@
-//! What is left of small shaders, and of the gem's recipe.
+//! Tests of the specialisation of small shaders and of the gem recipe.
 
 use super::{SpecialiseError, specialise};
 use crate as dispatch;
 use naga::{Module, TypeInner, back};
 
-/// What each small shader has: a texture and a buffer that only some branches read, and somewhere to write to.
+/// Declarations of every small shader: a texture and a buffer that only some branches read, and an
+/// output buffer.
 const COMMON: &str = "
 override A: bool = true;
 override B: bool = true;
@@ -16,7 +17,8 @@ fn texel() -> f32 { return textureLoad(picture, vec2u(), 0).x; }
 fn is_bright(x: f32) -> bool { return texel() > x; }
 ";
 
-/// The shader `body` in an entry point, specialised, as its module and as WGSL. SPIR-V is written as well.
+/// Specialises a shader whose entry point has `body`, and returns its module and its WGSL. Also
+/// writes SPIR-V.
 fn special(declarations: &str, body: &str, constants: &[(&str, f64)]) -> (Module, String) {
     let source = format!("{COMMON}{declarations}\n@compute @workgroup_size(1) fn main() {{ {body} }}");
     special_module(&source, constants, &["main"])
@@ -71,13 +73,14 @@ fn and_is_decided_by_a_false_side() {
     let body = "if (A && B) { result[0] = texel(); } else { result[0] = table[0]; }";
     assert_eq!(globals(&special("", body, &[]).0), ["picture", "result"]);
     assert_eq!(globals(&special("", body, &[("B", 0.0)]).0), ["table", "result"]);
-    // A true side leaves the other.
+    // A true side leaves the decision to the other side.
     let (module, text) = special("", "if (A && is_bright(2.0)) { result[0] = 1.0; }", &[]);
     assert_eq!(functions(&module), ["texel", "is_bright"]);
     assert!(!text.contains("    var "), "{text}");
 }
 
-/// The right side is false whatever the left side says, which is still evaluated where it has an effect.
+/// A false right side makes the condition false, but the left side is still evaluated if it has an
+/// effect.
 #[test]
 fn and_is_decided_by_a_false_right_side() {
     let count = "fn count() -> bool { result[9] += 1.0; return result[9] > 2.0; }";
@@ -110,7 +113,7 @@ fn nested_branches_fold_inside_those_that_stay() {
     assert_eq!(globals(&special("", body, &[("B", 0.0)]).0), ["picture", "table", "result"]);
 }
 
-/// What follows a return that is now certain is not reachable.
+/// Code after a return that is now certain is unreachable.
 #[test]
 fn code_behind_a_certain_return_goes() {
     let choose = "fn choose() -> f32 { if (A) { return 1.0; } return texel(); }";
@@ -131,10 +134,10 @@ fn an_argument_that_every_call_gives_alike_becomes_the_constant() {
     assert_eq!(globals(&module), ["table", "result"]);
     assert!(text.contains("fn inner(x: f32) -> f32") && text.contains("fn outer(x_1: f32)"), "{text}");
     assert_eq!(globals(&special(declarations, body, &[]).0), ["picture", "table", "result"]);
-    // One call that differs keeps the argument.
+    // One call with a different value keeps the argument.
     let body = "result[0] = outer(A, table[0]); result[1] = outer(true, 7.0);";
     assert_eq!(globals(&special(declarations, body, &[("A", 0.0)]).0), ["picture", "table", "result"]);
-    // Unless that call is dead itself.
+    // A dead call does not count.
     let body = "result[0] = outer(A, table[0]); if (A) { result[1] = outer(true, 7.0); }";
     assert_eq!(globals(&special(declarations, body, &[("A", 0.0)]).0), ["table", "result"]);
 }
@@ -150,7 +153,7 @@ fn a_composite_argument_is_propagated_to_the_bit() {
     assert!(text.contains("by: vec2<f32>"), "{text}");
 }
 
-/// What is passed to an argument that nobody reads any more is not computed.
+/// If an argument is no longer read, its value is not computed.
 #[test]
 fn an_argument_that_is_not_read_is_not_passed() {
     let declarations = "fn either(lit: f32, x: f32) -> f32 { if (A) { return lit; } return x; }";
@@ -176,7 +179,7 @@ fn a_loop_of_no_rounds_goes() {
     assert!(text.contains("loop") && text.contains("2u"), "{text}");
 }
 
-/// A value known before a loop is not one in it, once the loop writes the variable.
+/// A value known before a loop is unknown in the loop if the loop writes the variable.
 #[test]
 fn a_variable_that_a_loop_writes_is_not_constant() {
     let body = "
@@ -188,7 +191,7 @@ fn a_variable_that_a_loop_writes_is_not_constant() {
     assert!(text.contains("var first") && !text.contains("steady"), "{text}");
 }
 
-/// Of two arms, one that returns says nothing about what follows.
+/// An arm that returns says nothing about the code after the branch.
 #[test]
 fn an_arm_that_returns_does_not_count() {
     let body = "
@@ -196,7 +199,7 @@ fn an_arm_that_returns_does_not_count() {
         if (bright) { result[1] = texel(); }";
     let (module, text) = special("", body, &[]);
     assert_eq!((globals(&module), text.matches("if").count()), (vec!["picture", "table", "result"], 1), "{text}");
-    // Nor is what it or the other has computed at hand there.
+    // A value computed in either arm is not available there.
     let body = "var x = 0.0; if (table[0] > 0.0) { x = table[1]; } else { return; } result[0] = x;";
     let (_, text) = special("", body, &[]);
     assert!(text.contains("var x"), "{text}");
@@ -224,7 +227,7 @@ fn a_variable_that_takes_an_atomics_result_is_not_constant() {
     assert_eq!(globals(&special(count, body, &[]).0), ["table", "result", "count"]);
 }
 
-/// A loop may run once and still need to be one.
+/// A loop with an inner `break` or `continue` stays, even if it runs only once.
 #[test]
 fn a_loop_that_is_left_from_within_stays() {
     for (body, word) in [
@@ -273,7 +276,7 @@ fn a_switch_becomes_the_case_that_is_taken() {
         let (module, text) = special("", body, &[("N", f64::from(n))]);
         assert_eq!(globals(&module), expected, "{text}");
         assert!(text.contains("result[2] = 1f"), "{text}");
-        // Only a break from within needs a switch around it.
+        // Only an inner `break` needs the switch.
         assert_eq!(text.contains("switch"), n == 1 || n == 2, "{text}");
     }
     assert_eq!(globals(&special("", body, &[("N", 9.0)]).0), ["table", "result"]);
@@ -297,7 +300,8 @@ fn a_select_on_a_constant_is_the_operand_it_takes() {
     assert_eq!(globals(&special("", body, &[("A", 0.0)]).0), ["picture", "result"]);
 }
 
-/// A value prepared for a branch that is gone is not prepared; one with an effect is.
+/// A value prepared only for a removed branch is not computed, unless the computation has an
+/// effect.
 #[test]
 fn what_only_a_dead_branch_uses_goes_too() {
     let declarations = "
@@ -314,7 +318,7 @@ fn what_only_a_dead_branch_uses_goes_too() {
     assert_eq!(globals(&special(declarations, body, &[]).0), ["picture", "table", "result"]);
 }
 
-/// Calls with effects stay, in their order, used or not.
+/// Calls with effects stay in their order, whether or not their results are used.
 #[test]
 fn calls_keep_their_order() {
     let declarations = "
@@ -332,7 +336,7 @@ fn calls_keep_their_order() {
     assert_eq!(calls, ["one()", "two()", "one()", "three(", "two()"], "{text}");
 }
 
-/// A sum of floats is the device's to round, even where both are known.
+/// The device rounds a sum of floats, even if both terms are known.
 #[test]
 fn floats_are_not_computed_here() {
     let declarations = "fn sum(a: f32, b: f32) -> f32 { return a + b; }";
@@ -356,7 +360,7 @@ fn the_other_entry_points_go() {
         @compute @workgroup_size(1) fn first() {{ result[0] = texel(); }}
         @compute @workgroup_size(1) fn second() {{ result[0] = table[0] * UNSET; }}"
     );
-    // An override without a value is no matter where nothing left uses it.
+    // An override needs no value if no remaining code uses it.
     let (module, _) = special_module(&source, &[], &["first"]);
     assert_eq!(globals(&module), ["picture", "result"]);
     let (module, _) = special_module(&source, &[("UNSET", 2.0)], &["first", "second"]);
@@ -429,7 +433,7 @@ fn what_no_fragment_stage_reads_is_not_handed_on() {
     assert!(!text.contains("first") && !text.contains("second") && text.contains("@location(2) third"), "{text}");
     let (module, text) = of(&[], &["vertex", "fragment"]);
     assert!(globals(&module) == ["table"] && !text.contains("first") && text.contains("second"), "{text}");
-    // Members move together: behind the position stands the one that is left.
+    // Members move together: the remaining ones follow the position without a gap.
     let TypeInner::Struct { members, span } =
         &module.types.iter().find(|(_, ty)| ty.name.is_some()).expect("a struct").1.inner
     else {
@@ -439,7 +443,8 @@ fn what_no_fragment_stage_reads_is_not_handed_on() {
     assert_eq!((offsets, *span), (vec![0, 16, 28], 32));
 }
 
-/// A stage by itself does not know what the other reads; nor does one beside a fragment stage that takes its inputs singly.
+/// A stage alone does not know the reads of the other stage. Nor does it know them next to a
+/// fragment stage that takes its inputs as separate parameters.
 #[test]
 fn what_another_stage_may_read_is_handed_on() {
     for entries in [&["vertex"][..], &["fragment"], &["vertex", "fragment", "other"]] {
@@ -448,7 +453,7 @@ fn what_another_stage_may_read_is_handed_on() {
     }
 }
 
-/// A vector that nothing has been stored in yet is what it was declared with.
+/// A vector that has not been written yet has its initial value.
 #[test]
 fn a_vector_that_was_not_written_is_its_initial_value() {
     let body = |condition: &str| {

@@ -220,7 +220,7 @@ fn a_cube_has_a_chart_for_each_side_that_one_view_hides() {
     // A view along a diagonal shows three sides at once.
     assert_eq!(charts::charts(&cube, 0.0).len(), 2);
     check("cube", &cube, 0.0);
-    // As a soup of triangles too: equal positions count as one vertex.
+    // The same holds for a soup of triangles: equal positions count as one vertex.
     let positions: Vec<Vec3> = cube.triangles().flatten().collect();
     let soup = Mesh::with_shared_normals(positions, (0..36).collect(), Averaging::Angle);
     assert_eq!(charts::charts(&soup, 0.0).len(), 2);
@@ -273,7 +273,7 @@ fn texture_coordinates_do_not_depend_on_size_or_earlier_ones() {
     assert_eq!(unwrap(&unwrapped, 0.0).uvs, unwrapped.uvs);
     let mut larger = mesh.clone();
     larger.positions.iter_mut().for_each(|position| *position *= 1024.0);
-    // By a power of two, so that every number is scaled exactly.
+    // The factor is a power of two, so every number is scaled exactly.
     assert_eq!(unwrap(&larger, 0.0).uvs, unwrapped.uvs);
 }
 

@@ -24,8 +24,8 @@ fn the_candle_is_closed_smooth_and_right_side_out() {
     assert!(widest.to_degrees() < 30.0);
 }
 
-/// By Pappus: 2π times the integral of r²/2 over the height, without runs and sag, which add and
-/// remove wax.
+/// Pappus's theorem gives the volume: 2π times the integral of r²/2 over the height, without the
+/// runs and the sag, which add and remove wax.
 #[test]
 fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
     let mesh = mesh();
@@ -50,8 +50,9 @@ fn the_candle_has_the_outlines_volume_and_stands_on_the_table() {
 fn the_outline_ends_on_the_axis_and_bends_evenly() {
     assert_eq!((outline(0.0).x, outline(1.0).x), (0.0, 0.0));
     assert_eq!(outline(1.0).y, 0.0);
-    // On both sides of each control point the second derivatives with respect to the point number
-    // agree, up to third derivatives, of at most 8 times the distance between two points, times 2h.
+    // On both sides of each control point, the second derivatives with respect to the point number
+    // agree to within 2h times a third derivative of at most 8 times the distance between two
+    // points.
     let (h, spans) = (1e-3, (OUTLINE.len() - 1) as f64);
     for k in 1..OUTLINE.len() - 1 {
         let at = |offset: f64| outline((k as f64 + offset * h) / spans);

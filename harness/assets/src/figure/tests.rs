@@ -7,12 +7,12 @@ fn the_figure_is_one_closed_body_without_slivers() {
     let survey = survey(&mesh);
     println!("{} triangles, {survey:?}", mesh.triangle_count());
     assert!(survey.bodies == 1 && survey.least_angle > 6.0, "{survey:?}");
-    // In creases that are narrower than a triangle.
+    // The turned normals lie in creases narrower than a triangle.
     assert!(survey.turned < 0.006, "{survey:?}");
     assert!((10_000..15_000).contains(&mesh.triangle_count()));
 }
 
-/// Tests points within each part and in the open air beside it.
+/// Tests points within each part and in the open air next to it.
 #[test]
 fn arms_wings_and_wreath_are_free_of_the_body() {
     let inside = |x: f64, y: f64, z: f64| field(dvec3(x, y, z)) < 0.0;
@@ -28,7 +28,7 @@ fn arms_wings_and_wreath_are_free_of_the_body() {
     }
 }
 
-/// The path length inside along z.
+/// The depth is the path length inside the figure along z.
 #[test]
 fn wings_are_thin_and_the_robe_is_not() {
     let depth = |x: f64, y: f64| {

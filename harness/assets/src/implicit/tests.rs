@@ -81,7 +81,7 @@ fn a_sphere_has_its_volume_its_area_and_its_normals() {
         assert!((position.length() - 10.0).abs() < 1e-5 && normal.distance(*position / 10.0) < 1e-5);
     }
     let (volume, area) = mesh.volume_and_area();
-    // Chords of .9 are off by (.9 / 2)² / (2 · 10) of 10 at most.
+    // The sagitta of a chord of .9 is at most (.9 / 2)² / (2 · 10), on a radius of 10.
     assert!((volume / (4.0 / 3.0 * PI * 1000.0) - 1.0).abs() < 4e-3, "{volume}");
     assert!((area / (4.0 * PI * 100.0) - 1.0).abs() < 4e-3, "{area}");
 }
@@ -105,7 +105,7 @@ fn a_body_that_leaves_the_grid_is_cut_off_and_closed() {
     assert_eq!(survey(&mesh).bodies, 1);
 }
 
-/// Spheres that touch in the middle of a cell, at all positions within a cell: each keeps its own
+/// Two spheres touch in the middle of a cell, at all positions within a cell: each keeps its own
 /// vertices, or they are one body.
 #[test]
 fn nothing_that_passes_a_cell_together_shares_a_vertex() {

@@ -3,7 +3,7 @@
 use super::{Failure, Outcome, output};
 use lapidary_assay::accuracy_line::Accuracy;
 use lapidary_assay::dispatch::{self, ENTRY_POINT, KernelModule};
-use lapidary_cook::cookbook::marks::{effect_of, effects, override_of};
+use lapidary_cook::cookbook::marks::{self, effect_of, effects, override_of};
 use lapidary_cook::cookbook::translate::{Target, translate};
 use lapidary_cook::cookbook::{self, Module};
 use lapidary_render::file;
@@ -22,7 +22,8 @@ pub(super) struct Arguments {
     /// recipe, such as gem::gem_fragment.
     #[arg(required = true, value_name = "MODULE|RECIPE")]
     names: Vec<String>,
-    /// Effects of a recipe to switch on; the recipe's own defaults if omitted.
+    /// Effects of a recipe to keep, switched on; the others are cut out of the text, with the modules
+    /// that only they use. If omitted, all are kept, with the recipe's own defaults.
     #[arg(long, value_delimiter = ',', value_name = "a,b")]
     effects: Option<Vec<String>>,
     /// Shading language.
@@ -159,15 +160,14 @@ fn of_source(source: &str, name: &str, to: Target, entry: Option<&str>) -> Resul
     translate(&ir, &info, to, entry).map_err(Failure)
 }
 
-/// Returns the recipe with its effects switched in the text itself, so that this applies to every
-/// language.
+/// Returns the recipe to paste, without marks. If effects are named, the lines of all others are cut,
+/// and modules that nothing uses any more are left out.
 fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Failure> {
     let source = recipe.compose();
-    let Some(wanted) = wanted else { return Ok(source) };
-    // `--effects ""` switches all effects off.
-    let wanted: Vec<&String> = wanted.iter().filter(|effect| !effect.is_empty()).collect();
     let known = effects(&source);
-    if let Some(unknown) = wanted.iter().find(|effect| !known.contains(effect)) {
+    // `--effects ""` switches all effects off.
+    let wanted = wanted.map(|wanted| wanted.iter().filter(|effect| !effect.is_empty()).collect::<Vec<_>>());
+    if let Some(unknown) = wanted.iter().flatten().find(|effect| !known.contains(effect)) {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         return Err(Failure(format!(
             "recipe `{}` has no effect `{unknown}`{}",
@@ -175,15 +175,12 @@ fn with_effects(recipe: &Recipe, wanted: Option<&[String]>) -> Result<String, Fa
             nearest::suggest(unknown, &names)
         )));
     }
-    let lines: Vec<String> = source
-        .lines()
-        .map(|line| match effect_of(line) {
-            None => line.to_owned(),
-            Some(effect) => {
-                let mark = line.split_once(';').map_or("", |(_, mark)| mark);
-                format!("override {}: bool = {};{mark}", override_of(&effect), wanted.contains(&&effect))
-            }
-        })
-        .collect();
-    Ok(lines.join("\n") + "\n")
+    let off = known.iter().filter(|effect| wanted.as_ref().is_some_and(|wanted| !wanted.contains(effect)));
+    let off: Vec<&str> = off.map(String::as_str).collect();
+    let text = marks::without(recipe, &off).map_err(|fault| Failure(format!("{}: {}", recipe.name, fault.message)))?;
+    let switched = text.lines().map(|line| match effect_of(line) {
+        Some(effect) if wanted.is_some() => format!("override {}: bool = true;", override_of(&effect)),
+        _ => line.to_owned(),
+    });
+    Ok(switched.collect::<Vec<_>>().join("\n") + "\n")
 }

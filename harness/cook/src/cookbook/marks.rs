@@ -1,6 +1,9 @@
 //! Marks of the lines of a recipe that belong to an effect, or that replace it. The format is
 //! described in `docs/contract.md`.
 
+use lapidary_wgsl::Recipe;
+use std::collections::HashSet;
+
 /// A line of a recipe with its marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line<'a> {
@@ -77,6 +80,70 @@ fn within<'a>(open: &[(&'a str, usize)]) -> Vec<&'a str> {
     open.iter().flat_map(|(names, _)| names.split(',')).collect()
 }
 
+/// Returns the text without marks, without the lines for any effect of `off`, and with the lines that
+/// replace them. A comment above removed lines goes with them, unless it also stands above others.
+pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
+    let is_off = |effects: &[&str]| effects.iter().any(|effect| off.contains(effect));
+    let is_comment = |text: &str| text.trim_start().starts_with("//");
+    let indents: Vec<&str> = source.lines().map(|line| &line[..line.len() - line.trim_start().len()]).collect();
+    let mut kept: Vec<String> = Vec::new();
+    let mut is_after_removed = false;
+    for Line { number, text, with, without } in lines(source)? {
+        if is_off(&with) {
+            is_after_removed = true;
+            continue;
+        }
+        if !without.is_empty() {
+            if is_off(&without) {
+                kept.push(format!("{}{text}", indents[number - 1]));
+                is_after_removed = false;
+            }
+            continue;
+        }
+        let ends = text.trim().is_empty() || text.trim() == "}" || is_comment(text);
+        if is_after_removed && ends {
+            while kept.last().is_some_and(|text| is_comment(text)) {
+                kept.pop();
+            }
+            // One empty line is enough.
+            if text.trim().is_empty() && kept.last().is_some_and(|text| text.trim().is_empty()) {
+                continue;
+            }
+        }
+        is_after_removed = false;
+        kept.push(text.to_owned());
+    }
+    Ok(kept.join("\n") + "\n")
+}
+
+/// Returns a recipe with its modules, cut as by [`cut`], without the modules, naive forms and parts of
+/// which the cut recipe uses nothing.
+pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
+    let code = |line: &str| line.split("//").next().unwrap_or_default().trim().to_owned();
+    let mut own: Vec<String> = recipe.own_text().into_iter().map(|text| cut(text, off)).collect::<Result<_, _>>()?;
+    own.retain(|text| text.lines().any(|line| !code(line).is_empty()));
+    let own = own.join("\n");
+    let lines: Vec<String> = own.lines().map(code).collect();
+    let words: HashSet<&str> = lines.iter().flat_map(|line| words(line)).collect();
+    let is_used = |text: &str| {
+        let starts = ["fn ", "struct ", "const "];
+        let mut declared = text.lines().filter_map(|line| starts.iter().find_map(|start| line.strip_prefix(start)));
+        declared.any(|rest| self::words(rest).next().is_some_and(|name| words.contains(name)))
+    };
+    let source = |name: &str| lapidary_wgsl::module(name).map_or("", |module| module.source);
+    let naive = |name: &str| lapidary_wgsl::module(name).map_or("", |module| module.naive);
+    let compared: Vec<&str> = recipe.compares().into_iter().filter(|name| is_used(naive(name))).collect();
+    // A naive form uses its module.
+    let required = recipe.requires().into_iter().filter(|name| is_used(source(name)) || compared.contains(name));
+    let last: Vec<&str> = compared.iter().map(|name| naive(name)).chain([own.as_str()]).collect();
+    Ok(lapidary_wgsl::compose(&required.collect::<Vec<_>>(), &last.join("\n")))
+}
+
+/// Returns the identifiers and numbers of a line of code.
+fn words(code: &str) -> impl Iterator<Item = &str> {
+    code.split(|character: char| !character.is_ascii_alphanumeric() && character != '_').filter(|word| !word.is_empty())
+}
+
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an
 /// effect are marked with that effect.
 pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
@@ -93,7 +160,7 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
             }
         }
         let code = text.split("//").next().unwrap_or_default();
-        for word in code.split(|character: char| !character.is_ascii_alphanumeric() && character != '_') {
+        for word in words(code) {
             let Some(effect) = word.strip_prefix("EFFECT_").map(str::to_lowercase) else { continue };
             if !with.contains(&effect.as_str()) {
                 report(format!("`{word}` stays behind where the effect is off; end the line with `//+{effect}`"));
@@ -146,6 +213,16 @@ override EFFECT_FOG: bool = true;  //+fog
         ];
         assert_eq!(found, expected);
         assert_eq!(effects(TEXT), ["fog"]);
+    }
+
+    #[test]
+    fn what_is_off_is_cut_with_its_comments_and_no_mark_is_left() {
+        assert_eq!(cut(TEXT, &[]).expect("well formed"), "a\noverride EFFECT_FOG: bool = true;\n    b\n    c\n// f\n");
+        assert_eq!(cut(TEXT, &["snow"]).expect("well formed"), "a\noverride EFFECT_FOG: bool = true;\n    b\n// f\n");
+        assert_eq!(cut(TEXT, &["fog"]).expect("well formed"), "a\n    d(e);\n// f\n");
+        let commented = "// Both.\nfog,  //+fog\nrain,\n\n// Fog alone.\nmore fog;  //+fog\n\n// Kept.\nend\n";
+        assert_eq!(cut(commented, &["fog"]).expect("well formed"), "// Both.\nrain,\n\n// Kept.\nend\n");
+        assert_eq!(cut("//+fog (\n", &[]).expect_err("not well formed").line, 1);
     }
 
     #[test]

@@ -1,9 +1,10 @@
-//! The house's order: crates whose arrows run one way, mirrors that stand on glam alone, folders that do not need each other.
+//! Tests of the workspace structure: dependencies between crates run one way, mirrors need only
+//! glam, and folders do not need each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Of each crate of the harness, the others that it may need; see docs/ARCHITECTURE.md.
+/// Other crates that each crate of the harness may need; see docs/ARCHITECTURE.md.
 const ARROWS: [(&str, &[&str]); 10] = [
     ("gpu", &[]),
     ("browser", &[]),
@@ -21,7 +22,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The names, without `lapidary-`, that a manifest's `[dependencies]` hold, and whether each is optional.
+/// Returns the names, without `lapidary-`, in a manifest's `[dependencies]`, and whether each is
+/// optional.
 fn dependencies(manifest: &Path) -> BTreeMap<String, bool> {
     let text = std::fs::read_to_string(manifest).unwrap_or_else(|error| panic!("{}: {error}", manifest.display()));
     let part = text.split("\n[dependencies]\n").nth(1).unwrap_or_default();
@@ -51,7 +53,7 @@ fn arrows_between_crates_run_one_way() {
         for other in needed.keys().filter(|other| known.contains(other.as_str())) {
             assert!(allowed.contains(&other.as_str()), "{name} needs {other}");
         }
-        // Libraries for everyone know nothing of the cookbook.
+        // Libraries for general use must not depend on the cookbook.
         if ["gpu", "browser", "specialise", "assay"].contains(&name) {
             assert!(needed.keys().all(|other| !modules.contains(other)), "{name}");
         }
@@ -65,12 +67,13 @@ fn mirrors_stand_on_glam_alone() {
     for module in folders(&root().join("crates")) {
         let needed = dependencies(&root().join("crates").join(&module).join("Cargo.toml"));
         let always: Vec<&String> = needed.iter().filter(|(_, optional)| !**optional).map(|(name, _)| name).collect();
-        // A scalar module needs nothing at all.
+        // A scalar module needs no dependency at all.
         assert!(always.iter().all(|name| *name == "glam"), "{module} needs {always:?}");
     }
 }
 
-/// In every crate, the folders at the root of its sources can be put in an order in which each names only earlier ones.
+/// The folders at the root of every crate's sources have an order in which each names only earlier
+/// ones.
 #[test]
 fn no_circles_among_folders() {
     for (name, _) in ARROWS {
@@ -93,7 +96,8 @@ fn no_circles_among_folders() {
     }
 }
 
-/// The modules at the crate's root that a source names: `crate::a::…`, and all of `crate::{a::…, b::{…}, c}`.
+/// Returns the modules at the crate root that a source names: `crate::a::…`, and all of
+/// `crate::{a::…, b::{…}, c}`.
 fn named(source: &str) -> Vec<String> {
     let identifier = |text: &str| -> String {
         text.trim_start().chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect()
@@ -129,7 +133,8 @@ fn names_are_read_from_lists_too() {
     assert_eq!(named(source), ["a", "b", "e", "g", "i"]);
 }
 
-/// The packages that one is built from, without its tests; `edges` as `cargo tree` has them.
+/// Returns the packages from which a package is built, without its tests. `edges` is in the syntax
+/// of `cargo tree`.
 fn packages(package: &str, features: &[&str], edges: &str) -> BTreeSet<String> {
     let mut command = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(["tree", "--package", package, "--edges", edges, "--prefix", "none", "--format", "{p}"]);
@@ -141,7 +146,8 @@ fn packages(package: &str, features: &[&str], edges: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
-/// What a stranger takes on with the libraries: no more packages than their READMEs state, and nothing that a C or C++ compiler builds.
+/// Users of the libraries take on no more packages than the READMEs state, and none that a C or C++
+/// compiler builds.
 #[test]
 fn the_libraries_stay_small() {
     for (package, features, most) in [
@@ -157,7 +163,7 @@ fn the_libraries_stay_small() {
     }
 }
 
-/// The texts of a folder's sources, without those of tests.
+/// Returns the texts of a folder's sources, without test files.
 fn texts(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {

@@ -18,7 +18,7 @@ fn rendered(scene: &Scene, settings: &Settings<'_>) -> Rendering {
     render(scene, settings, &|_, _| {}).unwrap()
 }
 
-/// RMS and largest difference over the channels of covered pixels.
+/// Returns the RMS and the largest difference over the channels of covered pixels.
 fn difference(a: &Rendering, b: &Rendering) -> (f64, f64) {
     let pairs = a.linear.iter().zip(&b.linear).filter(|(a, _)| a[3] > 0.0);
     let parts = pairs.flat_map(|(a, b)| [0, 1, 2].map(|k| f64::from((a[k] - b[k]).abs())));
@@ -27,13 +27,14 @@ fn difference(a: &Rendering, b: &Rendering) -> (f64, f64) {
     ((squares / parts.len() as f64).sqrt(), parts.iter().copied().fold(0.0, larger))
 }
 
-/// Factor from the energy dropped at each wavelength to the greatest deficit of a channel.
+/// Returns the factor from the energy dropped at each wavelength to the greatest deficit of a
+/// channel.
 fn gain(wavelengths: usize) -> f64 {
     let rows = spectrum::weights(wavelengths).into_iter().map(|wavelength| (wavelength.weights * DVec3::ONE).abs());
     rows.sum::<DVec3>().max_element()
 }
 
-/// Surrounded by radiance 1, a clear stone shows 1 minus the dropped energy: to f64's digits at
+/// Surrounded by radiance 1, a clear stone shows 1 minus the dropped energy: with f64 accuracy at
 /// each wavelength of each ray, and within the bound in the image.
 #[test]
 fn white_furnace() {
@@ -98,8 +99,8 @@ fn white_furnace_as_rendered() {
     }
 }
 
-/// Two stones, one in front of the other: light that leaves one and enters the other is followed
-/// too.
+/// Two stones, one in front of the other. Light that leaves one stone and enters the other is also
+/// followed.
 #[test]
 fn white_furnace_of_several_bodies() {
     let mut scene = Scene::named("octahedron").unwrap();

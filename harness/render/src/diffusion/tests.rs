@@ -16,18 +16,19 @@ use std::collections::HashMap;
 
 type Half = exr::prelude::f16;
 
-/// For each position, by its bits, what the vertices there find.
+/// Values at the vertices of each position, by the position's bits.
 type ByPosition = HashMap<[u32; 3], Vec<f32>>;
 
-/// Of the Gaussian, as a share of the sphere's radius.
+/// Width coefficient of the Gaussian, as a fraction of the sphere's radius.
 const SIGMA0: f32 = 1.0 / 6.0;
 
-/// A sphere of radius 1, cut into charts.
+/// Returns a sphere of radius 1, cut into charts.
 fn charted(halo: f32) -> Mesh {
     atlas::unwrap(&Mesh { uvs: Vec::new(), ..sphere(1.0, 128) }, halo)
 }
 
-/// What shading finds in the texture: for each vertex of `mesh`, in white light from there.
+/// Returns the values that shading reads from the texture at the vertices of `mesh`, in white light
+/// from `toward`.
 fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
     let mut scene = Scene::named("skin").expect("built in");
@@ -47,7 +48,7 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     let mut texels: Vec<f32> = Vec::new();
     let executor = Executor::new(gpu, builder.finish()).expect("made");
     executor.run(|_, bytes| texels.extend(bytes.chunks_exact(8).map(red))).expect("run");
-    // Bilinear, repeating.
+    // Bilinear filtering of a repeating texture.
     let at = |place: Vec2| {
         let place = place.as_ivec2().rem_euclid(glam::IVec2::splat(SIDE as i32));
         texels[(place.y * SIDE as i32 + place.x) as usize]
@@ -64,7 +65,7 @@ fn looked_up(mesh: &Mesh, toward: Vec3) -> Vec<f32> {
     mesh.uvs.iter().map(sample).collect()
 }
 
-/// What halos have of their own is not looked up.
+/// Groups the values by position, without the vertices that belong only to halos.
 fn by_position(mesh: &Mesh, values: &[f32]) -> ByPosition {
     let mut found = ByPosition::new();
     let mut seen = vec![false; mesh.positions.len()];
@@ -77,8 +78,9 @@ fn by_position(mesh: &Mesh, values: &[f32]) -> ByPosition {
     found
 }
 
-/// The largest differences of `mesh`'s values in three lights: between two charts at one place of their border, and, as far as 30° from
-/// the equator, from `unrolled`, the same sphere by longitude and latitude, whose texture repeats.
+/// Returns the largest differences of `mesh`'s values in three lights: first between two charts at
+/// the same point of their border, then from `unrolled` up to 30° from the equator. `unrolled` is
+/// the same sphere parametrised by longitude and latitude, with a repeating texture.
 fn differences(mesh: &Mesh, unrolled: &[(Vec3, ByPosition)]) -> [f32; 2] {
     let mut most = [0.0f32; 2];
     for (toward, wanted) in unrolled {
@@ -94,7 +96,8 @@ fn differences(mesh: &Mesh, unrolled: &[(Vec3, ByPosition)]) -> [f32; 2] {
     most
 }
 
-/// What is left is what drawing along an axis costs: along a Gaussian's reach the stretch is not constant.
+/// The remaining difference is the cost of drawing along an axis: the stretch is not constant
+/// within the reach of a Gaussian.
 #[test]
 fn halos_close_the_borders_of_charts() {
     let unrolled = sphere(1.0, 128);

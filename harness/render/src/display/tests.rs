@@ -10,7 +10,7 @@ fn gpu() -> &'static Gpu {
     Gpu::shared(&AdapterChoice::from_environment()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A picture of these samples, row by row, by the display recipe.
+/// Displays samples, row by row, with the display recipe.
 fn displayed(samples: &[[f32; 4]], settings: &Settings) -> Picture {
     let (width, height) = (settings.width, settings.height);
     let pixels = width as usize * height as usize;
@@ -21,14 +21,16 @@ fn displayed(samples: &[[f32; 4]], settings: &Settings) -> Picture {
     picture
 }
 
-/// Each pixel shows the mean of its tone-mapped samples, each before the backdrop, and keeps the mean of their radiance.
+/// Each pixel shows the mean of its samples, each composited over the backdrop and tone-mapped, and
+/// keeps the mean of their radiance.
 #[test]
 fn samples_are_tone_mapped_before_they_are_averaged() {
     let (width, height) = (24, 16);
     for samples in [1, 3, 4, 8] {
         let settings = Settings { samples, exposure: 0.7, ..Settings::of_size(width, height) };
         let mut draws = Draws::of_row(7, samples.into());
-        // A stone's: mostly dark, here and there a light of radiance 20, and holes that show the backdrop.
+        // Samples like a stone's: mostly dark, a few lights of radiance up to 20, and holes that
+        // show the backdrop.
         let of_draws = |_| {
             let strength = draws.between(-9.0, 4.3).exp2();
             let colour = [0; 3].map(|_| strength * draws.between(0.5, 1.0));
@@ -45,13 +47,14 @@ fn samples_are_tone_mapped_before_they_are_averaged() {
             let place = Vec2::new(column as f32, row as f32) + 0.5;
             let behind = backdrop(place, Vec2::new(width as f32, height as f32));
             let expected = 255.0 * shown(&own, settings.exposure, behind);
-            // Half a step of rounding, and what the formulas may differ by: 64 sums of 2^-24, the curve's 20 ulp and the encoding's 6e-6, of 255.
+            // Half a step of rounding, plus the difference of the formulas: 64 sums of 2^-24, 20
+            // ulp of the curve and 6e-6 of the encoding, times 255.
             let found = Vec3::from_array([0, 1, 2].map(|k| f32::from(encoded[k])));
             assert!((found - expected).abs().cmple(Vec3::splat(0.503)).all(), "{column} {row}: {found} {expected}");
             let mean = own.iter().sum::<Vec4>() / own.len() as f32;
             let bound = 64.0 * f32::EPSILON * own.iter().copied().fold(Vec4::ZERO, Vec4::max);
             assert!((Vec4::from_array(*linear) - mean).abs().cmple(bound).all(), "{column} {row}: {linear:?} {mean}");
-            // What would be shown of the mean.
+            // The pixel if the mean were tone-mapped instead.
             let late = 255.0 * shown(&[mean], settings.exposure, behind);
             apart += u32::from((late - expected).abs().max_element() > 8.0);
         }
@@ -60,18 +63,20 @@ fn samples_are_tone_mapped_before_they_are_averaged() {
     }
 }
 
-/// Half of a pixel lit by 20 emits half of what such a light emits and half of what is behind it, however bright it is.
+/// A pixel half covered by a light of radiance 20 is displayed halfway, in linear emission, between
+/// the light and the area behind it, however bright the light is.
 #[test]
 fn an_edge_of_a_light_has_a_middle() {
     let settings = Settings { samples: 2, ..Settings::of_size(1, 1) };
     let (light, dark) = ([20.0, 20.0, 20.0, 1.0], [0.0, 0.0, 0.0, 1.0]);
     let picture = displayed(&[light, dark, light, dark], &settings);
-    // The curve makes 0.997 of 20, half of which is code 187; of the mean, 10, it would make 0.994, which is code 254.
+    // The curve maps 20 to 0.997, half of which is code 187. It would map the mean, 10, to 0.994,
+    // which is code 254.
     assert!(picture.encoded[0][..3].iter().all(|code| (186..=188).contains(code)), "{:?}", picture.encoded);
     assert_eq!(picture.linear, [[10.0, 10.0, 10.0, 1.0]]);
 }
 
-/// The texels of any number of samples fit what every device has.
+/// The texels of a tile fit the limits of every device, for any number of samples.
 #[test]
 fn tiles_are_small() {
     for samples in 1..=super::super::MOST_SAMPLES {
@@ -83,7 +88,8 @@ fn tiles_are_small() {
     }
 }
 
-/// Tiles meet without a seam: with eight samples the second begins at column 256, with four there is one.
+/// Tiles meet without a seam. With eight samples the second tile begins at column 256; with four
+/// there is only one tile.
 #[test]
 fn tiles_meet() {
     let scene = Scene::named("brilliant").expect("built in");
@@ -100,7 +106,8 @@ fn tiles_meet() {
     }
 }
 
-/// The reference's samples are shown as a rung's are: a stone that lets nothing through reflects alike in both.
+/// Samples of the reference are displayed like those of a rung: a stone without transmitted light
+/// reflects alike in both.
 #[test]
 fn the_reference_is_shown_alike() {
     let mut scene = Scene::named("brilliant").expect("built in");

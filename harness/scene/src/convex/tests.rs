@@ -120,7 +120,7 @@ fn a_shape_is_convex_concave_or_open() {
     let mut open = mesh("octahedron");
     open.indices.truncate(open.indices.len() - 3);
     assert_eq!(Shape::of(&open), Shape::Open);
-    // Inside out, no plane has the others below it.
+    // In a mesh turned inside out, no plane has the others below it.
     let mut turned = mesh("octahedron");
     turned.indices.chunks_exact_mut(3).for_each(|corners| corners.swap(1, 2));
     assert_eq!(Shape::of(&turned), Shape::Concave);

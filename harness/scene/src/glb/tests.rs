@@ -49,7 +49,7 @@ fn the_container_is_aligned_and_complete() {
     assert!(binary.len() - length < 4);
 }
 
-/// JSON of a scene as written.
+/// Returns the JSON of a scene as written.
 fn json_of(scene: &Scene) -> Value {
     serde_json::from_slice(chunk(&write(scene).unwrap(), 12).1).unwrap()
 }

@@ -1,4 +1,4 @@
-//! Tests of what the loader reads, and of its messages for files that it cannot read.
+//! Tests of the loader, and of its messages for files that it cannot read.
 
 use glam::Quat;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ mod refused_data;
 mod texture_coordinates;
 mod transmission;
 
-/// Three corners of a right triangle, followed by the indices 0 1 2 0 as shorts.
+/// Returns the three corners of a right triangle, followed by the indices 0 1 2 0 as shorts.
 fn binary() -> Vec<u8> {
     let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let indices: [u16; 4] = [0, 1, 2, 0];
@@ -24,7 +24,7 @@ fn binary() -> Vec<u8> {
     corners.chain(indices.into_iter().flat_map(u16::to_le_bytes)).collect()
 }
 
-/// A file with one triangle, which each test modifies.
+/// Returns a file with one triangle, which each test modifies.
 fn document() -> Value {
     json!({
         "asset": {"version": "2.0"},
@@ -172,7 +172,7 @@ fn flattened_bodies_load() {
     assert_ne!(scene.camera.eye, scene.camera.target);
 }
 
-/// The material of a file whose only primitive has `material`.
+/// Returns the material of a file whose only primitive has `material`.
 fn material_of(material: Value) -> Result<Material, SceneError> {
     let scene = load_changed(|d| {
         d["extensionsRequired"] = json!(KNOWN_EXTENSIONS);

@@ -5,7 +5,7 @@ fn minerals_have_their_equations_index_and_abbe_number() {
     for mineral in Mineral::ALL {
         // The d, F and C lines.
         let [d, f, c] = [587.561_8, 486.132_7, 656.272_5].map(|line| dispersion::sellmeier(mineral.sellmeier(), line));
-        // Rounding to five decimals and to one: half a unit of the last, and f32's own.
+        // Rounding to five decimals, and below to one: half a unit of the last, plus f32 rounding.
         assert!((f64::from(mineral.index()) - d).abs() < 5.2e-6, "{mineral:?}: {d}");
         let abbe_number = (d - 1.0) / (f - c);
         assert!((f64::from(mineral.abbe_number()) - abbe_number).abs() < 0.0501, "{mineral:?}: {abbe_number}");

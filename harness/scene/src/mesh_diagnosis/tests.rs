@@ -7,7 +7,7 @@ use glam::Vec3;
 fn seams_and_poles_are_no_openings() {
     for mesh in [sphere(40.0, 64), torus(20.0, 7.0, 40, 20)] {
         assert_eq!(open_edges(&mesh), 0);
-        // Comparing bits alone would leave openings.
+        // A comparison of bits alone would leave openings.
         assert!(
             mesh.positions.iter().any(|p| {
                 p.abs().max_element() > 1.0 && p.abs().min_element() > 0.0 && p.abs().min_element() < 1e-10
@@ -27,7 +27,7 @@ fn every_built_in_is_sound() {
     }
 }
 
-/// At some of the dragon's edges four or more triangles meet, always as many on one side as on the
+/// Some edges of the dragon belong to four or more triangles, always as many on one side as on the
 /// other.
 #[test]
 fn an_edge_with_an_even_number_of_triangles_is_no_opening() {
@@ -76,7 +76,8 @@ fn parts_that_are_inside_out_are_counted_and_cavities_are_not() {
     let mut hollow = ball();
     hollow.append(&inverted(&sphere(0.5, 32)));
     assert_eq!(MeshDiagnosis::of(&hollow), MeshDiagnosis::default());
-    // Far from the origin, where a volume about it is lost in rounding, and next to a sound part.
+    // Far from the origin, where rounding loses a volume measured about it, and next to a sound
+    // part.
     let far = |mesh: &Mesh| mesh.placed(glam::DQuat::IDENTITY, DVec3::splat(3000.0));
     let mut two = ball();
     two.append(&far(&inverted(&ball())));

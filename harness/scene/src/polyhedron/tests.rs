@@ -87,8 +87,8 @@ fn mesh_planes_touch_the_mesh() {
 fn triangulation_does_not_enter_the_shared_normals() {
     for solid in all_cuts() {
         let by_face = solid.to_mesh(Averaging::Angle);
-        // A triangle soup by angle adds up to the same, except at inner vertices, where both give
-        // the face's own normal.
+        // The average by angle over a triangle soup has the same sums, except at inner vertices,
+        // where both give the face's own normal.
         let by_triangle =
             Mesh::with_shared_normals(by_face.positions.clone(), by_face.indices.clone(), Averaging::Angle);
         for (a, b) in by_face.normals.iter().zip(&by_triangle.normals) {
@@ -107,7 +107,7 @@ fn a_face_has_its_centroid_as_inner_vertex() {
     assert!(mesh.normals.last().unwrap().distance(Vec3::Y) < 1e-6);
 }
 
-/// All triangulations of all cuts, and of a flat-ended prism with 64 corners at each end.
+/// Returns all triangulations of all cuts, and of a flat-ended prism with 64 corners at each end.
 fn triangulated() -> Vec<(Mesh, [Mesh; 3])> {
     let flat = prism(&PrismParameters { sides: 64, cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
     let five = prism(&PrismParameters { cap_degrees: 0.0, ..PrismParameters::PENTAGONAL }).unwrap();
@@ -163,7 +163,7 @@ fn every_triangulation_has_its_own_shape() {
     };
     assert_eq!((corners_used(&fan), corners_used(&strip)), (6, 3));
     assert_eq!(sliver.positions.len(), solid.vertices().len() + 6 * SLIVERS);
-    // The octagon's fan: every angle is an inscribed one, of at least 22.5°.
+    // Every angle of the octagon's fan is an inscribed angle of at least 22.5°.
     assert!((0..6).all(|k| (least_angle(&fan, k) - 22.5).abs() < 1e-3));
     let mut needles: Vec<f64> = (0..150).map(|k| least_angle(&sliver, k)).collect();
     needles.sort_by(f64::total_cmp);

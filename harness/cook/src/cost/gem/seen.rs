@@ -55,7 +55,8 @@ impl Watched {
     }
 }
 
-/// Returns the RMS difference in linear radiance of two frames divided by the reference's root mean square.
+/// Returns the RMS difference in linear radiance of two frames, divided by the reference's root mean
+/// square.
 fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
     let channels = |picture: &Picture| -> Vec<f64> {
         picture.linear.iter().flat_map(|pixel| &pixel[..3]).map(|value| f64::from(*value)).collect()

@@ -22,10 +22,7 @@ use naga::{Literal, Module, ShaderStage};
 /// Returns the text without the lines for any effect of `off`, and with the lines that replace
 /// them.
 fn cut(source: &str, off: &[&str]) -> String {
-    let lines = marks::lines(source).unwrap_or_else(|fault| panic!("line {}: {}", fault.line, fault.message));
-    let is_off = |effects: &[&str]| effects.iter().any(|effect| off.contains(effect));
-    let stays = lines.iter().filter(|line| !is_off(&line.with) && (line.without.is_empty() || is_off(&line.without)));
-    stays.flat_map(|line| [line.text, "\n"]).collect()
+    marks::cut(source, off).unwrap_or_else(|fault| panic!("line {}: {}", fault.line, fault.message))
 }
 
 fn parse(source: &str) -> Module {
@@ -155,6 +152,34 @@ fn an_effect_that_is_off_leaves_the_recipe_without_it() {
     };
     let found: Vec<String> = recipes.iter().flat_map(check).collect();
     assert!(found.is_empty(), "{} differences, the first:\n{}", found.len(), found[..found.len().min(8)].join("\n"));
+}
+
+/// What `cook copy --effects` writes is the cut text without the modules that it does not use.
+#[test]
+fn a_copy_holds_only_the_modules_that_its_effects_use() {
+    for (recipe, source, effects) in recipes_with_effects() {
+        for kept in std::iter::once(None).chain(effects.iter().map(Some)) {
+            let off: Vec<&str> = effects.iter().filter(|effect| Some(*effect) != kept).map(String::as_str).collect();
+            let copied = marks::without(recipe, &off).unwrap_or_else(|fault| panic!("{}", fault.message));
+            assert!(!copied.contains("//+") && !copied.contains("//-"), "{}", recipe.name);
+            let words: Vec<&str> = copied.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
+            assert!(off.iter().all(|effect| !words.contains(&&*override_of(effect))), "{} {kept:?}", recipe.name);
+            let [copied, cut] = [&copied, &cut(&source, &off)].map(|text| parse(text));
+            for pass in passes(&cut) {
+                let [copied, cut] = [&copied, &cut].map(|module| Left::specialised(module, &[], &pass));
+                assert_eq!(copied.difference(&cut), None, "{} {kept:?} {pass:?}", recipe.name);
+            }
+        }
+    }
+    let bare = |name: &str| {
+        let recipe = lapidary_wgsl::recipe(name).expect(name);
+        let effects = marks::effects(&recipe.compose());
+        let off: Vec<&str> = effects.iter().map(String::as_str).collect();
+        marks::without(recipe, &off).unwrap_or_else(|fault| panic!("{}", fault.message))
+    };
+    let surface = bare("gem");
+    assert!(surface.contains("fn fresnel_dielectric(") && !surface.contains("fn dispersion_"), "{surface}");
+    assert!(surface.lines().count() < lapidary_wgsl::recipe_source("gem").lines().count() / 2);
 }
 
 /// Returns the text as naga alone compacts it, with the defaults of its overrides.

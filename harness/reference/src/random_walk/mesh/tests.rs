@@ -50,9 +50,10 @@ fn a_far_point_light_is_a_directional_one() {
     scene.lights = vec![Light::Point { position: distance * toward, intensity: distance * distance * irradiance }];
     let lamplit = rendered(&scene, &settings(24, 6));
     let pairs = || sunlit.linear.iter().zip(&lamplit.linear).filter(|(a, _)| a[3] > 0.0);
-    // The walks are the same: only the light's direction differs, by 1e-6, and f32's digits.
+    // The walks are the same: only the direction to the light differs, by 1e-6, and by f32
+    // rounding.
     let apart = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..4).all(|k| (a[k] - b[k]).abs() <= 1e-4 * a[k] + 1e-6);
-    // But light that just grazes an edge may fall on either side.
+    // However, light that grazes an edge may fall on either side.
     let (compared, different) = (pairs().count(), pairs().filter(apart).count());
     let total = |picture: &Rendering| picture.linear.iter().map(|pixel| pixel[0] + pixel[1] + pixel[2]).sum::<f32>();
     let ratio = total(&lamplit) / total(&sunlit);
@@ -85,8 +86,8 @@ fn white_furnace() {
     assert!(rendering.linear.iter().all(|pixel| pixel[0] <= pixel[3] + 1e-6));
 }
 
-/// Walks from either end find the same light: means of sixteen parts of the image, for plain media,
-/// veins with forward scattering, several bodies, and lamps.
+/// Walks from either end find the same light. The test compares means over sixteen parts of the
+/// image, for plain media, veins with forward scattering, several bodies, and lamps.
 #[test]
 fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
     let mut veined = named("dragon");
@@ -119,7 +120,7 @@ fn walks_from_the_lights_show_what_walks_from_the_eye_show() {
                 };
                 let [(a, error_a), (b, error_b)] = [&eye, &light].map(of_part);
                 assert!([a, b, error_a, error_b].into_iter().all(f64::is_finite));
-                // In an almost black part, too few walks determine the spread.
+                // In an almost black part, too few walks contribute to determine the spread.
                 if a.max(b) > 0.05 {
                     worst = larger(worst, (a - b).abs() / (error_a + error_b + (1e-3 * a).powi(2)).sqrt());
                 }
@@ -140,7 +141,7 @@ fn errors_are_what_they_are_said_to_be() {
     }
 }
 
-/// Variance between images of many seeds, and the variance that they state.
+/// Returns the variance between images of many seeds, and the variance that the images state.
 fn variances(origin: Origin) -> [DVec3; 2] {
     let scene = named("skin_ring");
     let pictures: Vec<Rendering> =
@@ -214,7 +215,7 @@ fn progress_counts_rows_and_batches() {
     }
 }
 
-/// Prints speed and noise, and counts the walks that slip through a surface: next to none.
+/// Prints speed and noise, and counts the walks that slip through a surface: almost none.
 #[test]
 fn hardly_a_walk_is_lost() {
     for name in ["skin_bunny", "jade_ring", "wax"] {

@@ -7,7 +7,7 @@ fn bodies(name: &str, geometry: Geometry) -> (Scene, Bodies) {
     (scene, bodies)
 }
 
-/// Evenly spread rays from a sphere around the scene through a ball within its bounds.
+/// Returns evenly spread rays from a sphere around the scene through a ball within its bounds.
 fn rays(scene: &Scene, count: u32) -> impl Iterator<Item = (DVec3, DVec3)> {
     let centre = scene.bounds().centre().as_dvec3();
     let radius = f64::from(scene.bounds().radius());
@@ -42,7 +42,7 @@ fn through_a_closed_surface_ways_in_and_out_alternate() {
     assert!(entered > 2000, "{entered}");
 }
 
-/// Counts the entries that rays find, and those among them that lead to no exit.
+/// Counts the entries of rays, and the entries that lead to no exit.
 fn ways_in(scene: &Scene) -> [u32; 2] {
     let bodies = Bodies::new(&scene.objects, Geometry::Triangles);
     let [mut entered, mut trapped] = [0, 0];
@@ -149,7 +149,8 @@ fn the_sieve_keeps_the_nearest_plane() {
     }
 }
 
-/// Rays exactly through an edge that two triangles share, and through a corner that several share.
+/// Rays pass exactly through an edge shared by two triangles, and through a corner shared by
+/// several.
 #[test]
 fn nothing_slips_through_edges_and_corners() {
     let (_, octahedron) = bodies("octahedron", Geometry::Triangles);
@@ -184,8 +185,8 @@ fn what_leaves_a_stone_may_enter_another() {
     }
 }
 
-/// Rays from a point inside, in any direction, leave where the body ends; none leaves before a
-/// nearer limit.
+/// Rays from a point inside leave at the body's surface in any direction. With a nearer limit, no
+/// exit is found.
 #[test]
 fn rays_from_inside_leave() {
     for geometry in [Geometry::Planes, Geometry::Triangles] {

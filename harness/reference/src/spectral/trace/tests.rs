@@ -4,13 +4,14 @@ use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::polyhedron::{Plane, Polyhedron};
 use lapidary_scene::{Averaging, Material, Object};
 
-/// Radiance 1 from above and 0 from below, with a soft step of one texel in between.
+/// Returns a sky of radiance 1 above and 0 below, with a soft step of one texel in between.
 fn sky() -> Environment {
     let pixels = (0..128).map(|place| if place < 64 { [1.0; 4] } else { [0.0; 4] }).collect();
     Environment::Map(EnvironmentMap { width: 2, height: 64, pixels })
 }
 
-/// A plate of thickness 1 with its upper side at y = 0, too wide for light to reach its rim.
+/// Returns a plate of thickness 1 with its upper side at y = 0, too wide for light to reach its
+/// rim.
 fn plate() -> Object {
     let side = |normal: DVec3, distance| Plane { normal, distance };
     // A polyhedron is built z up: its z is the mesh's y.
@@ -67,7 +68,7 @@ fn an_absorbing_plate_follows_beer_and_lambert() {
 
 #[test]
 fn the_surface_alone_reflects_by_fresnel() {
-    // Black inside: only the first reflection is left.
+    // The inside is black, so only the first reflection remains.
     let optics = Optics { absorption: DVec3::splat(1e9), ..clear(2.41749) };
     let seen = outcome(&plate(), &sky(), Geometry::Planes, optics, -DVec3::Y);
     assert!((seen.radiance.x - 0.1720).abs() < 5e-5, "{seen:?}");

@@ -6,14 +6,14 @@ use lapidary_gpu::{AdapterChoice, Gpu};
 use lapidary_scene::Bounds;
 use std::sync::Arc;
 
-/// 40 voxels do not fill their rows' words.
+/// Voxels along each side; 40 do not fill the words of their rows.
 const CELLS: [u32; 2] = [32, 40];
 
 fn grid(cells: u32) -> VoxelGrid {
     VoxelGrid::about(Bounds { min: Vec3::new(-3.0, 2.0, -1.0), max: Vec3::new(5.0, 7.0, 4.0) }, cells)
 }
 
-/// What the recipe leaves where it is asked for the densities of what `is_matter` says.
+/// Runs the recipe for the voxels selected by `is_matter`, and returns the densities.
 fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) -> Vec<f32> {
     let gpu = Gpu::shared(&AdapterChoice::from_environment()).expect("a device");
     let words = grid.words_per_row();
@@ -30,13 +30,15 @@ fn found(grid: VoxelGrid, density: &Density, is_matter: impl Fn(UVec3) -> bool) 
     executor.words(densities.buffer).expect("a device").into_iter().map(f32::from_bits).collect()
 }
 
-/// A grid that reaches neither to the voxels' ends nor ends within them, and veins; each with what the device may be off by.
+/// Returns a grid that neither covers the voxels nor lies within them, and veins, each with the
+/// tolerated error of the device.
 fn densities() -> [(Density, f32); 2] {
     let size = UVec3::new(3, 5, 2);
     let values = (0..30).map(|k| 0.5 + 3.0 * ((k * 17 % 29) as f32) / 29.0).collect();
     let measured = DensityGrid::new(Vec3::new(-1.0, 0.0, -2.0), Vec3::new(4.0, 9.0, 3.0), size, values).expect("sound");
     let veins = VeinsPattern { frequency: 0.4, width: 0.3, least: 0.25, greatest: 3.0, octaves: 3, seed: 5 };
-    // A weight is off by a few last places of the place in the grid, up to 5, times what densities differ by; veins as their own line says.
+    // The error of a weight is a few last places of the position in the grid, up to 5, times the
+    // difference of the densities. For veins, see their Accuracy line.
     [(Density::Grid(Arc::new(measured)), 3e-5), (Density::Veins(veins), 1e-3)]
 }
 
@@ -61,7 +63,7 @@ fn a_voxel_beside_matter_has_its_density_too() {
     for (density, tolerance) in densities() {
         for cells in CELLS {
             let grid = grid(cells);
-            // A few voxels at the ends of words and of the grid, and amid them.
+            // A few voxels at the ends of words and of the grid, and some in between.
             let matter = [[0, 0, 0], [31, 9, 9], [32 % cells, 20, 20], [cells - 1; 3], [15, 16, 17]].map(UVec3::from);
             let found = found(grid, &density, |voxel| matter.contains(&voxel));
             let mut free = 0;
@@ -75,7 +77,7 @@ fn a_voxel_beside_matter_has_its_density_too() {
                     free += usize::from(found == 0.0);
                 }
             }
-            // What is far from all matter is left out.
+            // Voxels far from all matter are left out.
             assert!(free > grid.count() / 2, "{free}");
         }
     }

@@ -12,9 +12,9 @@ use lapidary_scene::{Bounds, Light, Scene};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt as _, SeedableRng as _};
 
-/// 40 voxels do not fill their rows' words.
+/// Voxels along each side; 40 do not fill the words of their rows.
 const CELLS: u32 = 40;
-/// Texels along a map's side: no whole number of workgroups.
+/// Texels along each side of a map; not a multiple of the workgroup size.
 const SIDE: u32 = 37;
 const EXTINCTION: f32 = 0.7;
 
@@ -22,7 +22,8 @@ fn bounds() -> Bounds {
     Bounds { min: Vec3::new(-3.0, 2.0, -1.0), max: Vec3::new(5.0, 7.0, 4.0) }
 }
 
-/// A sun and two lamps, one of them amid the bounds: a layer, a layer and six.
+/// Returns a sun and two lamps, the second within the bounds. They take one layer, one layer and
+/// six layers.
 fn lights() -> Vec<Light> {
     vec![
         Light::Directional { toward: Vec3::new(0.6, 0.8, 0.0), irradiance: Vec3::new(1.0, 2.0, 0.5) },
@@ -31,7 +32,7 @@ fn lights() -> Vec<Light> {
     ]
 }
 
-/// World positions with N·L: some beside the grid, some unlit, some of nothing.
+/// Returns world positions with N·L: some outside the grid, some unlit, some without a surface.
 fn texels(count: usize, grid: VoxelGrid) -> Vec<Vec4> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
     let size = grid.spacing * CELLS as f32;
@@ -43,7 +44,8 @@ fn texels(count: usize, grid: VoxelGrid) -> Vec<Vec4> {
     (0..count).map(texel).collect()
 }
 
-/// What the recipe leaves, in f32 but for the lights: of each voxel the least of the costs by the texels about it.
+/// Mirrors the recipe in f32, except for the lights. Returns for each voxel the least of the costs
+/// from the texels around it.
 fn mirror(
     grid: VoxelGrid,
     (matter, density): (&[bool], Option<&[f32]>),
@@ -94,7 +96,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
     let texels = texels(views.len() * (SIDE * SIDE) as usize, grid);
     let format = (wgpu::TextureDimension::D2, wgpu::TextureFormat::Rgba32Float);
     let size = [SIDE, SIDE, views.len() as u32];
-    // Every third voxel is air, and densities differ from one to the next.
+    // Every third voxel is air, and the density differs from voxel to voxel.
     let matter: Vec<bool> = (0..grid.count()).map(|index| index * 7 % 3 != 0).collect();
     let words = grid.words_per_row();
     let mut bits = vec![0u32; (words * CELLS * CELLS) as usize];
@@ -113,7 +115,7 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
         let seeds = Seeds::new(&mut builder, &constants).expect("compiled");
         let matter_buffer = builder.storage("matter", bytemuck::cast_slice(&bits));
         let density_buffer = builder.storage("densities", bytemuck::cast_slice(&density));
-        // Left over from another frame.
+        // The buffer is not cleared, as if left over from another frame.
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let costs = builder.buffer("costs", 4 * grid.count() as u64, usage);
         let seeded = Seeded {
@@ -142,7 +144,8 @@ fn every_voxel_has_the_least_cost_of_the_lit_texels_about_it() {
             }
         }
         println!("{reached} voxels, off by {worst:.1e} of their costs at most");
-        // optical_path_seed's own accuracy, and a few roundings of share, distance and extinction, each of which counts once.
+        // The bound covers the accuracy of optical_path_seed and a few roundings of share, distance
+        // and extinction, each counted once.
         assert!(reached > 20_000 && reached < grid.count() && worst < 16.0 * f32::EPSILON, "{reached} {worst}");
     }
 }

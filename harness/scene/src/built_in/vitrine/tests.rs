@@ -18,7 +18,7 @@ fn each_body_has_what_calls_for_its_technique() {
     assert_eq!((ruby.material.dispersion, ruby.material.ior), (Dispersion::None, Mineral::Corundum.index()));
     assert_eq!(chain.material.dispersion, Dispersion::None);
     assert_eq!([diamond, ruby, chain].map(|stone| stone.material.absorbs()), [false, true, false]);
-    // The ruby's colour is that of the built-in ruby, reached after two girdle radii.
+    // The ruby has the colour of the built-in ruby, reached after two girdle radii.
     assert_eq!(ruby.material.attenuation_distance, 2.0 * RUBY);
     for (body, spreads) in [(candle, true), (figure, false)] {
         assert_eq!(body.material.sigma0.is_some(), spreads);

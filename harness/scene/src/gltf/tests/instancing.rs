@@ -3,8 +3,8 @@
 use super::*;
 use crate::Mesh;
 
-/// The triangle's file with instances from these attributes, each with its element type, component
-/// type and bytes.
+/// Returns the triangle's file with instances from these attributes, each with its element type,
+/// component type and bytes.
 fn instanced(attributes: &[(&str, &str, u32, Vec<u8>)], counts: &[u64]) -> (Value, Vec<u8>) {
     let (mut document, mut data) = (document(), binary());
     let mut names = json!({});

@@ -12,7 +12,7 @@ fn lacking(change: impl FnOnce(&mut Value)) -> Vec<String> {
     scene.unwrap().lacking
 }
 
-/// Unsupported features of a material with these members.
+/// Returns the unsupported features of a material with these members.
 fn of_material(members: Value) -> Vec<String> {
     lacking(|d| {
         for (key, value) in members.as_object().unwrap() {
@@ -21,7 +21,7 @@ fn of_material(members: Value) -> Vec<String> {
     })
 }
 
-/// Unsupported features of a polished dielectric material with these extensions.
+/// Returns the unsupported features of a polished dielectric material with these extensions.
 fn of_extensions(extensions: Value) -> Vec<String> {
     let factors = json!({"metallicFactor": 0, "roughnessFactor": 0});
     of_material(json!({"pbrMetallicRoughness": factors, "extensions": extensions}))

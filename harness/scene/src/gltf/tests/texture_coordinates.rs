@@ -5,7 +5,7 @@ use glam::Vec2;
 use super::refusals::message;
 use super::*;
 
-/// A file whose triangle has `data` as its texture coordinates.
+/// Returns a file whose triangle has `data` as its texture coordinates.
 fn textured(data: &[u8], accessor: Value) -> (Value, Vec<u8>) {
     let mut document = document();
     document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);

@@ -3,7 +3,7 @@
 use super::*;
 use lapidary_assay::extremum::largest;
 
-/// A material with diffuse transmission of this colour.
+/// Returns a material with diffuse transmission of this colour.
 fn diffuse(color: Vec3, volume: Value) -> Result<Material, SceneError> {
     material_of(json!({
         "pbrMetallicRoughness": {"baseColorFactor": color.extend(1.0).to_array()},

@@ -9,7 +9,7 @@ use rand::RngExt as _;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A box between these two corners.
+/// Returns a box between these two corners.
 pub(super) fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
     let corner = |k: u8| Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), greatest, least);
     let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -32,7 +32,7 @@ pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
     }
 }
 
-/// A medium whose lengths are in mean free paths.
+/// Returns a medium whose lengths are in mean free paths.
 pub(super) fn grey(albedo: f32) -> Medium {
     Medium::isotropic(Vec3::splat(albedo), Vec3::splat(1.0 - albedo))
 }
@@ -41,7 +41,7 @@ pub(super) fn sun(toward: DVec3) -> Light {
     Light::Directional { toward: toward.as_vec3(), irradiance: Vec3::ONE }
 }
 
-/// Mean of a sample and its standard error.
+/// Returns the mean of a sample and its standard error.
 pub(super) fn estimate(
     count: u32,
     seed: u64,
@@ -62,7 +62,7 @@ pub(super) fn estimate(
     (mean, ((squares / count - mean * mean).max(DVec3::ZERO) / count).map(f64::sqrt))
 }
 
-/// Result of a ray: its radiance, and its throughput if nothing scatters it.
+/// Returns the outcome of a ray: its radiance, and its throughput if nothing scatters it.
 pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random: &mut Xoshiro256PlusPlus) -> Outcome {
     let Some(hit) = matter.enter(origin, direction) else { return Outcome::default() };
     let outcome = matter.walk(Ray { position: origin, direction }, hit, random);
@@ -70,7 +70,7 @@ pub(super) fn seen(matter: &Matter<'_>, origin: DVec3, direction: DVec3, random:
     outcome
 }
 
-/// Light that the lights send to a point in the first body, times the phase function.
+/// Returns the light from the lights at a point in the first body, times the phase function.
 fn direct(matter: &Matter<'_>, from: DVec3, random: &mut Xoshiro256PlusPlus) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let ray = Ray { position: from, direction: DVec3::X };
@@ -133,8 +133,8 @@ fn spheres_show_what_leaves_them() {
     }
 }
 
-/// Chandrasekhar's H function of isotropic scattering, after Stibbs and Weir ("On the H-functions
-/// for isotropic scattering", 1959).
+/// Returns Chandrasekhar's H function of isotropic scattering, after Stibbs and Weir ("On the
+/// H-functions for isotropic scattering", 1959).
 ///
 /// ln H = -mu/pi times the integral of ln(1 - albedo phi cot phi) / (cos^2 phi + mu^2 sin^2 phi)
 /// over phi from 0 to pi/2.
@@ -147,14 +147,13 @@ pub(super) fn h(mu: f64, albedo: f64) -> f64 {
     (-mu / PI * sum * FRAC_PI_2 / f64::from(STEPS)).exp()
 }
 
-/// Light of irradiance E, measured perpendicular to it, that falls on a half space at the cosine
-/// mu0 is seen at the cosine mu with the radiance I = albedo E / (4 pi) mu0 / (mu + mu0) H(mu)
-/// H(mu0) (Chandrasekhar, "Radiative Transfer", on principles of invariance, with pi F for E).
+/// A half space lit at the cosine mu0 by light of irradiance E, measured perpendicular to the
+/// light, shows at the cosine mu the radiance I = albedo E / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0)
+/// (Chandrasekhar, "Radiative Transfer", on principles of invariance, with pi F for E).
 ///
-/// A thin layer dt added on top changes nothing. It takes (1/mu + 1/mu0) I dt on both ways, and it
-/// scatters as much: albedo E / (4 pi mu) dt, once for the light itself and again for what the half
-/// space sends back to it, which multiplies it by H(mu0), and likewise on the way to the eye, by
-/// H(mu).
+/// A thin layer dt added on top changes nothing. It removes (1/mu + 1/mu0) I dt along both paths
+/// and scatters the same amount, albedo E / (4 pi mu) dt for the direct light. The light returned
+/// by the half space multiplies this by H(mu0) on the way in and by H(mu) on the way to the eye.
 #[test]
 fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
     let mut deviations = Vec::new();
@@ -179,7 +178,7 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
             deviations.push((mean.x / expected - 1.0, error.x / expected));
         }
     }
-    // Together they determine the scale better than each alone.
+    // Together, the deviations determine the scale better than each alone.
     let count = deviations.len() as f64;
     let deviation = deviations.iter().map(|(deviation, _)| deviation).sum::<f64>() / count;
     let error = deviations.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / count;
@@ -187,9 +186,9 @@ fn a_wide_deep_box_reflects_as_chandrasekhar_has_it() {
     assert!(deviation.abs() < 4.0 * error && error < 0.003);
 }
 
-/// A medium that absorbs nothing shows a radiance of 1 if 1 comes from all sides, whatever its
-/// shape: each walk to f64's digits in the mean over its channels, and each channel in the mean
-/// over the walks.
+/// A medium without absorption shows a radiance of 1 under a radiance of 1 from all sides, whatever
+/// its shape: each walk with f64 accuracy in the mean over its channels, and each channel in the
+/// mean over the walks.
 #[test]
 fn white_furnace() {
     let ones = Environment::Map(EnvironmentMap { width: 4, height: 2, pixels: vec![[1.0; 4]; 8] });
@@ -200,7 +199,7 @@ fn white_furnace() {
     let scene = scene(bodies, Vec::new());
     let matter = Matter::new(&scene, Boundary::Matched, Some(&ones)).expect("media");
     let sample = |random: &mut Xoshiro256PlusPlus| {
-        // From all sides, through one body or both.
+        // Rays come from all sides and pass through one body or both.
         let (towards, around) = (isotropic(random), isotropic(random));
         loop {
             let through = 5.0 * random.random::<f64>() * isotropic(random);
@@ -219,7 +218,7 @@ fn white_furnace() {
     assert!((mean - 1.0).abs().cmplt(4.0 * error).all() && error.max_element() < 0.01);
 }
 
-/// Bodies crossed by rays along z: one of two parts around one of another medium.
+/// Returns bodies crossed by rays along z: one of two parts around one of another medium.
 pub(super) fn layers() -> Vec<(Mesh, Medium)> {
     let layer = |from: f32, to: f32| cuboid(Vec3::new(-1.0, -1.0, from), Vec3::new(1.0, 1.0, to));
     let mut outer = layer(0.0, 1.0);
@@ -231,8 +230,8 @@ pub(super) fn layers() -> Vec<(Mesh, Medium)> {
     ]
 }
 
-/// Seen from 0.25, inside the first part, the way crosses 0.75 of the first medium, 1 of the second
-/// and 2 of the first again; up to a light, only what lies before it.
+/// From z = 0.25, inside the first part, the path crosses 0.75 of the first medium, 1 of the second
+/// and 2 of the first again. Toward a light, only the matter before the light counts.
 #[test]
 fn light_is_weakened_by_all_matter_on_its_way() {
     let [first, second] = [DVec3::new(0.11, 0.2, 0.35), DVec3::new(0.3, 0.1, 0.0)];
@@ -270,7 +269,7 @@ fn light_is_weakened_by_all_matter_on_its_way() {
     assert_eq!(direct(&matter, from, &mut generator(1, 0)), DVec3::ZERO);
 }
 
-/// Beyond the depth up to which a way out is always searched, the mean is the same.
+/// Beyond the depth up to which a way out is always searched for, the mean is the same.
 #[test]
 fn a_deep_point_gets_its_light_in_the_mean() {
     let body = cuboid(Vec3::splat(-8.0), Vec3::splat(8.0));
@@ -288,7 +287,8 @@ fn a_deep_point_gets_its_light_in_the_mean() {
     }
 }
 
-/// Nothing comes out of a medium that only absorbs; light shows through it by the Beer-Lambert law.
+/// A purely absorbing medium sends out no scattered light; light passes through it by the
+/// Beer-Lambert law.
 #[test]
 fn what_goes_straight_through_is_weakened_and_no_more() {
     let scene = scene(layers(), vec![sun(DVec3::X)]);
@@ -313,8 +313,8 @@ fn what_goes_straight_through_is_weakened_and_no_more() {
     assert!((mean - expected).abs().cmplt(4.0 * error).all());
 }
 
-/// Three channels in one walk give what each gives alone; in a medium of one colour, the statistics
-/// of a walk are those of each channel.
+/// One walk of three channels gives the same means as a walk for each channel. In a grey medium,
+/// the statistics of a walk are those of each channel.
 #[test]
 fn channels_do_not_mix() {
     let medium = Medium::isotropic(Vec3::new(0.74, 0.88, 1.5), Vec3::new(0.032, 0.17, 2.0));

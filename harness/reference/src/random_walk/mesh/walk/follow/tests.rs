@@ -12,8 +12,8 @@ fn veins() -> Density {
     Density::Veins(VeinsPattern { frequency: 0.8, width: 0.3, least: 0.3, greatest: 1.6, octaves: 2, seed: 4 })
 }
 
-/// A density of 1/2 throughout a body, from a grid that is 1 far away from it: half of all
-/// collisions are null.
+/// Returns a density of 1/2 throughout a body, from a grid that is 1 far away from the body: half
+/// of all collisions are null.
 fn split_grid(least: Vec3, greatest: Vec3) -> Density {
     let mut densities = vec![0.5; 64];
     densities[63] = 1.0;
@@ -21,7 +21,7 @@ fn split_grid(least: Vec3, greatest: Vec3) -> Density {
     Density::Grid(Arc::new(DensityGrid::new(least - wide, greatest + wide, UVec3::splat(4), densities).expect("sound")))
 }
 
-/// A medium with doubled coefficients where its density is a half.
+/// Returns a medium with doubled coefficients and half the density.
 fn split(albedo: f32, least: Vec3, greatest: Vec3) -> Medium {
     let medium = grey(albedo);
     Medium {
@@ -45,8 +45,8 @@ fn towards(cosine: f64) -> DVec3 {
     DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)
 }
 
-/// Delta tracking, null collisions and ratio tracking together: radiances of a half space lit by a
-/// sun.
+/// Tests delta tracking, null collisions and ratio tracking together, by the radiance of a half
+/// space lit by a sun.
 #[test]
 fn a_density_split_by_a_grid_reflects_as_chandrasekhar_has_it() {
     for albedo in [0.5, 0.9, 0.99] {
@@ -64,8 +64,9 @@ fn a_density_split_by_a_grid_reflects_as_chandrasekhar_has_it() {
     }
 }
 
-/// Reflectance of a half space, by walks that leave it into a room of radiance 1: the radiance seen
-/// along a ray is, backwards, the share of the light arriving along it that comes out.
+/// Returns the reflectance of a half space, from walks that leave it into a room of radiance 1. The
+/// radiance seen along a ray is, in reverse, the reflected share of the light that arrives along
+/// it.
 fn given_back(medium: Medium, boundary: Boundary, ior: f32, cosine: f64) -> (f64, f64) {
     let (body, ..) = deep_box();
     let mut scene = scene(vec![(body, medium)], Vec::new());
@@ -96,7 +97,7 @@ fn half_spaces_give_back_what_is_known() {
     }
 }
 
-/// Where scattering goes deep, g matters only through 1 - g.
+/// If scattering goes deep, g matters only through 1 - g.
 #[test]
 fn forward_scattering_is_like_less_scattering() {
     let medium =
@@ -136,8 +137,8 @@ fn the_mean_transmittance_of_veins_is_beers() {
     }
 }
 
-/// A medium that absorbs nothing shows a radiance of 1 if 1 comes from all sides, whatever its
-/// density, phase function and boundary.
+/// A medium without absorption shows a radiance of 1 under a radiance of 1 from all sides, whatever
+/// its density, phase function and boundary.
 #[test]
 fn white_furnace() {
     let room = white_room();
@@ -168,8 +169,8 @@ fn white_furnace() {
     }
 }
 
-/// Behind a boundary that does nothing, a light's disc is as bright as the light itself: a sun
-/// found by chance against a sun found by shadow rays.
+/// Behind a boundary without effect, a light's disc is as bright as the light itself. The test
+/// compares a sun found by chance with a sun found by shadow rays.
 #[test]
 fn a_directional_light_is_found_by_chance_too() {
     let lit = |boundary: Boundary, count: u32| {
