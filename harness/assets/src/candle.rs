@@ -15,7 +15,7 @@ const COLUMNS: u32 = 64;
 const ROWS: u32 = 3;
 
 /// Radius of the side without runs of wax.
-const RADIUS: f64 = 15.0;
+pub const RADIUS: f64 = 15.0;
 
 /// Distance from the axis and height of the control points of the outline, a uniform cubic B-spline
 /// from the centre of the bowl to the centre of the foot. Points are denser where it bends more.

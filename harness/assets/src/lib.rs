@@ -1,5 +1,6 @@
-//! Makes the files in `harness/assets/` that this project made itself: meshes that built-in scenes
-//! read, because computing them takes seconds. Nothing here is in the program `cook`.
+//! Makes the glTF files in `harness/assets/` that this project made itself. Built-in scenes read
+//! most of them, because computing their meshes takes seconds; `brilliant.glb` is an example.
+//! Nothing here is in the program `cook`.
 //!
 //! ```
 //! let candle = lapidary_assets::candle::mesh();
@@ -36,13 +37,15 @@ pub fn files() -> Result<Vec<(&'static str, Scene)>, SceneError> {
     Ok(vec![
         ("brilliant.glb", Scene::named("brilliant")?),
         ("bunny_atlas.glb", with_meshes(bunny, unwrapped)),
-        ("figure.glb", with_meshes(Scene::named("figure")?, vec![figure::mesh()])),
+        // Framed anew, since the camera depends on the mesh.
+        ("figure.glb", with_meshes(Scene::named("figure")?, vec![figure::mesh()]).seen_from(82.0, 12.0)),
         ("vitrine.glb", with_meshes(Scene::named("vitrine")?, vitrine::meshes()?)),
     ])
 }
 
 /// Returns the scene with other meshes for its objects, in order.
 fn with_meshes(scene: Scene, meshes: Vec<Mesh>) -> Scene {
+    assert_eq!(scene.objects.len(), meshes.len(), "{}: a mesh for each object", scene.name);
     let objects = scene.objects.into_iter().zip(meshes).map(|(object, mesh)| Object { mesh, ..object }).collect();
     Scene { objects, ..scene }
 }
@@ -53,6 +56,25 @@ mod tests {
     use glam::Vec3;
     use lapidary_assay::extremum::larger;
     use lapidary_scene::{glb, gltf};
+
+    /// The scene splits the file's triangles into the bunny's own and its halos.
+    #[test]
+    fn the_bunny_of_skin_has_the_atlas_and_its_halos() {
+        let whole = Scene::named("bunny").expect("built in").objects.remove(0).mesh;
+        let unwrapped = atlas::unwrap(&whole, HALO);
+        for name in ["skin_bunny", "wax_bunny", "jade_bunny"] {
+            let stored = Scene::named(name).expect("built in").objects.remove(0).mesh;
+            assert_eq!((&stored.indices, &stored.halo), (&unwrapped.indices, &unwrapped.halo), "{name}");
+            assert_eq!(stored.triangle_count(), whole.triangle_count(), "{name}");
+        }
+    }
+
+    /// The materials of the vitrine say how thick the bodies are that are made here.
+    #[test]
+    fn the_vitrines_candle_is_as_thick_as_its_material_says() {
+        let candle = Scene::named("vitrine").expect("built in").objects.remove(3);
+        assert_eq!((candle.name.as_str(), candle.material.thickness), ("candle", 2.0 * candle::RADIUS as f32));
+    }
 
     /// `cargo run --package lapidary-assets` makes the files anew.
     #[test]

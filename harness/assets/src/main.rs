@@ -1,4 +1,4 @@
-//! Writes the files that the built-in scenes read, into `harness/assets/` or into the folder given
+//! Writes the glTF files that this project made itself into `harness/assets/` or into the folder given
 //! as an argument: `cargo run --package lapidary-assets`.
 
 use lapidary_scene::glb;

@@ -173,15 +173,18 @@ impl Case {
         frames.extend(self.effects.iter().map(|effect| {
             let under = self.stands_on.iter().find(|(upper, _)| upper == effect).map(|(_, under)| *under);
             let kept: Vec<Effect> = under.into_iter().chain([*effect]).collect();
-            (under.map_or_else(|| effect.to_string(), |under| format!("{effect}, on {under}")), without(&kept))
+            (under.map_or_else(|| effect.to_string(), |under| format!("{effect} on {under}")), without(&kept))
         }));
         frames.push(("all".to_owned(), without(self.effects)));
         frames
     }
 }
 
-/// Measures each scene without any effect, with each effect alone, and with all. A row's measure
-/// names the effects, its value counts draws and dispatches; bytes are those of all resources of a
+/// The measure of a row: the number of draws and dispatches.
+const STEPS: &str = "draws and dispatches";
+
+/// Measures each scene without any effect, with each effect alone, and with all. The effects follow
+/// the rung's name; a row's value counts draws and dispatches; bytes are those of all resources of a
 /// picture of the timed size, instructions those of each pipeline.
 ///
 /// # Errors
@@ -203,7 +206,7 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
             report.rows.push(Row {
                 bytes: Some(listing.bytes()),
                 instructions: listing.pipelines.iter().map(|pipeline| pipeline.instructions as u32).collect(),
-                ..Row::new(&rung, case.name, &effects, f64::from(steps), "draws and dispatches")
+                ..Row::new(&format!("{rung}, {effects}"), case.name, STEPS, f64::from(steps), "")
             });
             timed.push(Timed { displayed: true, ..Timed::new(&case.scene, settings) });
         }
@@ -226,9 +229,11 @@ fn whole(report: &Report) -> Result<(), String> {
 fn table(report: &Report) -> Table {
     // The frame to compare with: the one with only the prerequisite, or else without effects.
     let below = |row: &Row| {
-        let under = row.measure.split_once(", on ").map_or("none", |(_, under)| under);
-        report.row(&row.rung, &row.view, under).filter(|below| below.measure != row.measure)
+        let (rung, effects) = row.rung.split_once(", ")?;
+        let under = effects.split_once(" on ").map_or("none", |(_, under)| under);
+        report.row(&format!("{rung}, {under}"), &row.view, STEPS).filter(|below| below.rung != row.rung)
     };
+    let part = |row: &Row, at: usize| row.rung.splitn(2, ", ").nth(at).unwrap_or_default().to_owned();
     let shown = |value: Option<f64>, decimals| value.map_or("–".to_owned(), |value| format!("{value:+.decimals$}"));
     let more = |row: &Row, of: fn(&Row) -> Option<f64>, decimals| {
         shown(of(row).zip(below(row).and_then(of)).map(|(value, below)| value - below), decimals)
@@ -238,9 +243,9 @@ fn table(report: &Report) -> Table {
     let kibi = |row: &Row| row.bytes.map(|bytes| bytes as f64 / 1024.0);
     Table::of("effects", "What each effect takes", &report.rows[..])
         .column("scene and rung", |row| {
-            if row.measure == "none" { format!("{} by `{}`", row.view, row.rung) } else { String::new() }
+            if part(row, 1) == "none" { format!("{} by `{}`", row.view, part(row, 0)) } else { String::new() }
         })
-        .column("effects", |row| row.measure.clone())
+        .column("effects", |row| part(row, 1))
         .column("ms", |row| figure(row.ms, 1))
         .column("more", |row| more(row, ms, 1))
         .column("instructions", |row| figure(instructions(row), 0))

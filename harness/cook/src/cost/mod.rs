@@ -67,6 +67,15 @@ pub enum CostError {
         /// What is wrong.
         what: String,
     },
+    /// The report could not be written as JSON.
+    #[error("writing the report: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A measurement failed so badly that its value is no finite number.
+    #[error("{row} is infinite or not a number; this is a defect of the rung, please report it")]
+    NotFinite {
+        /// The measurement.
+        row: String,
+    },
     /// The record of spheres is missing or unusable, so there is nothing to compare with.
     #[error(
         "{}: {what}; restore it from version control, or remake it: ./cook cost sphere --out docs/measurements/random_walk",

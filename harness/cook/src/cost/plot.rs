@@ -88,15 +88,33 @@ pub struct Axis {
     pub label: String,
     /// The limits of a linear axis; `None` for a logarithmic one that has room for all points.
     pub linear: Option<(f64, f64)>,
+    /// The labelled values; empty for round numbers.
+    pub ticks: Vec<f64>,
 }
 
 impl Axis {
     /// Returns a logarithmic axis.
     pub fn log(label: impl Into<String>) -> Self {
-        Self { label: label.into(), linear: None }
+        Self { label: label.into(), ..Self::default() }
     }
 
-    /// Returns the axis laid out for values.
+    /// Returns a linear axis.
+    pub fn linear(label: &str, limits: (f64, f64)) -> Self {
+        Self { label: label.to_owned(), linear: Some(limits), ticks: Vec::new() }
+    }
+
+    /// Returns the axis with labels at these values.
+    #[must_use]
+    pub fn with_ticks(self, ticks: impl Into<Vec<f64>>) -> Self {
+        Self { ticks: ticks.into(), ..self }
+    }
+
+    /// Whether the axis can show a value: a logarithmic one shows numbers above 0.
+    fn shows(&self, value: f64) -> bool {
+        value.is_finite() && (self.linear.is_some() || value > 0.0)
+    }
+
+    /// Returns the axis laid out for values that it can show.
     fn scale(&self, values: impl Iterator<Item = f64> + Clone) -> Scale {
         if let Some((low, high)) = self.linear {
             // Ten steps or so, of 1, 2 or 5 times a power of ten.
@@ -120,8 +138,9 @@ impl Axis {
         let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let ticks = powers
             .flat_map(|power| parts.iter().map(move |part| format!("{part}e{power}").parse().unwrap_or(f64::NAN)));
+        let ticks: Vec<f64> = if self.ticks.is_empty() { ticks.collect() } else { self.ticks.clone() };
         Scale {
-            ticks: ticks.filter(|tick| (low..=high).contains(tick)).collect(),
+            ticks: ticks.into_iter().filter(|tick| (low..=high).contains(tick)).collect(),
             range: low..high,
             log: true,
             decimals: 0,
@@ -257,7 +276,16 @@ fn stairs(mut front: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 impl Plot {
     /// Whether the plot has a point besides lines of comparison.
     pub fn is_empty(&self) -> bool {
-        self.series.iter().all(|series| series.points.iter().all(|point| point.marker == Marker::None))
+        !self.points().any(|point| point.marker != Marker::None)
+    }
+
+    /// Returns the points that the axes can show.
+    fn points(&self) -> impl Iterator<Item = &Point> + Clone {
+        self.series.iter().flat_map(|series| self.shown(series))
+    }
+
+    fn shown<'s>(&'s self, series: &'s Series) -> impl Iterator<Item = &'s Point> + Clone {
+        series.points.iter().filter(|point| self.x.shows(point.at.0) && self.y.shows(point.at.1))
     }
 
     /// Returns the plot as SVG.
@@ -274,9 +302,8 @@ impl Plot {
     fn draw(&self, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
         let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
         root.fill(&WHITE)?;
-        let points = || self.series.iter().flat_map(|series| &series.points);
-        let across = self.x.scale(points().map(|point| point.at.0));
-        let up = self.y.scale(points().map(|point| point.at.1));
+        let across = self.x.scale(self.points().map(|point| point.at.0));
+        let up = self.y.scale(self.points().map(|point| point.at.1));
         let mut chart = ChartBuilder::on(&root)
             .caption(&self.caption, ("sans-serif", 18))
             .margin(16)
@@ -293,10 +320,11 @@ impl Plot {
         for series in &self.series {
             let color = series.color;
             let style = color.stroke_width(series.line);
-            let anno = chart
-                .draw_series((series.line > 0).then(|| {
-                    PathElement::new(series.points.iter().map(|point| point.at).collect::<Vec<_>>(), style)
-                }))?;
+            let anno =
+                chart
+                    .draw_series((series.line > 0).then(|| {
+                        PathElement::new(self.shown(series).map(|point| point.at).collect::<Vec<_>>(), style)
+                    }))?;
             let is_line = series.line > 0;
             if !series.name.is_empty() {
                 anno.label(&series.name).legend(move |(x, y)| {
@@ -305,7 +333,7 @@ impl Plot {
                     if is_line { line.into_dyn() } else { disc.into_dyn() }
                 });
             }
-            for point in &series.points {
+            for point in self.shown(series) {
                 let (at, size) = (point.at, if point.front { 7 } else { 4 });
                 match point.marker {
                     Marker::None => continue,
@@ -316,7 +344,8 @@ impl Plot {
                 };
             }
         }
-        let marked: Vec<(&Point, (i32, i32))> = points()
+        let marked: Vec<(&Point, (i32, i32))> = self
+            .points()
             .filter(|point| point.marker != Marker::None)
             .map(|point| (point, chart.backend_coord(&point.at)))
             .collect();
@@ -434,6 +463,10 @@ mod tests {
         dots[2].compared = false;
         assert_eq!(stairs(&dots), 1);
         assert!(Dot::new("none", None, Some(1.0), 0).is_none() && Dot::new("exact", Some(1.0), Some(0.0), 0).is_none());
+        // A logarithmic axis cannot show zero.
+        let zero = plot(vec![Series::line("growth", GREY, 2, [(0.0, 1.0), (2.0, 2.0), (3.0, 0.0)]).dotted()]);
+        assert!(!zero.is_empty() && zero.svg().expect("drawn").contains("growth"));
+        assert!(plot(vec![Series::line("nothing", GREY, 2, [(0.0, 1.0)]).dotted()]).is_empty());
         let empty = plot(vec![Series::line("law", GREY, 2, [(1.0, 1.0), (2.0, 2.0)])]).svg();
         assert!(empty.expect_err("no rung").to_string().contains("nothing was timed"));
     }
@@ -447,7 +480,8 @@ mod tests {
         assert_eq!(names(Axis::log(""), [0.3, 1.0]), ["0.3", "0.4", "0.5", "0.6", "0.8", "1"]);
         assert_eq!(names(Axis::log(""), [0.01, 1.0]), ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
         assert_eq!(names(Axis::log(""), [1e-7, 0.1]), ["1e-7", "1e-6", "1e-5", "1e-4", "0.001", "0.01", "0.1"]);
-        let linear = Axis { label: String::new(), linear: Some((0.0, 0.9)) };
+        let linear = Axis::linear("", (0.0, 0.9));
+        assert_eq!(names(Axis::log("").with_ticks([16.0, 32.0, 512.0]), [16.0, 256.0]), ["16", "32"]);
         assert_eq!(names(linear, [0.0; 2]).last().map(String::as_str), Some("0.9"));
     }
 }

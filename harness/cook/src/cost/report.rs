@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// One measurement of a rung: a value, and what the frame that it was measured in takes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(deny_unknown_fields)]
 pub struct Row {
     /// The rung's name; if the rung was drawn in several ways, followed by a comma and the way.
     pub rung: String,
@@ -15,19 +15,19 @@ pub struct Row {
     pub view: String,
     /// Name of the measured quantity.
     pub measure: String,
-    /// The value in `unit`; `None` if the measure does not apply to the rung.
+    /// The value in `unit`; `None` if the measure does not apply to the rung or was not taken.
     pub value: Option<f64>,
-    /// Unit of the value; empty for a ratio.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    /// Unit of the value; empty for a ratio or a count.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// Milliseconds for the same frame, the minimum over the rounds; `None` if it was not timed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ms: Option<f64>,
     /// Bytes that the frame needs; each ladder says of which resources.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
     /// Numbers of SPIR-V instructions of the frame's specialised shaders.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instructions: Vec<u32>,
 }
 
@@ -55,15 +55,15 @@ pub struct Report {
     pub technique: String,
     /// The device and its driver.
     pub adapter: String,
-    /// Numbers that hold for the whole run, by name, such as `width`, `height` and `rounds`.
-    pub settings: BTreeMap<String, f64>,
+    /// Whole numbers that hold for the run, by name, such as `width`, `height` and `rounds`.
+    pub settings: BTreeMap<String, u64>,
     /// The measurements, in order.
     pub rows: Vec<Row>,
 }
 
 impl Report {
     /// Returns a report without rows.
-    pub fn new(technique: &str, adapter: String, settings: &[(&str, f64)]) -> Self {
+    pub fn new(technique: &str, adapter: String, settings: &[(&str, u64)]) -> Self {
         let settings = settings.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         Self { technique: technique.to_owned(), adapter, settings, rows: Vec::new() }
     }
@@ -85,8 +85,12 @@ impl Report {
     /// Returns the report as JSON, with a line for each row.
     ///
     /// # Errors
-    /// Returns an error if the report cannot be written, which a report of numbers always can.
-    pub fn json(&self) -> Result<String, serde_json::Error> {
+    /// Returns an error if a value is infinite or not a number, which JSON cannot hold.
+    pub fn json(&self) -> Result<String, CostError> {
+        let is_finite = |row: &&Row| [row.value, row.ms].into_iter().flatten().all(f64::is_finite);
+        if let Some(Row { rung, view, measure, .. }) = self.rows.iter().find(|row| !is_finite(row)) {
+            return Err(CostError::NotFinite { row: format!("{measure} of {rung} in {view}") });
+        }
         let head = serde_json::to_string_pretty(&Self { rows: Vec::new(), ..self.clone() })?;
         let rows: Vec<String> = self.rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
         let empty = "\"rows\": []";
@@ -95,12 +99,13 @@ impl Report {
 
     /// Returns all tables as text.
     pub fn text(&self, ladder: &Ladder) -> String {
-        let tables: Vec<String> = (ladder.tables)(self).iter().map(Table::text).collect();
+        let tables = (ladder.tables)(self);
+        let tables: Vec<String> = tables.iter().filter(|table| !table.is_empty()).map(Table::text).collect();
         format!("{}: {}\n\n{}", self.technique, self.run(), tables.join("\n"))
     }
 
     /// Returns a setting; 0 if the report lacks it.
-    pub fn setting(&self, name: &str) -> f64 {
+    pub fn setting(&self, name: &str) -> u64 {
         self.settings.get(name).copied().unwrap_or_default()
     }
 
@@ -112,7 +117,7 @@ impl Report {
     /// Describes how times were taken and on what.
     pub fn run(&self) -> String {
         match self.setting("rounds") {
-            0.0 => self.adapter.clone(),
+            0 => self.adapter.clone(),
             rounds => format!("the least of {rounds} interleaved rounds, on {}", self.adapter),
         }
     }
@@ -203,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_report_survives_its_json() {
-        let mut report = Report::new("gem", "a device".to_owned(), &[("width", 4.0)]);
+        let mut report = Report::new("gem", "a device".to_owned(), &[("width", 4)]);
         let empty = report.json().expect("JSON");
         assert_eq!(Report::from_json("gem", &empty).expect("a report"), report);
         report.rows.push(Row::new("proxy-1", "prism", "flip", 0.1 + 0.2, "").timed(Some(1e-7)));
@@ -211,6 +216,13 @@ mod tests {
         let json = report.json().expect("JSON");
         assert_eq!(Report::from_json("gem", &json).expect("a report"), report);
         assert_eq!(json.lines().filter(|line| line.contains("\"rung\"")).count(), 2, "{json}");
+        for (field, change) in [("view", "\"veiw\":"), ("value", "\"other\":0,\"value\":")] {
+            let wrong = json.replacen(&format!("\"{field}\":"), change, 1);
+            let error = Report::from_json("gem", &wrong).expect_err("a wrong field").to_string();
+            assert!(error.contains("not a gem.json"), "{error}");
+        }
+        report.rows[0].value = Some(f64::NAN);
+        assert!(report.json().expect_err("no number").to_string().contains("flip of proxy-1 in prism"));
         let other = Report::from_json("cdrf", &json).expect_err("another ladder's").to_string();
         assert!(other.contains("not a cdrf.json") && other.contains("report of `gem`"), "{other}");
     }

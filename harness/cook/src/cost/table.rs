@@ -24,6 +24,11 @@ impl Table {
         Lines { table: Self { name, title: title.to_owned(), ..Self::default() }, keys: keys.into() }
     }
 
+    /// Whether the table has columns and no line.
+    pub fn is_empty(&self) -> bool {
+        self.columns.first().is_some_and(|(_, cells)| cells.is_empty())
+    }
+
     /// Returns the cells of each line, the headings first.
     fn lines(&self) -> impl Iterator<Item = Vec<&str>> {
         let count = self.columns.first().map_or(0, |(_, cells)| cells.len());

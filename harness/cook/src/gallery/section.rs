@@ -5,8 +5,8 @@ use super::{
     page::{command, figure, listing},
     text::{escape, framed, prose},
 };
-use crate::cookbook::Module;
 use crate::cookbook::header::{FunctionDoc, parse_header};
+use crate::cookbook::{Module, marks};
 use lapidary_assay::accuracy_line::{Accuracy, FieldBound};
 use lapidary_wgsl::Recipe;
 
@@ -159,7 +159,9 @@ pub fn recipe(recipe: &Recipe, placed: &[Placed<'_>]) -> String {
         .map(|(name, comment)| format!("<dt><code>{}</code></dt><dd>{}</dd>\n", escape(name), prose(&comment)))
         .collect();
     let overrides = framed("<dl class=\"overrides\">\n", &overrides, "</dl>\n");
-    let listing = listing(&format!("{name}.wgsl"), &recipe.compose());
+    // The text to paste, as `cook copy` writes it.
+    let text = marks::without(recipe, &[]).unwrap_or_else(|_| recipe.compose());
+    let listing = listing(&format!("{name}.wgsl"), &text);
     format!(
         r##"<article id="recipe-{name}" class="module">
 <h3>{name} <a class="anchor" href="#recipe-{name}" aria-label="Link to recipe {name}">#</a></h3>

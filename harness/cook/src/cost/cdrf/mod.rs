@@ -65,11 +65,12 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
     let scenes = frames::Scenes::new()?;
     let [width, height] = options.frame;
     let settings = [
-        ("width", f64::from(width)),
+        ("width", u64::from(width)),
         ("height", height.into()),
         ("rounds", options.rounds.into()),
-        ("vertices", scenes.vertices() as f64),
-        ("spheres", spheres.len() as f64),
+        ("vertices", scenes.vertices() as u64),
+        ("spheres", spheres.len() as u64),
+        ("side", scenes::SIDE.into()),
     ];
     let mut report = Report::new(LADDER.name, gpu.describe(), &settings);
     let total = options.rungs.len() as u64 + 1;
@@ -86,8 +87,9 @@ pub fn run(gpu: &Gpu, options: &Options<Reflectance>, progress: Progress<'_>) ->
             let [free, fixed] = walks::residuals(&spheres, &function);
             [distance.largest, distance.rms, free, fixed]
         }));
-        let mesh = Row::new(reflectance.name(), "mesh", "vertex data", None, "");
-        report.rows.push(Row { bytes: Some(scenes.mesh_bytes(reflectance)), ..mesh });
+        let bytes = scenes.mesh_bytes(reflectance);
+        let mesh = Row::new(reflectance.name(), "mesh", "vertex data", bytes as f64, "B");
+        report.rows.push(Row { bytes: Some(bytes), ..mesh });
     }
     frames::measure(gpu, &scenes, options, &errors, &mut report, &mut |done, total| progress("timing", done, total))?;
     for (name, distance) in error::tables(gpu, &convolution)? {

@@ -127,7 +127,7 @@ fn times(report: &Report, name: &'static str, title: &str, views: &[&str]) -> Ta
             });
     }
     lines.note(format!(
-        "Milliseconds for {} pixels, {}. * timed on 1/16 of the pixels and scaled. `lambert` and `blur` know no \
+        "Milliseconds for {} pixels, {}. `*` timed on 1/16 of the pixels and scaled. `lambert` and `blur` know no \
          curvature, and were timed once. SPIR-V: instructions of vertex and fragment shader; the blur has other \
          shaders besides.",
         report.size(),
@@ -165,15 +165,17 @@ fn nearer(report: &Report, rung: &str) -> Option<f64> {
 
 fn goals(report: &Report) -> Table {
     let mut goals = Vec::new();
-    let near_enough = |rung: &&&str| nearer(report, rung).is_some_and(|times| times >= 100.0);
     for (lit, whole) in VIEWS[..2].iter().zip(&VIEWS[2..]) {
-        let of = |view: &str, slow: &str, fast: &str| ratio(report, slow, fast, view).unwrap_or(f64::NAN);
+        let of = |view: &str, slow: &str, fast: &str| ratio(report, slow, fast, view);
         // The fastest rung without a table that is close enough; the other goals apply to it too.
-        let fast = |rung: &&&str| of(lit, PAPER, rung);
-        let best = ANALYTIC.iter().filter(near_enough).max_by(|a, b| fast(a).total_cmp(&fast(b)));
-        let Some(best) = best else { continue };
+        let near = |rung: &&'static str| {
+            let times = nearer(report, rung).filter(|times| *times >= 100.0)?;
+            Some((*rung, times, of(lit, PAPER, rung)?))
+        };
+        let Some((best, times, faster)) = ANALYTIC.iter().filter_map(near).max_by(|a, b| a.2.total_cmp(&b.2)) else {
+            continue;
+        };
         let with = source(lit);
-        let (faster, times) = (of(lit, PAPER, best), nearer(report, best).unwrap_or(f64::NAN));
         goals.push(Goal::new(
             format!(
                 "a rung without a table, faster than `{PAPER}` and at least 100 times as near to the convolution; {with}"
@@ -181,19 +183,15 @@ fn goals(report: &Report) -> Table {
             format!("`{best}`: {faster:.2} times as fast, {times:.0} times as near"),
             faster > 1.0,
         ));
-        let over = of(whole, best, LAMBERT);
-        goals.push(Goal::new(
-            format!("its whole frame within 25 % of Lambert's; {with}"),
-            format!("`{best}`: {}", beyond(Some(over))),
-            over <= 1.25,
-        ));
+        goals.extend(of(whole, best, LAMBERT).map(|over| {
+            let goal = format!("its whole frame within 25 % of Lambert's; {with}");
+            Goal::new(goal, format!("`{best}`: {}", beyond(Some(over))), over <= 1.25)
+        }));
         for (view, what) in [(lit, "its lit part"), (whole, "its whole frame")] {
-            let faster = of(view, BLUR, best);
-            goals.push(Goal::new(
-                format!("{what} at least 10 times as fast as by the texture's blur; {with}"),
-                format!("`{best}`: {faster:.1} times"),
-                faster >= 10.0,
-            ));
+            goals.extend(of(view, BLUR, best).map(|faster| {
+                let goal = format!("{what} at least 10 times as fast as by the texture's blur; {with}");
+                Goal::new(goal, format!("`{best}`: {faster:.1} times"), faster >= 10.0)
+            }));
         }
     }
     Goal::table("cdrf_goals", goals)
@@ -264,7 +262,7 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
     for point in series.iter_mut().flat_map(|series| &mut series.points) {
         point.front = true;
     }
-    if let Some(ms) = report.ms(BLUR, SCREEN, TIME) {
+    if let Some(ms) = report.ms(BLUR, SCREEN, TIME).filter(|ms| *ms > 0.0) {
         let errors = series.iter().flat_map(|series| &series.points).map(|point| point.at.1);
         let (low, high) = errors.fold((f64::INFINITY, 0.0), |(a, b), error| (f64::min(a, error), f64::max(b, error)));
         if low <= high {

@@ -20,7 +20,7 @@ fn add(report: &mut Report, rung: &str, ms: f64, error: Option<f64>, curved: boo
 
 /// Returns the whole ladder with made-up values.
 fn whole() -> Report {
-    let settings = [("width", 1920.0), ("height", 1080.0), ("rounds", 7.0), ("spheres", 40.0)];
+    let settings = [("width", 1920), ("height", 1080), ("rounds", 7), ("spheres", 40)];
     let mut report = Report::new("cdrf", "a device".to_owned(), &settings);
     let rungs = [
         (LAMBERT, 20.0, 0.7),

@@ -1,6 +1,7 @@
 //! Errors of a rung's function against random walks through spheres: the residual of the
 //! convolution itself, and what a rung's errors add to it.
 
+use crate::cost::report::distinct;
 use crate::cost::sphere::{self, Fit, ScaleKind};
 use crate::cost::{CostError, Report};
 use lapidary_reference::random_walk::Profile;
@@ -19,9 +20,17 @@ pub fn record_file() -> PathBuf {
 pub fn record(path: &Path) -> Result<Vec<Profile>, CostError> {
     let unfit = |what: String| CostError::Record { path: path.to_owned(), what };
     let text = std::fs::read_to_string(path).map_err(|error| unfit(format!("cannot be read: {error}")))?;
-    let report = Report::from_json(sphere::LADDER.name, &text).map_err(|error| unfit(error.to_string()))?;
+    let report = Report::from_json(sphere::LADDER.name, &text).map_err(|error| match error {
+        CostError::Unfit { what, .. } => unfit(format!("is not a sphere.json: {what}")),
+        other => other,
+    })?;
     let profiles = sphere::profiles(&report);
-    if profiles.is_empty() { Err(unfit("holds no sphere".to_owned())) } else { Ok(profiles) }
+    let walked = report.rows.iter().filter(|row| row.measure.starts_with("exitance "));
+    let spheres = distinct(walked.map(|row| &row.view)).len();
+    if profiles.is_empty() || profiles.len() < spheres {
+        return Err(unfit(format!("holds {} whole spheres of {spheres}", profiles.len())));
+    }
+    Ok(profiles)
 }
 
 /// Returns the residuals of `function` against the spheres, with the best-fit scale and with the
@@ -80,9 +89,9 @@ mod tests {
         let said = |path: &Path| record(path).expect_err("no record").to_string();
         assert!(said(&path).contains("sphere.json: cannot be read") && said(&path).contains("./cook cost sphere"));
         std::fs::write(&path, "{}").expect("written");
-        assert!(said(&path).contains("not a sphere.json"), "{}", said(&path));
+        assert!(said(&path).contains("is not a sphere.json"), "{}", said(&path));
         let empty = Report::new("sphere", String::new(), &[]).json().expect("JSON");
         std::fs::write(&path, empty).expect("written");
-        assert!(said(&path).contains("holds no sphere"));
+        assert!(said(&path).contains("holds 0 whole spheres of 0"));
     }
 }

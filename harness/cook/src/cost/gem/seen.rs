@@ -34,14 +34,17 @@ impl Watched {
         rungs: &[(&str, Settings)],
         report: &mut Report,
     ) -> Result<(), CostError> {
+        let mut seen = Vec::new();
+        for (_, settings) in rungs {
+            let now = render::render_means(gpu, &self.scene, settings)?;
+            let Errors { flip, rmse, energy } = Errors::between(&now, &self.reference);
+            seen.push([flip, rmse, energy, self.change(gpu, settings, &now)?]);
+        }
         let timed: Vec<Timed<'_>> =
             rungs.iter().map(|(_, settings)| Timed::new(&self.scene, settings.clone())).collect();
         let timings = timing::time(gpu, &timed, rounds, &mut |_, _| {})?;
-        for ((rung, settings), timing) in rungs.iter().zip(timings) {
-            let now = render::render_means(gpu, &self.scene, settings)?;
-            let Errors { flip, rmse, energy } = Errors::between(&now, &self.reference);
-            let change = self.change(gpu, settings, &now)?;
-            for (measure, value) in super::MEASURES.into_iter().zip([flip, rmse, energy, change]) {
+        for (((rung, _), seen), timing) in rungs.iter().zip(seen).zip(timings) {
+            for (measure, value) in super::MEASURES.into_iter().zip(seen) {
                 let row = Row::new(rung, self.view.name, measure, value, "");
                 report.rows.push(row.timed(timing.map(|timing| timing.ms)));
             }

@@ -89,7 +89,7 @@ pub(super) fn measure(
     let drawn: Vec<Measured> = measured.iter().copied().filter(|of| of.rung != Rung::Reference).collect();
     let total = (COMPARED.len() + WALKED.len()) as u64 * drawn.len() as u64 * (u64::from(options.rounds) + 1);
     let mut done = 0;
-    for (view, errors) in VIEWS.into_iter().zip(errors.chunks_exact(measured.len())) {
+    for (view, errors) in VIEWS.into_iter().zip(errors.chunks_exact(measured.len().max(1))) {
         let mut rows = Vec::new();
         for (kind, views) in [(GREY, &COMPARED[..]), (RGB, &WALKED)] {
             if !views.contains(&view) {
@@ -125,7 +125,8 @@ pub(super) fn measure(
             for (measure, error) in MEASURES.into_iter().zip(*errors) {
                 let kind = if measure == "walks" { RGB } else { GREY };
                 let ms = rows.iter().find(|row| row.rung == name && row.measure == kind).and_then(|row| row.ms);
-                report.rows.push(Row::new(&name, view, measure, error, "").timed(ms));
+                let unit = if measure == "nats" { "nats" } else { "" };
+                report.rows.push(Row::new(&name, view, measure, error, unit).timed(ms));
             }
         }
         report.rows.append(&mut rows);

@@ -57,7 +57,7 @@ fn beaten<'r>(report: &'r Report, rungs: &[&'r str]) -> Vec<&'r str> {
 /// Says what the times are of.
 fn note(report: &Report, what: &str) -> String {
     format!(
-        "Milliseconds for pictures of {} pixels, {what}: {}. * over {} s a frame, the least of {SLOW_ROUNDS}.",
+        "Milliseconds for pictures of {} pixels, {what}: {}. `*` over {} s a frame, the least of {SLOW_ROUNDS}.",
         report.size(),
         report.run(),
         SLOW.as_secs()
@@ -116,8 +116,8 @@ fn stages(report: &Report) -> Table {
         lines = lines.column(stage, |rung| figure(report.value(rung, STAGED, stage), 1));
     }
     lines.column("frame", |rung| shown_ms(report, rung, STAGED, GREY)).note(format!(
-        "{} Each stage is submitted and waited for by itself. Updates: tiles, or for untiled solvers voxels; + more \
-         were left.",
+        "{} Each stage is submitted and waited for by itself. Updates: tiles, or for untiled solvers voxels; `+` if \
+         more were left.",
         note(report, "of the bunny with one extinction for all channels")
     ))
 }
@@ -221,7 +221,7 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
         Plot {
             file: "optical_path_growth.svg",
             caption: format!("Optical paths: time against the grid, {}", report.adapter),
-            x: Axis::log("voxels along an edge of the grid"),
+            x: Axis::log("voxels along an edge of the grid").with_ticks(CELLS.map(f64::from)),
             y: Axis::log("milliseconds for the bunny, one channel (least of interleaved rounds)"),
             series: lines,
             legend: Corner::UpperLeft,

@@ -20,7 +20,7 @@ fn add(report: &mut Report, rung: &str, ms: f64, nats: Option<f64>) {
 }
 
 fn report(rungs: &[(&str, f64, Option<f64>)]) -> Report {
-    let settings = [("width", 512.0), ("height", 512.0), ("rounds", 5.0)];
+    let settings = [("width", 512), ("height", 512), ("rounds", 5)];
     let mut report = Report::new("optical_path", "a device".to_owned(), &settings);
     rungs.iter().for_each(|&(rung, ms, nats)| add(&mut report, rung, ms, nats));
     report

@@ -109,10 +109,10 @@ pub(super) fn measure(
         report.rows.extend([
             row(&own, "facets", counted(false)?).timed(unlimited),
             row(&with(LIMITED), "facets", counted(true)?).timed(limited),
-            row(&with(LIMITED), "radiance", largest).timed(limited),
+            row(&with(LIMITED), "share of the bound", largest).timed(limited),
             row(&with(LIMITED), "steps", steps.into()),
             row(&with(LIMITED), "changed", changed),
-            row(&with(NO_BREAK), "radiance", largest).timed(no_break),
+            row(&with(NO_BREAK), "share of the bound", largest).timed(no_break),
         ]);
         progress("comparing", done, pairs.len() as u64);
     }

@@ -8,11 +8,16 @@ use crate::cost::table::{Table, figure, scientific};
 /// Checks that a report has every scene by every rung, and tiles.
 pub(super) fn whole(report: &Report) -> Result<(), String> {
     for (scene, rung) in SCENES.iter().flat_map(|scene| RUNGS.iter().map(move |rung| (scene, rung))) {
-        if report.row(rung, scene, "facets").is_none() {
+        if report.ms(rung, scene, "facets").is_none() {
             return Err(format!("the report has no `{rung}` of `{scene}`; only a whole report fills a page"));
         }
     }
-    if report.rungs("updates").is_empty() { Err("the report has no tiles".to_owned()) } else { Ok(()) }
+    let others = report.rows.iter().filter(|row| ["updates", "variant"].contains(&row.measure.as_str()));
+    let (timed, untimed): (Vec<_>, Vec<_>) = others.partition(|row| row.ms.is_some());
+    if timed.is_empty() || !untimed.is_empty() {
+        return Err("the report has no times of tiles or variants".to_owned());
+    }
+    Ok(())
 }
 
 pub(super) fn tables(report: &Report) -> Vec<Table> {
@@ -38,13 +43,15 @@ fn throughput(report: &Report) -> Table {
         .column("facets", |(scene, rung)| figure(report.value(rung, scene, "facets"), 2))
         .column("limited", |line| figure(value(line, "facets"), 2))
         .column("ms", |line| figure(ms(line), 1))
-        .column("limited, no break", |(scene, rung)| figure(report.ms(&with(rung, NO_BREAK), scene, "radiance"), 1))
+        .column("limited, no break", |(scene, rung)| {
+            figure(report.ms(&with(rung, NO_BREAK), scene, "share of the bound"), 1)
+        })
         .column("limited", |line| figure(limited(line), 1))
         .column("time", |line| {
             let saved = limited(line).zip(ms(line)).map(|(limited, ms)| 100.0 * (limited / ms - 1.0));
             saved.map_or("-".to_owned(), |saved| format!("{saved:+.0} %"))
         })
-        .column("largest / bound", |line| figure(value(line, "radiance"), 2))
+        .column("largest / bound", |line| figure(value(line, "share of the bound"), 2))
         .column("steps of 8 bits", |line| {
             let changed = value(line, "changed").map(|changed| 100.0 * changed);
             format!("{}, {} %", figure(value(line, "steps"), 0), figure(changed, 1))

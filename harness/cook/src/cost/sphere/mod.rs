@@ -20,6 +20,8 @@ pub const ALBEDOS: [f64; 4] = [0.8, 0.9, 0.99, 1.0];
 pub const RADII: [f64; 10] = [2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0];
 /// The reflectance functions, the plain cosine first.
 pub const FORMS: [Form; 3] = [Form::Lambert, Form::Circular, Form::Spherical];
+/// The units of [`FITS`].
+const UNITS: [&str; 5] = ["rad", "mean free paths", "mean free paths", "", ""];
 /// The measures of a fit: the width in radians; the width times the radius in mean free paths, which
 /// would be one number for an albedo if the paper's rule held; its standard error from the
 /// statistics of the walks; the factor of the function; and the RMS difference over the sphere's
@@ -108,7 +110,7 @@ impl Fitted {
         let Fit { sigma, scale, residual } = self.fit;
         let values = [Some(sigma), Some(self.sigma_radius()), self.error, Some(scale), Some(residual)];
         let rung = rung(self.form, self.kind) + suffix;
-        std::array::from_fn(|k| Row::new(&rung, &view(self.albedo, self.radius), FITS[k], values[k], ""))
+        std::array::from_fn(|k| Row::new(&rung, &view(self.albedo, self.radius), FITS[k], values[k], UNITS[k]))
     }
 }
 
@@ -131,7 +133,7 @@ pub fn run(walks: u64, seed: u64, progress: Progress<'_>) -> Report {
 /// Fits the profiles from random walks: forms to each sphere, laws for the width to all, and one
 /// width times radius to ranges of radii.
 pub fn report(walks: u64, seed: u64, profiles: &[Profile]) -> Report {
-    let settings = [("walks", walks as f64), ("seed", seed as f64)];
+    let settings = [("walks", walks), ("seed", seed)];
     let mut report = Report::new(LADDER.name, "random walks on the CPU".to_owned(), &settings);
     for profile in profiles {
         let view = view(profile.albedo, profile.radius);
@@ -167,26 +169,28 @@ fn limit(albedo: f64) -> [Row; 4] {
     [
         Row::new(WALKS, &view(albedo, f64::INFINITY), "diffuse albedo", profile.whole(), ""),
         row(Form::Lambert, "residual", lambert.residual),
-        row(Form::Circular, "sigma", circular.sigma),
+        Row { unit: UNITS[0].to_owned(), ..row(Form::Circular, "sigma", circular.sigma) },
         row(Form::Circular, "residual", circular.residual),
     ]
 }
 
-/// Returns the spheres of a report.
+/// Returns the spheres of a report that have a value for each interval.
 pub fn profiles(report: &Report) -> Vec<Profile> {
-    let walked = |measure: &str| -> Vec<&Row> {
-        report.rows.iter().filter(|row| row.rung == WALKS && row.measure.starts_with(measure)).collect()
+    let views = distinct(report.rows.iter().filter(|row| row.rung == WALKS).map(|row| row.view.as_str()));
+    let values = |view: &str, measure: &str| -> Option<[f64; BINS]> {
+        let own = report.rows.iter().filter(|row| row.rung == WALKS && row.view == view);
+        let found: Vec<&Row> = own.filter(|row| row.measure.starts_with(measure)).collect();
+        let value = |bin: usize| found.iter().find(|row| row.measure == format!("{measure} {bin}"))?.value;
+        let values: Option<Vec<f64>> = (0..BINS).map(value).collect();
+        values?.try_into().ok()
     };
-    let (exitance, error) = (walked("exitance "), walked("standard error "));
-    let values = |rows: &[&Row]| -> [f64; BINS] {
-        std::array::from_fn(|bin| rows.get(bin).and_then(|row| row.value).unwrap_or(f64::NAN))
-    };
-    let profile = |(exitance, error): (&[&Row], &[&Row])| {
-        let (albedo, radius) = exitance[0].view.strip_prefix("albedo ")?.split_once(", R = ")?;
+    let profile = |view: &str| {
+        let (albedo, radius) = view.strip_prefix("albedo ")?.split_once(", R = ")?;
         let (albedo, radius) = (albedo.parse().ok()?, radius.parse().ok()?);
-        Some(Profile { albedo, radius, exitance: values(exitance), standard_error: values(error) })
+        let (exitance, standard_error) = (values(view, "exitance")?, values(view, "standard error")?);
+        Some(Profile { albedo, radius, exitance, standard_error })
     };
-    exitance.chunks(BINS).zip(error.chunks(BINS)).filter_map(profile).collect()
+    views.into_iter().filter_map(profile).collect()
 }
 
 #[cfg(test)]
@@ -251,6 +255,15 @@ mod tests {
                 assert!((found.standard_error[bin] - walked.standard_error[bin]).abs() < 1e-15);
             }
         }
+    }
+
+    #[test]
+    fn a_sphere_with_a_missing_interval_is_not_taken_for_another() {
+        let mut report = report();
+        let at = report.rows.iter().position(|row| row.measure == "exitance 7").expect("a row");
+        report.rows.remove(at);
+        let radii: Vec<f64> = profiles(&report).iter().map(|profile| profile.radius).collect();
+        assert_eq!(radii, SMALL[1..]);
     }
 
     /// With unscattered light a small sphere needs a wider function; a large one, through which no

@@ -220,8 +220,9 @@ fn sigma(report: &Report) -> Plot {
     Plot {
         file: "sphere_sigma.svg",
         caption: "Best width times radius: level lines, were σ = σ₀κ true".to_owned(),
-        x: Axis::log("radius in mean free paths"),
-        y: Axis::log("σR in mean free paths, the circular form with a free scale"),
+        x: Axis::log("radius in mean free paths").with_ticks(RADII),
+        y: Axis::log("σR in mean free paths, the circular form with a free scale")
+            .with_ticks([2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0]),
         series,
         legend: Corner::UpperLeft,
     }
@@ -262,8 +263,8 @@ fn profile(report: &Report) -> Plot {
     Plot {
         file: "sphere_profile.svg",
         caption: format!("Spheres of albedo {ALBEDO}: random walks and the best of the reflectance function"),
-        x: Axis { label: "angle between the normal and the light, degrees".to_owned(), linear: Some((0.0, 180.0)) },
-        y: Axis { label: "exitance over the irradiance square to the light".to_owned(), linear: Some((0.0, 0.9)) },
+        x: Axis::linear("angle between the normal and the light, degrees", (0.0, 180.0)),
+        y: Axis::linear("exitance over the irradiance square to the light", (0.0, 0.9)),
         series,
         legend: Corner::UpperRight,
     }

@@ -106,7 +106,9 @@ impl<'scene> Matter<'scene> {
             |(number, object): (usize, &Object)| object.material.medium.as_ref().map(Coefficients::from).ok_or(number);
         let coefficients = objects().map(medium).collect::<Result<_, _>>()?;
         let structure = |(number, object): (usize, &Object)| Structure::new(object, boundary).ok_or(number);
-        let structures = objects().map(structure).collect::<Result<_, _>>()?;
+        let structures = objects().map(structure).collect::<Result<Vec<_>, _>>()?;
+        // Bodies with the index of their surroundings have no boundary, whatever was asked for.
+        let boundary = if structures.iter().all(Structure::is_matched) { Boundary::Matched } else { boundary };
         let bounds = scene.bounds();
         let margin = 1e-6 * f64::from(bounds.radius());
         Ok(Self {

@@ -58,6 +58,11 @@ impl Structure {
         })
     }
 
+    /// Whether light crosses the boundary unchanged.
+    pub(super) fn is_matched(&self) -> bool {
+        self.index == 1.0
+    }
+
     /// Density divided by the greatest density.
     fn share(&self, position: DVec3) -> f64 {
         if self.most > 0.0 { f64::from(self.density.at(position.as_vec3())) / self.most } else { 0.0 }
@@ -82,7 +87,7 @@ impl Structure {
     /// Refracts or reflects a direction at the boundary, whose `normal` is on the side that it
     /// comes from; returns whether it crosses to the other side.
     fn crosses(&self, direction: &mut DVec3, normal: DVec3, index: f64, random: &mut Xoshiro256PlusPlus) -> bool {
-        if self.index == 1.0 {
+        if self.is_matched() {
             return true;
         }
         let crossing = oracle::boundary(*direction, normal, index, random.random());
