@@ -11,34 +11,32 @@
 
 // Light crosses inside the material from the lit side to the dark side. Called for by
 // extras.lapidary.sigma0 above 0.
-override EFFECT_CDRF: bool = true;  //+cdrf
+override EFFECT_CDRF: bool = true;
 // The form of the reflectance: 0 wrap lighting, 1 a table through a sampler, 2 a table filtered by
 // hand (for formats that no sampler filters), 3 cheap, 4 accurate, 5 quadrature, 6 spherical.
-override CDRF_FORM: u32 = 4u;  //+cdrf
+override CDRF_FORM: u32 = 4u;
 // The source of the curvature. From the pixel's derivatives: 0 mean, 1 of the section towards each
 // light, 2 mean by the usual |dN| / |dP|. From the vertices: 3 mean. Derivatives need no data, but
 // jump between the triangles of a coarse mesh; curvatures given at the vertices do not.
 override CURVATURE_FORM: u32 = 0u;
 // Uses irradiance that was drawn into the mesh's own texture and blurred there, by the recipes
 // texture_irradiance and texture_diffusion.
-override EFFECT_TEXTURE_DIFFUSION: bool = false;  //+texture_diffusion
+override EFFECT_TEXTURE_DIFFUSION: bool = false;
 // Bodies cast shadows on one another and on themselves: the recipe reflective_shadow_map draws each
 // light's view beforehand. Called for by the rung lambert-shadowed, or by the user.
-override EFFECT_SHADOW: bool = false;  //+shadow
+override EFFECT_SHADOW: bool = false;
 // Light from all around, in addition to the lights. Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;  //+environment
+override EFFECT_ENVIRONMENT: bool = true;
 // Sums the environment's harmonics per vertex and interpolates them, instead of summing them per
 // pixel: over a triangle with smooth normals they are smooth too.
-override ENVIRONMENT_AT_VERTICES: bool = true;  //+environment
+override ENVIRONMENT_AT_VERTICES: bool = true;
 
-//+cdrf {
 const CDRF_FORM_WRAP: u32 = 0u;
 const CDRF_FORM_TABLE: u32 = 1u;
 const CDRF_FORM_TEXELS: u32 = 2u;
 const CDRF_FORM_CHEAP: u32 = 3u;
 const CDRF_FORM_QUADRATURE: u32 = 5u;
 const CDRF_FORM_SPHERICAL: u32 = 6u;
-//+cdrf }
 const CURVATURE_FORM_TOWARDS: u32 = 1u;
 const CURVATURE_FORM_NAIVE: u32 = 2u;
 const CURVATURE_FORM_VERTEX: u32 = 3u;
@@ -71,18 +69,18 @@ struct CdrfMaterial {
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
 // Baked by the recipe cdrf_table with this material's tint.
-@group(1) @binding(4) var table: texture_2d<f32>;  //+cdrf
-@group(1) @binding(5) var table_sampler: sampler;  //+cdrf
+@group(1) @binding(4) var table: texture_2d<f32>;
+@group(1) @binding(5) var table_sampler: sampler;
 // Baked with the tint (1, 1, 1) for all materials: one channel, in a format that no sampler
 // filters.
-@group(1) @binding(6) var table_texels: texture_2d<f32>;  //+cdrf
+@group(1) @binding(6) var table_texels: texture_2d<f32>;
 // Mean curvature of each vertex, for CURVATURE_FORM_VERTEX; per unit of length.
 @group(1) @binding(7) var<storage, read> curvatures: array<f32>;
 // Two floats per vertex, for texture diffusion.
-@group(1) @binding(8) var<storage, read> uvs: array<f32>;  //+texture_diffusion
+@group(1) @binding(8) var<storage, read> uvs: array<f32>;
 // Blurred irradiance.
-@group(1) @binding(9) var diffused: texture_2d<f32>;  //+texture_diffusion
-@group(1) @binding(10) var diffused_sampler: sampler;  //+texture_diffusion
+@group(1) @binding(9) var diffused: texture_2d<f32>;
+@group(1) @binding(10) var diffused_sampler: sampler;
 
 struct CdrfVertex {
     @builtin(position) clip: vec4f,
@@ -163,14 +161,11 @@ fn cdrf_unit_normal(normal: vec3f, toward_eye: vec3f) -> vec3f {
     return select(toward_eye, normal * inverseSqrt(max(squared, 1e-12f)), squared > 1e-12f);
 }
 
-//+cdrf {
 // Width of the Gaussian for each channel: cdrf_sigma, with sigma0 already made safe by the host.
 fn cdrf_sigmas(curvature: f32) -> vec3f {
     return material.sigma0 * abs(cdrf_finite(curvature));
 }
-//+cdrf }
 
-//+cdrf {
 // Looks up the table by hand, blending four texels.
 fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
     let texels = cdrf_texels(cdrf_table_coordinates(cosine, sigma), textureDimensions(table_texels));
@@ -182,7 +177,6 @@ fn cdrf_lookup(cosine: f32, sigma: f32) -> f32 {
         textureLoad(table_texels, texels.upper, 0).rgb,
     ).x;
 }
-//+cdrf }
 
 // The reflectance towards one light, per channel.
 fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
@@ -214,7 +208,6 @@ fn cdrf_reflectance(cosine: f32, curvature: f32) -> vec3f {
     //+cdrf }
 }
 
-//+shadow {
 // The visible share of a light. A surface that faces away from the light needs no shadow to be
 // dark, so it gets 1.
 fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 {
@@ -230,7 +223,6 @@ fn cdrf_visible(light: u32, cosine: f32, position: vec3f, normal: vec3f) -> f32 
 fn cdrf_shadowed(reflectance: vec3f, cosine: f32, visible: f32) -> vec3f {
     return max(reflectance - (1.0f - visible) * max(cosine, 0.0f), vec3f(0.0f));
 }
-//+shadow }
 
 // Irradiance, each light's part spread by its reflectance.
 fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3f {
@@ -271,7 +263,6 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
     return received;
 }
 
-//+microfacet {
 // Radiance that the surface reflects from all lights towards the eye, without spreading it.
 fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0f);
@@ -285,7 +276,6 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     }
     return sum;
 }
-//+microfacet }
 
 @fragment
 fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {

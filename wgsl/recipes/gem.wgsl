@@ -10,12 +10,12 @@
 
 // Light passes through the stone; if off, only its surface reflects (the paper's Fig. 2). Called
 // for by KHR_materials_transmission.
-override EFFECT_PROXY_GEOMETRY: bool = true;  //+proxy_geometry
+override EFFECT_PROXY_GEOMETRY: bool = true;
 // Computes the proxy's centre by the paper's eq. (4) instead of the stable form.
-override CENTRE_PAPER: bool = false;  //+proxy_geometry
+override CENTRE_PAPER: bool = false;
 
 // Three floats per vertex: normals shared by the facets that meet there, averaged by angle.
-@group(2) @binding(0) var<storage, read> normals: array<f32>;  //+proxy_geometry
+@group(2) @binding(0) var<storage, read> normals: array<f32>;
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
@@ -28,7 +28,6 @@ struct GemVertex {
     @location(5) @interpolate(flat, either) edge_second: vec3f,  //+proxy_geometry
 }
 
-//+proxy_geometry {
 // The proxy's centre, from the three vertex normals.
 fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     let position_a = mesh_position(a);
@@ -39,7 +38,6 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
     }
     return closest_point_centre(position_a, mesh_normal(a), position_b, mesh_normal(b), position_c, mesh_normal(c));
 }
-//+proxy_geometry }
 
 @vertex
 fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
@@ -72,7 +70,6 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     );
 }
 
-//+proxy_geometry {
 // The place of a ray inside: the plane that it travels towards. All planes of a triangle's proxy
 // are parallel to the triangle.
 struct GemPlace {
@@ -99,7 +96,6 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     (*place).plane = proxy_geometry_next_plane((*place).centre, facet);
     return GemHit(hit.point, normal, hit.distance, true);
 }
-//+proxy_geometry }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {

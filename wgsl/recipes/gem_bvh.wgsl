@@ -9,9 +9,9 @@
 
 // Light passes through the stone; if off, only its surface reflects. Called for by
 // KHR_materials_transmission.
-override EFFECT_BVH_TRACE: bool = true;  //+bvh_trace
+override EFFECT_BVH_TRACE: bool = true;
 // The root is first; the two children of a node are side by side.
-@group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;  //+bvh_trace
+@group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
@@ -40,7 +40,6 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     );
 }
 
-//+bvh_trace {
 // The place of a ray inside: the triangle that it left last, which it cannot meet again
 // immediately.
 struct GemPlace {
@@ -60,7 +59,6 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     let normal = gem_face_normal(nearest.triangle);
     return GemHit(position + nearest.distance * direction, -normal, nearest.distance, true);
 }
-//+bvh_trace }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {

@@ -9,7 +9,7 @@
 
 // Light passes through the stone; if off, only its surface reflects. Called for by
 // KHR_materials_transmission.
-override EFFECT_CONVEX_TRACE: bool = true;  //+convex_trace
+override EFFECT_CONVEX_TRACE: bool = true;
 
 // Outward unit normal of each facet plane and its distance from the origin, in world space.
 @group(2) @binding(0) var<storage, read> planes: array<vec4f>;
@@ -35,7 +35,6 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     );
 }
 
-//+convex_trace {
 // The place of a ray inside: the facet that it left last, which it cannot meet again immediately.
 struct GemPlace {
     face: u32,
@@ -58,7 +57,6 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
     let plane = planes[nearest.face];
     return GemHit(convex_trace_point(position, direction, nearest.distance, plane), -plane.xyz, nearest.distance, true);
 }
-//+convex_trace }
 
 @fragment
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {

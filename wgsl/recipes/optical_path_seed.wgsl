@@ -10,7 +10,7 @@
 
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 
 struct OpticalPathSeeding {
     grid: VoxelizationGrid,
@@ -26,7 +26,7 @@ struct OpticalPathSeeding {
 // Bindings 2, 4 and 5 belong to the parts.
 @group(1) @binding(0) var<storage, read_write> costs: array<atomic<u32>>;
 @group(1) @binding(1) var<storage, read> matter: array<u32>;
-@group(1) @binding(2) var<storage, read> density: array<f32>;  //+extinction_per_voxel
+@group(1) @binding(2) var<storage, read> density: array<f32>;
 
 // Sets all voxels to unreached.
 @compute @workgroup_size(64)
@@ -85,8 +85,6 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
     }
 }
 
-//+extinction_per_voxel {
 fn optical_path_extinction_at(voxel: vec3u) -> f32 {
     return seeding.extinction * density[voxelization_index(seeding.grid, voxel)];
 }
-//+extinction_per_voxel }

@@ -9,16 +9,16 @@
 
 // Light through the body. If off, only light that falls on the surface itself is reflected
 // diffusely. Called for by extras.lapidary.scattering and absorption.
-override EFFECT_OPTICAL_PATH: bool = true;  //+optical_path
+override EFFECT_OPTICAL_PATH: bool = true;
 // Separate costs for red, green and blue. If off, the first serves all three. Called for by an
 // extinction or a light that is not grey.
-override EFFECT_COLOR: bool = true;  //+color
+override EFFECT_COLOR: bool = true;
 // The extinction varies from voxel to voxel. Called for by extras.lapidary.veins, or by a grid of
 // densities.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 // Diffuse light from all around, in addition to the lights. It does not travel through the body.
 // Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;  //+environment
+override EFFECT_ENVIRONMENT: bool = true;
 
 struct OpticalPathView {
     clip_from_world: mat4x4f,
@@ -49,10 +49,10 @@ struct OpticalPathBody {
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> normals: array<f32>;
-@group(1) @binding(4) var<storage, read> costs_red: array<u32>;  //+optical_path
-@group(1) @binding(5) var<storage, read> costs_green: array<u32>;  //+optical_path,color
-@group(1) @binding(6) var<storage, read> costs_blue: array<u32>;  //+optical_path,color
-@group(1) @binding(7) var<storage, read> density: array<f32>;  //+optical_path,extinction_per_voxel
+@group(1) @binding(4) var<storage, read> costs_red: array<u32>;
+@group(1) @binding(5) var<storage, read> costs_green: array<u32>;
+@group(1) @binding(6) var<storage, read> costs_blue: array<u32>;
+@group(1) @binding(7) var<storage, read> density: array<f32>;
 
 struct OpticalPathVertex {
     @builtin(position) clip: vec4f,
@@ -67,8 +67,6 @@ fn optical_path_vertex(@builtin(vertex_index) vertex: u32) -> OpticalPathVertex 
     return OpticalPathVertex(view.clip_from_world * vec4f(position, 1.0f), position, mesh_normal(index));
 }
 
-//+optical_path {
-//+extinction_per_voxel {
 // The density at a point, interpolated linearly between voxel centres.
 fn optical_path_density(position: vec3f) -> f32 {
     let place = (position - body.grid.origin) / body.grid.spacing - 0.5f;
@@ -93,7 +91,6 @@ fn optical_path_density(position: vec3f) -> f32 {
     }
     return mix(near.x, near.y, weight.z);
 }
-//+extinction_per_voxel }
 
 // The share of the largest irradiance that reaches a point along the cheapest path through the 27
 // voxels around it.
@@ -130,7 +127,6 @@ fn optical_path_along(position: vec3f) -> vec3f {
     }  //+color
     return vec3f(red, optical_path_luminance(least.y), optical_path_luminance(least.z));  //+color
 }
-//+optical_path }
 
 @fragment
 fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {

@@ -9,9 +9,9 @@
 // rgba16float and rg32float.
 
 // Bodies cast shadows on one another and on themselves. Called for by the user.
-override EFFECT_SHADOW: bool = false;  //+shadow
+override EFFECT_SHADOW: bool = false;
 // Light from all around, in addition to the lights. Called for by an environment.
-override EFFECT_ENVIRONMENT: bool = true;  //+environment
+override EFFECT_ENVIRONMENT: bool = true;
 
 // Positions and normals: three floats per vertex, in world space. Texture coordinates: two.
 @group(1) @binding(0) var<storage, read> positions: array<f32>;

@@ -22,7 +22,7 @@
 // Also fills the voxels that the surface touches, so that parts thinner than a voxel and bodies the
 // size of a voxel are kept. If off, only voxels whose centre is inside are filled; their number is
 // proportional to the volume.
-override EFFECT_SURFACE: bool = true;  //+surface
+override EFFECT_SURFACE: bool = true;
 
 // The number of columns above which a triangle is shared among threads.
 override VOXELIZATION_LARGE: u32 = 64u;
@@ -47,7 +47,7 @@ struct VoxelizationStatus {
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 // Voxels along x, 32 per word, from the least bit on. Each row starts at a new word.
 @group(0) @binding(3) var<storage, read_write> matter: array<atomic<u32>>;
-@group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;  //+surface
+@group(0) @binding(4) var<storage, read_write> surface: array<atomic<u32>>;
 // A bit for each column, set if the column is crossed an odd number of times behind its last
 // centre.
 @group(0) @binding(5) var<storage, read_write> beyond: array<atomic<u32>>;

@@ -9,11 +9,10 @@
 
 // A wall without an interior: the environment behind it shows undeflected below the reflection.
 // Called for by KHR_materials_transmission without a thickness from KHR_materials_volume.
-override EFFECT_THIN_WALL: bool = false;  //+thin_wall
+override EFFECT_THIN_WALL: bool = false;
 // Light is absorbed on its way through the inside. Called for by KHR_materials_volume with an
 // attenuation colour below white.
-override EFFECT_ABSORPTION: bool = false;  //+absorption
-//+dispersion {
+override EFFECT_ABSORPTION: bool = false;
 // The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
 override EFFECT_DISPERSION: bool = false;
 // How dispersion is traced: 0 the paper's tracker, 1 the exact first-order tracker, 2 one ray per
@@ -21,8 +20,6 @@ override EFFECT_DISPERSION: bool = false;
 override DISPERSION_FORM: u32 = 1u;
 // Number of entries of `wavelengths` that form 2 traces.
 override WAVELENGTHS: u32 = 3u;
-//+dispersion }
-//+bvh_trace,convex_trace,proxy_geometry {
 // Number of internal hits that are followed.
 override BOUNCES: u32 = 1u;
 // The light that a ray still carries when it ends (at the last bounce, at the distance limit, or
@@ -34,12 +31,9 @@ override LIMIT_DISTANCE: bool = false;
 // A ray also ends when its light can no longer be seen: when no channel's throughput reaches
 // material.throughput_limit.
 override LIMIT_THROUGHPUT: bool = false;
-//+bvh_trace,convex_trace,proxy_geometry }
 
-//+dispersion {
 const GEM_DISPERSION_PAPER: u32 = 0u;
 const GEM_DISPERSION_SEPARATE: u32 = 2u;
-//+dispersion }
 
 struct GemView {
     clip_from_world: mat4x4f,
@@ -66,7 +60,6 @@ struct GemMaterial {
     throughput_limit: f32,
 }
 
-//+dispersion {
 // One of the wavelengths that form 2 traces.
 struct GemWavelength {
     // Contribution of its radiance to the pixel's, both in linear RGB; the matrices of all
@@ -75,7 +68,6 @@ struct GemWavelength {
     // Index of refraction at this wavelength.
     index: f32,
 }
-//+dispersion }
 
 @group(0) @binding(0) var<uniform> view: GemView;
 // Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
@@ -84,9 +76,8 @@ struct GemWavelength {
 // Three floats per vertex, in world space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
-@group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;  //+dispersion
+@group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
 
-//+bvh_trace,convex_trace,proxy_geometry {
 // The next facet that a ray meets inside the stone.
 struct GemHit {
     point: vec3f,
@@ -200,7 +191,6 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
     return ray.radiance;
 }
 
-//+dispersion {
 // Radiance of the environment from three directions, one per channel.
 fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
     return vec3f(surroundings_radiance(red).r, surroundings_radiance(green).g, surroundings_radiance(blue).b);
@@ -279,8 +269,6 @@ fn gem_trace_paper(input: GemVertex, direction: vec3f) -> vec3f {
     }
     return ray.radiance;
 }
-//+dispersion }
-//+bvh_trace,convex_trace,proxy_geometry }
 
 // Radiance that a stone sends to the eye.
 struct GemRadiance {
@@ -292,7 +280,6 @@ struct GemRadiance {
     reflectance: vec3f,
 }
 
-//+dispersion {
 // Reflectance of the surface at each channel's own index.
 fn gem_reflectance_channels(cosine: f32) -> vec3f {
     return vec3f(
@@ -301,7 +288,6 @@ fn gem_reflectance_channels(cosine: f32) -> vec3f {
         fresnel_dielectric(cosine, material.channel_indices.b),
     );
 }
-//+dispersion }
 
 // Radiance of the stone towards the eye. If `transmits` is false, only the surface contributes.
 fn gem_radiance(

@@ -4,7 +4,6 @@
 //
 // A recipe adds: the modules cdrf and environment. The coefficients are bound here.
 
-//+environment {
 // Spherical harmonics of the environment, linear RGB: one coefficient of degree 0, three of degree
 // 1, five of degree 2, nine of degree 4. A clamped cosine has no component of degree 3.
 struct Harmonics {
@@ -52,4 +51,3 @@ fn harmonics_irradiance(around: HarmonicsAround, red: vec4f, green: vec4f, blue:
         + around.fourth * vec3f(red.w, green.w, blue.w);
     return max(sum, vec3f(0.0f));
 }
-//+environment }

@@ -5,7 +5,6 @@
 // A recipe adds: the module reflective_shadow_map. The maps are drawn by the recipe of that name
 // and bound here.
 
-//+shadow {
 struct LightView {
     view: ReflectiveShadowMapView,
     // Number of the light that it belongs to.
@@ -15,4 +14,3 @@ struct LightView {
 // One view per layer of the maps.
 @group(0) @binding(4) var<storage, read> views: array<LightView>;
 @group(0) @binding(5) var maps: texture_2d_array<f32>;
-//+shadow }

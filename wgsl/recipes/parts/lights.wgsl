@@ -6,7 +6,7 @@
 // no lights, it holds one black light.
 
 // Lights that shine into a cone. Called for by a spot light of KHR_lights_punctual.
-override EFFECT_SPOT: bool = false;  //+spot
+override EFFECT_SPOT: bool = false;
 
 struct Light {
     // Unit vector towards a sun, or position of a point or spot light.

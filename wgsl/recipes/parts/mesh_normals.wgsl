@@ -5,8 +5,6 @@
 // A recipe adds: the binding `normals`, array<f32>, three floats per vertex, since a vec3f would
 // take up four.
 
-//+proxy_geometry {
 fn mesh_normal(index: u32) -> vec3f {
     return vec3f(normals[3u * index], normals[3u * index + 1u], normals[3u * index + 2u]);
 }
-//+proxy_geometry }

@@ -8,7 +8,7 @@
 // Number of neighbours that edges connect a voxel to: 6, 18 or 26.
 override OPTICAL_PATH_STENCIL: u32 = 26u;
 // Extinction varies within the material: each voxel has a density that multiplies the extinction.
-override EFFECT_EXTINCTION_PER_VOXEL: bool = false;  //+extinction_per_voxel
+override EFFECT_EXTINCTION_PER_VOXEL: bool = false;
 
 struct OpticalPathGrid {
     // Voxels along an edge of the cube: a multiple of 8, at most 256. Voxel (x, y, z) has the
@@ -46,7 +46,7 @@ struct OpticalPathProgress {
 // Workgroup counts of the next indirect dispatch.
 @group(0) @binding(4) var<storage, read_write> workgroups: array<u32, 3>;
 // Density of each voxel, at least 0.
-@group(0) @binding(5) var<storage, read> density: array<f32>;  //+extinction_per_voxel
+@group(0) @binding(5) var<storage, read> density: array<f32>;
 
 fn optical_path_voxel(voxel: vec3u) -> u32 {
     return voxel.x + grid.cells * (voxel.y + grid.cells * voxel.z);

@@ -8,21 +8,18 @@
 
 // Highlights of the lights on a rough surface. Called for by KHR_materials_ior above 1 and a
 // roughness above 0.
-override EFFECT_MICROFACET: bool = false;  //+microfacet
+override EFFECT_MICROFACET: bool = false;
 // Reflection of the environment in a polished surface. Called for by KHR_materials_ior above 1 and
 // a roughness of 0.
-override EFFECT_REFLECTION: bool = false;  //+reflection
+override EFFECT_REFLECTION: bool = false;
 
-//+microfacet {
 // Radiance that a rough surface reflects from one light towards the eye.
 fn reflection_highlight(arrival: LightArrival, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
     let half = microfacet_half(arrival.direction, toward_eye);
     let fresnel = fresnel_dielectric(dot(half, arrival.direction), index);
     return arrival.irradiance * microfacet_reflectance(normal, arrival.direction, toward_eye, alpha, fresnel);
 }
-//+microfacet }
 
-//+reflection {
 // Radiance from inside, with the environment's reflection on top if the surface is polished. The
 // share of light that is reflected does not come from inside.
 fn reflection_over(radiance: vec3f, normal: vec3f, toward_eye: vec3f, index: f32, alpha: f32) -> vec3f {
@@ -32,4 +29,3 @@ fn reflection_over(radiance: vec3f, normal: vec3f, toward_eye: vec3f, index: f32
     }
     return radiance;
 }
-//+reflection }

@@ -5,7 +5,6 @@
 //
 // A recipe adds: the module reflective_shadow_map and the part light_views.
 
-//+shadow {
 // Visible share in one view of a light, from the four texels around the point, weighted by
 // nearness; -1 outside the map.
 fn shadow_in_view(layer: u32, position: vec3f, normal: vec3f) -> f32 {
@@ -48,4 +47,3 @@ fn shadow_of_light(light: u32, position: vec3f, normal: vec3f) -> f32 {
     }
     return 1.0f;
 }
-//+shadow }

@@ -6,9 +6,9 @@
 
 // The environment is an image instead of the procedural studio. Called for by the user, who
 // supplies the image.
-override EFFECT_ENVIRONMENT_MAP: bool = false;  //+environment_map
+override EFFECT_ENVIRONMENT_MAP: bool = false;
 
-@group(0) @binding(1) var environment_map: texture_2d<f32>;  //+environment_map
+@group(0) @binding(1) var environment_map: texture_2d<f32>;
 
 // Radiance that arrives from a direction.
 fn surroundings_radiance(direction: vec3f) -> vec3f {

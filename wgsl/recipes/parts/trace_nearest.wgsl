@@ -9,7 +9,6 @@
 // `indices`, array<u32>, has three entries per triangle, counter-clockwise from outside, in the
 // order of the leaves. A triangle's number is its position there.
 
-//+bvh_trace {
 // Loops over all triangles instead of the hierarchy: the paper's comparison.
 override TRAVERSAL_LOOP: bool = false;
 // Uses Möller and Trumbore's test with an epsilon instead of the watertight test.
@@ -82,4 +81,3 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     }
     return hit;
 }
-//+bvh_trace }

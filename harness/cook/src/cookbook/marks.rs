@@ -82,6 +82,7 @@ fn within<'a>(open: &[(&'a str, usize)]) -> Vec<&'a str> {
 
 /// Returns the text without marks, without the lines for any effect of `off`, and with the lines that
 /// replace them. A comment above removed lines goes with them, unless it also stands above others.
+/// Declarations that no entry point reaches any more go too.
 pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
     let is_off = |effects: &[&str]| effects.iter().any(|effect| off.contains(effect));
     let is_comment = |text: &str| text.trim_start().starts_with("//");
@@ -105,24 +106,104 @@ pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
             while kept.last().is_some_and(|text| is_comment(text)) {
                 kept.pop();
             }
-            // One empty line is enough.
-            if text.trim().is_empty() && kept.last().is_some_and(|text| text.trim().is_empty()) {
-                continue;
-            }
         }
         is_after_removed = false;
         kept.push(text.to_owned());
     }
-    Ok(kept.join("\n") + "\n")
+    Ok(reached(&kept))
+}
+
+/// Lines of a text at the level of the module: a declaration with its comments and attributes, or
+/// anything else.
+#[derive(Default)]
+struct Piece<'a> {
+    lines: Vec<&'a str>,
+    /// Name of the declaration.
+    name: Option<&'a str>,
+    is_entry: bool,
+}
+
+/// Splits a text into pieces. As all WGSL here is formatted, a declaration begins at the start of a
+/// line, and ends with a line that begins with `}`, or, without a body, with `;`.
+fn pieces<'a>(lines: &[&'a str]) -> Vec<Piece<'a>> {
+    let mut pieces: Vec<Piece<'a>> = Vec::new();
+    let mut piece = Piece::default();
+    let mut is_open = false;
+    for &line in lines {
+        let code = line.split("//").next().unwrap_or_default().trim_end();
+        if line.trim().is_empty() && !is_open {
+            pieces.push(std::mem::take(&mut piece));
+            pieces.push(Piece { lines: vec![line], ..Piece::default() });
+            continue;
+        }
+        piece.lines.push(line);
+        piece.is_entry |= !is_open && ["@vertex", "@fragment", "@compute"].iter().any(|stage| code.starts_with(stage));
+        if !is_open && let Some(name) = declared(code) {
+            (piece.name, is_open) = (Some(name), true);
+        }
+        let has_body = piece.lines.iter().any(|line| ["fn ", "struct "].iter().any(|start| line.starts_with(start)));
+        if is_open && (if has_body { code.starts_with('}') } else { code.ends_with(';') }) {
+            is_open = false;
+            pieces.push(std::mem::take(&mut piece));
+        }
+    }
+    pieces.push(piece);
+    pieces
+}
+
+/// Returns the name that a line at the level of the module declares.
+fn declared(code: &str) -> Option<&str> {
+    // Attributes such as `@group(1) @binding(0)` stand before a variable.
+    let code = if code.starts_with('@') { &code[code.find(" var").map_or(code.len(), |at| at + 1)..] } else { code };
+    let keyword = code.split([' ', '<']).next()?;
+    let rest = match keyword {
+        "fn" | "struct" | "const" | "override" | "alias" => &code[keyword.len()..],
+        "var" if code.starts_with("var<") => code.split_once('>')?.1,
+        "var" => &code[keyword.len()..],
+        _ => return None,
+    };
+    words(rest).next()
+}
+
+/// Returns the lines without the declarations that no entry point reaches; all of them if there is
+/// no entry point.
+fn reached(lines: &[String]) -> String {
+    let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+    let pieces = pieces(&lines);
+    let mut names: HashSet<&str> = HashSet::new();
+    let mut taken: Vec<bool> = pieces.iter().map(|piece| piece.is_entry).collect();
+    let has_entry = taken.contains(&true);
+    let mut left: Vec<usize> = (0..pieces.len()).filter(|at| taken[*at]).collect();
+    while let Some(at) = left.pop() {
+        let code = pieces[at].lines.iter().map(|line| line.split("//").next().unwrap_or_default());
+        names.extend(code.flat_map(words));
+        for (other, piece) in pieces.iter().enumerate() {
+            if !taken[other] && piece.name.is_some_and(|name| names.contains(name)) {
+                taken[other] = true;
+                left.push(other);
+            }
+        }
+    }
+    let mut text = String::new();
+    for (piece, is_taken) in pieces.iter().zip(taken) {
+        if is_taken || piece.name.is_none() || !has_entry {
+            for line in &piece.lines {
+                // One empty line is enough.
+                if !line.trim().is_empty() || !(text.is_empty() || text.ends_with("\n\n")) {
+                    text.push_str(line);
+                    text.push('\n');
+                }
+            }
+        }
+    }
+    text
 }
 
 /// Returns a recipe with its modules, cut as by [`cut`], without the modules, naive forms and parts of
 /// which the cut recipe uses nothing.
 pub fn without(recipe: &Recipe, off: &[&str]) -> Result<String, Fault> {
     let code = |line: &str| line.split("//").next().unwrap_or_default().trim().to_owned();
-    let mut own: Vec<String> = recipe.own_text().into_iter().map(|text| cut(text, off)).collect::<Result<_, _>>()?;
-    own.retain(|text| text.lines().any(|line| !code(line).is_empty()));
-    let own = own.join("\n");
+    let own = cut(&recipe.own_text().join("\n"), off)?;
     let lines: Vec<String> = own.lines().map(code).collect();
     let words: HashSet<&str> = lines.iter().flat_map(|line| words(line)).collect();
     let is_used = |text: &str| {
@@ -145,7 +226,7 @@ fn words(code: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Checks a text's marks: each names one of `known`, and all lines that name the override of an
-/// effect are marked with that effect.
+/// effect, besides its declaration, are marked with that effect.
 pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
     let lines = match lines(source) {
         Ok(lines) => lines,
@@ -159,7 +240,8 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
                 report(format!("marked as a line of `{effect}`, which no recipe declares"));
             }
         }
-        let code = text.split("//").next().unwrap_or_default();
+        // The declaration itself goes once nothing names it.
+        let code = if effect_of(text).is_some() { "" } else { text.split("//").next().unwrap_or_default() };
         for word in words(code) {
             let Some(effect) = word.strip_prefix("EFFECT_").map(str::to_lowercase) else { continue };
             if !with.contains(&effect.as_str()) {
@@ -223,6 +305,60 @@ override EFFECT_FOG: bool = true;  //+fog
         let commented = "// Both.\nfog,  //+fog\nrain,\n\n// Fog alone.\nmore fog;  //+fog\n\n// Kept.\nend\n";
         assert_eq!(cut(commented, &["fog"]).expect("well formed"), "// Both.\nrain,\n\n// Kept.\nend\n");
         assert_eq!(cut("//+fog (\n", &[]).expect_err("not well formed").line, 1);
+    }
+
+    #[test]
+    fn what_no_entry_point_reaches_goes() {
+        let text = "\
+// A recipe.
+
+// Fog.
+override EFFECT_FOG: bool = true;
+override STEPS: u32 = 4u;
+
+// The mesh.
+@group(1) @binding(0) var<storage, read> positions: array<f32>;
+@group(1) @binding(1) var fog: texture_2d<f32>;
+
+struct Hit {
+    at: vec3f,
+}
+
+// Thins what is behind.
+fn thin(
+    hit: Hit,
+) -> f32 {
+    return textureLoad(fog, vec2u(0u), 0).x;
+}
+
+// Draws.
+@fragment
+fn main() -> @location(0) vec4f {
+    let first = positions[0];
+    if (EFFECT_FOG) {  //+fog
+        return vec4f(thin(Hit(vec3f(first))));  //+fog
+    }  //+fog
+    return vec4f(first);
+}
+";
+        let whole = cut(text, &[]).expect("well formed");
+        assert_eq!(whole, text.replace("  //+fog", "").replace("override STEPS: u32 = 4u;\n", ""));
+        let bare = cut(text, &["fog"]).expect("well formed");
+        let expected = "\
+// A recipe.
+
+// The mesh.
+@group(1) @binding(0) var<storage, read> positions: array<f32>;
+
+// Draws.
+@fragment
+fn main() -> @location(0) vec4f {
+    let first = positions[0];
+    return vec4f(first);
+}
+";
+        assert_eq!(bare, expected);
+        assert_eq!(reached(&["fn f() {".to_owned(), "}".to_owned()]), "fn f() {\n}\n");
     }
 
     #[test]
