@@ -235,12 +235,11 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
         }
         let cosine = dot(normal, arrival.direction);
         var reflectance = cdrf_reflectance(cosine, curvature);
-        if (EFFECT_SHADOW) {  //+shadow
-            reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));  //+shadow
-        }  //+shadow
+        if (EFFECT_SHADOW) {
+            reflectance = cdrf_shadowed(reflectance, cosine, cdrf_visible(index, cosine, input.position, normal));
+        }
         received += arrival.irradiance * reflectance;
     }
-    //+environment {
     if (EFFECT_ENVIRONMENT) {
         var around = HarmonicsAround(input.around_zeroth, input.around_first, input.around_second, input.around_fourth);
         if (!ENVIRONMENT_AT_VERTICES) {
@@ -259,7 +258,6 @@ fn cdrf_received(input: CdrfVertex, surface: CdrfSurface, normal: vec3f) -> vec3
             received += harmonics_irradiance(around, weights, weights, weights);
         }  //+cdrf
     }
-    //+environment }
     return received;
 }
 
@@ -269,9 +267,9 @@ fn cdrf_highlights(position: vec3f, normal: vec3f, toward_eye: vec3f) -> vec3f {
     for (var index = 0u; index < arrayLength(&lights); index++) {
         let arrival = light_arrival(lights[index], position);
         var highlight = reflection_highlight(arrival, normal, toward_eye, material.index, material.alpha);
-        if (EFFECT_SHADOW) {  //+shadow
-            highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);  //+shadow
-        }  //+shadow
+        if (EFFECT_SHADOW) {
+            highlight *= cdrf_visible(index, dot(normal, arrival.direction), position, normal);
+        }
         sum += highlight;
     }
     return sum;
@@ -291,15 +289,13 @@ fn cdrf_fragment(input: CdrfVertex) -> @location(0) vec4f {
     }  //+texture_diffusion
     let inside = 0.31830987f * material.base_color * received;
     var radiance = inside;
-    if (EFFECT_REFLECTION) {  //+reflection
-        radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);  //+reflection
-    }  //+reflection
-    //+microfacet {
+    if (EFFECT_REFLECTION) {
+        radiance = reflection_over(inside, normal, toward_eye, material.index, material.alpha);
+    }
     if (EFFECT_MICROFACET) {
         if (material.alpha > 0.0f) {
             radiance += cdrf_highlights(input.position, normal, toward_eye);
         }
     }
-    //+microfacet }
     return vec4f(radiance, 1.0f);
 }

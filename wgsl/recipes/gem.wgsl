@@ -101,14 +101,12 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_PROXY_GEOMETRY);  //+proxy_geometry
     //-proxy_geometry let radiance = gem_radiance(input);
-    if (EFFECT_PROXY_GEOMETRY) {  //+proxy_geometry
-        return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry
-    }  //+proxy_geometry
-    //+thin_wall {
+    if (EFFECT_PROXY_GEOMETRY) {
+        return vec4f(radiance.surface + radiance.inside, 1.0f);
+    }
     if (EFFECT_THIN_WALL) {
         return vec4f(radiance.surface + radiance.inside, 1.0f);
     }
-    //+thin_wall }
     return vec4f(radiance.surface, 1.0f);
 }
 

@@ -62,14 +62,12 @@ fn gem_hit(place: ptr<function, GemPlace>, position: vec3f, direction: vec3f) ->
 fn gem_fragment(input: GemVertex) -> @location(0) vec4f {
     let radiance = gem_radiance(input, EFFECT_CONVEX_TRACE);  //+convex_trace
     //-convex_trace let radiance = gem_radiance(input);
-    if (EFFECT_CONVEX_TRACE) {  //+convex_trace
-        return vec4f(radiance.surface + radiance.inside, 1.0f);  //+convex_trace
-    }  //+convex_trace
-    //+thin_wall {
+    if (EFFECT_CONVEX_TRACE) {
+        return vec4f(radiance.surface + radiance.inside, 1.0f);
+    }
     if (EFFECT_THIN_WALL) {
         return vec4f(radiance.surface + radiance.inside, 1.0f);
     }
-    //+thin_wall }
     return vec4f(radiance.surface, 1.0f);
 }
 

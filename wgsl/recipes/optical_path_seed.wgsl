@@ -72,9 +72,9 @@ fn optical_path_seed_texel(@builtin(global_invocation_id) texel: vec3u) {
             continue;
         }
         var extinction = seeding.extinction;
-        if (EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
-            extinction = 0.5f * (own + optical_path_extinction_at(near));  //+extinction_per_voxel
-        }  //+extinction_per_voxel
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
+            extinction = 0.5f * (own + optical_path_extinction_at(near));
+        }
         let offset = distance(seen.xyz, voxelization_centre(seeding.grid, near));
         let cost = optical_path_encode(optical_path_seed(share, extinction, offset));
         let node = voxelization_index(seeding.grid, near);

@@ -110,16 +110,14 @@ fn optical_path_along(position: vec3f) -> vec3f {
         let index = voxelization_index(body.grid, voxel);
         let offset = distance(position, voxelization_centre(body.grid, voxel));
         var extinction = body.extinction;
-        if (EFFECT_EXTINCTION_PER_VOXEL) {  //+extinction_per_voxel
-            extinction *= 0.5f * (own + density[index]);  //+extinction_per_voxel
-        }  //+extinction_per_voxel
+        if (EFFECT_EXTINCTION_PER_VOXEL) {
+            extinction *= 0.5f * (own + density[index]);
+        }
         least.x = min(least.x, optical_path_through(optical_path_decode(costs_red[index]), extinction.x, offset));
-        //+color {
         if (EFFECT_COLOR) {
             least.y = min(least.y, optical_path_through(optical_path_decode(costs_green[index]), extinction.y, offset));
             least.z = min(least.z, optical_path_through(optical_path_decode(costs_blue[index]), extinction.z, offset));
         }
-        //+color }
     }
     let red = optical_path_luminance(least.x);
     if (!EFFECT_COLOR) {  //+color
@@ -150,34 +148,28 @@ fn optical_path_fragment(input: OpticalPathVertex) -> @location(0) vec4f {
             }
             counted = light;
             received += lit * cosine * arrival.irradiance;
-            if (EFFECT_MICROFACET) {  //+microfacet
-                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);  //+microfacet
-            }  //+microfacet
+            if (EFFECT_MICROFACET) {
+                highlights += lit * reflection_highlight(arrival, normal, toward_eye, body.index, body.alpha);
+            }
         }
     }
-    //+optical_path {
     if (EFFECT_OPTICAL_PATH) {
         // Light that falls on the point itself takes one of the paths, of length 0.
         received = max(received, body.largest * optical_path_along(input.position));
     }
-    //+optical_path }
-    //+environment {
     if (EFFECT_ENVIRONMENT) {
         let weights = cdrf_harmonic_weights(0.0f);
         received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
     }
-    //+environment }
     let inside = 0.31830987f * body.base_color * received;
     var radiance = inside;
-    if (EFFECT_REFLECTION) {  //+reflection
-        radiance = reflection_over(inside, normal, toward_eye, body.index, body.alpha);  //+reflection
-    }  //+reflection
-    //+microfacet {
+    if (EFFECT_REFLECTION) {
+        radiance = reflection_over(inside, normal, toward_eye, body.index, body.alpha);
+    }
     if (EFFECT_MICROFACET) {
         if (body.alpha > 0.0f) {
             radiance += highlights;
         }
     }
-    //+microfacet }
     return vec4f(radiance, 1.0f);
 }

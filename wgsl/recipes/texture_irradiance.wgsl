@@ -52,16 +52,14 @@ fn texture_irradiance_fragment(input: TextureIrradianceVertex) -> TextureIrradia
         let arrival = light_arrival(lights[index], input.position);
         let cosine = dot(normal, arrival.direction);
         var part = arrival.irradiance * cdrf_lambert(cosine);
-        if (EFFECT_SHADOW) {  //+shadow
-            part *= shadow_of_light(index, input.position, normal);  //+shadow
-        }  //+shadow
+        if (EFFECT_SHADOW) {
+            part *= shadow_of_light(index, input.position, normal);
+        }
         received += part;
     }
-    //+environment {
     if (EFFECT_ENVIRONMENT) {
         let weights = cdrf_harmonic_weights(0.0f);
         received += harmonics_irradiance(harmonics_around(normal), weights, weights, weights);
     }
-    //+environment }
     return TextureIrradianceTexel(vec4f(texture_diffusion_half(received), 1.0f), stretch);
 }

@@ -104,7 +104,6 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
                 atomicXor(&beyond[row / 32u], 1u << (row % 32u));
             }
         }
-        //+surface {
         if EFFECT_SURFACE {
             let span = voxelization_span(a, b, c, vec2f(place));
             let range = voxelization_range(span.x, span.y, grid.cells);
@@ -119,7 +118,6 @@ fn voxelization_walk(triangle: VoxelizationTriangle, first: u32, step: u32) {
                 }
             }
         }
-        //+surface }
     }
 }
 
@@ -184,24 +182,20 @@ fn voxelization_finish(@builtin(global_invocation_id) invocation: vec3u) {
         inside = select(0u, 0xffffffffu, all >> 31u == 1u);
         let filled = select(all & within, 0u, odd);
         var found = filled;
-        //+surface {
         if EFFECT_SURFACE {
             let skin = atomicLoad(&surface[row * words + word]);
             found |= skin;
             touched += countOneBits(skin);
         }
-        //+surface }
         atomicStore(&matter[row * words + word], found);
         solid += countOneBits(filled);
     }
     if solid > 0u {
         atomicAdd(&status.solid, solid);
     }
-    //+surface {
     if EFFECT_SURFACE && touched > 0u {
         atomicAdd(&status.surface, touched);
     }
-    //+surface }
     if odd {
         atomicAdd(&status.odd_columns, 1u);
     }

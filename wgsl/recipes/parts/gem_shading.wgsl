@@ -140,9 +140,9 @@ fn gem_next(ray: ptr<function, GemRay>, place: ptr<function, GemPlace>) -> GemHi
         (*ray).travelled += hit.distance;
         (*ray).followed = hit.hit && !gem_ends((*ray).travelled);
     }
-    if (EFFECT_ABSORPTION && (*ray).followed) {  //+absorption
-        (*ray).throughput *= gem_transmittance(hit.distance);  //+absorption
-    }  //+absorption
+    if (EFFECT_ABSORPTION && (*ray).followed) {
+        (*ray).throughput *= gem_transmittance(hit.distance);
+    }
     return hit;
 }
 
@@ -297,14 +297,11 @@ fn gem_radiance(
     let direction = normalize(input.position - view.eye);
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
     let reflected = surroundings_radiance(refraction_reflect(direction, input.face_normal));
-    //+thin_wall {
     if (EFFECT_THIN_WALL) {
         let reflectance = vec3f(fresnel_dielectric(cosine, material.index));
         let behind = surroundings_radiance(direction);
         return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * behind, reflectance);
     }
-    //+thin_wall }
-    //+dispersion {
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
         var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
         for (var wavelength = 0u; wavelength < WAVELENGTHS; wavelength++) {
@@ -323,7 +320,6 @@ fn gem_radiance(
         }  //+bvh_trace,convex_trace,proxy_geometry
         return separate;
     }
-    //+dispersion }
     var reflectance = vec3f(fresnel_dielectric(cosine, material.index));
     var inside = vec3f(0.0f);  //+bvh_trace,convex_trace,proxy_geometry
     if (!EFFECT_DISPERSION) {  //+dispersion

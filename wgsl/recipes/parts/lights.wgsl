@@ -43,9 +43,9 @@ fn light_arrival(light: Light, position: vec3f) -> LightArrival {
     }
     let direction = way * inverseSqrt(squared);
     var power = light.power;
-    if (EFFECT_SPOT) {  //+spot
-        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);  //+spot
-        power *= share * share;  //+spot
-    }  //+spot
+    if (EFFECT_SPOT) {
+        let share = clamp((-dot(direction, light.axis) - light.edge) * light.slope, 0.0f, 1.0f);
+        power *= share * share;
+    }
     return LightArrival(direction, power / mix(1.0f, squared, light.point));
 }

@@ -53,9 +53,9 @@ fn optical_path_voxel(voxel: vec3u) -> u32 {
 }
 
 fn optical_path_extinction(index: u32) -> f32 {
-    if EFFECT_EXTINCTION_PER_VOXEL {  //+extinction_per_voxel
-        return grid.extinction * density[index];  //+extinction_per_voxel
-    }  //+extinction_per_voxel
+    if EFFECT_EXTINCTION_PER_VOXEL {
+        return grid.extinction * density[index];
+    }
     return grid.extinction;
 }
 

@@ -12,7 +12,6 @@ override EFFECT_ENVIRONMENT_MAP: bool = false;
 
 // Radiance that arrives from a direction.
 fn surroundings_radiance(direction: vec3f) -> vec3f {
-    //+environment_map {
     if (EFFECT_ENVIRONMENT_MAP) {
         // Filtered by hand: 32-bit float textures need not be filterable.
         let texels = environment_texels(environment_uv_from_direction(direction), textureDimensions(environment_map));
@@ -24,6 +23,5 @@ fn surroundings_radiance(direction: vec3f) -> vec3f {
         let upper = mix(upper_left, upper_right, texels.weight.x);
         return mix(lower, upper, texels.weight.y);
     }
-    //+environment_map }
     return environment_studio(direction);
 }

@@ -12,10 +12,10 @@ pub struct Line<'a> {
     /// Text of the line, without the mark.
     pub text: &'a str,
     /// Effects that the line needs: it is removed if one of them is off.
-    pub with: Vec<&'a str>,
+    pub with: Vec<String>,
     /// Effects that the line replaces. If there are any, the line is a comment, and becomes a line
     /// of the shader if one of these effects is off.
-    pub without: Vec<&'a str>,
+    pub without: Vec<String>,
 }
 
 /// Error in the marks.
@@ -43,13 +43,38 @@ pub fn effects(source: &str) -> Vec<String> {
     source.lines().filter_map(effect_of).collect()
 }
 
-/// Parses the lines of a text, without those that hold only a mark.
+/// Returns the effect that a block needs as a whole, and the number of its last line, if `number` is
+/// its first: `if (EFFECT_FOG) {` or `if (EFFECT_FOG && …) {` without an `else`.
+fn block_of(source: &[&str], number: usize) -> Option<(String, usize)> {
+    let line = source[number - 1];
+    let indent = &line[..line.len() - line.trim_start().len()];
+    let condition = line.trim().strip_prefix("if ")?.split("//").next()?.trim().strip_suffix('{')?;
+    let condition = condition.trim();
+    let condition = condition.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).unwrap_or(condition);
+    let operand = condition.split("&&").next()?.trim();
+    let effect = operand.strip_prefix("EFFECT_")?.to_lowercase();
+    if condition.contains("||") || !effect.chars().all(|c| c.is_alphanumeric() || c == '_') {
+        return None;
+    }
+    let ends = |line: &&str| line.strip_prefix(indent).is_some_and(|rest| rest.starts_with('}'));
+    let length = source[number..].iter().position(ends)?;
+    let last = source[number + length].split("//").next().unwrap_or_default();
+    (last.trim() == "}").then_some((effect, number + length + 1))
+}
+
+/// Parses the lines of a text, without those that hold only a mark. A block that begins with
+/// `if (EFFECT_FOG) {` and has no `else` needs no mark.
 pub fn lines(source: &str) -> Result<Vec<Line<'_>>, Fault> {
+    let all: Vec<&str> = source.lines().collect();
+    // Open blocks, each with its last line.
+    let mut blocks: Vec<(String, usize)> = Vec::new();
     let mut lines = Vec::new();
     // Open marked ranges, each with its first line.
     let mut open: Vec<(&str, usize)> = Vec::new();
     for (number, text) in (1..).zip(source.lines()) {
         let fault = |message: String| Fault { line: number, message };
+        blocks.retain(|(_, last)| number <= *last);
+        blocks.extend(block_of(&all, number));
         let code = text.trim_start();
         if let Some(mark) = code.strip_prefix("//+") {
             match mark.split_once(' ') {
@@ -60,12 +85,13 @@ pub fn lines(source: &str) -> Result<Vec<Line<'_>>, Fault> {
                 _ => return Err(fault(format!("`{code}`: no stretch of lines begins or ends like this"))),
             }
         } else if let Some((names, code)) = code.strip_prefix("//-").and_then(|mark| mark.split_once(' ')) {
-            lines.push(Line { number, text: code, with: within(&open), without: names.split(',').collect() });
+            lines.push(Line { number, text: code, with: within(&open, &blocks), without: owned(names) });
         } else if code.starts_with("//-") {
             return Err(fault(format!("`{code}`: no line follows the effect's name")));
         } else {
             let (text, names) = text.split_once("//+").map_or((text, None), |(text, names)| (text, Some(names)));
-            let with = within(&open).into_iter().chain(names.into_iter().flat_map(|names| names.split(','))).collect();
+            let mut with = within(&open, &blocks);
+            with.extend(names.into_iter().flat_map(owned));
             lines.push(Line { number, text: text.trim_end(), with, without: Vec::new() });
         }
     }
@@ -75,16 +101,21 @@ pub fn lines(source: &str) -> Result<Vec<Line<'_>>, Fault> {
     }
 }
 
-/// Effects of the open marked ranges.
-fn within<'a>(open: &[(&'a str, usize)]) -> Vec<&'a str> {
-    open.iter().flat_map(|(names, _)| names.split(',')).collect()
+/// Effects of the open marked ranges and blocks.
+fn within(open: &[(&str, usize)], blocks: &[(String, usize)]) -> Vec<String> {
+    let marked = open.iter().flat_map(|(names, _)| owned(names));
+    marked.chain(blocks.iter().map(|(effect, _)| effect.clone())).collect()
+}
+
+fn owned(names: &str) -> Vec<String> {
+    names.split(',').map(str::to_owned).collect()
 }
 
 /// Returns the text without marks, without the lines for any effect of `off`, and with the lines that
 /// replace them. A comment above removed lines goes with them, unless it also stands above others.
 /// Declarations that no entry point reaches any more go too.
 pub fn cut(source: &str, off: &[&str]) -> Result<String, Fault> {
-    let is_off = |effects: &[&str]| effects.iter().any(|effect| off.contains(effect));
+    let is_off = |effects: &[String]| effects.iter().any(|effect| off.contains(&effect.as_str()));
     let is_comment = |text: &str| text.trim_start().starts_with("//");
     let indents: Vec<&str> = source.lines().map(|line| &line[..line.len() - line.trim_start().len()]).collect();
     let mut kept: Vec<String> = Vec::new();
@@ -236,7 +267,7 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
     for Line { number, text, with, without } in &lines {
         let mut report = |message| faults.push(Fault { line: *number, message });
         for effect in with.iter().chain(without) {
-            if !known.iter().any(|known| known == effect) {
+            if !known.contains(effect) {
                 report(format!("marked as a line of `{effect}`, which no recipe declares"));
             }
         }
@@ -244,7 +275,7 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
         let code = if effect_of(text).is_some() { "" } else { text.split("//").next().unwrap_or_default() };
         for word in words(code) {
             let Some(effect) = word.strip_prefix("EFFECT_").map(str::to_lowercase) else { continue };
-            if !with.contains(&effect.as_str()) {
+            if !with.contains(&effect) {
                 report(format!("`{word}` stays behind where the effect is off; end the line with `//+{effect}`"));
             }
         }
@@ -257,7 +288,7 @@ pub fn faults(source: &str, known: &[String]) -> Vec<Fault> {
 pub fn idle_effects(source: &str) -> Result<Vec<String>, Fault> {
     let lines = lines(source)?;
     let is_idle = |effect: &String| {
-        let mut own = lines.iter().filter(|line| line.with.contains(&effect.as_str()));
+        let mut own = lines.iter().filter(|line| line.with.contains(effect));
         own.all(|line| effect_of(line.text).is_some() || line.text.trim().is_empty())
     };
     Ok(effects(source).into_iter().filter(is_idle).collect())
@@ -283,8 +314,8 @@ override EFFECT_FOG: bool = true;  //+fog
     #[test]
     fn a_line_has_the_marks_about_it_and_its_own() {
         let lines = lines(TEXT).expect("well formed");
-        let found: Vec<(usize, &str, &[&str], &[&str])> =
-            lines.iter().map(|line| (line.number, line.text, &line.with[..], &line.without[..])).collect();
+        let found: Vec<(usize, &str, String, String)> =
+            lines.iter().map(|line| (line.number, line.text, line.with.join(","), line.without.join(","))).collect();
         let expected: [(usize, &str, &[&str], &[&str]); 6] = [
             (1, "a", &[], &[]),
             (2, "override EFFECT_FOG: bool = true;", &["fog"], &[]),
@@ -293,6 +324,7 @@ override EFFECT_FOG: bool = true;  //+fog
             (9, "d(e);", &[], &["fog"]),
             (10, "// f", &[], &[]),
         ];
+        let expected = expected.map(|(number, text, with, without)| (number, text, with.join(","), without.join(",")));
         assert_eq!(found, expected);
         assert_eq!(effects(TEXT), ["fog"]);
     }
@@ -305,6 +337,25 @@ override EFFECT_FOG: bool = true;  //+fog
         let commented = "// Both.\nfog,  //+fog\nrain,\n\n// Fog alone.\nmore fog;  //+fog\n\n// Kept.\nend\n";
         assert_eq!(cut(commented, &["fog"]).expect("well formed"), "// Both.\nrain,\n\n// Kept.\nend\n");
         assert_eq!(cut("//+fog (\n", &[]).expect_err("not well formed").line, 1);
+    }
+
+    #[test]
+    fn a_block_of_one_effect_needs_no_mark() {
+        let text = |condition: &str, end: &str| {
+            format!("a;\n    if {condition} {{\n        if b {{\n        }}\n    {end}\nc;\n")
+        };
+        for condition in ["(EFFECT_FOG)", "EFFECT_FOG", "(EFFECT_FOG && d)", "EFFECT_FOG && d > 0u"] {
+            let text = text(condition, "}");
+            assert_eq!(cut(&text, &["fog"]).expect("well formed"), "a;\nc;\n", "{condition}");
+            assert_eq!(faults(&text, &["fog".to_owned()]), [], "{condition}");
+        }
+        for (condition, end) in
+            [("(EFFECT_FOG || d)", "}"), ("(d && EFFECT_FOG)", "}"), ("(EFFECT_FOG)", "} else {\n    }")]
+        {
+            let text = text(condition, end);
+            assert_eq!(cut(&text, &["fog"]).expect("well formed"), text, "{condition}");
+            assert_eq!(faults(&text, &["fog".to_owned()]).len(), 1, "{condition}");
+        }
     }
 
     #[test]
@@ -381,7 +432,7 @@ fn main() -> @location(0) vec4f {
         assert_eq!(faults(TEXT, &known), []);
         let found = faults(TEXT, &known[..3]);
         assert!(found.len() == 1 && found[0].line == 6 && found[0].message.contains("`hail`"), "{found:?}");
-        for line in ["if (EFFECT_FOG) {", "if (EFFECT_FOG) {  //+rain", "//-fog if (EFFECT_FOG) {"] {
+        for line in ["a(EFFECT_FOG);", "if (EFFECT_FOG) {  //+rain", "//-fog if (EFFECT_FOG) {"] {
             let found = faults(line, &known);
             assert!(found.len() == 1 && found[0].message.contains("//+fog"), "{line}: {found:?}");
         }

@@ -19,8 +19,8 @@ const CUTS: [(&str, &str, &str); 3] = [
     ),
     (
         "rasterising alone",
-        "    if (EFFECT_PROXY_GEOMETRY) {  //+proxy_geometry\n        \
-         return vec4f(radiance.surface + radiance.inside, 1.0f);  //+proxy_geometry\n    }  //+proxy_geometry\n",
+        "    if (EFFECT_PROXY_GEOMETRY) {\n        \
+         return vec4f(radiance.surface + radiance.inside, 1.0f);\n    }\n",
         "    if (EFFECT_PROXY_GEOMETRY) {\n        \
          return vec4f(input.face_normal + input.position + input.plane_origin + input.edge_first + input.edge_second, \
          1.0f);\n    }\n",
