@@ -1,8 +1,9 @@
 // absorption: the share of light that a coloured medium lets through along a path inside, by the law of Beer and Lambert.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 05b9e9d5acca7b1b
-// Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles of Optics", 7th ed., section 14.1.
-//   Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.1.27, for the logarithm.
+// Version: 0.2.0, hash 91fcb6730d8bd0b4
+// Source: Khronos, glTF extension KHR_materials_volume, "Attenuation"; Born and Wolf, "Principles
+//   of Optics", 7th ed., section 14.1. Abramowitz and Stegun, "Handbook of Mathematical Functions",
+//   4.1.27, for the logarithm.
 
 // The smallest colour value: darker colours are clamped to it. It is 2^-126, the smallest value
 // that an implementation may not flush to zero. A colour of 0 would absorb without limit. With the
@@ -23,7 +24,7 @@ const ABSORPTION_NEAREST: f32 = 1e-30f;
 // Returns: optical depth in [0, 87.34]; exactly 0 for a transmittance of 1.
 // Units: none.
 // Domain: any transmittance, clamped to [2^-126, 1].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 6 ulp; portable 16 ulp
 fn absorption_optical_depth(transmittance: f32) -> f32 {
     let bits = bitcast<i32>(clamp(transmittance, ABSORPTION_DARKEST, 1.0f));

@@ -1,10 +1,11 @@
 // bvh_trace: rays inside a closed mesh of any shape, against triangles and the boxes of a bounding volume hierarchy, without leaks.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 5f5f96b94dd400d6
-// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis permutation, shear,
-//   edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013 (conservative boxes). The naive triangle: Möller
-//   and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Compared with: Imagire, "Proxy Geometry Gem
-//   Rendering", Fig. 7.
+// Version: 0.2.0, hash 46f5811bd12fbf2a
+// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013 (axis
+//   permutation, shear, edge functions); Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013
+//   (conservative boxes). The naive triangle: Möller and Trumbore, "Fast, Minimum Storage
+//   Ray/Triangle Intersection", 1997. Compared with: Imagire, "Proxy Geometry Gem Rendering",
+//   Fig. 7.
 //
 // Woop, Benthin and Wald get the same sign for an edge from both of its triangles, because both
 // compute it with identical rounding; an edge function of 0 is computed again in f64. WGSL
@@ -123,7 +124,8 @@ fn bvh_trace_to_object(origin: vec3f, direction: vec3f, place: vec3f, row_x: vec
 //   1e12, the box at least 1e-10 large. Trace in object space: if the mesh lies at D times its size
 //   from the origin of its coordinates, the margin grows by D 2^-21 of the mesh's size.
 //   bvh_trace_to_object transforms a ray from world space.
-// Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction divides by 0.
+// Outside: finite for |direction| in [1e-6, 1e6] and coordinates up to 1e30; a zero direction
+//   divides by 0.
 // Accuracy: lavapipe origin 0 ulp, direction 0 ulp, reciprocal 1 ulp, shear 1 ulp, axis 0 ulp, margin 3 ulp; portable origin 0 ulp, direction 0 ulp, reciprocal 2.5 ulp, shear 2.5 ulp, axis 0 ulp, margin 5 ulp
 fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) -> BvhTraceRay {
     let toward = select(vec3f(-1.0f), vec3f(1.0f), direction >= vec3f(0.0f));
@@ -149,7 +151,8 @@ fn bvh_trace_ray(origin: vec3f, direction: vec3f, lower: vec3f, upper: vec3f) ->
 //   which the ray enters, or 0.
 // Units: those of the positions.
 // Domain: lower <= upper, within the box that the ray was made for; nearest in [0, 1e37].
-// Outside: finite for coordinates up to 1e30; where lower > upper, the box between them less the margin.
+// Outside: finite for coordinates up to 1e30; where lower > upper, the box between them less the
+//   margin.
 // Accuracy: lavapipe entry 2 ulp + 2 backward, hit 2 backward; portable entry 4 ulp + 3 backward, hit 3 backward
 fn bvh_trace_box(ray: BvhTraceRay, lower: vec3f, upper: vec3f, nearest: f32) -> BvhTraceBox {
     let first = (lower - ray.origin - ray.margin) * ray.reciprocal;
@@ -198,9 +201,9 @@ fn bvh_trace_shear(ray: BvhTraceRay, position: vec3f) -> vec3f {
 // Domain: a, b, c counter-clockwise seen from outside, within the box that the ray was made for;
 //   coordinates up to 1e12; edges of length 0, or of at least 1e-10 and 1/1000 of the coordinates;
 //   in the frame of the ray, a triangle at least 1/32 as thick as it is long.
-// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in the frame of the ray
-//   need not: its neighbours, of which it is an edge there, do. Of thin ones none is refused that the ray meets, but
-//   the point in it is less sure.
+// Outside: `triangle` equal to `left`, the one just left, never counts. A triangle without area in
+//   the frame of the ray need not: its neighbours, of which it is an edge there, do. Of thin ones
+//   none is refused that the ray meets, but the point in it is less sure.
 // Accuracy: lavapipe distance 4 ulp + 6 backward, barycentrics 4 ulp + 0.0001 abs + 6 backward, triangle 6 backward; portable distance 12 ulp + 17 backward, barycentrics 8 ulp + 0.0002 abs + 17 backward, triangle 17 backward
 fn bvh_trace_triangle(
     hit: BvhTraceHit,

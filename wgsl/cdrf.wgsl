@@ -1,9 +1,10 @@
 // cdrf: curvature-dependent reflectance: the clamped cosine of diffuse light, blurred over the angle as a curved, translucent surface blurs it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 20ba09929fce32a4
-// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function":
-//   max(cos t, 0) convolved with a Gaussian of sigma = sigma0 curvature. The closed forms are derived in docs/cdrf.md.
-//   Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
+// Version: 0.2.0, hash 5e4e8aa093576b90
+// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
+//   Curvature-Dependent Reflectance Function": max(cos t, 0) convolved with a Gaussian of sigma =
+//   sigma0 curvature. The closed forms are derived in docs/cdrf.md. Abramowitz and Stegun,
+//   "Handbook of Mathematical Functions", 26.2.17 (normal distribution); Moshier, Cephes, asinf.
 //
 // Every reflectance function takes the cosine N . L, of either sign, because that is what a shader
 // has, and sigma in radians. Multiply the result by albedo / pi and by the light's irradiance; it
@@ -29,7 +30,7 @@ const CDRF_SMALLEST: f32 = 1.1754943508222875e-38f;
 // Returns: `value`; 0 for a NaN; +-1e18 for larger magnitudes and infinities.
 // Units: that of `value`.
 // Domain: any bits.
-// Outside: none is; a subnormal may count as zero.
+// Outside: nothing; a subnormal may count as zero.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn cdrf_finite(value: f32) -> f32 {
     let bits = bitcast<u32>(value);
@@ -47,7 +48,7 @@ fn cdrf_finite(value: f32) -> f32 {
 //   law, if either is 0 or a NaN.
 // Units: radians; sigma0 in a length (about the scattering distance), curvature in its inverse.
 // Domain: any bits; magnitudes count as at most 1e18.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 1 ulp; portable 1 ulp
 fn cdrf_sigma(sigma0: f32, curvature: f32) -> f32 {
     return max(cdrf_finite(sigma0), 0.0f) * abs(cdrf_finite(curvature));
@@ -59,7 +60,7 @@ fn cdrf_sigma(sigma0: f32, curvature: f32) -> f32 {
 // Returns: angle in [-pi/2, pi/2].
 // Units: radians.
 // Domain: any sine, clamped to [-1, 1].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5 ulp; portable 12 ulp
 fn cdrf_arcsine(sine: f32) -> f32 {
     let a = min(abs(sine), 1.0f);
@@ -99,7 +100,7 @@ fn cdrf_normal_density(u: f32) -> f32 {
 // Returns: share in [0, 1], accurate to 7.5e-8 and rounding; exactly 1 from 6 on.
 // Units: none.
 // Domain: any finite u, clamped to [-12, 12].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 8.3e-7 abs; portable 1.9e-6 abs
 fn cdrf_normal_share(u: f32) -> f32 {
     let a = min(abs(u), 12.0f);
@@ -113,7 +114,7 @@ fn cdrf_normal_share(u: f32) -> f32 {
 // Returns: max(cosine, 0), in [0, 1].
 // Units: none.
 // Domain: any cosine, clamped to [-1, 1].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn cdrf_lambert(cosine: f32) -> f32 {
     return clamp(cosine, 0.0f, 1.0f);
@@ -126,7 +127,7 @@ fn cdrf_lambert(cosine: f32) -> f32 {
 //   law, divided by 1, for sigma = 0.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5 ulp; portable 13 ulp
 fn cdrf_wrap(cosine: f32, sigma: f32) -> f32 {
     let wrap = clamp(0.5f * sigma, 0.0f, 1.0f);
@@ -141,7 +142,7 @@ fn cdrf_wrap(cosine: f32, sigma: f32) -> f32 {
 //   for n from 1 to `terms`.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma clamped to [0, 8]; terms up to 16.
-// Outside: none is, but the time that more terms take.
+// Outside: nothing, but the time that more terms take.
 // Accuracy: lavapipe 9.7e-7 abs; portable 2e-6 abs
 fn cdrf_series(cosine: f32, sigma: f32, terms: u32) -> f32 {
     let c = clamp(cosine, -1.0f, 1.0f);
@@ -201,7 +202,7 @@ fn cdrf_edge(cosine: f32, sigma: f32) -> f32 {
 // Returns: reflectance in [0, 1]; exactly max(cosine, 0) for sigma = 0; 1/pi from sigma = 8 on.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5e-7 abs; portable 1.5e-6 abs
 fn cdrf_accurate(cosine: f32, sigma: f32) -> f32 {
     if sigma < CDRF_SWITCH {
@@ -255,7 +256,7 @@ fn cdrf_cheap(cosine: f32, sigma: f32) -> f32 {
 // Returns: reflectance of each channel in [0, 1]; never a NaN for any sigma0 or curvature.
 // Units: sigma0 in a length, curvature in its inverse.
 // Domain: any cosine, clamped to [-1, 1]; sigma0 and curvature as for cdrf_sigma.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5e-7 abs; portable 1.5e-6 abs
 fn cdrf_rgb(cosine: f32, sigma0: vec3f, curvature: f32) -> vec3f {
     return vec3f(
@@ -273,7 +274,7 @@ fn cdrf_rgb(cosine: f32, sigma0: vec3f, curvature: f32) -> vec3f {
 // Returns: sin(2 pi turns) in [-1, 1], accurate to rounding; exactly 0 at every half turn.
 // Units: turns.
 // Domain: any finite angle.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5 ulp; portable 8 ulp; order kept
 fn cdrf_sine(turns: f32) -> f32 {
     let wrapped = turns - round(turns);
@@ -289,7 +290,7 @@ fn cdrf_sine(turns: f32) -> f32 {
 // Returns: reflectance, within rounding of [0, 1].
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma clamped to [2^-120, 8].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5.7e-6 abs; portable 3.5e-5 abs
 fn cdrf_quadrature(cosine: f32, sigma: f32) -> f32 {
     let s = clamp(sigma, 7.5231638e-37f, CDRF_WIDEST);
@@ -342,7 +343,7 @@ fn cdrf_spherical_edge(cosine: f32, sigma: f32) -> f32 {
 //   the sphere.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; any sigma, negative values count as 0.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 1.8e-6 abs; portable 2.5e-6 abs
 fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
     if sigma < CDRF_SPHERICAL_SWITCH {
@@ -385,7 +386,7 @@ fn cdrf_spherical(cosine: f32, sigma: f32) -> f32 {
 //   d = e^(-sigma^2).
 // Units: steradians; sigma in radians.
 // Domain: any sigma; negative values count as 0.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 7.3e-7 abs; portable 1.5e-6 abs
 fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
     let s = clamp(sigma, 0.0f, CDRF_WIDEST);
@@ -403,7 +404,7 @@ fn cdrf_harmonic_weights(sigma: f32) -> vec4f {
 // Returns: coordinates in [0, 1]; 0 for cosine -1 and for sigma 0.
 // Units: sigma in radians.
 // Domain: any cosine, clamped to [-1, 1]; sigma up to 1e36, negative values count as 0.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 3 ulp + 1 backward; portable 5 ulp + 1 backward
 fn cdrf_table_coordinates(cosine: f32, sigma: f32) -> vec2f {
     let s = clamp(sigma, 0.0f, 1e36f);
@@ -458,7 +459,8 @@ struct CdrfTexels {
     weight: vec2f,
 }
 
-// Texels and weights of a bilinear lookup, for formats that the sampler cannot filter (32-bit float).
+// Texels and weights of a bilinear lookup, for formats that the sampler cannot filter (32-bit
+// float).
 // Returns: columns below size.x, rows below size.y, weights in [0, 1].
 // Units: texels.
 // Domain: coordinates in [0, 1]; size from 1 to 16384.

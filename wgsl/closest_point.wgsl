@@ -1,8 +1,9 @@
 // closest_point: the centre of a gem's proxy sphere, from the closest points of the lines along a triangle's vertex normals.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e8b71483f847331b
-// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected after (A.6).
-//   The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the Regularization Method", 1963.
+// Version: 0.2.0, hash 40d21b5309a3ecc8
+// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (1)-(5), (A.1)-(A.6); eq. (3) corrected
+//   after (A.6). The stable centre: Tikhonov, "Solution of Incorrectly Formulated Problems and the
+//   Regularization Method", 1963.
 
 // Weight of the fallback point relative to the three lines in closest_point_centre, 2^-12. It
 // limits the centre's distance from the fallback point to 1 / (2 sqrt(2^-12)) = 32 times the root
@@ -22,7 +23,7 @@ const CLOSEST_POINT_SLIVER = 0.0009765625f;
 // Returns: max(|x|, |y|, |z|), at least 0.
 // Units: those of `vector`.
 // Domain: all finite vectors.
-// Outside: none.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn closest_point_largest_component(vector: vec3f) -> f32 {
     let magnitude = abs(vector);
@@ -113,7 +114,8 @@ fn closest_point_fallback(position_a: vec3f, position_b: vec3f, position_c: vec3
 // Units: those of the positions.
 // Domain: unit normals at most 120 degrees apart, positions up to 1e19, the longest edge 0 or at
 //   least 1e-20.
-// Outside: finite for positions up to 1e30. Opposed normals give o too, with up to four thousand ulp.
+// Outside: finite for positions up to 1e30. Opposed normals give o too, with up to four thousand
+//   ulp.
 // Accuracy: lavapipe 207 ulp + 10 backward; portable 768 ulp + 36 backward
 fn closest_point_centre(
     position_a: vec3f,

@@ -1,8 +1,9 @@
 // convex_trace: where a ray inside a convex stone meets its surface, from the planes of its facets. Exact: no triangles, no epsilon.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash c95cfc94a07eb08a
-// Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon; Cyrus and Beck, "Generalized two- and
-//   three-dimensional clipping", 1978, for planes in place of polygons.
+// Version: 0.2.0, hash eab1720ee4e9622c
+// Source: Imagire, "Proxy Geometry Gem Rendering", section 5, fig. 7, which tests every polygon;
+//   Cyrus and Beck, "Generalized two- and three-dimensional clipping", 1978, for planes in place of
+//   polygons.
 //
 // A stone is a list of planes (n, d), where n is the outward unit normal. A point x is inside the
 // stone if n . x <= d for all planes. A ray leaves the stone through the nearest of the planes that

@@ -1,11 +1,11 @@
 // dispersion: refractive indices by wavelength, and one traced ray that carries the directions of all wavelengths.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 4f94e6e9b21558b3
-// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates Snell's law, eq. (6).
-//   Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's and Cauchy's formulas. Coefficients: Peter 1923
-//   (diamond), Malitson 1962 (corundum), Ghosh 1999 (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile),
-//   Dodge 1986 (strontium titanate).
-//   Khronos, glTF 2.0, KHR_materials_dispersion.
+// Version: 0.2.0, hash b6a2e5a4884e2075
+// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (10)-(12); the exact tracker differentiates
+//   Snell's law, eq. (6). Born and Wolf, "Principles of Optics", 7th ed., 2.3.4, for Sellmeier's
+//   and Cauchy's formulas. Coefficients: Peter 1923 (diamond), Malitson 1962 (corundum), Ghosh 1999
+//   (quartz), Schott (N-BK7), Wood and Nassau 1982 (cubic zirconia), DeVore 1951 (rutile), Dodge
+//   1986 (strontium titanate). Khronos, glTF 2.0, KHR_materials_dispersion.
 //
 // The tracker follows one ray at a reference wavelength through the stone, as refraction.wgsl does,
 // and carries g = d(direction) / d(index of the gem) along with it. At a wavelength with the index
@@ -96,7 +96,8 @@ const DISPERSION_CRITICAL: f32 = 0.0625f;
 // Domain: wavelength in [380, 780]; strengths in [0, 40]; each resonance at most 0.1 or at least 50
 //   (µm^2); constant in [0, 2]. This includes the resonances of all transparent stones, even the
 //   near-ultraviolet ones of strontium titanate and rutile.
-// Outside: the same formula while no resonance is met; infinite or not a number where wavelength^2 is a resonance.
+// Outside: the same formula while no resonance is met; infinite or not a number where wavelength^2
+//   is a resonance.
 // Accuracy: lavapipe 6 ulp; portable 20 ulp
 fn dispersion_sellmeier(material: DispersionSellmeier, wavelength: f32) -> f32 {
     // From nm² to µm².
@@ -153,8 +154,9 @@ fn dispersion_abbe_number(index_d: f32, index_f: f32, index_c: f32) -> f32 {
 // Units: none; unit vectors and a ratio, index_gem / index_outside. If the outside is not air,
 //   divide the result by its index to get the derivative with respect to the gem's own index.
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1, 4].
-// Outside: finite. A gem in a denser medium takes dispersion_refract, which knows total internal reflection. A normal that faces away is
-//   taken to be at grazing incidence, as refraction.wgsl does.
+// Outside: finite. A gem in a denser medium takes dispersion_refract, which knows total internal
+//   reflection. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl
+//   does.
 // Accuracy: lavapipe 8 ulp + 6 backward; portable 16 ulp + 12 backward
 fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec3f {
     let cosine = max(-dot(normal, direction), 0.0f);
@@ -179,7 +181,8 @@ fn dispersion_enter(direction: vec3f, normal: vec3f, relative_index: f32) -> vec
 // Domain: |direction| = |normal| = 1, normal . direction <= 0, relative_index in [1/4, 4],
 //   gradient . direction = 0, |gradient| in [2^-40, 2^40] or 0, |relative_index_slope| in [2^-40,
 //   1] or 0.
-// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl does.
+// Outside: finite. A normal that faces away is taken to be at grazing incidence, as refraction.wgsl
+//   does.
 // Accuracy: lavapipe 96 ulp + 10 backward; portable 192 ulp + 20 backward; order kept
 fn dispersion_refract(
     direction: vec3f,

@@ -1,8 +1,9 @@
 // environment: coordinates and texels of a latitude-longitude radiance map, and a procedural studio that makes gems sparkle.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 59edbf3e321a1a38
-// Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the map; the convention is
-// that of Khronos's glTF Sample Renderer and three.js: +Y up, u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
+// Version: 0.2.0, hash be4a580c652f3a11
+// Source: Blinn and Newell, "Texture and Reflection in Computer Generated Images" (1976), for the
+//   map; the convention is that of Khronos's glTF Sample Renderer and three.js: +Y up,
+//   u = 1/2 + atan2(z, x) / 2 pi. The studio is our own.
 //
 // Angles are measured in turns (1 turn = 2 pi), because a texture coordinate is already one:
 // quarter turns are then exact, and u and v stay inside [0, 1] without a clamp. The module has its
@@ -56,7 +57,7 @@ fn environment_hypot(a: f32, b: f32) -> f32 {
 // Returns: sin(2 pi turns), in [-1, 1] up to rounding; exactly 0 at every half turn.
 // Units: turns.
 // Domain: any finite angle.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 5 ulp; portable 8 ulp; order kept
 fn environment_sine(turns: f32) -> f32 {
     let wrapped = turns - round(turns);
@@ -191,7 +192,8 @@ fn environment_harmonics(direction: vec3f) -> EnvironmentHarmonics {
 // Units: none; sizes are relative to the light's distance, i.e. tangents of angles.
 // Domain: |direction| = |axis| = |up| = 1, axis . up = 0, axis . direction at most 0 or at least
 //   2^-100; softness in [1/256, 1]; each component of half_size in [softness, 8].
-// Outside: any length of direction gives the same, as long as products stay finite; softness 0 has no edge to divide by.
+// Outside: any length of direction gives the same, as long as products stay finite; softness 0 has
+//   no edge to divide by.
 // Accuracy: lavapipe 6 ulp + 3 backward; portable 16 ulp + 8 backward
 fn environment_softbox(direction: vec3f, axis: vec3f, up: vec3f, half_size: vec2f, softness: f32) -> f32 {
     let depth = dot(direction, axis);

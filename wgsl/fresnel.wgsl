@@ -1,8 +1,9 @@
 // fresnel: the share of unpolarised light that an interface between two dielectrics reflects.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d5c94bbfe9165c73
-// Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as docs/fresnel.md shows.
-//   Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, eq. (15).
+// Version: 0.2.0, hash 138ac1df86b0f325
+// Source: Born and Wolf, "Principles of Optics", 7th ed., 1.5.2, eq. (20a), (21a); rearranged as
+//   docs/fresnel.md shows. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering",
+//   1994, eq. (15).
 
 // Reflectance of a dielectric interface, exact for unpolarised light, with total internal
 // reflection. A Fresnel amplitude is a quotient (x - y) / (x + y), which cancels for an index near
@@ -47,7 +48,8 @@ fn fresnel_dielectric(cosine: f32, relative_index: f32) -> f32 {
 
 // Reflectance at normal incidence, the F0 of shading models.
 // Returns: ((n - 1) / (n + 1))^2, in [0, 0.36].
-// Units: none; `relative_index` is n_transmitted / n_incident. Its inverse gives the same reflectance.
+// Units: none; `relative_index` is n_transmitted / n_incident. Its inverse gives the same
+//   reflectance.
 // Domain: relative_index in [1/4, 4].
 // Outside: as the formula gives, in [0, 1] for every positive relative_index up to 2^120.
 // Accuracy: lavapipe 6 ulp; portable 20 ulp; order kept

@@ -1,9 +1,10 @@
 // microfacet: the highlight of a rough dielectric surface under one light: Cook and Torrance's reflectance with Trowbridge and Reitz's facets (GGX).
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 764baff354e3e9a9
-// Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, eq. (20), (33);
-//   Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, eq. (72), (99);
-//   Lagrange's identity for the squared sine: Guy and Agopian, "Physically Based Rendering in Filament", 4.4.1.
+// Version: 0.2.0, hash 6100eccd79f2cde0
+// Source: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
+//   Surfaces", 2007, eq. (20), (33); Heitz, "Understanding the Masking-Shadowing Function in
+//   Microfacet-Based BRDFs", 2014, eq. (72), (99); Lagrange's identity for the squared sine: Guy
+//   and Agopian, "Physically Based Rendering in Filament", 4.4.1.
 //
 // `alpha` is the width of the distribution, a slope: the square of glTF's roughness. The Fresnel
 // reflectance of a facet is not computed here but passed in: evaluate it at the cosine between
@@ -27,7 +28,8 @@ const MICROFACET_OPPOSITE: f32 = 1e-30f;
 //   `half`; 0 if either vector is 0.
 // Units: 1/sr; alpha is a slope.
 // Domain: normal and half of any length in [1e-4, 1e4], or 0; any alpha, clamped to [0.001, 1].
-// Outside: finite and not negative as long as the fourth power of the product of the lengths is finite; 0 where its square underflows.
+// Outside: finite and not negative as long as the fourth power of the product of the lengths is
+//   finite; 0 where its square underflows.
 // Accuracy: lavapipe 35 ulp + 1 backward; portable 75 ulp + 2 backward; order kept
 fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
     let a = clamp(alpha, MICROFACET_SMOOTHEST, 1.0f);
@@ -50,12 +52,13 @@ fn microfacet_distribution(normal: vec3f, half: vec3f, alpha: f32) -> f32 {
 // reflectance. Masking and shadowing give the share of facets that the light reaches and the eye
 // sees; the height of a facet hides it from both alike. In this form all factors that tend to 0 at
 // grazing incidence have cancelled, except for one sum.
-// Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 + (1 - alpha^2) n.v^2)), in [1/4, 5e23].
+// Returns: G2 / (4 n.l n.v) = 1/2 / (n.v sqrt(alpha^2 + (1 - alpha^2) n.l^2) + n.l sqrt(alpha^2 +
+//   (1 - alpha^2) n.v^2)), in [1/4, 5e23].
 // Units: none; the cosines are relative to the surface normal, alpha is a slope.
 // Domain: any cosines, clamped to [0, 1]. A cosine below 0, as occurs at a silhouette if an
 //   interpolated normal faces away, counts as grazing. Any alpha, clamped to [0.001, 1]. A divisor
 //   below 1e-24 counts as 1e-24.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 7 ulp; portable 24 ulp
 fn microfacet_visibility(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     let a = clamp(alpha, MICROFACET_SMOOTHEST, 1.0f);

@@ -1,9 +1,10 @@
 // optical_path: the path of least optical depth from the light to every voxel of a body, and the light that comes along it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 1c3d0a4525b73b5b
-// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", sections 2 and 3;
-//   Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29 (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal
-//   Equations", SIAM J. Sci. Comput. 30 (2008).
+// Version: 0.2.0, hash 0339667324ad2b29
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
+//   Programming", sections 2 and 3; Godunov's update: Rouy and Tourin, SIAM J. Numer. Anal. 29
+//   (1992), eq. (3.5); Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J.
+//   Sci. Comput. 30 (2008).
 //
 // A cost is the optical depth of a path plus -ln of the light that enters it. Costs are at least 0,
 // because irradiance is expressed as a share of the largest that any node may have. Luminance is
@@ -77,7 +78,7 @@ fn optical_path_godunov(least: vec3f, slowness: f32) -> f32 {
 //   larger costs, for infinity and for every NaN.
 // Units: none.
 // Domain: any bits.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn optical_path_encode(cost: f32) -> u32 {
     let bits = bitcast<u32>(cost);
@@ -92,7 +93,7 @@ fn optical_path_encode(cost: f32) -> u32 {
 // Returns: cost in [0, 1e30].
 // Units: none.
 // Domain: any bits; bits that encode no cost give unreached.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn optical_path_decode(bits: u32) -> f32 {
     return bitcast<f32>(min(bits, 0x7149f2cau));

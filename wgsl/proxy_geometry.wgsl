@@ -1,7 +1,8 @@
 // proxy_geometry: the inside of a gem guessed from the one triangle that a ray enters by.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 481021f434a3412d
-// Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher orders.
+// Version: 0.2.0, hash 99e9ef60d6512009
+// Source: Imagire, "Proxy Geometry Gem Rendering", section 4.2, eq. (8), (9), and its higher
+//   orders.
 //
 // The triangle is mirrored through the proxy's centre o: x' = 2 o - x. The image lies in a plane P
 // parallel to the triangle. Its translates, and those of the image rotated by half a turn, tile P.

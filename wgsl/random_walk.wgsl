@@ -1,11 +1,12 @@
-// random_walk: light followed through scattering matter by chance: random numbers, free paths, delta tracking, phase function, boundary.
+// random_walk: random walks of light in a scattering medium: random numbers, free paths, delta tracking, phase function, boundary.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 83b386c277c48cd6
+// Version: 0.2.0, hash 77407b01e904e38b
 // Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d);
-//   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta tracking);
-//   Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, eq. (7);
-//   Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941; Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017;
-//   Born and Wolf, "Principles of Optics", 7th ed., 1.5.2. The rearrangements are derived in docs/random_walk.md.
+//   Woodcock, Murphy, Hemmings and Longworth, "Techniques used in the GEM code", 1965 (delta
+//   tracking); Novak, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in
+//   Participating Media", 2014, eq. (7); Henyey and Greenstein, "Diffuse radiation in the galaxy",
+//   1941; Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017; Born and Wolf,
+//   "Principles of Optics", 7th ed., 1.5.2. The rearrangements are derived in docs/random_walk.md.
 //
 // A walk takes all its randomness from random_walk_random: four numbers per counter. One word of
 // the counter may identify the walk and another its step.
@@ -38,7 +39,7 @@ struct RandomWalkCrossing {
 // Returns: 4 x 32 bits, a bijection of the counter.
 // Units: none.
 // Domain: any counter.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn random_walk_bits(counter: vec4u) -> vec4u {
     var v = counter * 1664525u + 1013904223u;
@@ -59,7 +60,7 @@ fn random_walk_bits(counter: vec4u) -> vec4u {
 //   are exact.
 // Units: none.
 // Domain: any counter.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn random_walk_random(counter: vec4u) -> vec4f {
     return vec4f(random_walk_bits(counter) >> vec4u(8u)) * 5.9604645e-8f;
@@ -71,7 +72,7 @@ fn random_walk_random(counter: vec4u) -> vec4f {
 // Returns: a length in [0, 1.7e31], exponentially distributed for a uniform u; 0 for u = 0.
 // Units: the inverse of the majorant's.
 // Domain: u in [0, 1), clamped to that; any majorant, where one below 1e-30 counts as 1e-30.
-// Outside: none is; u below 2^-120 may count as 0.
+// Outside: nothing; u below 2^-120 may count as 0.
 // Accuracy: lavapipe 9 ulp; portable 24 ulp
 fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
     let v = clamp(u, 0.0f, 0.99999994f);
@@ -96,7 +97,7 @@ fn random_walk_free_path(u: f32, majorant: f32) -> f32 {
 // Returns: RANDOM_WALK_SCATTERED, RANDOM_WALK_ABSORBED or RANDOM_WALK_PASSED.
 // Units: coefficients per unit of length, all in the same unit.
 // Domain: u in [0, 1); scattering and absorption at least 0, their sum at most the majorant.
-// Outside: where the sum exceeds the majorant never passes: the walk is biased.
+// Outside: light never passes where the sum exceeds the majorant: the walk is biased.
 // Accuracy: lavapipe 2 backward; portable 2 backward
 fn random_walk_collision(u: f32, scattering: f32, absorption: f32, majorant: f32) -> u32 {
     let place = u * majorant;
@@ -129,7 +130,7 @@ fn random_walk_ratio(transmittance: f32, density: f32, majorant: f32) -> f32 {
 // Units: 1/sr.
 // Domain: any cosine of the angle between the directions before and after, clamped to [-1, 1]; any
 //   anisotropy g, clamped to [-0.999999, 0.999999].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 12 ulp; portable 32 ulp
 fn random_walk_phase(cosine: f32, g: f32) -> f32 {
     let a = min(abs(g), RANDOM_WALK_STRAIGHTEST);
@@ -146,7 +147,7 @@ fn random_walk_phase(cosine: f32, g: f32) -> f32 {
 //   least 0; -1, 0 for u = 0 and 1, 0 for u = 1.
 // Units: none.
 // Domain: any u, clamped to [0, 1]; any anisotropy g, clamped to [-0.999999, 0.999999].
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 12 ulp; portable 40 ulp
 fn random_walk_deflection(u: f32, g: f32) -> vec2f {
     let a = clamp(g, -RANDOM_WALK_STRAIGHTEST, RANDOM_WALK_STRAIGHTEST);
@@ -166,7 +167,7 @@ fn random_walk_deflection(u: f32, g: f32) -> vec2f {
 // Returns: cos(2 pi turns) and sin(2 pi turns).
 // Units: turns.
 // Domain: any finite angle.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 5 ulp; portable 8 ulp; order kept
 fn random_walk_azimuth(turns: f32) -> vec2f {
     let wrapped = turns - round(turns);
@@ -211,7 +212,7 @@ fn random_walk_turn(direction: vec3f, deflection: vec2f, azimuth: vec2f) -> vec3
 // Returns: unit direction, uniform on the sphere for uniform numbers.
 // Units: none.
 // Domain: u.x clamped to [0, 1]; u.y any finite number, of which only the fraction matters.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 9 ulp; portable 16 ulp; order kept
 fn random_walk_isotropic(u: vec2f) -> vec3f {
     let v = clamp(u.x, 0.0f, 1.0f);

@@ -1,9 +1,10 @@
 // reflective_shadow_map: where a light's view puts a point, how much light the surface takes there, and whether something stands before it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 02675b86bbe573d6
-// Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and Morishima, "Real-time Rendering of
-//   Translucent Material using Dynamic Programming", section 3.1, for the four channels: world position and N.L;
-//   Duff et al., "Building an Orthonormal Basis, Revisited", 2017, listing 3, for the map's axes.
+// Version: 0.2.0, hash 33dd68192bad503a
+// Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005, section 3; Ozawa, Okamoto and
+//   Morishima, "Real-time Rendering of Translucent Material using Dynamic Programming", section
+//   3.1, for the four channels: world position and N.L; Duff et al., "Building an Orthonormal
+//   Basis, Revisited", 2017, listing 3, for the map's axes.
 //
 // Each texel of the map holds the world position that the light sees there, and N.L. For a surface
 // seen from behind, N.L is 0. For a texel that sees nothing, it is REFLECTIVE_SHADOW_MAP_NOTHING.
@@ -80,7 +81,7 @@ fn reflective_shadow_map_clip(view: ReflectiveShadowMapView, position: vec3f) ->
 //   which no map covers.
 // Units: texels.
 // Domain: any clip coordinates with finite x / w and y / w; size in [1, 16384].
-// Outside: beside the map for what the map does not cover.
+// Outside: beside the map for points that the map does not cover.
 // Accuracy: lavapipe 3 ulp + 2 backward; portable 8 ulp + 4 backward
 fn reflective_shadow_map_texel(clip: vec4f, size: f32) -> vec2f {
     if (clip.w <= 0.0f) {

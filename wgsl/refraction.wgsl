@@ -1,7 +1,8 @@
 // refraction: a ray refracted at a plane interface, with total internal reflection as an explicit result.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash b87e624b99be471f
-// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of Optics, 7th ed., section 1.5.
+// Version: 0.2.0, hash 977e465d7366d7ff
+// Source: Imagire, "Proxy Geometry Gem Rendering", eq. (6), (7); Born and Wolf, Principles of
+//   Optics, 7th ed., section 1.5.
 //
 // `relative_index` is n = n_transmitted / n_incident, the paper's 1 / eta: 2.417 into a diamond,
 // 1 / 2.417 out of it. `normal` is the unit normal on the side from which the ray arrives.
@@ -54,7 +55,8 @@ fn refraction_radicand(cosine: f32, relative_index: f32) -> f32 {
 // Returns: RefractionHit; `direction` is a unit vector in both branches.
 // Units: none; unit vectors and a ratio.
 // Domain: |incident| = |normal| = 1, normal . incident <= 0, relative_index in [1/4, 4].
-// Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0): finite, but not unit.
+// Outside: a normal that faces away from the ray is taken to be at grazing incidence (c = 0):
+//   finite, but not unit.
 // Accuracy: lavapipe direction 88 ulp + 8 backward, total 8 backward; portable direction 148 ulp + 16 backward, total 16 backward
 fn refraction_refract(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
     let cosine = max(-dot(normal, incident), 0.0f);

@@ -1,7 +1,8 @@
 // srgb: from scene radiance to display code values: tone curve, luminance, sRGB transfer function and its inverse.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash d8ede0292a51cdd8
-// Source: IEC 61966-2-1:1999 (transfer function); ITU-R BT.709-6, 3.3 (luminance weights); Khronos PBR Neutral Tone Mapper (tone curve).
+// Version: 0.2.0, hash 26a9420511b4ba09
+// Source: IEC 61966-2-1:1999 (transfer function); ITU-R BT.709-6, 3.3 (luminance weights); Khronos
+//   PBR Neutral Tone Mapper (tone curve).
 
 // Encodes display light into an sRGB code value: the exact two-piece curve.
 // Near black the curve is a straight line, because a power alone has an infinite slope at 0. The
@@ -10,7 +11,7 @@
 // Returns: the code value in [0, 1], not yet quantised.
 // Units: display light, 1 = display white; code value, 1 = full scale.
 // Domain: any finite value; values outside [0, 1] cannot be displayed and are clamped.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 2.3e-6 rel; portable 6e-6 rel
 fn srgb_encode(light: f32) -> f32 {
     let display = clamp(light, 0.0f, 1.0f);
@@ -28,7 +29,7 @@ fn srgb_encode(light: f32) -> f32 {
 // Returns: the code value in [0, 1].
 // Units: the same as for srgb_encode.
 // Domain: any finite value; values outside [0, 1] are clamped.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 3.1e-7 abs; portable 6e-7 abs
 fn srgb_encode_gamma(light: f32) -> f32 {
     // pow(0, y) passes through log2(0), which WGSL leaves undefined.
@@ -45,7 +46,7 @@ fn srgb_encode_gamma(light: f32) -> f32 {
 // Returns: display light in [0, 1].
 // Units: the same as for srgb_encode.
 // Domain: any finite value; values outside [0, 1] are clamped.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 1.7e-6 rel; portable 6e-6 rel
 fn srgb_decode(encoded: f32) -> f32 {
     let code = clamp(encoded, 0.0f, 1.0f);
@@ -59,7 +60,7 @@ fn srgb_decode(encoded: f32) -> f32 {
 // Returns: code values in [0, 1].
 // Units: the same as for srgb_encode; Rec. 709 primaries for input and output.
 // Domain: any finite colour; channels outside [0, 1] are clamped.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 2.3e-6 rel; portable 6e-6 rel
 fn srgb_encode_color(color: vec3f) -> vec3f {
     return vec3f(srgb_encode(color.r), srgb_encode(color.g), srgb_encode(color.b));
@@ -69,7 +70,7 @@ fn srgb_encode_color(color: vec3f) -> vec3f {
 // Returns: display light in [0, 1].
 // Units: the same as for srgb_encode; Rec. 709 primaries for input and output.
 // Domain: any finite colour; channels outside [0, 1] are clamped.
-// Outside: nothing is outside.
+// Outside: nothing.
 // Accuracy: lavapipe 1.7e-6 rel; portable 6e-6 rel
 fn srgb_decode_color(encoded: vec3f) -> vec3f {
     return vec3f(srgb_decode(encoded.r), srgb_decode(encoded.g), srgb_decode(encoded.b));

@@ -1,9 +1,10 @@
 // texture_diffusion: diffusion of light along a surface, as a Gaussian blur of the irradiance drawn into the surface's texture.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a8454cfe70b62636
-// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
-//   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14: stretch, separable blur.
-//   The placement of the taps is derived in docs/texture_diffusion.md.
+// Version: 0.2.0, hash 990283e867d9d522
+// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
+//   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
+//   GPU Gems 3, 2007, chapter 14: stretch, separable blur. The placement of the taps is derived in
+//   docs/texture_diffusion.md.
 //
 // Each channel has one Gaussian, of standard deviation `sigma0` on the surface. On a cylinder of
 // radius R this is the convolution of the curvature-dependent reflectance with sigma = sigma0 / R.
@@ -26,7 +27,7 @@ const TEXTURE_DIFFUSION_SMALLEST: f32 = 8.673617379884035e-19f;
 // Returns: `value`; 0 for a NaN; +-1e18 for larger magnitudes and infinities.
 // Units: that of `value`.
 // Domain: any bits.
-// Outside: none is; a subnormal may count as zero.
+// Outside: nothing; a subnormal may count as zero.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn texture_diffusion_finite(value: f32) -> f32 {
     let bits = bitcast<u32>(value);
@@ -83,7 +84,7 @@ fn texture_diffusion_width(sigma0: f32, stretch: f32, widest: f32) -> f32 {
 // Returns: sigma0 in [0, 1e18]; 0 for negative values and NaNs.
 // Units: that of sigma0.
 // Domain: any bits.
-// Outside: none is; a subnormal may count as zero.
+// Outside: nothing; a subnormal may count as zero.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn texture_diffusion_sigma(sigma0: vec3f) -> vec3f {
     let finite = vec3f(
@@ -182,7 +183,8 @@ fn texture_diffusion_normalize(sum: vec3f, coverage: vec3f) -> vec3f {
 // Returns: value to 11 significant bits, ties to even; at most 65504.
 // Units: that of the value.
 // Domain: value 0 or in [2^-14, 1e18] in magnitude.
-// Outside: smaller values keep 11 bits too, which half floats do not have there: the target rounds them, by less than 2^-24.
+// Outside: smaller values keep 11 bits too, which half floats do not have there: the target rounds
+//   them, by less than 2^-24.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn texture_diffusion_half(value: vec3f) -> vec3f {
     let bits = bitcast<vec3u>(clamp(value, vec3f(-65504.0f), vec3f(65504.0f)));

@@ -1,8 +1,9 @@
 // veins: density of veined stone at a point of space: the surfaces on which gradient noise is 0, blurred.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 119f3d5b53134669
-// Source: Perlin, "Improving Noise", SIGGRAPH 2002 (fade and gradients); Jarzynski and Olano, "Hash Functions for GPU Rendering",
-//   JCGT 9(3), 2020 (pcg4d); Ebert et al., "Texturing and Modeling", 3rd ed., 2003, ch. 2 (octaves, marble).
+// Version: 0.2.0, hash 481407a4dd318c05
+// Source: Perlin, "Improving Noise", SIGGRAPH 2002 (fade and gradients); Jarzynski and Olano, "Hash
+//   Functions for GPU Rendering", JCGT 9(3), 2020 (pcg4d); Ebert et al., "Texturing and Modeling",
+//   3rd ed., 2003, ch. 2 (octaves, marble).
 //
 // The density stays within its bounds, so the greater bound is a majorant for delta tracking.
 
@@ -42,7 +43,7 @@ struct VeinsPattern {
 //   offset of 0 in the next cell gives the same noise.
 // Units: cells.
 // Domain: any position, clamped to +-4194304 on each axis.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe corner 0 ulp, offset 1 ulp; portable corner 0 ulp, offset 1 ulp
 fn veins_cell(position: vec3f) -> VeinsCell {
     let p = clamp(position, vec3f(-VEINS_FARTHEST), vec3f(VEINS_FARTHEST));
@@ -54,7 +55,7 @@ fn veins_cell(position: vec3f) -> VeinsCell {
 // Returns: 32 bits.
 // Units: none.
 // Domain: any corner and seed.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn veins_hash(corner: vec3i, seed: u32) -> u32 {
     var v = vec4u(bitcast<vec3u>(corner), seed) * 1664525u + 1013904223u;
@@ -70,7 +71,7 @@ fn veins_hash(corner: vec3i, seed: u32) -> u32 {
 // Returns: a vector with one component 0 and the other two +-1.
 // Units: none.
 // Domain: any bits.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn veins_gradient(bits: u32) -> vec3f {
     // The highest bits are mixed best.
@@ -101,7 +102,7 @@ fn veins_corner(cell: VeinsCell, corner: vec3i, seed: u32) -> f32 {
 // Returns: noise in [-1.1, 1.1], 0 at the corners of the grid, with mean 0.
 // Units: position in cells.
 // Domain: any position, clamped to +-4194304 on each axis.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 4.5e-6 abs; portable 1e-5 abs
 fn veins_noise(position: vec3f, seed: u32) -> f32 {
     let cell = veins_cell(position);
@@ -163,7 +164,8 @@ fn veins_fold(value: f32, width: f32) -> f32 {
 // Units: position in a unit of length; density none.
 // Domain: |position| frequency at most 32768; width in [1/16, 4], densities in [0, 4], up to 8
 //   octaves.
-// Outside: as veins_fractal and veins_fold; a width of less is as right as the noise, whose error it magnifies by its inverse.
+// Outside: as veins_fractal and veins_fold; a smaller width is as accurate as the noise, whose
+//   error it magnifies by its inverse.
 // Accuracy: lavapipe 4e-4 abs + 1 backward; portable 1e-3 abs + 1 backward
 fn veins_density(position: vec3f, pattern: VeinsPattern) -> f32 {
     let value = veins_fractal(position * pattern.frequency, pattern.octaves, pattern.seed);

@@ -1,8 +1,9 @@
 // voxelization: a closed triangle mesh as voxels: where a triangle crosses a column of voxel centres, without leaks, and which voxels it touches.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash a0fd4a83e7712620
-// Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010 (parity along columns, conservative
-//   overlap); Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
+// Version: 0.2.0, hash 56a697ee610a16de
+// Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia
+//   2010 (parity along columns, conservative overlap); Akenine-Möller, "Fast 3D Triangle-Box
+//   Overlap Testing", Journal of Graphics Tools 6(1), 2001 (separating axes).
 //
 // A grid has `cells` voxels along each edge. Grid coordinates are in voxels: voxel (i, j, k) is the
 // cube from (i, j, k) to (i + 1, j + 1, k + 1), and its centre lies at + 1/2. A column is the line
@@ -95,7 +96,7 @@ fn voxelization_local(grid: VoxelizationGrid, position: vec3f) -> vec3f {
 // Returns: coordinates of a voxel, from 0 to cells - 1.
 // Units: none; position in world units.
 // Domain: spacing above 0, cells at least 1; any position.
-// Outside: some voxel of the grid.
+// Outside: a voxel of the grid.
 // Accuracy: lavapipe 2 backward; portable 4 backward
 fn voxelization_voxel(grid: VoxelizationGrid, position: vec3f) -> vec3u {
     let last = grid.cells - 1u;
@@ -120,7 +121,7 @@ fn voxelization_lattice(position: vec2f) -> vec2i {
 // Returns: p.x q.y - p.y q.x.
 // Units: none.
 // Domain: components up to 2^29.
-// Outside: some number, with low from 0 to 2^30 - 1.
+// Outside: any number, with low from 0 to 2^30 - 1.
 // Accuracy: lavapipe high 0 ulp, low 0 ulp; portable high 0 ulp, low 0 ulp
 fn voxelization_cross(p: vec2i, q: vec2i) -> VoxelizationInteger {
     let p_high = p >> vec2u(15u);
@@ -182,7 +183,7 @@ fn voxelization_column(a: vec3f, b: vec3f, c: vec3f, column: vec2f) -> Voxelizat
 // Returns: the voxel's number, or `cells` if there is none.
 // Units: coordinate in voxels.
 // Domain: any coordinate; cells up to 2^22.
-// Outside: none is; from 0 to cells whatever comes in.
+// Outside: nothing; from 0 to cells for any input.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn voxelization_first(coordinate: f32, cells: u32) -> u32 {
     // Clamped first, because subtracting the half could overflow for a huge coordinate.
@@ -195,7 +196,7 @@ fn voxelization_first(coordinate: f32, cells: u32) -> u32 {
 // Returns: bit i is the parity of bits 0 to i.
 // Units: none.
 // Domain: any bits.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn voxelization_prefix(bits: u32) -> u32 {
     let two = bits ^ (bits << 1u);
@@ -233,7 +234,7 @@ fn voxelization_margin(a: vec3f, b: vec3f, c: vec3f) -> f32 {
 // Returns: the first of them, and the one after the last; the same number twice if there are none.
 // Units: low and high in voxels.
 // Domain: low <= high, of any size; cells up to 2^22.
-// Outside: none for low > high + 1; from 0 to cells whatever comes in.
+// Outside: no voxel for low > high + 1; from 0 to cells for any input.
 // Accuracy: lavapipe 0 ulp; portable 0 ulp
 fn voxelization_range(low: f32, high: f32, cells: u32) -> vec2u {
     let most = f32(cells);

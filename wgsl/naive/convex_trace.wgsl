@@ -8,8 +8,8 @@
 // Units: lengths are in units of the length of the ray's direction.
 // Domain: stones of size 1 around the origin, with the next plane farther than 1e-4 and the ray not
 //   nearly parallel to it.
-// Outside: misses facets beside edges, all facets of small stones and those that the ray starts outside of by rounding;
-//   meets the face that was left again, far away, at grazing incidence.
+// Outside: misses facets beside edges, all facets of small stones and those that the ray starts
+//   outside of by rounding; meets the face that was left again, far away, at grazing incidence.
 // Accuracy: naive
 fn convex_trace_step_naive(hit: ConvexTraceHit, position: vec3f, direction: vec3f, plane: vec4f, face: u32) -> ConvexTraceHit {
     let distance = (plane.w - dot(plane.xyz, position)) / dot(plane.xyz, direction);

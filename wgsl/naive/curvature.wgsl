@@ -15,7 +15,8 @@ fn curvature_normal_derivative_naive(normal: vec3f, derivative: vec3f) -> vec3f 
 // Returns: (eG - 2fF + gE) / (2 (EG - F^2)).
 // Units: the inverse of the position's unit.
 // Domain: position derivatives of length 1e-4 to 1e4, at an angle with a sine of 0.3 or more.
-// Outside: EG - F^2 is rounding noise at sines below 2^-11; 0 / 0 where it is 0 or underflows, infinity over infinity above 1e9.
+// Outside: EG - F^2 is rounding noise at sines below 2^-11; 0 / 0 where it is 0 or underflows,
+//   infinity over infinity above 1e9.
 // Accuracy: naive
 fn curvature_mean_textbook(position_x: vec3f, position_y: vec3f, normal_x: vec3f, normal_y: vec3f) -> f32 {
     let first = vec3f(dot(position_x, position_x), dot(position_x, position_y), dot(position_y, position_y));

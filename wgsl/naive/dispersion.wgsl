@@ -44,7 +44,8 @@ fn dispersion_paper_enter_naive(direction: vec3f, refracted: vec3f) -> vec3f {
 // Units: none; unit vectors and a ratio.
 // Domain: |direction| = |normal| = 1, |spread| = 1 or 0, normal . direction < 0, relative_index in
 //   [1/4, 4], epsilon in [1e-4, 1e-3].
-// Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence and near relative_index = 1.
+// Outside: finite. A difference of f32 directions: at 2e-4 noise of 1e-3, more at grazing incidence
+//   and near relative_index = 1.
 // Accuracy: naive
 fn dispersion_paper_refract(
     direction: vec3f,
@@ -76,7 +77,8 @@ fn dispersion_paper_refract(
 // Returns: unit vector.
 // Units: as for dispersion_paper_refract.
 // Domain: as for dispersion_paper_refract, with spread . direction = 0 and both rays refracted.
-// Outside: not a number for a spread of 0; where one ray is totally reflected, the other's direction; where both are, not a number.
+// Outside: not a number for a spread of 0; where one ray is totally reflected, the other's
+//   direction; where both are, not a number.
 // Accuracy: naive
 fn dispersion_paper_refract_naive(
     direction: vec3f,

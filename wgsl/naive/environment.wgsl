@@ -6,8 +6,9 @@
 // Returns: environment_uv_from_direction(direction), with v to about 1e-4 near the poles.
 // Units: fractions of the map.
 // Domain: lengths in [1e-15, 1e15], at least 0.1 radians from the poles.
-// Outside: v jumps to the pole within 3e-4 radians of it, up to 1.1e-4 off; at the pole u is 1 for x = -0; lengths whose square
-// over- or underflows (1e-23, 1e19) give another direction or no number.
+// Outside: v jumps to the pole within 3e-4 radians of it, up to 1.1e-4 off; at the pole u is 1 for
+//   x = -0; lengths whose square over- or underflows (1e-23, 1e19) give another direction or no
+//   number.
 // Accuracy: naive
 fn environment_uv_from_direction_naive(direction: vec3f) -> vec2f {
     let unit = normalize(direction);

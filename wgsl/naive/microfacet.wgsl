@@ -16,10 +16,11 @@ fn microfacet_distribution_naive(cosine: f32, alpha: f32) -> f32 {
 
 // The visibility with numerator and divisor computed separately, as in Heitz's eq. (72) and (99).
 // Kept to show where it fails: at grazing incidence it is 0 / 0.
-// Returns: 1 / (1 + Lambda(l) + Lambda(v)) / (4 n.l n.v), with Lambda = (sqrt(1 + alpha^2 tan^2) - 1) / 2.
+// Returns: 1 / (1 + Lambda(l) + Lambda(v)) / (4 n.l n.v), with Lambda = (sqrt(1 + alpha^2 tan^2) -
+//   1) / 2.
 // Units: the same as for microfacet_visibility.
 // Domain: cosines in (0, 1], alpha in (0, 1].
-// Outside: no number where a cosine is below 1e-19: its square underflows.
+// Outside: not a number where a cosine is below 1e-19: its square underflows.
 // Accuracy: naive
 fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -> f32 {
     let squared = alpha * alpha;
@@ -34,7 +35,7 @@ fn microfacet_visibility_naive(cosine_light: f32, cosine_eye: f32, alpha: f32) -
 // Returns: unit direction of toward_light + toward_eye.
 // Units: none; unit vectors.
 // Domain: unit vectors that are not opposite.
-// Outside: no number.
+// Outside: not a number.
 // Accuracy: naive
 fn microfacet_half_naive(toward_light: vec3f, toward_eye: vec3f) -> vec3f {
     return normalize(toward_light + toward_eye);

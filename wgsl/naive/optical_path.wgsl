@@ -16,7 +16,8 @@ fn optical_path_edge_paper(extinction_a: f32, extinction_b: f32) -> f32 {
 // Returns: optical_path_godunov(...).
 // Units: none.
 // Domain: least in [0, 2], slowness in [0.5, 2].
-// Outside: the digits of the slowness cancel where costs are large beside it; not a number where the radicand becomes negative, or for costs above 1e19.
+// Outside: the digits of the slowness cancel where costs are large beside it; not a number where
+//   the radicand becomes negative, or for costs above 1e19.
 // Accuracy: naive
 fn optical_path_godunov_naive(least: vec3f, slowness: f32) -> f32 {
     let low = min(least.x, least.y);
@@ -43,7 +44,8 @@ fn optical_path_godunov_naive(least: vec3f, slowness: f32) -> f32 {
 // Returns: -ln(irradiance_share) + extinction offset.
 // Units: as optical_path_seed.
 // Domain: share in [0.01, 0.9], extinction and offset in [0, 10].
-// Outside: infinite or not a number without light, and negative above 1, where atomicMin takes it for the largest of costs.
+// Outside: infinite or not a number without light, and negative above 1, where atomicMin takes it
+//   for the largest of costs.
 // Accuracy: naive
 fn optical_path_seed_naive(irradiance_share: f32, extinction: f32, offset: f32) -> f32 {
     return -log(irradiance_share) + extinction * offset;

@@ -15,7 +15,8 @@ fn proxy_geometry_face_normal_naive(position_first: vec3f, position_second: vec3
 // Returns: ProxyGeometryHit; `hit` is always true.
 // Units: lengths; `direction` and `normal` are unit vectors.
 // Domain: as for proxy_geometry_intersect, for a ray that does meet the plane ahead of it.
-// Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind it.
+// Outside: infinite or not a number for a parallel ray, a point behind the ray for a plane behind
+//   it.
 // Accuracy: naive
 fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point: vec3f, normal: vec3f) -> ProxyGeometryHit {
     let distance = dot(normal, plane_point - position) / dot(normal, direction);
@@ -27,7 +28,8 @@ fn proxy_geometry_intersect_naive(position: vec3f, direction: vec3f, plane_point
 // Returns: the two coordinates.
 // Units: lengths in, none out.
 // Domain: size of the triangle in [1e-3, 1e3], sine of the angle at least 0.1.
-// Outside: loses twice the digits that the triangle's thinness costs; not a number for degenerate, tiny and huge ones.
+// Outside: loses twice the digits that the triangle's thinness costs; not a number for degenerate,
+//   tiny and huge ones.
 // Accuracy: naive
 fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec3f, edge_second: vec3f) -> vec2f {
     let offset = point - origin;
@@ -46,7 +48,8 @@ fn proxy_geometry_coordinates_naive(point: vec3f, origin: vec3f, edge_first: vec
 // Returns: ProxyGeometryCell.
 // Units: lattice coordinates.
 // Domain: coordinates up to 2^23, away from the edges of the tiles.
-// Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points beside a vertex get the wrong half.
+// Outside: just below a whole number a fraction rounds to 1, and the sum forgets the other: points
+//   beside a vertex get the wrong half.
 // Accuracy: naive
 fn proxy_geometry_cell_naive(coordinates: vec2f) -> ProxyGeometryCell {
     let corner = floor(coordinates);

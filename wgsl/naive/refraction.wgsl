@@ -4,8 +4,10 @@
 // The radicand as printed in eq. (6), with eta = 1 / n.
 // Returns: cos² of the angle of refraction; negative under total internal reflection.
 // Units: none; `cosine` is the cosine of the angle of incidence, `relative_index` a ratio.
-// Domain: cosine in [0, 1], relative_index in [1/4, 4], away from relative_index = 1 at grazing incidence.
-// Outside: there the sign, and with it the choice between refraction and reflection, is rounding noise.
+// Domain: cosine in [0, 1], relative_index in [1/4, 4], away from relative_index = 1 at grazing
+//   incidence.
+// Outside: there the sign, and with it the choice between refraction and reflection, is rounding
+//   noise.
 // Accuracy: naive
 fn refraction_radicand_naive(cosine: f32, relative_index: f32) -> f32 {
     let eta = 1.0f / relative_index;
@@ -17,7 +19,8 @@ fn refraction_radicand_naive(cosine: f32, relative_index: f32) -> f32 {
 // Units: none; unit vectors and a ratio.
 // Domain: |incident| = |normal| = 1, normal . incident < 0, relative_index in [1/4, 4], away from
 //   relative_index = 1 at grazing incidence.
-// Outside: near there the direction is off by up to the square root of the rounding unit, and `total` is wrong for some rays.
+// Outside: near there the direction is off by up to the square root of the rounding unit, and
+//   `total` is wrong for some rays.
 // Accuracy: naive
 fn refraction_refract_naive(incident: vec3f, normal: vec3f, relative_index: f32) -> RefractionHit {
     let eta = 1.0f / relative_index;

@@ -17,7 +17,8 @@ fn srgb_encode_naive(light: f32) -> f32 {
 // Returns: srgb_decode(encoded), except between 0.03928 and 0.04045.
 // Units: the same as for srgb_encode.
 // Domain: [0, 0.03928] and [0.04045, 1].
-// Outside: up to 2.5e-4 relative off between the two thresholds; negative below 0, without bound above 1.
+// Outside: up to 2.5e-4 relative off between the two thresholds; negative below 0, without bound
+//   above 1.
 // Accuracy: naive
 fn srgb_decode_naive(encoded: f32) -> f32 {
     if encoded <= 0.03928f {
@@ -30,8 +31,9 @@ fn srgb_decode_naive(encoded: f32) -> f32 {
 // Returns: srgb_tone_curve(color), unless the smallest channel is small.
 // Units: the same as for srgb_tone_curve.
 // Domain: channels in [0.01, 100].
-// Outside: a dark grey x comes out with an absolute error of x 2^-24 where its value is 6.25 x^2; a negative grey, darker than
-// black, comes out bright (-1 as 0.99), since the square in the toe forgets the sign.
+// Outside: a dark grey x comes out with an absolute error of x 2^-24 where its value is 6.25 x^2; a
+//   negative grey, darker than black, comes out bright (-1 as 0.99), since the square in the toe
+//   forgets the sign.
 // Accuracy: naive
 fn srgb_tone_curve_naive(color: vec3f) -> vec3f {
     let start = 0.76f;

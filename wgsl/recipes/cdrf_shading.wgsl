@@ -1,6 +1,7 @@
 // cdrf_shading: skin, wax or jade by curvature-dependent reflectance, in one draw call, under lights and an environment.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function".
+// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
+//   Curvature-Dependent Reflectance Function".
 // requires: cdrf, curvature, environment, fresnel, microfacet, reflective_shadow_map
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 // compares: curvature

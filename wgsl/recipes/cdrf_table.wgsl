@@ -1,6 +1,7 @@
 // cdrf_table: the lookup table of the curvature-dependent reflectance, baked texel by texel.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using Curvature-Dependent Reflectance Function": the lookup table.
+// Source: Kubo, Dobashi and Morishima, "Real-time Rendering of Translucent Materials using
+//   Curvature-Dependent Reflectance Function": the lookup table.
 // requires: cdrf
 //
 // The host converts the texels to the texture's format when it uploads them. An odd width puts a

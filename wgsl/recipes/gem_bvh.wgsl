@@ -1,6 +1,7 @@
 // gem_bvh: a stone of any closed shape by its exact triangles, found through a bounding volume hierarchy.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: the part trace_nearest; its loop over all triangles is the comparison of Imagire, "Proxy Geometry Gem Rendering", section 5.
+// Source: the part trace_nearest; its loop over all triangles is the comparison of Imagire, "Proxy
+//   Geometry Gem Rendering", section 5.
 // requires: absorption, bvh_trace, dispersion, environment, fresnel, proxy_geometry, refraction
 // parts: mesh, surroundings, trace_nearest, gem_shading
 //

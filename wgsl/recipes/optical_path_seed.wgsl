@@ -1,6 +1,7 @@
 // optical_path_seed: where light enters a body: each lit texel of the lights' maps puts its cost into the voxel that it lies in and those about it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.1.
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
+//   Programming", section 3.1.
 // requires: optical_path, reflective_shadow_map, voxelization
 // parts: lights, light_views, matter
 //

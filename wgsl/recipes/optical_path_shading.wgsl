@@ -1,6 +1,7 @@
 // optical_path_shading: translucent stone: the light that comes along the cheapest way through the body, in one draw call.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 3.2.
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
+//   Programming", section 3.2.
 // requires: environment, cdrf, fresnel, microfacet, optical_path, reflective_shadow_map, voxelization
 // parts: mesh, mesh_normals, surroundings, lights, light_views, shadow, harmonics, reflection
 //

@@ -1,6 +1,7 @@
 // optical_path_sweep: least optical depths over all voxels, every voxel in every pass.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic Programming", section 2.
+// Source: Ozawa, Okamoto and Morishima, "Real-time rendering of translucent material using Dynamic
+//   Programming", section 2.
 // requires: optical_path
 // parts: matter, optical_path_grid
 // compares: optical_path

@@ -1,6 +1,7 @@
 // optical_path_tiles: least optical depths, only where they still change: tiles of 4 x 4 x 4 voxels, a list of active ones.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J. Sci. Comput. 30 (2008), the block-based variant.
+// Source: Jeong and Whitaker, "A Fast Iterative Method for Eikonal Equations", SIAM J. Sci. Comput.
+//   30 (2008), the block-based variant.
 // requires: optical_path
 // parts: matter, optical_path_grid
 //

@@ -1,6 +1,7 @@
 // random_walk_slab: whole walks of light through a slab of scattering stone, one an invocation: the reference in its smallest closed case.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Chandrasekhar, "Radiative Transfer", 1950: what a half space must give back; Woodcock et al., 1965: delta tracking.
+// Source: Chandrasekhar, "Radiative Transfer", 1950: what a half space must give back; Woodcock et
+//   al., 1965: delta tracking.
 // requires: random_walk, veins
 //
 // The slab lies below z = 0. Light enters at the origin, travelling along x and downwards. A walk

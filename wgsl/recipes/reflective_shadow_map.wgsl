@@ -1,6 +1,7 @@
 // reflective_shadow_map: what one light sees of a scene: world position and N.L, for seeding paths of light and for shadows.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005; Ozawa, Okamoto and Morishima, section 3.1.
+// Source: Dachsbacher and Stamminger, "Reflective Shadow Maps", 2005; Ozawa, Okamoto and Morishima,
+//   section 3.1.
 // requires: reflective_shadow_map
 // parts: mesh, mesh_normals
 //

@@ -1,7 +1,8 @@
 // texture_diffusion: the blur passes of texture-space diffusion, and the gutter round its charts.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
-//   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
+// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
+//   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
+//   GPU Gems 3, 2007, chapter 14.
 // requires: texture_diffusion
 //
 // 1. The host draws the mesh into its own texture, in a pass of its own: positions by

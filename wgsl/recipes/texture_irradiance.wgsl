@@ -1,7 +1,8 @@
 // texture_irradiance: what arrives at a surface, drawn into the surface's own texture, for the recipe texture_diffusion to blur.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH 2003 sketch;
-//   d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering", GPU Gems 3, 2007, chapter 14.
+// Source: Borshukov and Lewis, "Realistic Human Face Rendering for The Matrix Reloaded", SIGGRAPH
+//   2003 sketch; d'Eon and Luebke, "Advanced Techniques for Realistic Real-Time Skin Rendering",
+//   GPU Gems 3, 2007, chapter 14.
 // requires: cdrf, environment, reflective_shadow_map, texture_diffusion
 // parts: mesh, mesh_normals, lights, light_views, shadow, harmonics
 //

@@ -1,6 +1,7 @@
 // voxelization: a mesh that changes from frame to frame, as bits of a grid: solid inside, and nothing of its surface lost.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia 2010.
+// Source: Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", SIGGRAPH Asia
+//   2010.
 // requires: voxelization
 // parts: mesh
 //

@@ -1,4 +1,4 @@
-//! Mirror of `wgsl/random_walk.wgsl`: random walks of light through scattering matter. The WGSL
+//! Mirror of `wgsl/random_walk.wgsl`: random walks of light in a scattering medium. The WGSL
 //! file states the units, domain and accuracy of each function. This file follows it line by line.
 //! [`slab`] mirrors the recipe `random_walk_slab`.
 //!

@@ -1,6 +1,7 @@
 // harmonics: light from all around as a few spherical harmonics, which is all that a diffuse surface sees of it.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001; to degree 4.
+// Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps",
+//   2001; to degree 4.
 //
 // A recipe adds: the modules cdrf and environment. The coefficients are bound here.
 

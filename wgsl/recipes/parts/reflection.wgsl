@@ -1,4 +1,4 @@
-// reflection: what a dielectric surface sends back of light and environment without letting it in.
+// reflection: light and environment that a dielectric surface sends back without letting them in.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the modules fresnel and microfacet.
 //

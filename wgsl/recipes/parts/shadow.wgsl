@@ -1,7 +1,8 @@
 // shadow: the share of a light that nothing keeps from a point of a surface, by the lights' maps.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Reeves, Salesin and Cook, "Rendering Antialiased Shadows with Depth
-//   Maps", 1987, for comparing before filtering; own: a height in place of a depth (the module reflective_shadow_map).
+// Source: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Reeves, Salesin and Cook,
+//   "Rendering Antialiased Shadows with Depth Maps", 1987, for comparing before filtering; own: a
+//   height in place of a depth (the module reflective_shadow_map).
 //
 // A recipe adds: the module reflective_shadow_map and the part light_views.
 

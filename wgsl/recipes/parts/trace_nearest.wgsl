@@ -1,7 +1,8 @@
 // trace_nearest: the nearest triangle that a ray inside a closed mesh leaves through, by a hierarchy or by a loop.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of Ray Traversal on
-//   GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem Rendering", section 5.
+// Source: the loop over nodes with a stack, as in Aila and Laine, "Understanding the Efficiency of
+//   Ray Traversal on GPUs", HPG 2009; the loop over all triangles: Imagire, "Proxy Geometry Gem
+//   Rendering", section 5.
 // compares: bvh_trace
 //
 // A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes` and `indices`.

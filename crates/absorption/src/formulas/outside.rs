@@ -7,7 +7,7 @@ use lapidary_assay::outside::{Promise, accurate, any_finite, close, holds, nothi
 /// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     vec![
-        accurate("absorption_optical_depth", "none is", |draws| (any_finite(draws),)),
+        accurate("absorption_optical_depth", "nothing", |draws| (any_finite(draws),)),
         holds(
             "absorption_coefficient",
             "subnormal distances count as 1e-30 or as 0",

@@ -45,9 +45,9 @@ fn reflectances() -> Vec<Promise> {
     let one_bits = |draws: &mut Draws<'_>| (any_bits(draws),);
     let one = |draws: &mut Draws<'_>| (any_finite(draws),);
     vec![
-        accurate("cdrf_finite", "none is; a subnormal may count as zero", one_bits),
-        accurate("cdrf_sigma", "none is", |draws| (any_bits(draws), any_bits(draws))),
-        accurate("cdrf_arcsine", "none is", one),
+        accurate("cdrf_finite", "nothing; a subnormal may count as zero", one_bits),
+        accurate("cdrf_sigma", "nothing", |draws| (any_bits(draws), any_bits(draws))),
+        accurate("cdrf_arcsine", "nothing", one),
         holds(
             "cdrf_deviations",
             "finite while the quotient is",
@@ -61,31 +61,31 @@ fn reflectances() -> Vec<Promise> {
             |(x, _): (f32, f32)| (x, 0.0),
         ),
         accurate("cdrf_normal_density", "as long as u^2 is finite", |draws| (draws.signed(-126, 62),)),
-        accurate("cdrf_normal_share", "none is", one),
-        accurate("cdrf_lambert", "none is", one),
-        accurate("cdrf_wrap", "none is", two),
-        accurate("cdrf_series", "none is", |draws| (any_finite(draws), any_finite(draws), draws.below(17))),
+        accurate("cdrf_normal_share", "nothing", one),
+        accurate("cdrf_lambert", "nothing", one),
+        accurate("cdrf_wrap", "nothing", two),
+        accurate("cdrf_series", "nothing", |draws| (any_finite(draws), any_finite(draws), draws.below(17))),
         finite("cdrf_series", "but the time that more terms take", |draws| {
             (draws.between(-1.0, 1.0), 0.3, draws.below(300))
         }),
         holds(EDGE, FADES, wide(0.3), |_: (f32, f32), value: f32| not_negative(value)),
         holds(EDGE, "off by 4.8e-7 at 0.35", blurred(0.35), off_by(4.8e-7)),
         holds(EDGE, "1.2e-4 at 0.5", blurred(0.5), off_by(1.2e-4)),
-        accurate("cdrf_accurate", "none is", two),
+        accurate("cdrf_accurate", "nothing", two),
         finite(CHEAP, "the formula goes on, up to 1: off by rounding where the cosine is", |draws| {
             let end = draws.pick(&[1.0, -1.0]);
             (draws.nudged(end, 64), any_finite(draws))
         }),
         finite(CHEAP, "finite up to 10", |draws| (draws.signed(0, 3), any_finite(draws))),
-        accurate("cdrf_rgb", "none is", |draws| {
+        accurate("cdrf_rgb", "nothing", |draws| {
             let sigma = Vec3::new(any_bits(draws), any_bits(draws), any_bits(draws));
             (any_finite(draws), sigma, any_bits(draws))
         }),
-        accurate("cdrf_sine", "none is", one),
-        accurate("cdrf_quadrature", "none is", two),
+        accurate("cdrf_sine", "nothing", one),
+        accurate("cdrf_quadrature", "nothing", two),
         holds("cdrf_spherical_edge", FADES, wide(0.1), |_: (f32, f32), value: f32| not_negative(value)),
-        accurate("cdrf_spherical", "none is", two),
-        accurate("cdrf_harmonic_weights", "none is", one),
+        accurate("cdrf_spherical", "nothing", two),
+        accurate("cdrf_harmonic_weights", "nothing", one),
     ]
 }
 
@@ -94,7 +94,7 @@ fn tables() -> Vec<Promise> {
     const TEXTURE: &str = "cdrf_texture_coordinates";
     let size = |draws: &mut Draws<'_>| UVec2::new(2 + draws.below(60), 2 + draws.below(60));
     vec![
-        accurate("cdrf_table_coordinates", "none is", |draws| (any_finite(draws), any_finite(draws))),
+        accurate("cdrf_table_coordinates", "nothing", |draws| (any_finite(draws), any_finite(draws))),
         like(
             TEXEL,
             "a texel beyond the last counts as the last",

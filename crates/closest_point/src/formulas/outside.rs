@@ -13,7 +13,7 @@ pub(super) fn promises() -> Vec<Promise> {
     const CENTRE: &str = "closest_point_centre";
     let normals = |draws: &mut Draws<'_>| (draws.unit_vector(), draws.unit_vector(), draws.unit_vector());
     vec![
-        accurate("closest_point_largest_component", "none", |draws| (any_vector(draws),)),
+        accurate("closest_point_largest_component", "nothing", |draws| (any_vector(draws),)),
         finite(DIRECTION, "finite", |draws| (any_vector(draws),)),
         holds(
             DIRECTION,

@@ -44,7 +44,7 @@ fn directions() -> Vec<Promise> {
         finite("environment_hypot", "finite below 2^127; a subnormal may count as zero", |draws| {
             (subnormal_or_less(draws), subnormal_or_less(draws))
         }),
-        accurate("environment_sine", "nothing is outside", |draws| (any_finite(draws),)),
+        accurate("environment_sine", "nothing", |draws| (any_finite(draws),)),
         holds(
             UV,
             "(1/2, 0) for the zero vector",

@@ -29,7 +29,7 @@ pub(super) fn promises() -> Vec<Promise> {
             |draws| (of_length(draws, -60, -42), of_length(draws, -60, -42), any_finite(draws)),
             |_: (Vec3, Vec3, f32), density: f32| that(density == 0.0, || format!("the density is {density}")),
         ),
-        accurate("microfacet_visibility", "none is", |draws| (any_finite(draws), any_finite(draws), any_finite(draws))),
+        accurate("microfacet_visibility", "nothing", |draws| (any_finite(draws), any_finite(draws), any_finite(draws))),
         holds(
             "microfacet_half",
             "the direction of the sum, for lengths up to 1e18",

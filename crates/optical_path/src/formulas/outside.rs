@@ -29,8 +29,8 @@ pub(super) fn promises() -> Vec<Promise> {
                 near("the cost", cost.into(), wanted, 1e-6 * wanted + 2f64.powi(-125))
             },
         ),
-        accurate("optical_path_encode", "none is", |draws| (any_bits(draws),)),
-        accurate("optical_path_decode", "none is", |draws| (any_number(draws),)),
+        accurate("optical_path_encode", "nothing", |draws| (any_bits(draws),)),
+        accurate("optical_path_decode", "nothing", |draws| (any_number(draws),)),
         holds(
             "optical_path_seed",
             "a negative share is no light",

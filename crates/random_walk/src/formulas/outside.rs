@@ -12,9 +12,9 @@ pub(super) fn promises() -> Vec<Promise> {
     let counter = |draws: &mut Draws<'_>| (UVec4::from_array(std::array::from_fn(|_| any_number(draws))),);
     let below_one = |draws: &mut Draws<'_>| draws.between(0.0, 1.0).min(1.0f32.next_down());
     vec![
-        accurate("random_walk_bits", "none is", counter),
-        accurate("random_walk_random", "none is", counter),
-        accurate("random_walk_free_path", "none is", |draws| {
+        accurate("random_walk_bits", "nothing", counter),
+        accurate("random_walk_random", "nothing", counter),
+        accurate("random_walk_free_path", "nothing", |draws| {
             let u = any_finite(draws);
             (if u.abs() < 2f32.powi(-120) { 0.0 } else { u }, any_finite(draws))
         }),
@@ -23,7 +23,7 @@ pub(super) fn promises() -> Vec<Promise> {
         }),
         holds(
             "random_walk_collision",
-            "where the sum exceeds the majorant never passes: the walk is biased",
+            "light never passes where the sum exceeds the majorant: the walk is biased",
             move |draws| {
                 let majorant = draws.magnitude(-20, 20);
                 let scattering = majorant * draws.between(0.6, 4.0);
@@ -40,14 +40,14 @@ pub(super) fn promises() -> Vec<Promise> {
             },
             |(transmittance, density, _): (f32, f32, f32)| (transmittance, density, RANDOM_WALK_THINNEST),
         ),
-        accurate("random_walk_phase", "none is", |draws| (any_finite(draws), any_finite(draws))),
-        accurate("random_walk_deflection", "none is", |draws| (any_finite(draws), any_finite(draws))),
-        accurate("random_walk_azimuth", "none is", |draws| (any_finite(draws),)),
+        accurate("random_walk_phase", "nothing", |draws| (any_finite(draws), any_finite(draws))),
+        accurate("random_walk_deflection", "nothing", |draws| (any_finite(draws), any_finite(draws))),
+        accurate("random_walk_azimuth", "nothing", |draws| (any_finite(draws),)),
         finite("random_walk_basis", "finite, but no unit vectors", |draws| (vector_up_to(draws, 60),)),
         finite("random_walk_turn", "finite, but no unit vector", |draws| {
             (of_length(draws, -10, 10), draws.in_square(), draws.in_square())
         }),
-        accurate("random_walk_isotropic", "none is", |draws| (Vec2::new(any_finite(draws), any_finite(draws)),)),
+        accurate("random_walk_isotropic", "nothing", |draws| (Vec2::new(any_finite(draws), any_finite(draws)),)),
         holds(
             "random_walk_boundary",
             "a normal that faces away from the light counts as grazing: finite, but no unit vector",

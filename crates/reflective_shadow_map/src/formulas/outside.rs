@@ -25,7 +25,7 @@ pub(super) fn promises() -> Vec<Promise> {
         }),
         holds(
             TEXEL,
-            "beside the map for what the map does not cover",
+            "beside the map for points that the map does not cover",
             |draws| {
                 let w = draws.magnitude(-30, 30);
                 let outside = draws.pick(&[1.0, -1.0]) * draws.between(1.001, 1e6);

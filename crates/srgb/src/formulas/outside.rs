@@ -5,7 +5,7 @@ use lapidary_assay::outside::{Promise, accurate, any_finite, any_vector, close, 
 
 /// Returns every promise of the module.
 pub(super) fn promises() -> Vec<Promise> {
-    const NOTHING: &str = "nothing is outside";
+    const NOTHING: &str = "nothing";
     vec![
         accurate("srgb_encode", NOTHING, |draws| (any_finite(draws),)),
         accurate("srgb_encode_gamma", NOTHING, |draws| (any_finite(draws),)),

@@ -19,7 +19,7 @@ pub(super) fn promises() -> Vec<Promise> {
     let width = |draws: &mut Draws<'_>| (any_bits(draws), any_bits(draws), -draws.magnitude(-60, 100));
     let scattering = |draws: &mut Draws<'_>| draws.in_cube().abs() + 0.1;
     vec![
-        accurate("texture_diffusion_finite", "none is; a subnormal may count as zero", |draws| (any_bits(draws),)),
+        accurate("texture_diffusion_finite", "nothing; a subnormal may count as zero", |draws| (any_bits(draws),)),
         holds("texture_diffusion_clip", "the same, less accurate", uv, |(uv,): (Vec2,), clip: glam::Vec4| {
             let uv = uv.as_dvec2();
             let bound = 1e-6 * (1.0 + uv.abs().max_element());
@@ -42,7 +42,7 @@ pub(super) fn promises() -> Vec<Promise> {
         holds("texture_diffusion_width", "a negative widest counts as 0", width, |_: (f32, f32, f32), width: f32| {
             that(width == 0.0, || format!("the width is {width}"))
         }),
-        accurate("texture_diffusion_sigma", "none is; a subnormal may count as zero", |draws| (bits_vector(draws),)),
+        accurate("texture_diffusion_sigma", "nothing; a subnormal may count as zero", |draws| (bits_vector(draws),)),
         holds(
             "texture_diffusion_ratio",
             "less than the ratio for a widest below 2^-60",

@@ -22,12 +22,12 @@ pub(super) fn promises() -> Vec<Promise> {
         that((low - 1e-5..=high + 1e-5).contains(&density), || format!("the density is {density}"))
     };
     vec![
-        accurate("veins_cell", "none is", |draws| (any_vector(draws),)),
-        accurate("veins_hash", "none is", |draws| {
+        accurate("veins_cell", "nothing", |draws| (any_vector(draws),)),
+        accurate("veins_hash", "nothing", |draws| {
             let corner = any_numbers(draws).to_array().map(u32::cast_signed);
             (IVec3::from_array(corner), any_number(draws))
         }),
-        accurate("veins_gradient", "none is", |draws| (any_number(draws),)),
+        accurate("veins_gradient", "nothing", |draws| (any_number(draws),)),
         holds(
             "veins_corner",
             "the plane goes on",
@@ -41,7 +41,7 @@ pub(super) fn promises() -> Vec<Promise> {
                 close(&[value], &[gradient.dot(cell.offset.as_dvec3() - corner.as_dvec3())], 1e-5)
             },
         ),
-        accurate("veins_noise", "none is", |draws| (any_vector(draws), any_number(draws))),
+        accurate("veins_noise", "nothing", |draws| (any_vector(draws), any_number(draws))),
         holds(
             "veins_fractal",
             "positions up to 2^120 are clamped for each octave",
@@ -64,7 +64,7 @@ pub(super) fn promises() -> Vec<Promise> {
         ),
         holds(
             "veins_density",
-            "a width of less is as right as the noise, whose error it magnifies by its inverse",
+            "a smaller width is as accurate as the noise, whose error it magnifies by its inverse",
             move |draws| (100.0 * draws.in_cube(), pattern(draws, -40)),
             between,
         ),

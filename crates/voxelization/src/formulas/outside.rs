@@ -34,7 +34,7 @@ pub(super) fn promises() -> Vec<Promise> {
         nothing("voxelization_local", "infinite or a NaN"),
         holds(
             "voxelization_voxel",
-            "some voxel of the grid",
+            "a voxel of the grid",
             move |draws| {
                 let spacing = any_bits(draws);
                 let wild = Vec3::new(any_bits(draws), any_bits(draws), any_bits(draws));
@@ -55,7 +55,7 @@ pub(super) fn promises() -> Vec<Promise> {
         ),
         holds(
             "voxelization_cross",
-            "some number, with low from 0 to 2^30 - 1",
+            "any number, with low from 0 to 2^30 - 1",
             move |draws| (point(draws), point(draws)),
             |_: (IVec2, IVec2), found: VoxelizationInteger| {
                 that((0..1 << 30).contains(&found.low), || format!("{found:?}"))
@@ -88,21 +88,21 @@ pub(super) fn promises() -> Vec<Promise> {
                 that(found.inside == wanted.inside, || format!("inside: {}", found.inside))
             },
         ),
-        accurate("voxelization_first", "none is; from 0 to cells whatever comes in", |draws| {
+        accurate("voxelization_first", "nothing; from 0 to cells for any input", |draws| {
             (any_finite(draws), draws.below(1 << 22))
         }),
         holds(
             "voxelization_first",
-            "none is; from 0 to cells whatever comes in",
+            "nothing; from 0 to cells for any input",
             |draws| (any_bits(draws), any_number(draws)),
             |(_, cells): (f32, u32), first: u32| that(first <= cells, || format!("{first} of {cells}")),
         ),
-        accurate("voxelization_prefix", "none is", |draws| (any_number(draws),)),
+        accurate("voxelization_prefix", "nothing", |draws| (any_number(draws),)),
         nothing("voxelization_taxicab", "infinite or a NaN"),
         nothing("voxelization_margin", "infinite or a NaN"),
         holds(
             "voxelization_range",
-            "none for low > high + 1",
+            "no voxel for low > high + 1",
             |draws| {
                 let high = draws.signed(-10, 22);
                 (1.001 * (high.max(-high) + 2.0), high, draws.below(1 << 22))
@@ -111,7 +111,7 @@ pub(super) fn promises() -> Vec<Promise> {
         ),
         holds(
             "voxelization_range",
-            "from 0 to cells whatever comes in",
+            "from 0 to cells for any input",
             |draws| (any_bits(draws), any_bits(draws), any_number(draws)),
             |(_, _, cells): (f32, f32, u32), range: UVec2| {
                 that(range.x <= range.y && range.y <= cells, || format!("from {} to {}", range.x, range.y))

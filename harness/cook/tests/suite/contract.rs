@@ -123,7 +123,7 @@ struct SamplePair {
 //   halved.
 // Units: none.
 // Domain: any.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe first 1 ulp, second 1 ulp; portable first 1 ulp, second 1 ulp
 fn sample_halved(first: f32, second: f32) -> SamplePair {
     return SamplePair(first * SAMPLE_HALF, second * SAMPLE_HALF);
@@ -216,7 +216,7 @@ fn a_wrong_function_comment_is_found() {
 
 #[test]
 fn a_function_without_a_result_is_found() {
-    let nothing = "// Does nothing.\n// Returns: nothing.\n// Units: none.\n// Domain: any.\n// Outside: none is.\n\
+    let nothing = "// Does nothing.\n// Returns: nothing.\n// Units: none.\n// Domain: any.\n// Outside: nothing.\n\
         // Accuracy: lavapipe 1 ulp; portable 1 ulp\nfn sample_nothing(first: f32) {\n}\n\n// Halves both";
     let findings = breaks(Rule::FunctionComment, "// Halves both", nothing);
     assert!(findings[0].message.contains("`sample_nothing` returns nothing"), "{}", spell(&findings));
@@ -302,7 +302,7 @@ fn what_only_looks_like_a_literal_is_not_found() {
 
 #[test]
 fn what_fails_is_not_pasted() {
-    let naive = "// Halves the first.\n// Returns: half of it.\n// Units: none.\n// Domain: any.\n// Outside: none is.\n\
+    let naive = "// Halves the first.\n// Returns: half of it.\n// Units: none.\n// Domain: any.\n// Outside: nothing.\n\
         // Accuracy: naive\nfn sample_half_naive(first: f32) -> f32 {\n    return first / 2.0f;\n}\n";
     let findings = lint("sample", SAMPLE, naive);
     assert!(findings.is_empty(), "{}", spell(&findings));
@@ -333,7 +333,7 @@ fn a_comparison_with_itself_is_found() {
 // Returns: a quarter of the first.
 // Units: none.
 // Domain: any.
-// Outside: none is.
+// Outside: nothing.
 // Accuracy: lavapipe 2 ulp; portable 2 ulp
 fn sample_quarter(first: f32, second: f32) -> f32 {
     let one = sample_halved(first, second);
