@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 /// Reason why a picture could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// A file name whose extension names no format.
-    #[error("{path}: the name must end in .png or .exr")]
+    /// A file name whose extension is not that of a format that can be written.
+    #[error("{path}: the name must end in {endings}")]
     Extension {
         /// The file.
         path: PathBuf,
+        /// The endings that can be written.
+        endings: &'static str,
     },
     /// An error of the file system.
     #[error("{path}: cannot be written: {error}")]
@@ -47,9 +49,15 @@ impl Format {
         match path.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase).as_deref() {
             Some("png") => Ok(Format::Png),
             Some("exr") => Ok(Format::Exr),
-            _ => Err(FileError::Extension { path: path.to_owned() }),
+            _ => Err(FileError::Extension { path: path.to_owned(), endings: ".png or .exr" }),
         }
     }
+}
+
+/// Checks that the name of `path` ends in `ending`, such as `.glb`, in any case.
+pub fn check_ending(path: &Path, ending: &'static str) -> Result<(), FileError> {
+    let name = path.to_string_lossy().to_lowercase();
+    if name.ends_with(ending) { Ok(()) } else { Err(FileError::Extension { path: path.to_owned(), endings: ending }) }
 }
 
 /// Writes `picture` in the format that the extension of `path` names.
@@ -135,6 +143,10 @@ fn is_stream(path: &Path) -> bool {
 
 /// Returns the system's own error, without the name of a temporary file.
 fn plain(error: &std::io::Error) -> std::io::Error {
+    // Links are followed and files are made, so only the folder can be missing.
+    if error.kind() == std::io::ErrorKind::NotFound {
+        return std::io::Error::other("its folder does not exist; make it first");
+    }
     let inner = error.get_ref().and_then(std::error::Error::source);
     let code = inner.and_then(|inner| inner.downcast_ref::<std::io::Error>()).and_then(std::io::Error::raw_os_error);
     match code.or_else(|| error.raw_os_error()) {

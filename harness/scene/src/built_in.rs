@@ -209,7 +209,7 @@ pub(super) fn build(name: &str) -> Result<Scene, SceneError> {
         "figure" => stone::figure(name),
         "vitrine" => vitrine::stored(name),
         "brilliant_plain" => diamond(name, Averaging::Plain, Triangulation::Centroid),
-        _ => Err(SceneError::UnknownName { name: name.to_owned(), nearest: nearest(name) }),
+        _ => Err(SceneError::UnknownName { name: name.to_owned(), hint: hint(name) }),
     }
 }
 
@@ -255,8 +255,8 @@ pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {
 }
 
 /// Returns the built-in whose name, or alias, is most like `name`.
-fn nearest(name: &str) -> &'static str {
+fn hint(name: &str) -> String {
     let known = BUILT_IN.iter().map(|scene| scene.name).chain(ALIASES.iter().map(|(alias, _)| *alias));
-    let (_, nearest) = crate::nearest::nearest(name, known).unwrap_or_default();
-    named(nearest).map_or("", |scene| scene.name)
+    let near = crate::nearest::close(name, known).and_then(named);
+    near.map_or(String::new(), |scene| format!("; did you mean `{}`?", scene.name))
 }

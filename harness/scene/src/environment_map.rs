@@ -36,7 +36,7 @@ pub struct EnvironmentMap {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EnvironmentMapError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {reason}; check that it exists and may be read", path.display())]
+    #[error("{}: cannot be read: {reason}; give a .hdr or .exr file", path.display())]
     Unreadable {
         /// Path of the file.
         path: PathBuf,
@@ -217,7 +217,7 @@ fn read(path: &Path) -> Result<Vec<u8>, EnvironmentMapError> {
     let unreadable = |reason: String| EnvironmentMapError::Unreadable { path: path.to_owned(), reason };
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable("it is not a regular file".to_owned()));
+        return Err(unreadable(crate::not_a_file(&metadata).to_owned()));
     }
     if metadata.len() > MAX_FILE_BYTES {
         let size = metadata.len();

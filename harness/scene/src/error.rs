@@ -12,12 +12,12 @@ use super::gltf::GltfError;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error("no scene is called {name:?}; did you mean {nearest}? Give one of {} or a .glb or .gltf file", names())]
+    #[error("no scene is called `{name}`{hint}; give one of {} or a .glb or .gltf file", names())]
     UnknownName {
         /// The name that was asked for.
         name: String,
-        /// The most similar built-in name.
-        nearest: &'static str,
+        /// `; did you mean ...?` if a built-in scene's name is close, otherwise empty.
+        hint: String,
     },
     /// A file cannot be used.
     #[error("{}: {problem}", path.display())]

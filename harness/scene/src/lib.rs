@@ -61,6 +61,13 @@ pub use normals::Averaging;
 pub use solver::Solver;
 pub use view::clip_from_world;
 
+/// Returns what is wrong with a path whose `metadata` is not that of a regular file, as the end of a
+/// sentence.
+#[must_use]
+pub fn not_a_file(metadata: &std::fs::Metadata) -> &'static str {
+    if metadata.is_dir() { "it is a folder" } else { "it is not a regular file" }
+}
+
 /// Largest width and height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
 /// Default number of samples along each side of a pixel.

@@ -15,17 +15,22 @@ pub fn suggest_function(module: &str, unknown: &str, known: &[&str]) -> String {
     let short =
         |name: &str| name.strip_prefix(module).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name).to_owned();
     let known: Vec<String> = known.iter().map(|name| short(name)).collect();
-    match nearest(&short(unknown), known.iter().map(String::as_str)) {
-        Some((similarity, name)) if similarity > CLOSE => format!("; did you mean `{module}::{name}`?"),
-        _ => format!("; there are {}", known.join(", ")),
+    match close(&short(unknown), known.iter().map(String::as_str)) {
+        Some(name) => format!("; did you mean `{module}::{name}`?"),
+        None => format!("; there are {}", known.join(", ")),
     }
+}
+
+/// Returns [`nearest`] if it is close enough to be suggested.
+pub fn close<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    nearest(unknown, known).filter(|(similarity, _)| *similarity > CLOSE).map(|(_, name)| name)
 }
 
 /// Returns `; did you mean ...?` if a name is close, or else the list of all names.
 pub fn suggest(unknown: &str, known: &[&str]) -> String {
-    match nearest(unknown, known.iter().copied()) {
-        Some((similarity, name)) if similarity > CLOSE => format!("; did you mean `{name}`?"),
-        _ => format!("; there are {}", known.join(", ")),
+    match close(unknown, known.iter().copied()) {
+        Some(name) => format!("; did you mean `{name}`?"),
+        None => format!("; there are {}", known.join(", ")),
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     drawn: Drawn,
     /// Output file, PNG (tone-mapped sRGB) or EXR (linear, half float); SCENE.png in the current
     /// folder by default.
-    #[arg(long, value_name = "F.png|F.exr")]
+    #[arg(long, value_name = "F.png|F.exr", help_heading = "Options")]
     out: Option<PathBuf>,
     #[command(flatten)]
     reference: Option<Reference>,
@@ -154,7 +154,9 @@ pub(super) fn run(context: &Context, arguments: &Arguments) -> Result<Outcome, F
     tell(&notes, &scene);
     output::line(&out.display().to_string())?;
     if let Some(Lost { max, mean }) = picture.lost {
-        output::line(&format!("not followed: {max:.1e} of a ray's energy at most, {mean:.1e} in the mean"))?;
+        output::line(&format!(
+            "energy of a camera ray that was not traced to its end: {max:.1e} at most, {mean:.1e} on average"
+        ))?;
     }
     if let Some(WalkedPicture { error, walks, lost }) = picture.walked {
         output::line(&format!(

@@ -167,6 +167,11 @@ impl History {
         Standing {
             module: name.to_owned(),
             origins: functions.iter().filter_map(origin).collect(),
+            lacking: functions
+                .iter()
+                .filter(|function| !found.functions.contains_key(**function))
+                .map(|function| format!("`{function}`"))
+                .collect(),
             stated,
             oldest: None,
             current: self.releases.last().map(|release| release.release.clone()).unwrap_or_default(),
@@ -251,6 +256,8 @@ pub struct Standing {
     pub module: String,
     /// Functions in the file, in the module's order.
     pub origins: Vec<Origin>,
+    /// Functions of the module that the file lacks, in backticks.
+    pub lacking: Vec<String>,
     /// Release stated by its `// Version:` line in the file; `None` if there is no such line.
     pub stated: Option<String>,
     /// Oldest release of an outdated function; `None` if all functions are of the current release
@@ -280,8 +287,13 @@ impl Standing {
             .collect();
         let mut text = match &self.oldest {
             Some(oldest) => format!("this is {module} of release {oldest}; the cookbook's is {current}"),
+            None if own.is_empty() && !self.lacking.is_empty() => {
+                format!("this is a part of {module} of release {current}; missing: {}", self.lacking.join(", "))
+            }
             None if own.is_empty() => format!("this is {module} of release {current}, the cookbook's own"),
-            None if own.len() == self.origins.len() => format!("this is {module} of no release"),
+            None if own.len() == self.origins.len() => {
+                format!("this is a changed {module}: no release has these functions")
+            }
             None => format!("this is {module} of release {current} with changes"),
         };
         let is_old = |origin: &&Origin| origin.release.as_ref().is_some_and(|release| release != current);

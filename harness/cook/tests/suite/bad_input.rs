@@ -152,10 +152,12 @@ const SCENES: &[Row] = &[
     ("{}/counts.gltf --out {}/out.png", One, &["attributes have 3 and 1 elements", "give each as many"]),
     ("{}/crowd.gltf --out {}/out.png", One, &["accessor 0: it has 2147483648 elements", "export it again"]),
     ("{}/json.gltf --out {}/out.png", One, &["json.gltf: ", "not valid glTF", "line 1"]),
-    ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "not a regular file"]),
-    ("briliant --out {}/out.png", One, &["\"briliant\"", "did you mean brilliant?"]),
-    ("dimond --out {}/out.png", One, &["\"dimond\"", "did you mean brilliant?"]),
-    ("emrald --out {}/out.png", One, &["\"emrald\"", "did you mean step_cut?"]),
+    ("{}/folder.glb --out {}/out.png", One, &["folder.glb: ", "it is a folder"]),
+    ("briliant --out {}/out.png", One, &["`briliant`", "did you mean `brilliant`?"]),
+    ("xyzzy --out {}/out.png", One, &["no scene is called `xyzzy`; give one of"]),
+    ("octahedron --out {}/nowhere/out.png", One, &["cannot be written: its folder does not exist"]),
+    ("dimond --out {}/out.png", One, &["`dimond`", "did you mean `brilliant`?"]),
+    ("emrald --out {}/out.png", One, &["`emrald`", "did you mean `step_cut`?"]),
     ("{}/draco.gltf --out {}/out.png", One, &["compressed by KHR_draco_mesh_compression", "gltf-transform copy"]),
     ("{}/quantised.gltf --out {}/out.png", One, &["accessor 0", "KHR_mesh_quantization", "gltf-transform dequantize"]),
     ("{}/first.gltf --out {}/out.png", One, &["first.gltf: this is glTF version 1.0", "convert it"]),
@@ -179,11 +181,7 @@ const ENVIRONMENTS: &[Row] = &[
         One,
         &["text.hdr: ", "not a Radiance .hdr or OpenEXR .exr"],
     ),
-    (
-        "octahedron --size 8x8 --environment {}/folder.png --out {}/out.png",
-        One,
-        &["folder.png: ", "not a regular file"],
-    ),
+    ("octahedron --size 8x8 --environment {}/folder.png --out {}/out.png", One, &["folder.png: ", "it is a folder"]),
 ];
 
 const CHECK: &[Row] = &[
@@ -269,7 +267,8 @@ const OTHERS: &[Row] = &[
     ("copy gem --to glsl --out {}/out.glsl", One, &["gem::"]),
     ("copy refraction --out {}/none/out.wgsl", One, &["none/out.wgsl", "cannot be written"]),
     ("copy refraction --out {}/text.glb/out.wgsl", One, &["text.glb/out.wgsl", "cannot be written"]),
-    ("scene briliant --out {}/out.glb", One, &["did you mean brilliant?"]),
+    ("scene brilliant --out {}/out.png", One, &["the name must end in .glb"]),
+    ("scene briliant --out {}/out.glb", One, &["did you mean `brilliant`?"]),
     ("scene brilliant --out {}/text.glb/out.glb", One, &["text.glb/out.glb", "cannot be written"]),
     ("scene brilliant", Usage, &["--out"]),
 ];

@@ -281,7 +281,10 @@ fn what_was_mended_since_is_said() {
         says(&changed),
         "this is sample of release 0.3.0 with changes\n  changed from every release: `sample_halved`"
     );
-    assert_eq!(says("fn sample_same(x: f32) -> f32 { return -x; }"), "this is sample of no release");
+    assert_eq!(
+        says("fn sample_same(x: f32) -> f32 { return -x; }"),
+        "this is a changed sample: no release has these functions"
+    );
 }
 
 #[test]
@@ -299,7 +302,7 @@ fn a_current_copy_is_told_and_a_changed_one() {
     assert!(source.contains(quotient));
     let own =
         check(&source.replace(quotient, "let quotient = index_transmitted / index_incident;\n    return quotient;"));
-    assert!(own.contains("this is refraction of no release"), "{own}");
+    assert!(own.contains("this is a changed refraction: no release has these functions"), "{own}");
     assert!(own.contains(&format!("its header says {CURRENT}: it was changed after it was copied")), "{own}");
 }
 

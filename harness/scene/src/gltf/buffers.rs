@@ -159,7 +159,7 @@ fn read_up_to(path: &Path, what: String, limit: u64) -> Result<Vec<u8>, GltfErro
     // Checked before the file is opened, because opening a pipe waits for the other end.
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {
-        return Err(unreadable("it is not a regular file".to_owned()));
+        return Err(unreadable(crate::not_a_file(&metadata).to_owned()));
     }
     let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
     let mut bytes = Vec::new();

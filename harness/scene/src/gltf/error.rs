@@ -8,7 +8,7 @@ use super::{KNOWN_EXTENSIONS, MAX_COORDINATE, MAX_OBJECTS, MAX_SCENE_BYTES, MAX_
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GltfError {
     /// The file, or an external buffer, cannot be read.
-    #[error("{what} cannot be read: {reason}; check that it exists and may be read")]
+    #[error("{what} cannot be read: {reason}; give a .glb or .gltf file that may be read")]
     Unreadable {
         /// `the file`, or the buffer and its file.
         what: String,

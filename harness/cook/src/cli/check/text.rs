@@ -60,11 +60,11 @@ pub(super) fn about(on: On<'_>) -> String {
             gpu.describe()
         ),
         On::Slack(reassociation) => format!(
-            "Each result of the shader on a device that errs as far as WGSL lets it{} is\n\
+            "Each result of the shader on a simulated device, with the largest errors that WGSL allows{}, is\n\
              compared with the exact one of its oracle (f64), from which it may differ by the `Accuracy:` line's portable bound.",
             match reassociation {
                 Reassociation::Written => "",
-                Reassociation::Reordered => ", sums and products in other orders,",
+                Reassociation::Reordered => " and sums and products in other orders",
             }
         ),
     }
@@ -167,7 +167,7 @@ fn differences(rows: &[Row], text: &mut String) {
 fn allowances(rows: &[Row], text: &mut String) {
     let _ = writeln!(
         text,
-        "\nTo first order, what every operation may be off by, carried to the result, is at most the stated bound and at least an eighth of it, but for:"
+        "\nThe errors that WGSL allows each operation, propagated to the result to first order, are at most the stated bound and at least an eighth of it, except for:"
     );
     let mut none = true;
     for row in rows {
