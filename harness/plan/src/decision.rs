@@ -88,6 +88,7 @@ fn way_of(geometry: Geometry) -> &'static str {
     match geometry {
         Geometry::Proxy => "the proxy",
         Geometry::Convex => "a convex stone's planes",
+        Geometry::Walk => "a convex stone's planes, by a map of its facets",
         Geometry::Bvh => "a hierarchy of all triangles",
         Geometry::Triangles => "a loop over all triangles",
     }
@@ -123,7 +124,8 @@ impl Case<'_> {
         }
         match effect {
             Effect::ProxyGeometry => self.inside(effect, Geometry::Proxy),
-            Effect::ConvexTrace => self.inside(effect, Geometry::Convex),
+            Effect::ConvexTrace => self
+                .inside(effect, if self.rung.geometry() == Geometry::Walk { Geometry::Walk } else { Geometry::Convex }),
             Effect::BvhTrace => self.inside(effect, Geometry::Bvh),
             Effect::ThinWall => self.thin_wall(),
             Effect::Absorption => self.absorption(),

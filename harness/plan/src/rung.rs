@@ -37,6 +37,8 @@ pub enum Geometry {
     Proxy,
     /// All facet planes of a convex stone, one after another (the paper's Fig. 7).
     Convex,
+    /// A few facet planes of a convex stone, by a map of its facets by direction: the same hits.
+    Walk,
     /// All triangles, one after another (the paper's comparison).
     Triangles,
     /// A bounding volume hierarchy of the triangles.
@@ -62,7 +64,7 @@ pub const MOST_HITS: u32 = 64;
 /// Maximum number of wavelengths.
 pub const MOST_WAVELENGTHS: u32 = 61;
 /// The rungs suggested when a name is not understood, from cheap to exact.
-pub const NAMES: [&str; 32] = [
+pub const NAMES: [&str; 34] = [
     "by-material",
     "surface",
     "proxy-0",
@@ -73,6 +75,8 @@ pub const NAMES: [&str; 32] = [
     "proxy-2",
     "proxy-4",
     "proxy-8",
+    "walk-8",
+    "walk-8+tracker",
     "convex-1",
     "convex-8",
     "convex-8+tracker",
@@ -97,14 +101,15 @@ pub const NAMES: [&str; 32] = [
     "reference",
 ];
 /// The grammar of rung names, for messages and help.
-pub const GRAMMAR: &str = "for clear stones surface, (proxy|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
+pub const GRAMMAR: &str = "for clear stones surface, (proxy|walk|convex|triangles|bvh)-HITS[+paper|+tracker|+WAVELENGTHS], such as \
      convex-8+31; for what scatters light lambert, lambert-shadowed, wrap, table-256-rgba8, table-257-rgba16f, table-257-r32f, cheap, accurate, \
      quadrature, spherical, blur, or (paper|ping-pong-NEIGHBOURS|tiled-NEIGHBOURS|godunov)-CELLS with 6, 18 or 26 neighbours and 16 to 256 \
      cells, such as godunov-64; for both reference";
 
-const GEOMETRIES: [(&str, Geometry); 4] = [
+const GEOMETRIES: [(&str, Geometry); 5] = [
     ("proxy", Geometry::Proxy),
     ("convex", Geometry::Convex),
+    ("walk", Geometry::Walk),
     ("triangles", Geometry::Triangles),
     ("bvh", Geometry::Bvh),
 ];
@@ -118,6 +123,7 @@ impl Rung {
     pub fn recipe(self) -> &'static str {
         match self {
             Self::Inside { geometry: Geometry::Convex, .. } => "gem_convex",
+            Self::Inside { geometry: Geometry::Walk, .. } => "gem_walk",
             Self::Inside { geometry: Geometry::Bvh | Geometry::Triangles, .. } => "gem_bvh",
             Self::Diffuse(_) => "cdrf_shading",
             Self::OpticalPath(_) => "optical_path_shading",

@@ -49,6 +49,7 @@ mod translucent;
 mod variant;
 pub mod voxel_grid;
 pub mod voxelization;
+mod walk;
 
 use display::{Display, ENCODED};
 use drawing::{Drawing, Texts};

@@ -3,6 +3,7 @@
 use super::mesh_buffers::vertices as mesh_vertices;
 use super::pass::Body;
 use super::variant::Drawn;
+use super::walk::Walked;
 use super::{RenderError, Settings, restraint};
 use crate::frame::{Bound, Builder, PipelineId};
 use crate::record::Record;
@@ -23,7 +24,7 @@ pub(super) fn add(
     settings: &Settings,
 ) -> Result<Body, RenderError> {
     let mesh = &object.mesh;
-    let Geometries { indices, own, steps } = Geometries::of(object, rung)?;
+    let Geometries { indices, own, record, steps } = Geometries::of(object, rung)?;
     check_steps(builder, rung, steps)?;
     let read = |(group, binding): (u32, u32)| builder.binds(pipeline, group, binding);
     let mut parts: Vec<(u32, u32, &str, &[u8])> = vec![
@@ -33,6 +34,8 @@ pub(super) fn add(
     parts.extend((0..).zip(&own).map(|(binding, (what, part))| (2, binding, *what, &part[..])));
     parts.retain(|(group, binding, ..)| read((*group, *binding)));
     let vertices = mesh_vertices(object, &indices, parts.iter().map(|(.., contents)| *contents))?;
+    let place = own.len() as u32;
+    let record = record.filter(|_| read((2, place)));
     let wavelengths = read((1, 3)).then(|| wavelengths(&object.material, rung.spectrum()));
     Ok(builder.of_object(name, |builder| {
         let material = builder.record("material", GemMaterial::of(&object.material, rung, settings).record());
@@ -49,6 +52,9 @@ pub(super) fn add(
         }
         let mut second = Vec::new();
         add(2, &mut second, builder);
+        if let Some((what, record)) = record {
+            second.push((place, builder.record(what, record).into()));
+        }
         let groups = vec![builder.bind(pipeline, 1, &first), builder.bind(pipeline, 2, &second)];
         Body { name: name.clone(), groups, vertices }
     }))
@@ -59,6 +65,8 @@ struct Geometries<'a> {
     indices: Cow<'a, [u32]>,
     /// The buffers of group 2.
     own: Vec<(&'static str, Cow<'a, [u8]>)>,
+    /// A struct that follows them.
+    record: Option<(&'static str, Record)>,
     /// Loop iterations to find one hit.
     steps: u64,
 }
@@ -87,7 +95,7 @@ impl<'a> Geometries<'a> {
                     Cow::Borrowed(own) => Cow::Borrowed(bytemuck::cast_slice(own)),
                     Cow::Owned(softened) => Cow::Owned(bytemuck::cast_slice(&softened).to_vec()),
                 };
-                Self { indices, own: vec![("normals", normals)], steps: 0 }
+                Self { indices, own: vec![("normals", normals)], record: None, steps: 0 }
             }
             Geometry::Convex => {
                 let not_convex =
@@ -97,7 +105,22 @@ impl<'a> Geometries<'a> {
                 let faces: &[u8] = bytemuck::cast_slice(&convex.face_of_triangle);
                 let planes: &[u8] = bytemuck::cast_slice(&planes);
                 let own = vec![("planes", planes.to_vec().into()), ("face of triangle", faces.to_vec().into())];
-                Self { indices, own, steps: convex.planes.len() as u64 }
+                Self { indices, own, record: None, steps: convex.planes.len() as u64 }
+            }
+            Geometry::Walk => {
+                let not_convex = |reason| RenderError::NotConvex { object: object.name.clone(), reason };
+                let Walked { convex, map, centre } = Walked::of_mesh(mesh).map_err(not_convex)?;
+                let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
+                let bytes = |part: &[u8]| Cow::Owned(part.to_vec());
+                let stone = Record::new("GemStone").with("centre", centre).with("side", map.side);
+                let stone = stone.with("lower", map.lower).with("upper", map.upper);
+                let own = vec![
+                    ("planes", bytes(bytemuck::cast_slice(&planes))),
+                    ("face of triangle", bytes(bytemuck::cast_slice(&convex.face_of_triangle))),
+                    ("facet map", bytes(bytemuck::cast_slice(&map.words))),
+                ];
+                // Few walks read as many as 32 words.
+                Self { indices, own, record: Some(("stone", stone)), steps: 32 }
             }
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(mesh);
@@ -109,7 +132,7 @@ impl<'a> Geometries<'a> {
                 // iterations for each of its levels.
                 let levels = u64::from(triangles.ilog2()) + 1;
                 let steps = if rung.geometry() == Geometry::Bvh { 16 * levels } else { triangles };
-                Self { indices: Cow::Owned(bvh.indices), own, steps }
+                Self { indices: Cow::Owned(bvh.indices), own, record: None, steps }
             }
         })
     }
@@ -118,7 +141,9 @@ impl<'a> Geometries<'a> {
 /// Size in bytes of the device buffers that a rung's geometry needs for `object`, besides positions
 /// and indices.
 pub fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
-    Ok(Geometries::of(object, rung)?.own.iter().map(|(_, part)| part.len() as u64).sum())
+    let Geometries { own, record, .. } = Geometries::of(object, rung)?;
+    let record = record.map_or(0, |(_, record)| record.bytes().len());
+    Ok(own.iter().map(|(_, part)| part.len() as u64).sum::<u64>() + record as u64)
 }
 
 /// `GemMaterial` of the recipe.

@@ -10,12 +10,13 @@ use std::ops::Range;
 /// Width and height of a plot in pixels.
 pub const SIZE: (u32, u32) = (1200, 760);
 /// Colours of the series, safe for colour-blind readers (Okabe and Ito 2008).
-pub const COLORS: [RGBColor; 5] = [
+pub const COLORS: [RGBColor; 6] = [
     RGBColor(0x00, 0x00, 0x00),
     RGBColor(0xd5, 0x5e, 0x00),
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0x00, 0x9e, 0x73),
     RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0x8c, 0x51, 0x0a),
 ];
 /// Colour of lines that others are compared with.
 pub const GREY: RGBColor = RGBColor(0x99, 0x99, 0x99);

@@ -49,6 +49,23 @@ fn size_does_not_matter() {
     }
 }
 
+/// A walk over the map of facets meets the facets that a loop over all planes meets. Pixels differ
+/// where a ray meets an edge to the last place of its coordinates, which the walk counts from the
+/// stone's centre.
+#[test]
+fn a_walk_shows_what_all_planes_show() {
+    for name in ["brilliant", "step_cut", "octahedron", "prism"] {
+        let scene = Scene::named(name).expect("built in");
+        for [walk, planes] in
+            [["walk-1", "convex-1"], ["walk-16+tracker", "convex-16+tracker"], ["walk-4+3", "convex-4+3"]]
+        {
+            let errors = Errors::between(&picture(&scene, walk), &picture(&scene, planes));
+            println!("{name} {walk}: {errors:?}");
+            assert!(errors.flip <= 0.001 && errors.rmse <= 0.02, "{name} {walk}: {errors:?}");
+        }
+    }
+}
+
 /// At 1e4 units from the origin, a stone of size 1 is known to 5e-4 at best, and its facets are
 /// flat only to that. It still looks the same, and all values are finite. Planes are excluded: they
 /// need the stone's own coordinates (docs/convex_trace.md).

@@ -94,6 +94,9 @@ fn the_picture_is_the_mirrors() {
         ("brilliant", "convex-1"),
         ("brilliant", "convex-8+tracker"),
         ("brilliant", "convex-64"),
+        ("brilliant", "walk-8+tracker"),
+        ("brilliant", "walk-64"),
+        ("step_cut", "walk-4+3"),
         ("brilliant", "triangles-1+3"),
         ("brilliant", "bvh-4+paper"),
         ("sapphire", "proxy-8"),
@@ -151,7 +154,7 @@ const fn fault(scene_rung: [&'static str; 2], what: &'static str, right: &'stati
     Fault { scene, rung, what, right, wrong }
 }
 
-const FAULTS: [Fault; 17] = [
+const FAULTS: [Fault; 20] = [
     fault(
         ["brilliant", "proxy-1"],
         "another index",
@@ -168,6 +171,9 @@ const FAULTS: [Fault; 17] = [
     fault(["brilliant", "proxy-2"], "the plane is not renewed", "(*place).plane = ", "let next = "),
     fault(["brilliant", "convex-2"], "planes are left out", "face < count; face++", "face + 9u < count; face++"),
     fault(["brilliant", "convex-2"], "the place is not renewed", "(*ray).position = hit.point;", ""),
+    fault(["brilliant", "walk-2"], "second candidates are left out", "select(rest, first, more)", "first"),
+    fault(["brilliant", "walk-2"], "a walk ends at its first pass", "nearest.face == before", "true"),
+    fault(["brilliant", "walk-2"], "the place is not renewed", "*place = GemPlace(", "let next = GemPlace("),
     fault(["brilliant", "bvh-2"], "farther children are forgotten", "depth += 1u;", ""),
     fault(
         ["brilliant", "bvh-1"],

@@ -2,11 +2,13 @@
 //! mirrors.
 
 use super::SurfacePoint;
+use crate::walk::Walked;
 use crate::{RenderError, Settings};
 use glam::Vec3;
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
-use lapidary_convex_trace as convex_trace;
+use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_NONE};
+use lapidary_convex_walk::{self as convex_walk, CONVEX_WALK_STEPS};
 use lapidary_plan::Geometry;
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
 use lapidary_scene::normals::soft_normals;
@@ -25,6 +27,7 @@ pub struct Stone<'a> {
 enum Data {
     Proxy,
     Convex(Convex),
+    Walk(Walked),
     Triangles(Leaves),
     Bvh(Leaves),
 }
@@ -58,6 +61,7 @@ pub(super) struct Entry<'a> {
 pub(super) enum Place<'a> {
     Proxy { plane: ProxyGeometryPlane, centre: Vec3, normal: Vec3 },
     Convex { convex: &'a Convex, face: u32 },
+    Walk { stone: &'a Walked, face: u32, position: Vec3 },
     Triangles { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
     Bvh { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
 }
@@ -90,6 +94,10 @@ impl<'a> Stone<'a> {
         let data = match settings.rung.geometry() {
             Geometry::Proxy => Data::Proxy,
             Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(not_convex)?),
+            Geometry::Walk => Data::Walk(
+                Walked::of_mesh(mesh)
+                    .map_err(|reason| RenderError::NotConvex { object: object.name.clone(), reason })?,
+            ),
             Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
             Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
         };
@@ -120,6 +128,11 @@ impl<'a> Stone<'a> {
                 let face = convex.face_of_triangle[triangle as usize];
                 let face_normal = convex.planes[face as usize].truncate();
                 Entry { position, face_normal, start: Place::Convex { convex, face } }
+            }
+            Data::Walk(stone) => {
+                let face = stone.convex.face_of_triangle[triangle as usize];
+                let face_normal = stone.convex.planes[face as usize].truncate();
+                Entry { position, face_normal, start: Place::Walk { stone, face, position: position - stone.centre } }
             }
             Data::Triangles(Leaves { bvh, place }) => {
                 let triangle = place[triangle as usize];
@@ -174,6 +187,31 @@ impl Place<'_> {
                 *face = nearest.face;
                 Hit {
                     point: convex_trace::point(position, direction, nearest.distance, plane),
+                    normal: -plane.truncate(),
+                    distance: nearest.distance,
+                    facet: Some(u64::from(nearest.face)),
+                }
+            }
+            Self::Walk { stone: Walked { convex, map, centre }, face, position: start } => {
+                let mut nearest = convex_trace::start(convex_walk::exit(*start, direction, map.lower, map.upper));
+                for _ in 0..CONVEX_WALK_STEPS {
+                    let before = nearest.face;
+                    for candidate in map.candidates(*start + nearest.distance * direction) {
+                        let plane = convex.planes[candidate as usize];
+                        nearest = convex_trace::step(nearest, *start, direction, plane, candidate, *face);
+                    }
+                    if nearest.face == before {
+                        break;
+                    }
+                }
+                if nearest.face == CONVEX_TRACE_NONE {
+                    return Hit::none(position, direction);
+                }
+                let plane = convex.planes[nearest.face as usize];
+                *face = nearest.face;
+                *start = convex_trace::point(*start, direction, nearest.distance, plane);
+                Hit {
+                    point: *start + *centre,
                     normal: -plane.truncate(),
                     distance: nearest.distance,
                     facet: Some(u64::from(nearest.face)),

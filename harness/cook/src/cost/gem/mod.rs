@@ -134,7 +134,7 @@ impl Entry {
 
     /// Whether the rung draws bodies of any shape, in few enough steps for lavapipe.
     fn draws_concave(&self) -> bool {
-        let drawn = !matches!(self.settings.rung.geometry(), Geometry::Convex | Geometry::Triangles);
+        let drawn = !matches!(self.settings.rung.geometry(), Geometry::Convex | Geometry::Walk | Geometry::Triangles);
         drawn && !self.name.ends_with(FITTED)
     }
 }

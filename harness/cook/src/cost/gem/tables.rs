@@ -348,7 +348,7 @@ pub(super) fn plots(report: &Report) -> Vec<Plot> {
 /// Plots the mean of a measure against the mean time of the views.
 fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
     let report = gem.report;
-    let groups = ["surface alone", "proxy geometry", "convex planes", "BVH", "all triangles"];
+    let groups = ["surface alone", "proxy geometry", "convex planes", "BVH", "all triangles", "convex walk"];
     let dot = |rung| {
         let drawn: Option<Rung> = str::trim_end_matches(rung, "-fitted").parse().ok();
         let group = drawn.map_or(0, |rung| match rung {
@@ -356,6 +356,7 @@ fn plot(gem: &Gem<'_>, file: &'static str, measure: &str) -> Plot {
             Rung::Inside { geometry: Geometry::Convex, .. } => 2,
             Rung::Inside { geometry: Geometry::Bvh, .. } => 3,
             Rung::Inside { geometry: Geometry::Triangles, .. } => 4,
+            Rung::Inside { geometry: Geometry::Walk, .. } => 5,
             _ => 0,
         });
         let marker = match drawn.map(Rung::spectrum) {

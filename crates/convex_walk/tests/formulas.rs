@@ -1,0 +1,10 @@
+//! `wgsl/convex_walk.wgsl` and its naive forms, function by function, on the device: `cargo test -p lapidary-convex_walk`.
+
+use lapidary_convex_walk::formulas::formulas;
+
+const MODULE: &str = include_str!("../../../wgsl/convex_walk.wgsl");
+const NAIVE: &str = include_str!("../../../wgsl/naive/convex_walk.wgsl");
+
+fn main() -> std::process::ExitCode {
+    lapidary_assay::module::test(&[MODULE, NAIVE], formulas())
+}
