@@ -40,8 +40,9 @@ pub fn square(point: DVec3) -> DVec2 {
 /// Returns the cell, counted in whole numbers.
 pub fn cell(square: DVec2, side: u32) -> u32 {
     let along = |value: f64| {
-        let below = (0.5 * (value + 1.0) * f64::from(side)).floor();
-        if below <= 0.0 { 0 } else { (below as u32).min(side - 1) }
+        // A whole number of cells from the middle, which is below 0 for any value below 0.
+        let from_middle = (0.5 * value * f64::from(side)).floor() as i64;
+        (from_middle + i64::from(side / 2)).clamp(0, i64::from(side) - 1) as u32
     };
     along(square.x) + side * along(square.y)
 }

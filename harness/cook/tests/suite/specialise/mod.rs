@@ -62,6 +62,18 @@ fn outcomes(kernel: KernelModule, constants: &[(&str, f64)], arguments: &[u32]) 
     results
 }
 
+/// Largest difference between two sums of the same terms in another order. A driver may add up
+/// constants first, and lavapipe does so once specialising has made them constants. Terms are at
+/// most 8 by their clamps, so a sum of three is off by 4e-6; two products by up to 8 may follow.
+const REORDERED: f32 = 3e-4;
+
+/// Whether two results agree: hashes, of the path through the program, in every bit; values up to the
+/// order of their sums.
+fn agree(word: usize, whole: u32, special: u32) -> bool {
+    let [value, other] = [whole, special].map(f32::from_bits);
+    whole == special || word % 2 == 0 && (value - other).abs() <= REORDERED
+}
+
 #[test]
 fn a_specialised_program_gives_the_same_bits() {
     let (mut varied, mut sensitive, mut others) = (0, 0, 0);
@@ -70,7 +82,7 @@ fn a_specialised_program_gives_the_same_bits() {
         let arguments = arguments(&mut Draws::of_row((SEED + 1) ^ crate::seed(), row));
         let whole = outcomes(kernel.clone(), &constants, &arguments);
         let special = outcomes(specialised(&kernel, &constants), &[], &arguments);
-        if let Some(word) = (0..whole.len()).find(|word| whole[*word] != special[*word]) {
+        if let Some(word) = (0..whole.len()).find(|word| !agree(*word, whole[*word], special[*word])) {
             let call = word / 2;
             panic!(
                 "program {row} with {constants:?}: subject({}, {}): word {} is {:#x}, specialised {:#x}\n{source}",
