@@ -71,7 +71,7 @@ const REORDERED: f32 = 3e-4;
 /// order of their sums.
 fn agree(word: usize, whole: u32, special: u32) -> bool {
     let [value, other] = [whole, special].map(f32::from_bits);
-    whole == special || word % 2 == 0 && (value - other).abs() <= REORDERED
+    whole == special || word.is_multiple_of(2) && (value - other).abs() <= REORDERED
 }
 
 #[test]
