@@ -258,5 +258,5 @@ pub(super) fn direction(polar: f32, azimuth: f32) -> Vec3 {
 fn hint(name: &str) -> String {
     let known = BUILT_IN.iter().map(|scene| scene.name).chain(ALIASES.iter().map(|(alias, _)| *alias));
     let near = crate::nearest::close(name, known).and_then(named);
-    near.map_or(String::new(), |scene| format!("; did you mean `{}`?", scene.name))
+    near.map_or(String::new(), |scene| format!(" (did you mean `{}`?)", scene.name))
 }

@@ -12,11 +12,11 @@ use super::gltf::GltfError;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error("no scene is called `{name}`{hint}; give one of {} or a .glb or .gltf file", names())]
+    #[error("no scene is called `{}`{hint}; give one of {} or a .glb or .gltf file", name.escape_debug(), names())]
     UnknownName {
         /// The name that was asked for.
         name: String,
-        /// `; did you mean ...?` if a built-in scene's name is close, otherwise empty.
+        /// ` (did you mean ...?)` if a built-in scene's name is close, otherwise empty.
         hint: String,
     },
     /// A file cannot be used.

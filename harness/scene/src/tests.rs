@@ -309,7 +309,7 @@ fn misspelt_names_get_the_nearest() {
         ("buny", "bunny"),
     ] {
         let message = Scene::open(name).unwrap_err().to_string();
-        assert!(message.contains(&format!("did you mean {nearest}?")), "{message}");
+        assert!(message.contains(&format!("did you mean `{nearest}`?")), "{message}");
     }
     for odd in ["", "\n", "💎"] {
         let message = Scene::open(odd).unwrap_err().to_string();
