@@ -58,7 +58,7 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
 /// chosen: in no ladder does it come close to the actual stone.
 fn clear(shape: Shape) -> (Technique, &'static str) {
     match shape {
-        Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets' planes"),
+        Shape::Convex => (Technique::Convex, "closed and convex: rays inside meet its facets, by a map of them"),
         Shape::Concave => (Technique::Concave, "closed, not convex: rays inside meet its triangles"),
         Shape::Open => (
             Technique::Concave,

@@ -41,7 +41,7 @@ impl fmt::Display for Quality {
 /// A way to draw a body, chosen by its material and shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Technique {
-    /// Closed, convex, clear body: rays meet the planes of its facets.
+    /// Closed, convex, clear body: rays meet its facets, by a map of them.
     Convex,
     /// Any other clear body: rays meet its triangles through a hierarchy.
     Concave,
@@ -61,9 +61,9 @@ const RUNGS: [(Technique, [Rung; 3]); 6] = [
     (
         Technique::Convex,
         [
-            inside(Geometry::Convex, 4, Spectrum::One),
-            inside(Geometry::Convex, 8, Spectrum::Tracker),
-            inside(Geometry::Convex, 16, Spectrum::Tracker),
+            inside(Geometry::Walk, 4, Spectrum::One),
+            inside(Geometry::Walk, 8, Spectrum::Tracker),
+            inside(Geometry::Walk, 16, Spectrum::Tracker),
         ],
     ),
     (

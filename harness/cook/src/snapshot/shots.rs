@@ -52,7 +52,7 @@ pub const SHOTS: [Shot; 40] = [
         ..fine(shot("vitrine", "A vitrine: six bodies, each by its own technique", "vitrine", BY_MATERIAL))
     },
     Shot {
-        paragraph: "The exact stone: every ray inside is tested against all 73 facet planes, to eight hits. The default for closed, convex \
+        paragraph: "The exact stone: each ray inside finds its facet by a map of all 73, to eight hits. The default for closed, convex \
             bodies.",
         ..fine(shot("brilliant_exact", "Round brilliant, diamond", "brilliant", BY_MATERIAL))
     },

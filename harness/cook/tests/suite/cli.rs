@@ -400,9 +400,9 @@ fn rungs_and_exposure_change_the_picture() {
         std::fs::read(folder.path().join("out.png")).expect("the output")
     };
     let usual = picture(&[]);
-    assert!(usual == picture(&["--rung", "convex-8+tracker", "--exposure", "1", "--centre", "stable"]));
+    assert!(usual == picture(&["--rung", "walk-8+tracker", "--exposure", "1", "--centre", "stable"]));
     assert!(usual == picture(&["--quality", "good"]));
-    assert!(picture(&["--quality", "fast"]) == picture(&["--rung", "convex-4"]));
+    assert!(picture(&["--quality", "fast"]) == picture(&["--rung", "walk-4"]));
     assert!(usual != picture(&["--quality", "fast"]) && usual != picture(&["--quality", "best"]));
     assert!(usual != picture(&["--rung", "surface"]));
     assert!(usual != picture(&["--exposure", "2"]));

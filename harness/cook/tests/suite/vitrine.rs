@@ -12,7 +12,7 @@ fn each_body_calls_for_a_technique_of_its_own() {
     let settings = Settings { rung: lapidary_plan::Rung::ByMaterial, ..Settings::of_size(4, 3) };
     let decisions = Decisions::all(&scene, &settings.request());
     let rungs: Vec<String> = decisions.iter().map(|decisions| decisions.rung.to_string()).collect();
-    let stone = "convex-8+tracker";
+    let stone = "walk-8+tracker";
     assert_eq!(rungs, ["lambert", stone, stone, "cheap", "godunov-64", "bvh-8+tracker"]);
 }
 

@@ -13,7 +13,7 @@ const LIMITS: [f32; 4] = [2.0, 4.0, 8.0, 16.0];
 /// Adds the errors of some rungs in every view, by the way a ray ends; the way follows the rung's
 /// name.
 pub(super) fn measure(gpu: &Gpu, watched: &[Watched], report: &mut Report) -> Result<(), CostError> {
-    for name in ["proxy-1+tracker", "convex-8+tracker"] {
+    for name in ["proxy-1+tracker", "walk-8+tracker"] {
         let Ok(rung) = name.parse::<Rung>() else { continue };
         for Watched { view, scene, reference, .. } in watched {
             let side = super::views::SIDE;

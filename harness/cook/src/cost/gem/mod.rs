@@ -36,10 +36,11 @@ pub const FILLED: &str = "filled";
 
 /// The ladder from cheap to exact; the number of hits doubles from rung to rung.
 ///
-/// A rung with the paper's dispersion is also measured at its best-fit strength. The hierarchy and
-/// the loop over triangles give the same pictures as the planes, so a few rungs are enough to show
-/// their cost; those of the hierarchy include colours, which make it a twentieth slower.
-pub const RUNGS: [&str; 44] = [
+/// A rung with the paper's dispersion is also measured at its best-fit strength. The planes, the
+/// hierarchy and the loop over triangles give the same pictures as the walk, so a few rungs are
+/// enough to show their cost; those of the hierarchy include colours, which make it a twentieth
+/// slower.
+pub const RUNGS: [&str; 49] = [
     "surface",
     "proxy-0",
     "proxy-1",
@@ -60,21 +61,26 @@ pub const RUNGS: [&str; 44] = [
     "proxy-8+tracker",
     "proxy-8+3",
     "proxy-8+31",
+    "walk-1",
+    "walk-2",
+    "walk-2+paper",
+    "walk-2+tracker",
+    "walk-2+3",
+    "walk-4",
+    "walk-4+paper",
+    "walk-4+tracker",
+    "walk-4+3",
+    "walk-4+31",
+    "walk-8",
+    "walk-8+paper",
+    "walk-8+tracker",
+    "walk-8+3",
+    "walk-8+31",
+    "walk-16+tracker",
     "convex-1",
-    "convex-2",
-    "convex-2+paper",
-    "convex-2+tracker",
-    "convex-2+3",
     "convex-4",
-    "convex-4+paper",
-    "convex-4+tracker",
-    "convex-4+3",
-    "convex-4+31",
     "convex-8",
-    "convex-8+paper",
     "convex-8+tracker",
-    "convex-8+3",
-    "convex-8+31",
     "convex-16+tracker",
     "bvh-1",
     "bvh-2+tracker",

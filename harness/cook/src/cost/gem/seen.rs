@@ -70,7 +70,7 @@ fn change(now: &Picture, next: &Picture, reference: &Picture) -> f64 {
 }
 
 /// The rung whose steadiness is measured with more samples: it shows the stone.
-pub(super) const STEADY: &str = "convex-8+tracker";
+pub(super) const STEADY: &str = "walk-8+tracker";
 /// The view's name of a mean over the views.
 pub(super) const MEAN: &str = "mean over the views";
 

@@ -212,8 +212,12 @@ fn goals(gem: &Gem<'_>) -> Table {
     judge(loops, gem.ratio("triangles-1", "proxy-1"), &|value| value >= 20.0, &factor);
     let planes = "proxy at least 8 times as fast as the loop over the facet planes";
     judge(planes, gem.ratio("convex-1", "proxy-1"), &|value| value >= 8.0, &factor);
+    let four = "four exact hits at most 4 times the proxy's one";
+    judge(four, gem.ratio("walk-4", "proxy-1"), &|value| value <= 4.0, &factor);
+    let eight = "eight exact hits at most 6 times the proxy's one";
+    judge(eight, gem.ratio("walk-8", "proxy-1"), &|value| value <= 6.0, &factor);
     judge("proxy faster than the BVH", gem.ratio("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
-    for rung in ["proxy-1", "convex-8"] {
+    for rung in ["proxy-1", "walk-8"] {
         // The paper's tracker is one shader at two strengths: its time is the lower one.
         let tracker = format!("{rung}+tracker");
         let [one, other] = ["paper", "paper-fitted"].map(|paper| gem.ratio(&tracker, &format!("{rung}+{paper}")));
