@@ -1,6 +1,6 @@
 // convex_walk: the facet through which a ray leaves a convex stone, found in a few steps over a map of the facets by direction. Exact, at a cost that hardly grows with their number.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash e14d3ae0c921c559
+// Version: 0.2.0, hash 9a484c9b1cc77bc8
 // Source: own. The square: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal
 //   Vectors", 2010 (octahedral coordinates). For the planes: the module convex_trace.
 //
@@ -83,7 +83,8 @@ fn convex_walk_square(point: vec3f) -> vec2f {
     if (point.z >= 0.0f) {
         return inner;
     }
-    return (1.0f - abs(inner.yx)) * select(vec2f(-1.0f), vec2f(1.0f), point.xy >= vec2f(0.0f));
+    let outer = 1.0f - abs(inner.yx);
+    return select(-outer, outer, point.xy >= vec2f(0.0f));
 }
 
 // The cell of the map that holds a place on the square. Counted from the middle, where a product is

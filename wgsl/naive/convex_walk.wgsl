@@ -4,7 +4,7 @@
 // convex_walk_square with sign() for the side on which a point lies.
 // Returns: coordinates in [-1, 1].
 // Units: none; the length of `point` does not matter.
-// Domain: components of 1/16 to 1 in magnitude.
+// Domain: x and y of 1/16 to 1 in magnitude, z of 1/1024 to 1.
 // Outside: below the origin, a component of 0 takes the direction to the square's middle or to an
 //   edge's middle, far from its place.
 // Accuracy: naive

@@ -98,7 +98,8 @@ fn functions() -> Vec<Formula> {
             .build(),
         formula(M, "convex_walk_square_naive", mirror::square_naive, oracle::square, |draws| {
             let mut part = || draws.between(0.0625, 1.0) * if draws.below(2) == 0 { -1.0 } else { 1.0 };
-            (Vec3::new(part(), part(), part()),)
+            let (x, y, side) = (part(), part(), part());
+            (Vec3::new(x, y, draws.magnitude(-10, 0).copysign(side)),)
         })
         .benign(1e-6)
         .build(),

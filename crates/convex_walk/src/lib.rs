@@ -53,7 +53,8 @@ pub fn square(point: Vec3) -> Vec2 {
     if point.z >= 0.0 {
         return inner;
     }
-    (Vec2::ONE - inner.yx().abs()) * Vec2::select(point.xy().cmpge(Vec2::ZERO), Vec2::ONE, Vec2::NEG_ONE)
+    let outer = Vec2::ONE - inner.yx().abs();
+    Vec2::select(point.xy().cmpge(Vec2::ZERO), outer, -outer)
 }
 
 /// Returns the octahedral coordinates with `sign` for the side on which a point lies.
