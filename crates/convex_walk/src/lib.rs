@@ -21,7 +21,7 @@ pub mod formulas;
 mod map;
 pub mod oracle;
 
-pub use map::{FacetMap, NoMap};
+pub use map::{FacetMap, NoMap, facet_corners};
 
 use glam::{Vec2, Vec2Swizzles as _, Vec3, Vec3Swizzles as _};
 

@@ -64,6 +64,15 @@ pub struct FacetMap {
 }
 
 impl FacetMap {
+    /// Returns a side with at least 32 cells for each facet, from 64 to 512: lists stay so short
+    /// that a walk over thousands of facets takes little more time than one over dozens, and more
+    /// cells would shorten it by less than they cost in memory.
+    #[must_use]
+    pub fn usual_side(facets: usize) -> u32 {
+        let enough = |side: &u32| (side * side) as usize >= 32 * facets;
+        [64, 128, 256].into_iter().find(enough).unwrap_or(LARGEST_SIDE)
+    }
+
     /// Returns the map of the stone that `planes` enclose: outward unit normals and distances, with
     /// the origin inside. Planes that bound no facet are in no cell.
     ///
@@ -84,8 +93,8 @@ impl FacetMap {
         if let Some(bad) = planes.iter().position(|plane| !(plane.w > 0.0 && plane.is_finite())) {
             return Err(NoMap::Plane(bad));
         }
-        let far = FAR * planes.iter().map(|plane| plane.w).fold(0.0, f64::max);
-        let facets: Vec<Vec<DVec3>> = (0..planes.len()).map(|face| polygon(&planes, face, far)).collect();
+        let far = far(&planes);
+        let facets: Vec<Vec<DVec3>> = (0..planes.len()).map(|face| facet_corners(&planes, face)).collect();
         let corners = || facets.iter().flatten();
         if corners().next().is_none() || corners().any(|corner| corner.length() > 0.5 * far) {
             return Err(NoMap::Open);
@@ -117,9 +126,21 @@ impl FacetMap {
     }
 }
 
-/// Returns the corners of a facet, counter-clockwise from outside: a large square in its plane, cut
-/// by all the others; empty if they leave nothing.
-fn polygon(planes: &[DVec4], face: usize, far: f64) -> Vec<DVec3> {
+/// Returns how far from the origin the first polygon of a facet reaches.
+fn far(planes: &[DVec4]) -> f64 {
+    FAR * planes.iter().map(|plane| plane.w.abs()).fold(0.0, f64::max)
+}
+
+/// Returns the corners of a facet of the stone that `planes` enclose, outward normals and distances,
+/// counter-clockwise from outside; empty if the other planes leave nothing of it. They are exact to
+/// about 1e-9 of the largest distance. A facet with an open side has corners about 1e6 times as far
+/// away as the largest distance.
+///
+/// # Panics
+/// If there is no plane `face`.
+#[must_use]
+pub fn facet_corners(planes: &[DVec4], face: usize) -> Vec<DVec3> {
+    let far = far(planes);
     let normal = planes[face].xyz().normalize();
     let first = normal.any_orthonormal_vector();
     let second = normal.cross(first);

@@ -4,10 +4,6 @@ use glam::{DVec3, Vec3, Vec4Swizzles as _};
 use lapidary_convex_walk::FacetMap;
 use lapidary_scene::{Convex, Mesh};
 
-/// Cells along each side of a map: 4,096 cells, 16 KiB and the lists. More shorten a walk by less
-/// than they cost in memory.
-const SIDE: u32 = 64;
-
 /// A convex stone in its own coordinates, in which a walk is exact to its own last places however
 /// far it lies from the world's origin.
 pub(crate) struct Walked {
@@ -28,8 +24,9 @@ impl Walked {
             let height = f64::from(plane.w) - plane.xyz().as_dvec3().dot(centre.as_dvec3());
             plane.w = height as f32;
         }
+        let side = FacetMap::usual_side(convex.planes.len());
         let map =
-            FacetMap::of_planes(&convex.planes, SIDE).map_err(|error| format!("has no map of facets: {error}"))?;
+            FacetMap::of_planes(&convex.planes, side).map_err(|error| format!("has no map of facets: {error}"))?;
         Ok(Self { convex, map, centre })
     }
 }

@@ -45,7 +45,7 @@ pub enum PolyhedronError {
         /// Index of the plane in the list, from 0.
         plane: usize,
     },
-    /// Too many planes: the number of triples grows with the cube of the number of planes.
+    /// Too many planes: the time grows with the square of their number.
     #[error("{planes} planes are too many for one stone; use at most {MAX_PLANES}")]
     TooManyPlanes {
         /// Number of planes given.
@@ -62,9 +62,9 @@ pub enum PolyhedronError {
     Unbounded,
 }
 
-/// Largest number of planes that [`Polyhedron::from_planes`] takes: 256³/6 triples take about a
-/// second.
-pub const MAX_PLANES: usize = 256;
+/// Largest number of planes that [`Polyhedron::from_planes`] takes: as many as a map of facets can
+/// number.
+pub const MAX_PLANES: usize = lapidary_convex_walk::CONVEX_WALK_FACE as usize + 1;
 
 /// A bounded convex polyhedron. Faces wind counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]

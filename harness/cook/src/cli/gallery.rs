@@ -121,6 +121,13 @@ fn plots() -> Vec<(String, Picture)> {
             "The same by the error in linear radiance.",
         ),
         figure(
+            "gem",
+            "lavapipe/gem_growth.svg",
+            gem,
+            "What facets cost",
+            "Time of a frame that a brilliant fills against the number of its facets, eight hits. The walk's time hardly depends on it.",
+        ),
+        figure(
             "cdrf",
             "lavapipe/cdrf.svg",
             cdrf,

@@ -4,7 +4,7 @@ use super::bvh::{Bvh, Extent};
 use super::cells::Cells;
 use glam::{DVec3, Mat4, Vec4};
 use lapidary_scene::convex::{TOLERANCE, planes_of_convex};
-use lapidary_scene::polyhedron::{MAX_PLANES, Plane};
+use lapidary_scene::polyhedron::Plane;
 use lapidary_scene::{Mesh, Object};
 use std::sync::OnceLock;
 
@@ -168,6 +168,9 @@ impl Planes {
     }
 }
 
+/// Rows of four planes whose distances stay on the stack.
+const FEW: usize = 64;
+
 /// Selects, from all planes of a convex body, the one or two through which a ray may leave. Works
 /// in f32 and allows for its errors. Most of an image's render time goes into this search.
 struct Sieve {
@@ -203,10 +206,17 @@ impl Sieve {
         let towards = direction.as_vec3();
         let (slope_error, depth_error) = (Vec4::splat(self.slope_error), Vec4::splat(self.depth_error));
         // Lower bound of the distance to each plane.
-        let mut least = [Vec4::INFINITY; MAX_PLANES.div_ceil(4)];
+        let (mut few, mut many) = ([Vec4::INFINITY; FEW], Vec::new());
+        let least = match self.rows.len() {
+            ..=FEW => &mut few[..],
+            rows => {
+                many.resize(rows, Vec4::INFINITY);
+                &mut many
+            }
+        };
         // Upper bound of the distance to the nearest plane.
         let mut most = Vec4::INFINITY;
-        for ([x, y, z, distance], least) in self.rows.iter().zip(&mut least) {
+        for ([x, y, z, distance], least) in self.rows.iter().zip(&mut *least) {
             let slope = *x * towards.x + *y * towards.y + *z * towards.z;
             let depth = *distance - (*x * from.x + *y * from.y + *z * from.z);
             let (least_slope, greatest_slope) = (slope - slope_error, slope + slope_error);

@@ -1,6 +1,7 @@
 //! From planes to corners and face loops.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, DVec4};
+use lapidary_convex_walk::facet_corners;
 
 use super::{Plane, PolyhedronError};
 
@@ -45,33 +46,83 @@ pub(super) fn without_repeats(planes: Vec<Plane>, tolerance: f64) -> Vec<Plane> 
     kept
 }
 
+/// Largest number of planes through one corner of which all triples are tried. Of the many facets
+/// around an apex, an even selection spans nearly as large a volume.
+const MOST_AT_A_CORNER: usize = 64;
+
 /// Returns the corners of the solid: points where three planes meet on the inner side of all
 /// others. If several triples give the same corner, the one that spans the largest volume, which is
-/// the most exact, is kept.
+/// the most exact, is kept. The order is that of each corner's first triple.
 pub(super) fn corners(planes: &[Plane], tolerance: f64) -> Vec<DVec3> {
-    let mut found: Vec<(DVec3, f64)> = Vec::new();
-    for (i, a) in planes.iter().enumerate() {
-        for (j, b) in planes.iter().enumerate().skip(i + 1) {
-            for c in &planes[j + 1..] {
+    let bounds: Vec<DVec4> = planes.iter().map(|plane| plane.normal.extend(plane.distance)).collect();
+    // Where about the corners are: those of each face, cut out of its plane by all the others.
+    let mut places: Vec<DVec3> = Vec::new();
+    for place in (0..planes.len()).flat_map(|face| facet_corners(&bounds, face)) {
+        if !places.iter().any(|other| other.distance(place) <= 4.0 * tolerance) {
+            places.push(place);
+        }
+    }
+    let mut found: Vec<Corner> = Vec::new();
+    for place in places {
+        for corner in corners_at(planes, place, tolerance) {
+            // Places a little more than the tolerance apart may lead to one corner.
+            match found.iter_mut().find(|other| other.point.distance(corner.point) <= 4.0 * tolerance) {
+                Some(best) => best.merge(&corner),
+                None => found.push(corner),
+            }
+        }
+    }
+    found.sort_by_key(|corner| corner.first);
+    found.into_iter().map(|corner| corner.point).collect()
+}
+
+/// A corner, with the volume that the normals of its triple span and its first triple.
+struct Corner {
+    point: DVec3,
+    volume: f64,
+    first: [usize; 3],
+}
+
+impl Corner {
+    /// Takes the point of the larger volume, and the earlier first triple.
+    fn merge(&mut self, other: &Self) {
+        if self.volume < other.volume {
+            (self.point, self.volume) = (other.point, other.volume);
+        }
+        self.first = self.first.min(other.first);
+    }
+}
+
+/// Returns the corners near a place, of all triples of the planes that pass by it.
+fn corners_at(planes: &[Plane], place: DVec3, tolerance: f64) -> Vec<Corner> {
+    let near: Vec<usize> = (0..planes.len()).filter(|&k| planes[k].height(place).abs() <= 64.0 * tolerance).collect();
+    let stride = near.len().div_ceil(MOST_AT_A_CORNER).max(1);
+    let tried: Vec<usize> = near.iter().copied().step_by(stride).collect();
+    let mut found: Vec<Corner> = Vec::new();
+    for (at, &i) in tried.iter().enumerate() {
+        for (at, &j) in tried.iter().enumerate().skip(at + 1) {
+            for &k in &tried[at + 1..] {
+                let [a, b, c] = [i, j, k].map(|index| &planes[index]);
                 let rows = DMat3::from_cols(a.normal, b.normal, c.normal).transpose();
                 let volume = rows.determinant().abs();
                 if volume < PARALLEL {
                     continue;
                 }
                 let point = rows.inverse() * DVec3::new(a.distance, b.distance, c.distance);
-                if planes.iter().any(|plane| plane.height(point) > tolerance) {
+                // Further off, planes that do not pass by this place may cut the point off.
+                let is_here = point.distance(place) <= 16.0 * tolerance;
+                if !is_here || near.iter().any(|&other| planes[other].height(point) > tolerance) {
                     continue;
                 }
-                let same = |(other, _): &&mut (DVec3, f64)| other.distance(point) <= 4.0 * tolerance;
-                match found.iter_mut().find(same) {
-                    Some(best) if best.1 < volume => *best = (point, volume),
-                    Some(_) => {}
-                    None => found.push((point, volume)),
+                let corner = Corner { point, volume, first: [i, j, k] };
+                match found.iter_mut().find(|other| other.point.distance(point) <= 4.0 * tolerance) {
+                    Some(best) => best.merge(&corner),
+                    None => found.push(corner),
                 }
             }
         }
     }
-    found.into_iter().map(|(point, _)| point).collect()
+    found
 }
 
 /// Returns `touched` in counter-clockwise order about `normal`, starting from the highest corner.

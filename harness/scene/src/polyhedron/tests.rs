@@ -215,7 +215,7 @@ fn planes_that_enclose_nothing_are_refused() {
     split[0].normal = DVec3::NAN;
     assert_eq!(error(&split), PolyhedronError::BadPlane { plane: 0 });
     let many = vec![cube[0]; MAX_PLANES + 1];
-    assert_eq!(error(&many), PolyhedronError::TooManyPlanes { planes: 257 });
+    assert_eq!(error(&many), PolyhedronError::TooManyPlanes { planes: MAX_PLANES + 1 });
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod choices;
 mod dispersion;
 mod error;
+mod growth;
 mod profile;
 pub mod proxy_sizes;
 mod reflection;
@@ -103,7 +104,8 @@ pub struct Options {
     pub views: Vec<View>,
     /// Additional views for rungs that draw bodies of any shape.
     pub concave: Vec<View>,
-    /// Whether the proxy is also measured at small sizes, which takes a minute or two.
+    /// Whether the proxy is also measured at small sizes, and stones of more and more facets are
+    /// timed, which takes some minutes.
     pub sizes: bool,
     /// The rungs to measure.
     pub rungs: Vec<Rung>,
@@ -228,6 +230,7 @@ pub fn run(gpu: &Gpu, options: &Options, progress: Progress<'_>) -> Result<Repor
     seen::steadiness(gpu, &watched, &mut report)?;
     report.rows.extend(colours.concat().iter().flat_map(Colours::rows));
     if options.sizes {
+        growth::measure(gpu, options, &mut report, progress)?;
         let mut small = |done| progress("following small references", done, proxy_sizes::FOLLOWED);
         proxy_sizes::measure(gpu, &mut report, &mut small)?;
     }

@@ -1,12 +1,13 @@
 //! The gem ladder's tables and plots.
 
 use super::dispersion::Colours;
+use super::growth::{self, GROWTH};
 use super::proxy_sizes::{self as sizes};
 use super::reflection::PARTS;
 use super::seen::{MEAN, STEADY};
 use super::views::{self, VIEWS};
 use super::{FILLED, MEASURES, RUNGS};
-use crate::cost::plot::{self, Axis, Corner, Dot, Marker, Plot};
+use crate::cost::plot::{self, Axis, Corner, Dot, Marker, Plot, Series};
 use crate::cost::quality;
 use crate::cost::report::{Report, TIME, all_pairs, distinct, dominated};
 use crate::cost::table::{Goal, Table, beyond, figure, marked, sum};
@@ -101,6 +102,7 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
         concave(&gem),
         steadiness(&gem),
         proxy_sizes(report),
+        growth(report),
         goals(&gem),
         paper(&gem),
         colours(report),
@@ -202,6 +204,34 @@ fn proxy_sizes(report: &Report) -> Table {
     lines.note("")
 }
 
+/// Returns the numbers of facets and the milliseconds of a rung's frames.
+fn grown(report: &Report, rung: &str) -> Vec<(f64, f64)> {
+    let facets = |view: &str| view.split(' ').next()?.parse().ok();
+    let ms = |view| Some((facets(view)?, report.ms(rung, view, GROWTH)?));
+    report.views(GROWTH).into_iter().filter_map(ms).collect()
+}
+
+/// Returns the power of the number of facets with which a rung's time grows: the slope of the least
+/// squares through the logarithms.
+fn power_of(report: &Report, rung: &str) -> Option<f64> {
+    let points: Vec<(f64, f64)> = grown(report, rung).into_iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = points.len() as f64;
+    let [x, y] = [0, 1].map(|part| points.iter().map(|point| [point.0, point.1][part]).sum::<f64>() / count);
+    let across = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>();
+    let along = points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>();
+    (points.len() > 2).then_some(across / along)
+}
+
+fn growth(report: &Report) -> Table {
+    let title = "Milliseconds for a frame that a brilliant fills, by its number of facets, and the power with which \
+                 they grow";
+    let mut lines = Table::of("growth", title, report.rungs(GROWTH)).column("rung", |rung| (*rung).to_owned());
+    for view in report.views(GROWTH) {
+        lines = lines.column(view, |rung| figure(report.ms(rung, view, GROWTH), 0));
+    }
+    lines.column("power", |rung| figure(power_of(report, rung), 2)).note("")
+}
+
 fn goals(gem: &Gem<'_>) -> Table {
     let mut goals = Vec::new();
     let mut judge = |goal: &str, measured: Option<f64>, met: &dyn Fn(f64) -> bool, show: &dyn Fn(f64) -> String| {
@@ -216,6 +246,8 @@ fn goals(gem: &Gem<'_>) -> Table {
     judge(four, gem.ratio("walk-4", "proxy-1"), &|value| value <= 4.0, &factor);
     let eight = "eight exact hits at most 6 times the proxy's one";
     judge(eight, gem.ratio("walk-8", "proxy-1"), &|value| value <= 6.0, &factor);
+    let power = "the walk's time growing with less than the 0.3rd power of the number of facets";
+    judge(power, power_of(gem.report, "walk-8"), &|value| value < 0.3, &|value| format!("power {value:.2}"));
     judge("proxy faster than the BVH", gem.ratio("bvh-1", "proxy-1"), &|value| value > 1.0, &factor);
     for rung in ["proxy-1", "walk-8"] {
         // The paper's tracker is one shader at two strengths: its time is the lower one.
@@ -346,7 +378,23 @@ fn reflections(report: &Report) -> Table {
 
 pub(super) fn plots(report: &Report) -> Vec<Plot> {
     let gem = Gem::new(report);
-    [("gem_flip.svg", "flip"), ("gem_rmse.svg", "rmse")].map(|(file, measure)| plot(&gem, file, measure)).into()
+    let mut plots = vec![plot(&gem, "gem_flip.svg", "flip"), plot(&gem, "gem_rmse.svg", "rmse")];
+    plots.push(growth_plot(report));
+    plots
+}
+
+/// Plots times against the number of facets.
+fn growth_plot(report: &Report) -> Plot {
+    let rungs = growth::RUNGS.into_iter().zip(plot::COLORS);
+    let lines = rungs.map(|(rung, color)| Series::line(rung, color, 2, grown(report, rung)).dotted());
+    Plot {
+        file: "gem_growth.svg",
+        caption: format!("Time by number of facets, {}, {}", report.size(), report.adapter),
+        x: Axis::log("facets of the stone").with_ticks([20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0]),
+        y: Axis::log("milliseconds a frame that the stone fills (least of interleaved rounds)"),
+        series: lines.filter(|line| !line.points.is_empty()).collect(),
+        legend: Corner::UpperLeft,
+    }
 }
 
 /// Plots the mean of a measure against the mean time of the views.
