@@ -26,6 +26,7 @@ struct GemVertex {
     @location(3) @interpolate(flat, either) plane_origin: vec3f,  //+proxy_geometry
     @location(4) @interpolate(flat, either) edge_first: vec3f,  //+proxy_geometry
     @location(5) @interpolate(flat, either) edge_second: vec3f,  //+proxy_geometry
+    @location(6) @interpolate(flat, either) instance: u32,  //+instances
 }
 
 // The proxy's centre, from the three vertex normals.
@@ -40,7 +41,10 @@ fn gem_centre(a: u32, b: u32, c: u32) -> vec3f {
 }
 
 @vertex
-fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
+fn gem_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,  //+instances
+) -> GemVertex {
     let first = vertex - vertex % 3u;
     let position_a = mesh_position(indices[first]);
     let position_b = mesh_position(indices[first + 1u]);
@@ -60,13 +64,15 @@ fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
     let plane = proxy_geometry_plane(centre, position_a, position_b, position_c);
     //+proxy_geometry }
     return GemVertex(
-        view.clip_from_world * vec4f(position, 1.0f),
+        //-instances gem_clip(position),
+        gem_clip(position, instance),  //+instances
         position,
         face_normal,
         centre,  //+proxy_geometry
         plane.origin,  //+proxy_geometry
         plane.edge_first,  //+proxy_geometry
         plane.edge_second,  //+proxy_geometry
+        instance,  //+instances
     );
 }
 

@@ -19,6 +19,7 @@ struct GemVertex {
     @location(0) position: vec3f,
     @location(1) @interpolate(flat, either) face_normal: vec3f,
     @location(2) @interpolate(flat, either) triangle: u32,  //+bvh_trace
+    @location(3) @interpolate(flat, either) instance: u32,  //+instances
 }
 
 fn gem_face_normal(triangle: u32) -> vec3f {
@@ -30,14 +31,19 @@ fn gem_face_normal(triangle: u32) -> vec3f {
 }
 
 @vertex
-fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
+fn gem_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,  //+instances
+) -> GemVertex {
     let position = mesh_position(indices[vertex]);
     let triangle = vertex / 3u;
     return GemVertex(
-        view.clip_from_world * vec4f(position, 1.0f),
+        //-instances gem_clip(position),
+        gem_clip(position, instance),  //+instances
         position,
         gem_face_normal(triangle),
         triangle,  //+bvh_trace
+        instance,  //+instances
     );
 }
 

@@ -35,17 +35,23 @@ struct GemVertex {
     @location(0) position: vec3f,
     @location(1) @interpolate(flat, either) face_normal: vec3f,
     @location(2) @interpolate(flat, either) face: u32,  //+convex_trace
+    @location(3) @interpolate(flat, either) instance: u32,  //+instances
 }
 
 @vertex
-fn gem_vertex(@builtin(vertex_index) vertex: u32) -> GemVertex {
+fn gem_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,  //+instances
+) -> GemVertex {
     let position = mesh_position(indices[vertex]);
     let face = face_of_triangle[vertex / 3u];
     return GemVertex(
-        view.clip_from_world * vec4f(position, 1.0f),
+        //-instances gem_clip(position),
+        gem_clip(position, instance),  //+instances
         position,
         planes[face].xyz,
         face,  //+convex_trace
+        instance,  //+instances
     );
 }
 

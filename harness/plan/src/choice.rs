@@ -1,5 +1,6 @@
 //! How a body is drawn: the rung or technique that its material and shape require, and why.
 
+use super::effect::Effect;
 use super::numbers::short;
 use super::quality::Technique;
 use super::thickness::Thickness;
@@ -48,7 +49,8 @@ fn by_material(object: &Object, scene: &Scene, request: &Request<'_>) -> (Choice
         let reason = format!("clear: transmission {}, and a thin wall: thickness 0", material.transmission);
         (Technique::ThinWall, reason)
     } else {
-        let (technique, shape) = clear(Shape::of(&object.mesh));
+        let joined = request.without.has(Effect::Instances);
+        let (technique, shape) = clear(Shape::of(if joined { &object.mesh } else { object.shape() }));
         (technique, format!("clear: transmission {}, thickness {}; {shape}", material.transmission, material.thickness))
     };
     (Choice::By(technique), reason)

@@ -130,6 +130,7 @@ impl Case<'_> {
             Effect::ThinWall => self.thin_wall(),
             Effect::Absorption => self.absorption(),
             Effect::Dispersion => self.dispersion(),
+            Effect::Instances => self.instances(),
             Effect::Cdrf => self.cdrf(),
             Effect::TextureDiffusion => self.texture_diffusion(),
             Effect::OpticalPath => self.optical_path(),
@@ -186,7 +187,9 @@ impl Case<'_> {
     }
 
     fn absorption(&self) -> Answer {
-        let material = self.material;
+        // Copies may have colours of their own.
+        let coloured = self.object.materials().find(|material| material.attenuation_color != Vec3::ONE);
+        let material = coloured.as_ref().unwrap_or(self.material);
         match self.rung {
             Rung::Surface => off(self.no_inside()),
             Rung::Inside { .. } if material.attenuation_color == Vec3::ONE => off("attenuation white"),
@@ -219,6 +222,14 @@ impl Case<'_> {
             return off(format!("the rung {} follows one index, though {called}", self.rung));
         }
         on(called)
+    }
+
+    fn instances(&self) -> Answer {
+        match &self.object.copies {
+            None => off("shown once"),
+            Some(copies) if self.is_gem() => on(format!("{} copies of one shape", copies.places.len())),
+            Some(_) => off("drawn as one mesh: only clear stones are drawn by copies"),
+        }
     }
 
     fn cdrf(&self) -> Answer {

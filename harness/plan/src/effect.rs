@@ -51,6 +51,8 @@ effects! {
     Absorption = "absorption", "EFFECT_ABSORPTION";
     /// Refractive index that differs between colours.
     Dispersion = "dispersion", "EFFECT_DISPERSION";
+    /// Copies of a clear stone, drawn in one call at places and in colours of their own.
+    Instances = "instances", "EFFECT_INSTANCES";
     /// Subsurface light from the lit side to the dark side, by curvature.
     Cdrf = "cdrf", "EFFECT_CDRF";
     /// Subsurface light as in `cdrf`, by a blur of the incident light.

@@ -9,8 +9,8 @@ use super::variant::Part;
 use super::{RenderError, Settings, Tile, camera, gem, optical_path, translucent};
 use crate::frame::{Builder, Frame};
 use lapidary_gpu::Gpu;
-use lapidary_plan::Rung;
-use lapidary_scene::Scene;
+use lapidary_plan::{Decisions, Effect, Rung};
+use lapidary_scene::{Copies, Object, Scene};
 use std::borrow::Cow;
 
 /// Source texts that replace the cookbook's recipes, for the rung and for the lighting pass; `None`
@@ -47,6 +47,7 @@ impl Drawing {
         settings: &Settings,
         texts: Texts<'_>,
     ) -> Result<ScenePass, RenderError> {
+        let scene = &*apart(scene, settings);
         let (width, height) = (settings.width, settings.height);
         let display = DisplayPass::new(builder, settings)?;
         let lighting = Lighting::new(scene, settings);
@@ -74,6 +75,21 @@ impl Drawing {
         }
         Ok(pass)
     }
+}
+
+/// Returns the scene with copies as objects of their own wherever they differ in colour and are not
+/// drawn by instances.
+pub(super) fn apart<'a>(scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
+    let request = settings.request();
+    let differs = |object: &Object| {
+        object.copies.as_ref().is_some_and(Copies::is_coloured)
+            && !Decisions::of(object, scene, &request).has(Effect::Instances)
+    };
+    if !scene.objects.iter().any(differs) {
+        return Cow::Borrowed(scene);
+    }
+    let bodies = |object: &Object| if differs(object) { object.apart() } else { vec![object.clone()] };
+    Cow::Owned(Scene { objects: scene.objects.iter().flat_map(bodies).collect(), ..scene.clone() })
 }
 
 /// Creates the passes that draw the scene's objects, each by its rung; `source` replaces the text

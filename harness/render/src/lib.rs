@@ -185,6 +185,7 @@ fn render_from(
     let (linear, encoded) = (vec![[0.0; 4]; pixels], vec![[0; 4]; pixels]);
     let mut picture = Picture { width, height, linear, encoded, lost: None, walked: None, notes: Vec::new() };
     if settings.rung == Rung::Reference {
+        let scene = &*drawing::apart(scene, settings);
         if scatters(scene) {
             let Walked { linear, standard_error, walks, lost, .. } = walk(scene, settings, progress)?;
             picture.walked = Some(WalkedPicture { error: mean_error(&linear, &standard_error), walks, lost });

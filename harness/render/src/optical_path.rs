@@ -115,7 +115,7 @@ pub(super) fn pass(
 
 /// Rejects a body through which no light can be followed.
 fn check(object: &Object, rung: Rung) -> Result<(), RenderError> {
-    let Object { name, material, mesh } = object;
+    let Object { name, material, mesh, .. } = object;
     if material.medium.is_none() {
         return Err(RenderError::NoMedium { object: name.clone(), material: material.name.clone(), rung });
     }
@@ -179,7 +179,7 @@ impl Add<'_> {
             resources.extend(of_body.densities.as_ref().map(|densities| (7, densities.buffer.into())));
         }
         let group = builder.bind(self.pipeline, 1, &resources);
-        Ok((Body { name: name.clone(), groups: vec![group], vertices }, of_body))
+        Ok((Body { name: name.clone(), groups: vec![group], vertices, instances: 1 }, of_body))
     }
 
     /// Returns the buffers and passes that find the light's paths through a body.

@@ -3,7 +3,7 @@
 use super::diffusion::Diffusion;
 use super::optical_path::{OpticalPaths, Stage};
 use super::shadows::Shadows;
-use crate::frame::{BindGroupId, Bound, Builder, Pass, PipelineId, RenderPass, Target, Texture};
+use crate::frame::{BindGroupId, Bound, Builder, Draw, Pass, PipelineId, RenderPass, Target, Texture};
 use crate::record::Record;
 use glam::{Mat4, Vec3};
 use std::ops::Range;
@@ -21,6 +21,8 @@ pub(super) struct Body {
     /// Bind groups from group 1 on; `None` for a group that the pipeline does not read.
     pub(super) groups: Vec<Option<BindGroupId>>,
     pub(super) vertices: u32,
+    /// Number of copies.
+    pub(super) instances: u32,
 }
 
 /// A recipe compiled for the effects of some objects, and those objects.
@@ -99,9 +101,9 @@ impl ScenePass {
             let group = builder.bind(variant.pipeline, 0, &resources);
             for body in &variant.bodies {
                 let groups = [&[group][..], &body.groups].concat();
-                draws.push(
-                    builder.of_object(&body.name, |builder| builder.draw(variant.pipeline, groups, body.vertices)),
-                );
+                let draw =
+                    builder.of_object(&body.name, |builder| builder.draw(variant.pipeline, groups, body.vertices));
+                draws.push(Draw { instances: body.instances, ..draw });
             }
         }
         let [width, height] = target.size;

@@ -121,6 +121,12 @@ macro_rules! of_floats {
 
 of_floats!(Vec2: to_array, Vec3: to_array, Vec4: to_array, Mat3: to_cols_array, Mat4: to_cols_array);
 
+impl Words for [Vec4; 3] {
+    fn words(self) -> (ScalarKind, Vec<u32>) {
+        self.as_slice().words()
+    }
+}
+
 impl Words for &[Vec4] {
     fn words(self) -> (ScalarKind, Vec<u32>) {
         floats(&self.iter().flat_map(|row| row.to_array()).collect::<Vec<f32>>())

@@ -10,21 +10,22 @@ use crate::record::Record;
 use glam::{DMat3, Mat3, Vec3};
 use lapidary_dispersion::{DISPERSION_BLUE, DISPERSION_GREEN, DISPERSION_RED};
 use lapidary_gpu::Gpu;
-use lapidary_plan::{Geometry, Rung, Spectrum};
+use lapidary_plan::{Effect, Geometry, Rung, Spectrum};
 use lapidary_scene::normals::soft_normals;
-use lapidary_scene::{Bvh, Convex, Material, Object, convex, spectrum};
+use lapidary_scene::{Bvh, Convex, Copies, Material, Mesh, Object, Place, convex, spectrum};
 use std::borrow::Cow;
 
 /// Adds an object to the frame, with the resources that `pipeline` reads.
 pub(super) fn add(
     builder: &mut Builder<'_>,
     pipeline: PipelineId,
-    Drawn { object, name, .. }: &Drawn<'_>,
+    Drawn { object, name, decisions }: &Drawn<'_>,
     rung: Rung,
     settings: &Settings,
 ) -> Result<Body, RenderError> {
-    let mesh = &object.mesh;
-    let Geometries { indices, own, record, steps } = Geometries::of(object, rung)?;
+    let copies = object.copies.as_ref().filter(|_| decisions.has(Effect::Instances));
+    let mesh = if copies.is_some() { object.shape() } else { &object.mesh };
+    let Geometries { indices, own, record, steps } = Geometries::of(&object.name, mesh, rung)?;
     check_steps(builder, rung, steps)?;
     let read = |(group, binding): (u32, u32)| builder.binds(pipeline, group, binding);
     let mut parts: Vec<(u32, u32, &str, &[u8])> = vec![
@@ -36,9 +37,12 @@ pub(super) fn add(
     let vertices = mesh_vertices(object, &indices, parts.iter().map(|(.., contents)| *contents))?;
     let place = own.len() as u32;
     let record = record.filter(|_| read((2, place)));
+    let instances = copies.map(|copies| instances(copies, &object.material));
+    let copied = instances.as_ref().map_or(1, |instances| instances.len() as u32);
+    let material = Material { base_color: brightest(object), ..object.material.clone() };
     let wavelengths = read((1, 3)).then(|| wavelengths(&object.material, rung.spectrum()));
     Ok(builder.of_object(name, |builder| {
-        let material = builder.record("material", GemMaterial::of(&object.material, rung, settings).record());
+        let material = builder.record("material", GemMaterial::of(&material, rung, settings).record());
         let add = |wanted: u32, bound: &mut Vec<(u32, Bound)>, builder: &mut Builder<'_>| {
             for (_, binding, what, contents) in parts.iter().filter(|(group, ..)| *group == wanted) {
                 bound.push((*binding, builder.storage(what, contents).into()));
@@ -50,14 +54,35 @@ pub(super) fn add(
             let wavelengths = wavelengths.iter().map(GemWavelength::record).collect();
             first.push((3, builder.records("wavelengths", wavelengths, wgpu::BufferUsages::STORAGE).into()));
         }
+        if let Some(instances) = instances {
+            // A host may move the copies from frame to frame.
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+            first.push((4, builder.records("instances", instances, usage).into()));
+        }
         let mut second = Vec::new();
         add(2, &mut second, builder);
         if let Some((what, record)) = record {
             second.push((place, builder.record(what, record).into()));
         }
         let groups = vec![builder.bind(pipeline, 1, &first), builder.bind(pipeline, 2, &second)];
-        Body { name: name.clone(), groups, vertices }
+        Body { name: name.clone(), groups, vertices, instances: copied }
     }))
+}
+
+/// Returns the brightest base colour of an object's copies, by channel; the material's own if it is
+/// shown once.
+pub(crate) fn brightest(object: &Object) -> Vec3 {
+    object.materials().map(|material| material.base_color).fold(Vec3::ZERO, Vec3::max)
+}
+
+/// Returns `GemInstance` of the recipe for each copy.
+fn instances(copies: &Copies, material: &Material) -> Vec<Record> {
+    let instance = |place: &Place| {
+        let Material { base_color, attenuation_color, attenuation_distance, .. } = place.material(material);
+        let record = Record::new("GemInstance").with("world_from_stone", place.rows()).with("base_color", base_color);
+        record.with("absorption", lapidary_absorption::coefficient(attenuation_color, attenuation_distance))
+    };
+    copies.places.iter().map(instance).collect()
 }
 
 /// Data of a mesh that a rung's geometry needs, besides its positions.
@@ -86,8 +111,8 @@ fn check_steps(builder: &Builder<'_>, rung: Rung, steps: u64) -> Result<(), Rend
 }
 
 impl<'a> Geometries<'a> {
-    fn of(object: &'a Object, rung: Rung) -> Result<Self, RenderError> {
-        let mesh = &object.mesh;
+    /// Returns the data for a body of this name.
+    fn of(name: &str, mesh: &'a Mesh, rung: Rung) -> Result<Self, RenderError> {
         let indices = Cow::Borrowed(&mesh.indices[..]);
         Ok(match rung.geometry() {
             Geometry::Proxy => {
@@ -98,8 +123,7 @@ impl<'a> Geometries<'a> {
                 Self { indices, own: vec![("normals", normals)], record: None, steps: 0 }
             }
             Geometry::Convex => {
-                let not_convex =
-                    || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(mesh) };
+                let not_convex = || RenderError::NotConvex { object: name.to_owned(), reason: convex::obstacle(mesh) };
                 let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
                 let faces: &[u8] = bytemuck::cast_slice(&convex.face_of_triangle);
@@ -108,7 +132,7 @@ impl<'a> Geometries<'a> {
                 Self { indices, own, record: None, steps: convex.planes.len() as u64 }
             }
             Geometry::Walk => {
-                let not_convex = |reason| RenderError::NotConvex { object: object.name.clone(), reason };
+                let not_convex = |reason| RenderError::NotConvex { object: name.to_owned(), reason };
                 let Walked { convex, map, centre } = Walked::of_mesh(mesh).map_err(not_convex)?;
                 let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
                 let bytes = |part: &[u8]| Cow::Owned(part.to_vec());
@@ -141,7 +165,7 @@ impl<'a> Geometries<'a> {
 /// Size in bytes of the device buffers that a rung's geometry needs for `object`, besides positions
 /// and indices.
 pub fn geometry_bytes(object: &Object, rung: Rung) -> Result<u64, RenderError> {
-    let Geometries { own, record, .. } = Geometries::of(object, rung)?;
+    let Geometries { own, record, .. } = Geometries::of(&object.name, object.shape(), rung)?;
     let record = record.map_or(0, |(_, record)| record.bytes().len());
     Ok(own.iter().map(|(_, part)| part.len() as u64).sum::<u64>() + record as u64)
 }

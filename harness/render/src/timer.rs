@@ -1,7 +1,7 @@
 //! A frame to be timed: a rung's recipe, alone or with the display recipe. It can be run repeatedly
 //! and reads nothing back.
 
-use super::drawing::scene_pass;
+use super::drawing::{apart, scene_pass};
 use super::lighting::Lighting;
 use super::pass::{DEPTH_FORMAT, SAMPLE_FORMAT, ScenePass, SceneTarget};
 use super::{RenderError, Settings, Stage, display};
@@ -49,6 +49,7 @@ impl<'gpu> FrameTimer<'gpu> {
         source: Option<&str>,
         displayed: bool,
     ) -> Result<Self, RenderError> {
+        let scene = &*apart(scene, settings);
         let mut builder = Builder::new(Some(gpu));
         let pass = scene_pass(&mut builder, &Lighting::new(scene, settings), scene, settings, source)?;
         let size = [settings.width, settings.height];

@@ -68,7 +68,7 @@ pub(super) fn shared(
 
 /// Rejects objects that the rung cannot draw.
 fn check(object: &Object, rung: Rung, reflectance: Reflectance) -> Result<(), RenderError> {
-    let Object { name, material, mesh } = object;
+    let Object { name, material, mesh, .. } = object;
     if reflectance == Reflectance::Blur && mesh.uvs.len() != mesh.positions.len() {
         return Err(RenderError::NoTextureCoordinates { object: name.clone() });
     }
@@ -160,7 +160,7 @@ fn add(
         }
     }
     let group = builder.bind(pipeline, 1, &resources);
-    Ok((Body { name: name.clone(), groups: vec![group], vertices }, diffusion))
+    Ok((Body { name: name.clone(), groups: vec![group], vertices, instances: 1 }, diffusion))
 }
 
 /// Fills `CdrfMaterial` of the recipe.

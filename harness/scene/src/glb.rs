@@ -6,7 +6,8 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 use thiserror::Error;
 
-use super::{Bounds, Camera, Density, Material, Mesh, Object, Scene};
+use super::gltf::{COLORING, INSTANCING};
+use super::{Bounds, Camera, Copies, Density, Material, Mesh, Object, Scene};
 
 mod light;
 mod material;
@@ -126,10 +127,11 @@ struct Document {
 
 impl Document {
     fn add(&mut self, object: &Object) -> Result<(), GlbError> {
-        let mesh = &object.mesh;
-        if let Some(problem) = problem_of(mesh, &object.material) {
-            return Err(GlbError::Object { object: object.name.clone(), problem });
+        let problem = |problem| GlbError::Object { object: object.name.clone(), problem };
+        for mesh in [&object.mesh, object.shape()] {
+            problem_of(mesh, &object.material).map_or(Ok(()), |wrong| Err(problem(wrong)))?;
         }
+        let mesh = object.shape();
         // glTF has no invisible triangles.
         let mesh = &mesh.without_halo();
         let bounds = Bounds::of(mesh.positions.iter().copied());
@@ -147,7 +149,14 @@ impl Document {
             json!({"componentType": UNSIGNED_INT, "count": mesh.indices.len(), "type": "SCALAR"}),
             ELEMENT_ARRAY_BUFFER,
         );
-        self.nodes.push(json!({"name": object.name, "mesh": self.meshes.len()}));
+        let mut node = json!({"name": object.name, "mesh": self.meshes.len()});
+        let mut material = object.material.clone();
+        if let Some(copies) = &object.copies {
+            node["extensions"] = json!({INSTANCING: {"attributes": self.places(copies)}});
+            // glTF states the thickness in the mesh's space.
+            material.thickness /= copies.places.iter().map(|place| place.scale).fold(0.0, f32::max);
+        }
+        self.nodes.push(node);
         self.meshes.push(json!({
             "name": object.name,
             "primitives": [{
@@ -157,8 +166,28 @@ impl Document {
                 "mode": 4,
             }],
         }));
-        self.materials.push(material::material(&object.material));
+        self.materials.push(material::material(&material));
         Ok(())
+    }
+
+    /// Appends the attributes of copies and returns their accessors by name.
+    fn places(&mut self, copies: &Copies) -> Value {
+        let places = &copies.places;
+        let mut attributes = json!({
+            "TRANSLATION": self.vectors(places.iter().map(|place| place.translation.to_array())),
+            "ROTATION": self.vectors(places.iter().map(|place| place.rotation.to_array())),
+            "SCALE": self.vectors(places.iter().map(|place| [place.scale; 3])),
+        });
+        if copies.is_coloured() {
+            let [base_color, attenuation_color] = COLORING;
+            attributes[base_color] = json!(self.vectors(places.iter().map(|place| place.base_color.to_array())));
+            // glTF has no attribute that some copies lack.
+            if places.iter().all(|place| place.attenuation_color.is_some()) {
+                let colors: Vec<Vec3> = places.iter().filter_map(|place| place.attenuation_color).collect();
+                attributes[attenuation_color] = json!(self.vectors(colors.iter().map(Vec3::to_array)));
+            }
+        }
+        attributes
     }
 
     /// Appends an accessor of vectors with `N` components and returns its index.
@@ -183,10 +212,11 @@ impl Document {
         self.accessors.len() - 1
     }
 
-    /// Names of the extensions that the materials use, sorted and without duplicates.
+    /// Names of the extensions that the materials and nodes use, sorted and without duplicates.
     fn extensions_used(&self) -> BTreeSet<&str> {
+        let nodes = self.nodes.iter().filter_map(|node| node["extensions"].as_object());
         let extensions = self.materials.iter().filter_map(|material| material["extensions"].as_object());
-        extensions.flat_map(|extensions| extensions.keys().map(String::as_str)).collect()
+        extensions.chain(nodes).flat_map(|extensions| extensions.keys().map(String::as_str)).collect()
     }
 
     fn json(&self, scene: &Scene) -> Value {

@@ -40,6 +40,7 @@ mod requirement;
 mod survey;
 
 pub use error::GltfError;
+pub(super) use instances::{COLORING, NAME as INSTANCING};
 
 /// Maximum size of a file, and of all buffers of a file together: 1 GiB.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;

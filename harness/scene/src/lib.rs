@@ -24,6 +24,7 @@ mod built_in;
 pub mod bvh;
 mod camera;
 pub mod convex;
+pub mod copies;
 pub mod curvatures;
 pub mod cuts;
 pub mod deform;
@@ -50,6 +51,7 @@ pub use built_in::{BUILT_IN, BuiltIn, names};
 pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::{Convex, Shape};
+pub use copies::{Copies, Place};
 pub use environment::Environment;
 pub use error::SceneError;
 pub use light::Light;
@@ -82,6 +84,8 @@ pub struct Object {
     pub mesh: Mesh,
     /// Material of the whole body.
     pub material: Material,
+    /// The copies of one shape of which the body consists; `None` if it is shown once.
+    pub copies: Option<Copies>,
 }
 
 /// Bodies, lights and a camera.

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use glam::{DQuat, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 
-use super::normals::{Averaging, shared_normals};
+use super::normals::{Averaging, Cofactors, shared_normals};
 
 /// A list of triangles with shared ("soft-edge") vertex normals, in world space, y up.
 ///
@@ -48,6 +48,18 @@ impl Mesh {
             uvs: self.uvs.clone(),
             indices: self.indices.clone(),
             halo: self.halo.clone(),
+        }
+    }
+
+    /// Returns the mesh under an affine transform that does not mirror it.
+    #[must_use]
+    pub fn transformed(&self, transform: DMat4) -> Self {
+        let cofactors = Cofactors::of(DMat3::from_mat4(transform));
+        let position = |p: &Vec3| transform.transform_point3(p.as_dvec3()).as_vec3();
+        Self {
+            positions: self.positions.iter().map(position).collect(),
+            normals: self.normals.iter().map(|normal| cofactors.apply(*normal).unwrap_or(*normal)).collect(),
+            ..self.clone()
         }
     }
 

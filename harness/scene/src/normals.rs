@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 
 use super::Mesh;
 
@@ -144,6 +144,37 @@ fn plane_of([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
 pub(super) fn interior_angle(previous: DVec3, vertex: DVec3, next: DVec3) -> f64 {
     let (u, v) = (previous - vertex, next - vertex);
     u.cross(v).length().atan2(u.dot(v))
+}
+
+/// Transform of normals for points transformed by a matrix: its inverse transpose. The cofactor
+/// matrix is the same up to the magnitude of the determinant, and also exists if the matrix is
+/// singular.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cofactors {
+    matrix: DMat3,
+    is_identity: bool,
+}
+
+impl Cofactors {
+    pub(super) fn of(linear: DMat3) -> Self {
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+        Self {
+            matrix: DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign,
+            is_identity: linear == DMat3::IDENTITY,
+        }
+    }
+
+    /// Returns the unit normal, or `None` if it has no direction.
+    pub(super) fn apply(self, normal: Vec3) -> Option<Vec3> {
+        // A normal that f32 cannot bring closer to unit length is kept to the last bit.
+        if self.is_identity && (normal.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
+            return Some(normal);
+        }
+        let moved: DVec3 = self.matrix * normal.as_dvec3();
+        let unit = moved.try_normalize()?.as_vec3();
+        unit.is_finite().then_some(unit)
+    }
 }
 
 #[cfg(test)]

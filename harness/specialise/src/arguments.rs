@@ -3,7 +3,7 @@
 
 use super::operands;
 use super::value::{Globals, Value};
-use naga::{Constant, Expression, Function, Handle, Module, Span, Statement};
+use naga::{Binding, Constant, Expression, Function, FunctionArgument, Handle, Module, Span, Statement};
 use std::collections::HashMap;
 
 /// Replaces each argument by its value if every call passes the same constant; returns whether
@@ -75,29 +75,21 @@ fn common_arguments(module: &Module) -> Vec<(Handle<Function>, Vec<Option<Value>
     common
 }
 
-/// Drops the arguments that no expression refers to, from functions and from their calls; returns
-/// whether there was any. The module is compact, so every expression in it is in use.
+/// Drops the arguments that no expression refers to, from functions and from their calls, and from
+/// entry points the built-in values among them; returns whether there was any. The module is
+/// compact, so every expression in it is in use.
 pub(super) fn drop_unread_arguments(module: &mut Module) -> bool {
     let mut kept: HashMap<Handle<Function>, Vec<usize>> = HashMap::new();
     for (handle, function) in module.functions.iter_mut() {
-        let named = |expression: &Expression| match expression {
-            Expression::FunctionArgument(index) => Some(*index as usize),
-            _ => None,
-        };
-        let mut read: Vec<usize> = function.expressions.iter().filter_map(|(_, e)| named(e)).collect();
-        read.sort_unstable();
-        read.dedup();
-        if read.len() == function.arguments.len() {
-            continue;
+        if let Some(read) = drop_unread(function, |_| true) {
+            kept.insert(handle, read);
         }
-        function.arguments = read.iter().map(|index| function.arguments[*index].clone()).collect();
-        for (_, expression) in function.expressions.iter_mut() {
-            if let Expression::FunctionArgument(index) = expression {
-                let position = read.binary_search(&(*index as usize)).expect("every argument that is named was read");
-                *index = u32::try_from(position).expect("moved towards the front");
-            }
-        }
-        kept.insert(handle, read);
+    }
+    let mut dropped = !kept.is_empty();
+    for entry in &mut module.entry_points {
+        // A struct is the interface to another stage.
+        let is_built_in = |argument: &FunctionArgument| matches!(argument.binding, Some(Binding::BuiltIn(_)));
+        dropped |= drop_unread(&mut entry.function, is_built_in).is_some();
     }
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     for caller in functions.chain(module.entry_points.iter_mut().map(|entry| &mut entry.function)) {
@@ -109,5 +101,28 @@ pub(super) fn drop_unread_arguments(module: &mut Module) -> bool {
             }
         });
     }
-    !kept.is_empty()
+    dropped
+}
+
+/// Drops those arguments of a function that no expression refers to and that `may_go`; returns the
+/// indices of the others, or `None` if there was nothing to drop.
+fn drop_unread(function: &mut Function, may_go: impl Fn(&FunctionArgument) -> bool) -> Option<Vec<usize>> {
+    let read = |index: usize| {
+        let names =
+            |expression: &Expression| matches!(expression, Expression::FunctionArgument(of) if *of as usize == index);
+        function.expressions.iter().any(|(_, expression)| names(expression))
+    };
+    let stays = |index: &usize| read(*index) || !may_go(&function.arguments[*index]);
+    let kept: Vec<usize> = (0..function.arguments.len()).filter(stays).collect();
+    if kept.len() == function.arguments.len() {
+        return None;
+    }
+    function.arguments = kept.iter().map(|index| function.arguments[*index].clone()).collect();
+    for (_, expression) in function.expressions.iter_mut() {
+        if let Expression::FunctionArgument(index) = expression {
+            let position = kept.binary_search(&(*index as usize)).expect("every argument that is named was read");
+            *index = u32::try_from(position).expect("moved towards the front");
+        }
+    }
+    Some(kept)
 }

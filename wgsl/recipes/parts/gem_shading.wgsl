@@ -4,8 +4,9 @@
 // compares: dispersion
 //
 // A geometry recipe adds: the parts mesh and surroundings; struct GemVertex, whose members include
-// `position` and `face_normal`; the entry point gem_vertex; struct GemPlace (the place of a ray
-// inside the stone); gem_enter (the place of a ray that enters); and gem_hit (the next facet).
+// `position`, `face_normal` and, with instances, `instance`; the entry point gem_vertex; struct
+// GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters); and
+// gem_hit (the next facet).
 
 // A wall without an interior: the environment behind it shows undeflected below the reflection.
 // Called for by KHR_materials_transmission without a thickness from KHR_materials_volume.
@@ -15,6 +16,9 @@ override EFFECT_THIN_WALL: bool = false;
 override EFFECT_ABSORPTION: bool = false;
 // The refractive index depends on the wavelength. Called for by KHR_materials_dispersion above 0.
 override EFFECT_DISPERSION: bool = false;
+// The stone is drawn many times in one draw call, at places and in colours of their own. Called for
+// by EXT_mesh_gpu_instancing.
+override EFFECT_INSTANCES: bool = false;
 // How dispersion is traced: 0 the paper's tracker, 1 the exact first-order tracker, 2 one ray per
 // wavelength.
 override DISPERSION_FORM: u32 = 1u;
@@ -69,6 +73,19 @@ struct GemWavelength {
     index: f32,
 }
 
+//+instances {
+// A copy of the stone. Directions, positions and lengths inside are those of the stone's own space.
+struct GemInstance {
+    // Rows of the matrix from the stone's space to world space: a rotation, a scale that is the same
+    // in all directions, and a translation.
+    world_from_stone: mat3x4f,
+    // Factor for light that passes through the surface, linear RGB, in place of the material's.
+    base_color: vec3f,
+    // Absorption per unit of length in world space, in place of the material's.
+    absorption: vec3f,
+}
+//+instances }
+
 @group(0) @binding(0) var<uniform> view: GemView;
 // Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
 // which costs megabytes per body.
@@ -77,6 +94,7 @@ struct GemWavelength {
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
+@group(1) @binding(4) var<storage, read> instances: array<GemInstance>;  //+instances
 
 // The next facet that a ray meets inside the stone.
 struct GemHit {
@@ -88,10 +106,70 @@ struct GemHit {
     hit: bool,
 }
 
+//+instances {
+// The copy that a fragment belongs to.
+struct GemCopy {
+    // Columns that are the rows of its rotation from the stone's space to world space.
+    rotation: mat3x3f,
+    // Length in world space of a unit of length in the stone's space.
+    scale: f32,
+    translation: vec3f,
+    base_color: vec3f,
+    // Absorption per unit of length in the stone's space.
+    absorption: vec3f,
+}
+
+var<private> gem_copy: GemCopy;
+
+fn gem_copy_of(instance: GemInstance) -> GemCopy {
+    let rows = instance.world_from_stone;
+    let scale = length(rows[0].xyz);
+    let rotation = mat3x3f(rows[0].xyz / scale, rows[1].xyz / scale, rows[2].xyz / scale);
+    let translation = vec3f(rows[0].w, rows[1].w, rows[2].w);
+    return GemCopy(rotation, scale, translation, instance.base_color, scale * instance.absorption);
+}
+//+instances }
+
+// The point where a vertex of the stone is drawn.
+fn gem_clip(
+    position: vec3f,
+    instance: u32,  //+instances
+) -> vec4f {
+    if (EFFECT_INSTANCES) {
+        return view.clip_from_world * vec4f(vec4f(position, 1.0f) * instances[instance].world_from_stone, 1.0f);
+    }
+    return view.clip_from_world * vec4f(position, 1.0f);
+}
+
+// World direction of a direction in the stone's space.
+fn gem_world_direction(direction: vec3f) -> vec3f {
+    if (EFFECT_INSTANCES) {
+        return direction * gem_copy.rotation;
+    }
+    return direction;
+}
+
+// Radiance that arrives from a direction in the stone's space.
+fn gem_surroundings(direction: vec3f) -> vec3f {
+    return surroundings_radiance(gem_world_direction(direction));
+}
+
+fn gem_base_color() -> vec3f {
+    if (EFFECT_INSTANCES) {
+        return gem_copy.base_color;
+    }
+    return material.base_color;
+}
+
 // The share of light that absorption leaves over a distance inside.
-fn gem_transmittance(distance: f32) -> vec3f {  //+absorption
-    return absorption_transmittance(material.absorption, distance);  //+absorption
-}  //+absorption
+//+absorption {
+fn gem_transmittance(distance: f32) -> vec3f {
+    if (EFFECT_INSTANCES) {
+        return absorption_transmittance(gem_copy.absorption, distance);
+    }
+    return absorption_transmittance(material.absorption, distance);
+}
+//+absorption }
 
 // The direction of a ray that leaves through a facet, and its share of the light.
 struct GemExit {
@@ -110,6 +188,9 @@ fn gem_exit(inside: vec3f, normal: vec3f, index: f32) -> GemExit {
 
 // Whether a ray ends after it has travelled this distance.
 fn gem_ends(travelled: f32) -> bool {
+    if (EFFECT_INSTANCES) {
+        return LIMIT_DISTANCE && gem_copy.scale * travelled > material.distance_limit;
+    }
     return LIMIT_DISTANCE && travelled > material.distance_limit;
 }
 
@@ -180,20 +261,20 @@ fn gem_trace(input: GemVertex, direction: vec3f, index: f32) -> vec3f {
         if (ray.followed) {
             let exit = gem_exit(ray.direction, hit.normal, index);
             if (exit.share > 0.0f) {
-                gem_leave(&ray, vec3f(exit.share), surroundings_radiance(exit.direction));
+                gem_leave(&ray, vec3f(exit.share), gem_surroundings(exit.direction));
             }
             gem_reflect(&ray, hit);
         }
     }
     if (REST_FROM_ENVIRONMENT) {
-        return gem_end(ray, surroundings_radiance(ray.direction));
+        return gem_end(ray, gem_surroundings(ray.direction));
     }
     return ray.radiance;
 }
 
 // Radiance of the environment from three directions, one per channel.
 fn gem_environment_channels(red: vec3f, green: vec3f, blue: vec3f) -> vec3f {
-    return vec3f(surroundings_radiance(red).r, surroundings_radiance(green).g, surroundings_radiance(blue).b);
+    return vec3f(gem_surroundings(red).r, gem_surroundings(green).g, gem_surroundings(blue).b);
 }
 
 // Radiance of three channels inside the stone, from one ray at the d line and its derivative with
@@ -294,13 +375,18 @@ fn gem_radiance(
     input: GemVertex,
     transmits: bool,  //+bvh_trace,convex_trace,proxy_geometry
 ) -> GemRadiance {
-    let direction = normalize(input.position - view.eye);
+    var eye = view.eye;
+    if (EFFECT_INSTANCES) {
+        gem_copy = gem_copy_of(instances[input.instance]);
+        eye = gem_copy.rotation * (eye - gem_copy.translation) / gem_copy.scale;
+    }
+    let direction = normalize(input.position - eye);
     let cosine = clamp(-dot(input.face_normal, direction), 0.0f, 1.0f);
-    let reflected = surroundings_radiance(refraction_reflect(direction, input.face_normal));
+    let reflected = gem_surroundings(refraction_reflect(direction, input.face_normal));
     if (EFFECT_THIN_WALL) {
         let reflectance = vec3f(fresnel_dielectric(cosine, material.index));
-        let behind = surroundings_radiance(direction);
-        return GemRadiance(reflectance * reflected, (1.0f - reflectance) * material.base_color * behind, reflectance);
+        let behind = gem_surroundings(direction);
+        return GemRadiance(reflectance * reflected, (1.0f - reflectance) * gem_base_color() * behind, reflectance);
     }
     if (EFFECT_DISPERSION && DISPERSION_FORM == GEM_DISPERSION_SEPARATE) {
         var separate = GemRadiance(vec3f(0.0f), vec3f(0.0f), vec3f(0.0f));
@@ -316,7 +402,7 @@ fn gem_radiance(
             }  //+bvh_trace,convex_trace,proxy_geometry
         }
         if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
-            separate.inside *= material.base_color;  //+bvh_trace,convex_trace,proxy_geometry
+            separate.inside *= gem_base_color();  //+bvh_trace,convex_trace,proxy_geometry
         }  //+bvh_trace,convex_trace,proxy_geometry
         return separate;
     }
@@ -339,7 +425,7 @@ fn gem_radiance(
     }
     //+dispersion }
     if (transmits) {  //+bvh_trace,convex_trace,proxy_geometry
-        inside *= (1.0f - reflectance) * material.base_color;  //+bvh_trace,convex_trace,proxy_geometry
+        inside *= (1.0f - reflectance) * gem_base_color();  //+bvh_trace,convex_trace,proxy_geometry
     }  //+bvh_trace,convex_trace,proxy_geometry
     return GemRadiance(reflectance * reflected, inside, reflectance);  //+bvh_trace,convex_trace,proxy_geometry
     //-bvh_trace,convex_trace,proxy_geometry return GemRadiance(reflectance * reflected, vec3f(0.0f), reflectance);
@@ -363,5 +449,5 @@ fn gem_geometry_buffer(
 ) -> GemGeometryBuffer {
     let radiance = gem_radiance(input, transmits);  //+bvh_trace,convex_trace,proxy_geometry
     //-bvh_trace,convex_trace,proxy_geometry let radiance = gem_radiance(input);
-    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(input.face_normal, 0.0f), vec4f(radiance.reflectance, 1.0f));
+    return GemGeometryBuffer(vec4f(radiance.inside, 1.0f), vec4f(gem_world_direction(input.face_normal), 0.0f), vec4f(radiance.reflectance, 1.0f));
 }

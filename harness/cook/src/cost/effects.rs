@@ -9,7 +9,7 @@ use lapidary_plan::{Decisions, Effect, Effects, Rung};
 use lapidary_render::plan::Plan;
 use lapidary_render::{Curvature, DiffuseOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Environment, Light, Scene};
+use lapidary_scene::{Copies, Environment, Light, Object, Place, Scene};
 
 /// The ladder.
 pub const LADDER: Ladder =
@@ -44,6 +44,14 @@ fn sky() -> Environment {
 fn one(name: &str) -> Result<Scene, CostError> {
     let scene = Scene::named(name).map_err(CostError::from)?;
     Ok(Scene { objects: scene.objects.into_iter().take(1).collect(), ..scene })
+}
+
+/// Returns the scene with only its first object, as one copy at its own place.
+fn copied(name: &str) -> Result<Scene, CostError> {
+    let scene = one(name)?;
+    let copies = |mesh| Copies { shape: mesh, places: vec![Place::IDENTITY] };
+    let object = |object: Object| Object::of_copies(object.name, copies(object.mesh), object.material);
+    Ok(Scene { objects: scene.objects.into_iter().map(object).collect(), ..scene })
 }
 
 /// Returns the scene with only its first object, and a spot in place of each sun.
@@ -100,6 +108,19 @@ fn cases(frame: [u32; 2]) -> Result<Vec<Case>, CostError> {
             settings: settings("bvh-4+tracker"),
             effects: &[Effect::BvhTrace, Effect::Absorption, Effect::Dispersion, Effect::EnvironmentMap],
             stands_on: &[(Effect::Absorption, Effect::BvhTrace), (Effect::Dispersion, Effect::BvhTrace)],
+        },
+        Case {
+            name: "ruby, one copy",
+            scene: copied("ruby")?,
+            settings: settings("walk-4+tracker"),
+            effects: &[
+                Effect::ConvexTrace,
+                Effect::Absorption,
+                Effect::Dispersion,
+                Effect::Instances,
+                Effect::EnvironmentMap,
+            ],
+            stands_on: &[(Effect::Absorption, Effect::ConvexTrace), (Effect::Dispersion, Effect::ConvexTrace)],
         },
         Case {
             name: "ruby, a thin wall",

@@ -39,7 +39,7 @@ fn draw(scene: &Scene, settings: &Settings) -> Picture {
 fn ball(radius: f64, sigma0: Vec3) -> Scene {
     let mut scene = Scene::named("skin").expect("built in");
     let material = Material { sigma0: Some(sigma0), ..scene.objects[0].material.clone() };
-    scene.objects = vec![Object { name: "ball".to_owned(), mesh: sphere(radius, 256), material }];
+    scene.objects = vec![Object::new("ball", sphere(radius, 256), material)];
     let lamp = 2.5 * radius as f32 * Vec3::new(0.6, 0.0, 0.8);
     scene.lights = vec![
         Light::Directional { toward: Vec3::new(-0.8, 0.6, 0.0), irradiance: Vec3::new(2.0, 1.5, 1.0) },

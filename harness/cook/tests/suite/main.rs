@@ -22,6 +22,7 @@ mod frame;
 mod furnace;
 mod gem;
 mod hard_cases;
+mod instances;
 #[cfg(unix)]
 mod launcher;
 mod optical_path;

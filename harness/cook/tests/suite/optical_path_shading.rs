@@ -46,7 +46,7 @@ fn stone(name: &str, mesh: Mesh, extinction: Vec3) -> Object {
     let skin = Scene::named("skin").expect("built in").objects.swap_remove(0);
     let medium = Some(Medium::isotropic(extinction, Vec3::ZERO));
     let material = Material { base_color: Vec3::ONE, sigma0: None, medium, ..skin.material };
-    Object { name: name.to_owned(), mesh, material }
+    Object::new(name, mesh, material)
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>) -> Scene {

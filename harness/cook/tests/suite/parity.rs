@@ -4,13 +4,14 @@
 mod compare;
 
 use compare::Parity;
+use glam::{EulerRot, Quat, Vec3};
 use lapidary_assay::extremum::largest;
 use lapidary_plan::{Effect, Effects};
 use lapidary_render as render;
 use lapidary_render::pixel::{Shading, Stone, Viewer};
 use lapidary_render::{GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
-use lapidary_scene::{Environment, Scene};
+use lapidary_scene::{Copies, Environment, Material, Object, Place, Scene};
 
 /// Pixels compared for each scene and rung.
 const PIXELS: usize = 2000;
@@ -138,6 +139,40 @@ fn so_it_is_with_every_choice() {
     let map = EnvironmentMap { width: 16, height: 8, pixels: (0..128).map(pixel).collect() };
     let mapped = Settings { environment: Environment::Map(map), ..of_rung("convex-2+tracker") };
     check("brilliant", "a map", &compare("brilliant", mapped));
+}
+
+/// Returns a scene with its stone as one copy, turned, scaled and moved, of a shape that is elsewhere.
+fn copied(scene: &str) -> Scene {
+    let mut scene = Scene::named(scene).expect("built in");
+    let object = scene.objects.remove(0);
+    let place = Place {
+        rotation: Quat::from_euler(EulerRot::XYZ, 0.4, -1.3, 2.2),
+        scale: 0.25,
+        translation: Vec3::new(0.5, -2.0, 1.0),
+        base_color: Vec3::new(0.9, 0.7, 0.8),
+        attenuation_color: Some(Vec3::new(0.2, 0.5, 0.9)),
+    };
+    let material = Material { attenuation_distance: 1.5, ..object.material };
+    let shape = object.mesh.transformed(place.transform().inverse());
+    let copies = Copies { shape, places: vec![place] };
+    scene.objects.push(Object::of_copies(object.name, copies, material));
+    scene
+}
+
+#[test]
+fn so_it_is_with_copies() {
+    for (scene, rung) in [
+        ("brilliant", "surface"),
+        ("brilliant", "proxy-2+tracker"),
+        ("brilliant", "walk-8+tracker"),
+        ("brilliant", "convex-4+3"),
+        ("sapphire", "bvh-4+paper"),
+    ] {
+        let settings = Settings { samples: 1, ..of_rung(rung) };
+        check(scene, &format!("copied, {rung}"), &parity(&copied(scene), &settings, None));
+    }
+    let limited = Settings { samples: 1, ..with("walk-8", |gem| gem.distance_limit = Some(2.5)) };
+    check("brilliant", "copied, limited", &parity(&copied("brilliant"), &limited, None));
 }
 
 /// Fault planted in a recipe's text.

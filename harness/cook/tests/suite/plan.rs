@@ -9,7 +9,7 @@ use lapidary_render::plan::{Listing, Plan, Resource};
 use lapidary_render::{Curvature, DiffuseOptions, GemOptions, Settings};
 use lapidary_scene::environment_map::EnvironmentMap;
 use lapidary_scene::light::Light;
-use lapidary_scene::{Density, Environment, Material, Object, Scene};
+use lapidary_scene::{Copies, Density, Environment, Material, Object, Place, Scene};
 use std::collections::BTreeSet;
 
 fn settings() -> Settings {
@@ -162,6 +162,10 @@ fn cases() -> Vec<Case> {
     let spotlit = Scene { lights: vec![spot], ..one("wax") };
     let mut thin = one("brilliant");
     thin.objects[0].material.thickness = 0.0;
+    let mut copied = one("octahedron");
+    let Object { name, mesh, material, .. } = copied.objects.remove(0);
+    let copies = Copies { shape: mesh, places: vec![Place::IDENTITY] };
+    copied.objects.push(Object::of_copies(name, copies, material));
     let tiled = || of_rung("tiled-6-16");
     let case = |effect, scene, settings, goes| Case { effect, scene, settings, goes };
     vec![
@@ -171,6 +175,7 @@ fn cases() -> Vec<Case> {
         case(Effect::ThinWall, thin, settings(), none()),
         case(Effect::Absorption, one("ruby"), settings(), none()),
         case(Effect::Dispersion, one("brilliant"), of_rung("proxy-2+3"), [vec!["wavelengths"], vec![], vec![]]),
+        case(Effect::Instances, copied, of_rung("bvh-2"), [vec!["instances"], vec![], vec![]]),
         case(
             Effect::Cdrf,
             one("wax"),

@@ -34,7 +34,7 @@ fn scene(light: Light) -> Scene {
     let skin = Scene::named("skin").expect("built in");
     let material = Material { sigma0: Some(Vec3::splat(1.0)), ..skin.objects[0].material.clone() };
     let ball = sphere(3.0, 256).placed(glam::DQuat::IDENTITY, DVec3::new(-4.6, 7.5, -4.6));
-    let body = |name: &str, mesh| Object { name: name.to_owned(), mesh, material: material.clone() };
+    let body = |name: &str, mesh| Object::new(name, mesh, material.clone());
     let objects = vec![body("ring", torus(10.0, 4.0, 256, 128)), body("ball", ball)];
     Scene { objects, lights: vec![light], ..skin }.seen_from(40.0, 120.0)
 }

@@ -246,7 +246,7 @@ impl<'gpu> Builder<'gpu> {
     /// Returns a draw for the current object.
     #[must_use]
     pub fn draw(&self, pipeline: PipelineId, groups: Vec<Option<BindGroupId>>, vertices: u32) -> Draw {
-        Draw { object: self.object.clone(), pipeline, groups, vertices, scissor: None }
+        Draw { object: self.object.clone(), pipeline, groups, vertices, instances: 1, scissor: None }
     }
 
     /// Returns a dispatch for the current object.

@@ -178,6 +178,7 @@ struct DrawRow {
     pipeline: usize,
     groups: Vec<Option<usize>>,
     vertices: u32,
+    instances: u32,
     scissor: Option<[u32; 4]>,
 }
 
@@ -325,6 +326,7 @@ fn pass_row(pass: &Pass) -> PassRow {
                     pipeline: draw.pipeline.0,
                     groups: groups(&draw.groups),
                     vertices: draw.vertices,
+                    instances: draw.instances,
                     scissor: draw.scissor,
                 })
                 .collect(),

@@ -255,7 +255,7 @@ impl<'gpu> Executor<'gpu> {
             if let Some([left, top, width, height]) = draw.scissor {
                 encoded.set_scissor_rect(left, top, width, height);
             }
-            encoded.draw(0..draw.vertices, 0..1);
+            encoded.draw(0..draw.vertices, 0..draw.instances);
         }
     }
 

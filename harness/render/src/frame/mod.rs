@@ -48,6 +48,42 @@ pub struct Frame {
     pub passes: Vec<Pass>,
 }
 
+impl Frame {
+    /// Returns the buffers whose contents differ in `next`, with these contents: all that a host
+    /// uploads to run `next` on this frame's resources. `None` if anything else differs.
+    #[must_use]
+    pub fn changes<'a>(&self, next: &'a Self) -> Option<Vec<(Buffer, &'a [u8])>> {
+        let same = self.resources.len() == next.resources.len()
+            && self.pipelines.len() == next.pipelines.len()
+            && self.pipelines.iter().zip(&next.pipelines).all(|(one, other)| one.runs_as(other))
+            && self.bind_groups == next.bind_groups
+            && self.passes == next.passes;
+        if !same {
+            return None;
+        }
+        let mut changes = Vec::new();
+        for (place, (one, other)) in self.resources.iter().zip(&next.resources).enumerate() {
+            match (&one.kind, &other.kind) {
+                (one, other) if one == other => {}
+                (
+                    ResourceKind::Buffer { size, usage, contents: Contents::Bytes(_), .. },
+                    ResourceKind::Buffer { size: next_size, contents: Contents::Bytes(bytes), .. },
+                ) if size == next_size && usage.contains(wgpu::BufferUsages::COPY_DST) => {
+                    changes.push((Buffer(place), &bytes[..]));
+                }
+                _ => return None,
+            }
+        }
+        Some(changes)
+    }
+
+    /// Returns a resource's name.
+    #[must_use]
+    pub fn name(&self, Buffer(place): Buffer) -> &str {
+        &self.resources[place].name
+    }
+}
+
 /// A buffer, texture or sampler.
 #[derive(Clone, Debug)]
 pub struct Resource {
@@ -61,7 +97,7 @@ pub struct Resource {
 }
 
 /// Kind of a resource.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ResourceKind {
     /// A buffer.
     Buffer {
@@ -157,6 +193,16 @@ pub struct Pipeline {
     pub shader: Shader,
     /// Graphics or compute.
     pub kind: PipelineKind,
+}
+
+impl Pipeline {
+    /// Whether the other one has the same code and the same state.
+    fn runs_as(&self, other: &Self) -> bool {
+        self.name == other.name
+            && self.kind == other.kind
+            && self.shader.is_specialised_as(&other.shader)
+            && self.shader.wgsl().ok() == other.shader.wgsl().ok()
+    }
 }
 
 /// Kind of a pipeline.
@@ -279,7 +325,7 @@ impl From<Texture> for Target {
     }
 }
 
-/// A draw of one instance.
+/// A draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// The object that it is for; empty if it is for all objects.
@@ -290,6 +336,8 @@ pub struct Draw {
     pub groups: Vec<Option<BindGroupId>>,
     /// Number of vertices.
     pub vertices: u32,
+    /// Number of instances.
+    pub instances: u32,
     /// Part of the targets that may change: left, top, width and height in texels. `None` for all of
     /// them. Either all draws of a pass have one or none has.
     pub scissor: Option<[u32; 4]>,

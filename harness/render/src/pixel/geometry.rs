@@ -9,7 +9,7 @@ use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
 use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_NONE};
 use lapidary_convex_walk::{self as convex_walk, CONVEX_WALK_STEPS};
-use lapidary_plan::Geometry;
+use lapidary_plan::{Effect, Geometry};
 use lapidary_proxy_geometry::{self as proxy_geometry, ProxyGeometryPlane};
 use lapidary_scene::normals::soft_normals;
 use lapidary_scene::{Bvh, Convex, Mesh, Object, convex};
@@ -82,11 +82,12 @@ impl Hit {
 }
 
 impl<'a> Stone<'a> {
-    /// Prepares `object` for the geometry of the settings' rung.
+    /// Prepares `object` for the geometry of the settings' rung: if it consists of copies, their
+    /// shape.
     pub fn new(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
-        let mesh = &object.mesh;
-        let not_convex =
-            || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(&object.mesh) };
+        let joined = settings.without.has(Effect::Instances);
+        let mesh = if joined { &object.mesh } else { object.shape() };
+        let not_convex = || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(mesh) };
         let normals = match settings.rung.geometry() {
             Geometry::Proxy => soft_normals(mesh),
             _ => Cow::Borrowed(&mesh.normals[..]),

@@ -15,7 +15,7 @@ pub use surface::{SurfacePoint, Viewer};
 use crate as render;
 use crate::{GemMaterial, GemWavelength, Settings};
 use geometry::{Entry, Hit, Place};
-use glam::{UVec2, Vec3};
+use glam::{Mat3, UVec2, Vec3, Vec4Swizzles as _};
 use lapidary_absorption as absorption;
 use lapidary_dispersion as dispersion;
 use lapidary_environment as environment;
@@ -42,9 +42,32 @@ pub struct Pixel {
     pub rays: Vec<Vec<Event>>,
 }
 
+/// `GemCopy` of the recipe.
+struct GemCopy {
+    /// Columns that are the rows of its rotation from the stone's space to world space.
+    rotation: Mat3,
+    scale: f32,
+    translation: Vec3,
+    base_color: Vec3,
+    absorption: Vec3,
+}
+
+impl GemCopy {
+    fn of(place: &lapidary_scene::Place, material: &Material) -> Self {
+        let Material { base_color, attenuation_color, attenuation_distance, .. } = place.material(material);
+        let absorption = absorption::coefficient(attenuation_color, attenuation_distance);
+        let rows = place.rows();
+        let scale = rows[0].xyz().length();
+        let rotation = Mat3::from_cols(rows[0].xyz() / scale, rows[1].xyz() / scale, rows[2].xyz() / scale);
+        let translation = Vec3::new(rows[0].w, rows[1].w, rows[2].w);
+        Self { rotation, scale, translation, base_color, absorption: scale * absorption }
+    }
+}
+
 /// The recipe's uniforms and overrides.
 pub struct Shading<'a> {
     material: GemMaterial,
+    copy: Option<GemCopy>,
     wavelengths: Vec<GemWavelength>,
     settings: &'a Settings,
     absorbs: bool,
@@ -97,6 +120,7 @@ impl<'a> Shading<'a> {
     pub fn new(material: &Material, settings: &'a Settings) -> Self {
         Self {
             material: GemMaterial::of(material, settings.rung, settings),
+            copy: None,
             wavelengths: render::wavelengths(material, settings.rung.spectrum()),
             settings,
             absorbs: !settings.without.has(Effect::Absorption) && material.absorbs(),
@@ -104,8 +128,27 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// Returns the radiance that arrives from a direction.
+    /// Prepares the shading of a copy of `material` at `place`.
+    pub fn of_copy(material: &Material, place: &lapidary_scene::Place, settings: &'a Settings) -> Self {
+        let copy = GemCopy::of(place, material);
+        Self {
+            absorbs: !settings.without.has(Effect::Absorption) && place.material(material).absorbs(),
+            copy: Some(copy),
+            ..Self::new(material, settings)
+        }
+    }
+
+    fn world_direction(&self, direction: Vec3) -> Vec3 {
+        self.copy.as_ref().map_or(direction, |copy| copy.rotation.transpose() * direction)
+    }
+
+    fn base_color(&self) -> Vec3 {
+        self.copy.as_ref().map_or(self.material.base_color, |copy| copy.base_color)
+    }
+
+    /// Returns the radiance that arrives from a direction in the stone's space.
     pub fn environment(&self, direction: Vec3) -> Vec3 {
+        let direction = self.world_direction(direction);
         let Environment::Map(map) = &self.settings.environment else {
             return environment::studio(direction);
         };
@@ -121,11 +164,16 @@ impl<'a> Shading<'a> {
     }
 
     fn transmittance(&self, distance: f32) -> Vec3 {
-        if self.absorbs { absorption::transmittance(self.material.absorption, distance) } else { Vec3::ONE }
+        if !self.absorbs {
+            return Vec3::ONE;
+        }
+        let coefficient = self.copy.as_ref().map_or(self.material.absorption, |copy| copy.absorption);
+        absorption::transmittance(coefficient, distance)
     }
 
     fn ends(&self, travelled: f32) -> bool {
-        self.settings.gem.distance_limit.is_some() && travelled > self.material.distance_limit
+        let scale = self.copy.as_ref().map_or(1.0, |copy| copy.scale);
+        self.settings.gem.distance_limit.is_some() && scale * travelled > self.material.distance_limit
     }
 
     /// Follows a ray to its next facet. The callers stop where it ends; the recipe's loops
@@ -256,9 +304,11 @@ impl<'a> Shading<'a> {
         Vec3::from_array(self.material.channel_indices.to_array().map(|index| fresnel::dielectric(cosine, index)))
     }
 
-    /// Returns the radiance of a pixel whose centre shows `point` of `stone` to an eye at `eye`.
+    /// Returns the radiance of a pixel whose centre shows `point` of `stone` to an eye at `eye`, in
+    /// world space; the point is in the stone's space.
     pub fn pixel(&self, stone: &Stone<'_>, point: SurfacePoint, eye: Vec3) -> Pixel {
         let entry = stone.entry(point);
+        let eye = self.copy.as_ref().map_or(eye, |copy| copy.rotation * (eye - copy.translation) / copy.scale);
         let transmits = self.settings.rung != Rung::Surface;
         let direction = (entry.position - eye).normalize();
         let cosine = (-entry.face_normal.dot(direction)).clamp(0.0, 1.0);
@@ -275,7 +325,7 @@ impl<'a> Shading<'a> {
                     rays.push(ray.events);
                 }
             }
-            return Pixel { radiance: surface + inside * self.material.base_color, rays };
+            return Pixel { radiance: surface + inside * self.base_color(), rays };
         }
         let mut reflectance = Vec3::splat(fresnel::dielectric(cosine, self.material.index));
         let ray = match self.settings.rung.spectrum() {
@@ -290,7 +340,7 @@ impl<'a> Shading<'a> {
         };
         let inside = ray.as_ref().map_or(Vec3::ZERO, |ray| ray.radiance);
         rays.extend(ray.map(|ray| ray.events));
-        let radiance = reflectance * reflected + (1.0 - reflectance) * self.material.base_color * inside;
+        let radiance = reflectance * reflected + (1.0 - reflectance) * self.base_color() * inside;
         Pixel { radiance, rays }
     }
 }

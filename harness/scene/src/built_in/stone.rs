@@ -56,7 +56,7 @@ pub(super) fn figure(name: &str) -> Result<Scene, SceneError> {
 /// Builds a scene of one body and one light, seen from `polar` degrees off the vertical and
 /// `azimuth` degrees from +z towards +x.
 fn stone(name: &str, mesh: Mesh, material: Material, light: Light, (polar, azimuth): (f32, f32)) -> Scene {
-    let object = Object { name: name.to_owned(), mesh, material };
+    let object = Object::new(name, mesh, material);
     Scene { lights: vec![light], ..framed(name, vec![object], direction(polar, azimuth)) }
 }
 

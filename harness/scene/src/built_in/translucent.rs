@@ -108,7 +108,7 @@ fn sun(toward: Vec3) -> Light {
 }
 
 fn object(name: &str, mesh: Mesh, scene: &str) -> Object {
-    Object { name: name.to_owned(), mesh, material: material(scene) }
+    Object::new(name, mesh, material(scene))
 }
 
 /// Scales the mesh to this height.

@@ -21,7 +21,7 @@ const CANDLE: f32 = 30.0;
 pub(super) fn stored(name: &str) -> Result<Scene, SceneError> {
     let meshes = gltf::parse(VITRINE, None)?.objects.into_iter().map(|object| object.mesh);
     let bodies = bodies().into_iter().zip(meshes);
-    let objects = bodies.map(|((name, material), mesh)| Object { name: name.to_owned(), mesh, material }).collect();
+    let objects = bodies.map(|((name, material), mesh)| Object::new(name, mesh, material)).collect();
     Ok(Scene { name: name.to_owned(), objects, lights: lights(), camera: camera(), lacking: Vec::new() })
 }
 

@@ -1,7 +1,7 @@
 //! Placement of a node's mesh: once, or many times by `EXT_mesh_gpu_instancing`.
 
 use ::gltf::json::Root;
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, Quat, Vec3};
 use serde_json::{Map, Value};
 
 use super::accessor::{Elements, Kind, ROTATIONS, VECTORS};
@@ -9,11 +9,15 @@ use super::buffers::Buffers;
 use super::error::{GltfError, excerpt};
 use super::extension::Extension;
 use super::nodes::{ShownNode, composed};
+use crate::copies::Place;
 
 /// Name of the extension.
-pub(super) const NAME: &str = "EXT_mesh_gpu_instancing";
+pub(crate) const NAME: &str = "EXT_mesh_gpu_instancing";
 /// Attributes that place an instance.
 pub(super) const PLACING: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
+/// Attributes of our own that colour an instance: a factor of the base colour, and an attenuation
+/// colour in place of the material's.
+pub(crate) const COLORING: [&str; 2] = ["_BASE_COLOR", "_ATTENUATION_COLOR"];
 
 /// Places at which a node shows its mesh.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +35,8 @@ struct List<'a> {
     translations: Option<Elements<'a>>,
     rotations: Option<Elements<'a>>,
     scales: Option<Elements<'a>>,
+    base_colors: Option<Elements<'a>>,
+    attenuation_colors: Option<Elements<'a>>,
 }
 
 impl<'a> Instances<'a> {
@@ -52,7 +58,10 @@ impl<'a> Instances<'a> {
         };
         let [translations, rotations, scales] =
             [elements("TRANSLATION", VECTORS)?, elements("ROTATION", ROTATIONS)?, elements("SCALE", VECTORS)?];
-        let mut counts = [translations, rotations, scales].into_iter().flatten().map(|elements| elements.count());
+        let [base_colors, attenuation_colors] = COLORING.map(|name| elements(name, VECTORS));
+        let (base_colors, attenuation_colors) = (base_colors?, attenuation_colors?);
+        let placing = [translations, rotations, scales];
+        let mut counts = placing.into_iter().flatten().map(|elements| elements.count());
         let Some(count) = counts.next() else {
             let problem = format!(
                 "its {NAME} has none of {}, so no number of instances; give one, or remove the extension",
@@ -60,11 +69,12 @@ impl<'a> Instances<'a> {
             );
             return Err(wrong(problem));
         };
-        if let Some(other) = counts.find(|other| *other != count) {
+        let colored = [base_colors, attenuation_colors].into_iter().flatten().map(|elements| elements.count());
+        if let Some(other) = counts.chain(colored).find(|other| *other != count) {
             let problem = format!("its {NAME} attributes have {count} and {other} elements; give each as many");
             return Err(wrong(problem));
         }
-        let list = List { count, translations, rotations, scales };
+        let list = List { count, translations, rotations, scales, base_colors, attenuation_colors };
         match list.first_not_finite() {
             Some(instance) => Err(wrong(format!("instance {instance} of its {NAME} is not finite; mend or remove it"))),
             None => Ok(Self { world: node.world, list: Some(list) }),
@@ -94,6 +104,33 @@ impl<'a> Instances<'a> {
         })
     }
 
+    /// Returns the places, or `None` if the node shows its mesh once, or an instance is mirrored or
+    /// scaled unevenly.
+    ///
+    /// # Errors
+    /// The problem, if a colour is out of range.
+    pub(super) fn places(&self) -> Result<Option<Vec<Place>>, String> {
+        let Some(list) = self.list.filter(|list| list.count > 0) else { return Ok(None) };
+        let places = match self.world == DMat4::IDENTITY {
+            true => list.places_as_given(),
+            false => self.transforms().map(Place::of_transform).collect(),
+        };
+        let Some(mut places): Option<Vec<Place>> = places else { return Ok(None) };
+        let color = |name: &str, instance: usize, color: [f32; 3]| {
+            let proper = color.iter().all(|part| (0.0..=1.0).contains(part));
+            let [r, g, b] = color;
+            let wrong = || format!("instance {instance} has the {name} ({r}, {g}, {b}); give parts from 0 to 1");
+            proper.then_some(Vec3::from_array(color)).ok_or_else(wrong)
+        };
+        for (instance, base_color) in list.base_colors.iter().flat_map(|colors| colors.vectors()).enumerate() {
+            places[instance].base_color = color(COLORING[0], instance, base_color)?;
+        }
+        for (instance, attenuation) in list.attenuation_colors.iter().flat_map(|all| all.vectors()).enumerate() {
+            places[instance].attenuation_color = Some(color(COLORING[1], instance, attenuation)?);
+        }
+        Ok(Some(places))
+    }
+
     /// Factor by which lengths of the mesh grow in world space: the cube root of the change in
     /// volume, and the largest over all instances.
     pub(super) fn enlargement(&self) -> f64 {
@@ -103,6 +140,26 @@ impl<'a> Instances<'a> {
 }
 
 impl List<'_> {
+    /// Returns the places with the very numbers of the file, or `None` if one is mirrored or scaled
+    /// unevenly.
+    fn places_as_given(&self) -> Option<Vec<Place>> {
+        let mut places = vec![Place::IDENTITY; self.count];
+        for (place, translation) in places.iter_mut().zip(self.translations.iter().flat_map(|all| all.vectors())) {
+            place.translation = Vec3::from_array(translation);
+        }
+        for (place, rotation) in places.iter_mut().zip(self.rotations.iter().flat_map(|all| all.quaternions())) {
+            let rotation = Quat::from_array(rotation);
+            place.rotation = if rotation.length() > 0.0 { rotation } else { Quat::IDENTITY };
+        }
+        for (place, [x, y, z]) in places.iter_mut().zip(self.scales.iter().flat_map(|all| all.vectors())) {
+            if !(x > 0.0 && x == y && y == z) {
+                return None;
+            }
+            place.scale = x;
+        }
+        Some(places)
+    }
+
     fn first_not_finite(&self) -> Option<usize> {
         let of_vectors = |elements: Option<Elements<'_>>| {
             elements?.vectors().position(|vector| !vector.into_iter().all(f32::is_finite))
@@ -110,7 +167,9 @@ impl List<'_> {
         let of_rotations = self.rotations.and_then(|elements| {
             elements.quaternions().position(|quaternion| !quaternion.into_iter().all(f32::is_finite))
         });
-        [of_vectors(self.translations), of_rotations, of_vectors(self.scales)].into_iter().flatten().min()
+        let colors = [of_vectors(self.base_colors), of_vectors(self.attenuation_colors)];
+        let places = [of_vectors(self.translations), of_rotations, of_vectors(self.scales)];
+        places.into_iter().chain(colors).flatten().min()
     }
 }
 

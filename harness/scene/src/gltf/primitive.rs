@@ -4,7 +4,7 @@ use ::gltf::Semantic;
 use ::gltf::json::Root;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, Vec2, Vec3};
 
 use super::MAX_COORDINATE;
 use super::accessor::{Elements, INDICES, Kind, TEXTURE_COORDINATES, VECTORS};
@@ -14,7 +14,8 @@ use super::error::{GltfError, designation, excerpt, item};
 use super::instances::Instances;
 use super::material::Materials;
 use super::nodes::ShownNode;
-use crate::normals::{Averaging, shared_normals};
+use crate::copies::Copies;
+use crate::normals::{Averaging, Cofactors, shared_normals};
 use crate::{Mesh, Object};
 
 /// Maximum number of vertices, and of triangle corners, in one mesh of instances. The longest list
@@ -60,10 +61,11 @@ pub(super) fn add_objects(
             1 => name.clone(),
             _ => format!("{name} / {index}"),
         };
-        objects.extend(meshes_in_world.into_iter().map(|mesh| Object {
+        objects.extend(meshes_in_world.into_iter().map(|(mesh, copies)| Object {
             name: name.clone(),
             mesh,
             material: material.clone(),
+            copies,
         }));
     }
     Ok(())
@@ -116,7 +118,12 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn meshes(&mut self, arrangement: Arrangement, instances: &Instances<'_>) -> Result<Vec<Mesh>, GltfError> {
+    /// Returns the mesh in world space, or the meshes of so many instances each, with their places.
+    fn meshes(
+        &mut self,
+        arrangement: Arrangement,
+        instances: &Instances<'_>,
+    ) -> Result<Vec<(Mesh, Option<Copies>)>, GltfError> {
         let positions = self
             .attribute(&Semantic::Positions, VECTORS)?
             .ok_or_else(|| GltfError::part(self.user.to_owned(), "it has no POSITION; export it again"))?;
@@ -149,9 +156,8 @@ impl<'a> Reader<'a> {
             None => (0..vertices as u32).collect(),
         };
         let uvs = uvs.map(|uvs| self.texture_coordinates(uvs)).transpose()?.unwrap_or_default();
-        let mut all: Vec<Mesh> = Vec::new();
-        for (instance, transform) in instances.transforms().enumerate() {
-            let positions = self.positions(positions, transform, instances.is_list().then_some(instance))?;
+        let mesh = |transform: DMat4, instance: Option<usize>| -> Result<Mesh, GltfError> {
+            let positions = self.positions(positions, transform, instance)?;
             let linear = DMat3::from_mat4(transform);
             let mirrored = linear.determinant() < 0.0;
             let indices = assemble(&corners, arrangement, mirrored);
@@ -159,13 +165,25 @@ impl<'a> Reader<'a> {
                 Some(normals) => given_or_shared(normals.vectors(), Cofactors::of(linear), &positions, &indices),
                 None => shared_normals(&positions, &indices, Averaging::Angle),
             };
-            let mesh = Mesh { positions, normals, uvs: uvs.clone(), indices, halo: Vec::new() };
+            Ok(Mesh { positions, normals, uvs: uvs.clone(), indices, halo: Vec::new() })
+        };
+        let mut all: Vec<Mesh> = Vec::new();
+        for (instance, transform) in instances.transforms().enumerate() {
+            let mesh = mesh(transform, instances.is_list().then_some(instance))?;
             match all.last_mut().filter(|_| instance % joined != 0) {
                 Some(last) => last.append(&mesh),
                 None => all.push(mesh),
             }
         }
-        Ok(all)
+        let Some(places) = instances.places().map_err(|problem| GltfError::part(self.user.to_owned(), problem))? else {
+            return Ok(all.into_iter().map(|mesh| (mesh, None)).collect());
+        };
+        // The shape in its own space may lie farther out than in the world.
+        let Ok(shape) = mesh(DMat4::IDENTITY, None) else {
+            return Ok(all.into_iter().map(|mesh| (mesh, None)).collect());
+        };
+        let copies = places.chunks(joined).map(|places| Copies { shape: shape.clone(), places: places.to_vec() });
+        Ok(all.into_iter().zip(copies.map(Some)).collect())
     }
 
     fn attribute(&self, semantic: &Semantic, kind: Kind) -> Result<Option<Elements<'a>>, GltfError> {
@@ -249,43 +267,11 @@ fn given_or_shared(
     positions: &[Vec3],
     indices: &[u32],
 ) -> Vec<Vec3> {
-    let given: Vec<Option<Vec3>> = given.map(|normal| transform.apply(normal)).collect();
+    let given: Vec<Option<Vec3>> = given.map(|normal| transform.apply(Vec3::from_array(normal))).collect();
     if given.iter().all(Option::is_some) {
         return given.into_iter().flatten().collect();
     }
     let shared = shared_normals(positions, indices, Averaging::Angle);
     let pairs = given.into_iter().zip(shared);
     pairs.map(|(given, shared)| given.unwrap_or(shared)).collect()
-}
-
-/// Transform of normals for points transformed by a matrix: its inverse transpose. The cofactor
-/// matrix is the same up to the magnitude of the determinant, and also exists if the matrix is
-/// singular.
-#[derive(Debug, Clone, Copy)]
-struct Cofactors {
-    matrix: DMat3,
-    is_identity: bool,
-}
-
-impl Cofactors {
-    fn of(linear: DMat3) -> Self {
-        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-        Self {
-            matrix: DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign,
-            is_identity: linear == DMat3::IDENTITY,
-        }
-    }
-
-    /// Returns the unit normal, or `None` if it has no direction.
-    fn apply(self, normal: [f32; 3]) -> Option<Vec3> {
-        let normal = Vec3::from_array(normal);
-        // A normal that f32 cannot bring closer to unit length is kept to the last bit.
-        if self.is_identity && (normal.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
-            return Some(normal);
-        }
-        let moved: DVec3 = self.matrix * normal.as_dvec3();
-        let unit = moved.try_normalize()?.as_vec3();
-        unit.is_finite().then_some(unit)
-    }
 }

@@ -116,7 +116,7 @@ fn ball() -> Result<Scene, SceneError> {
     let mut scene = Scene::named("bunny")?;
     let medium = Medium::isotropic(Vec3::splat((DEPTH / RADIUS) as f32), Vec3::ZERO);
     let material = Material { base_color: Vec3::ONE, medium: Some(medium), ..scene.objects[0].material.clone() };
-    scene.objects = vec![Object { name: BALL.to_owned(), mesh: sphere(RADIUS, COLUMNS), material }];
+    scene.objects = vec![Object::new(BALL, sphere(RADIUS, COLUMNS), material)];
     scene.lights = vec![Light::Directional { toward: Vec3::X, irradiance: Vec3::ONE }];
     Ok(scene.seen_from(90.0, 0.0))
 }

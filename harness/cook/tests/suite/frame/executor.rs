@@ -271,7 +271,7 @@ impl Host<'_> {
                 let [left, top, width, height] = numbers(&draw["scissor"]);
                 pass.set_scissor_rect(left, top, width, height);
             }
-            pass.draw(0..number(&draw["vertices"]), 0..1);
+            pass.draw(0..number(&draw["vertices"]), 0..number(&draw["instances"]));
         }
     }
 

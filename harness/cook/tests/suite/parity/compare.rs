@@ -1,12 +1,12 @@
 //! Compares a picture of the GPU with the mirrors, pixel by pixel.
 
-use glam::Vec3;
+use glam::{DMat4, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::extremum::larger;
 use lapidary_plan::Spectrum;
 use lapidary_render::pixel::{Pixel, Shading, Stone, SurfacePoint, Viewer};
 use lapidary_render::{Picture, RenderError, Settings};
-use lapidary_scene::Scene;
+use lapidary_scene::{Place, Scene};
 
 /// Largest distance in pixels between a pixel's centre and the point that a rasteriser samples.
 /// Vulkan devices snap vertices to a grid: of 1/256 pixel on lavapipe and every desktop GPU (at
@@ -79,12 +79,19 @@ pub fn compare(
 ) -> Result<Parity, RenderError> {
     let viewer = Viewer::new(scene, settings.width, settings.height);
     let [object] = &scene.objects[..] else { return Ok(Parity::default()) };
-    let shading = Shading::new(&object.material, settings);
+    // A copy is shaded in its own space.
+    let place = object.copies.as_ref().map_or(Place::IDENTITY, |copies| copies.places[0]);
+    let shading = match object.copies {
+        Some(_) => Shading::of_copy(&object.material, &place, settings),
+        None => Shading::new(&object.material, settings),
+    };
+    let (to_world, to_stone) = (place.transform(), place.transform().inverse());
+    let moved_by = |transform: DMat4, point: Vec3| transform.transform_point3(point.as_dvec3()).as_vec3();
     let stone = Stone::new(object, settings)?;
     let eye = scene.camera.eye;
     let bounds = scene.bounds();
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let drift = DRIFT * size * ((1 + settings.rung.hits()) as f32).sqrt();
+    let drift = DRIFT * size / place.scale * ((1 + settings.rung.hits()) as f32).sqrt();
     let covered = picture.linear.iter().filter(|pixel| pixel[3] == 1.0).count();
     // A square of side 2 SNAP meets a line within a band about the line. The band is widest, by a
     // factor of root 2, if the line runs along the square's diagonal.
@@ -108,16 +115,17 @@ pub fn compare(
         let beside = corners.map(|(dx, dy)| viewer.see(&object.mesh, x + dx, y + dy));
         // The GPU may show a neighbouring triangle instead.
         let at_an_edge = beside.iter().any(|other| other.is_none_or(|other| other.triangle != seen.triangle));
-        let [x_world, y_world, z_world, _] = positions.linear[index];
-        let own = SurfacePoint { position: Vec3::new(x_world, y_world, z_world), ..seen };
+        let [own_x, own_y, own_z, _] = positions.linear[index];
+        let in_stone = |seen: SurfacePoint| SurfacePoint { position: moved_by(to_stone, seen.position), ..seen };
+        let own = SurfacePoint { position: Vec3::new(own_x, own_y, own_z), ..seen };
         let points = if at_an_edge {
-            [Some(seen)].into_iter().chain(beside).flatten().collect::<Vec<_>>()
+            [Some(seen)].into_iter().chain(beside).flatten().map(in_stone).collect::<Vec<_>>()
         } else {
-            let place = viewer.place(own.position);
+            let place = viewer.place(moved_by(to_world, own.position));
             // A NaN counts as far away.
             parity.misplaced = larger(parity.misplaced, (place.x - x).abs());
             parity.misplaced = larger(parity.misplaced, (place.y - y).abs());
-            let (right, up) = (own.position - eye).normalize().any_orthonormal_pair();
+            let (right, up) = (own.position - moved_by(to_stone, eye)).normalize().any_orthonormal_pair();
             let moved = [right + up, right - up, up - right, -right - up];
             let points = moved.map(|by| SurfacePoint { position: own.position + drift * by, ..own });
             [own].into_iter().chain(points).collect()

@@ -18,7 +18,7 @@ fn plate() -> Object {
     let around = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|normal| side(normal, 512.0));
     let planes = [around.as_slice(), &[side(DVec3::Z, 0.0), side(-DVec3::Z, 1.0)]].concat();
     let mesh = Polyhedron::from_planes(&planes).unwrap().to_mesh(Averaging::Angle);
-    Object { name: "plate".to_owned(), mesh, material: Material::standard() }
+    Object::new("plate", mesh, Material::standard())
 }
 
 fn outcome(

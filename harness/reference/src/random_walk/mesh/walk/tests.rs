@@ -20,7 +20,7 @@ pub(super) fn cuboid(least: Vec3, greatest: Vec3) -> Mesh {
 pub(super) fn scene(bodies: Vec<(Mesh, Medium)>, lights: Vec<Light>) -> Scene {
     let object = |(mesh, medium)| {
         let material = Material { medium: Some(medium), ..Material::standard() };
-        Object { name: "body".to_owned(), mesh, material }
+        Object::new("body", mesh, material)
     };
     let camera = Camera::framing([Vec3::ZERO].into_iter(), Vec3::Z, 0.5);
     Scene {
