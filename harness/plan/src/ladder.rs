@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn the_rule_refuses_a_dominated_default() {
         let gem = Ladder::committed(Technique::Convex).expect("committed");
-        for rung in ["proxy-4+tracker", "bvh-8+tracker", "triangles-8+tracker", "convex-8+paper"] {
+        for rung in ["proxy-4+tracker", "bvh-8+tracker", "triangles-8+tracker", "convex-8+tracker", "walk-8+paper"] {
             assert!(gem.judge(rung).expect_err(rung).contains("dominated"), "{rung}");
         }
         let cdrf = Ladder::committed(Technique::Cdrf).expect("committed");

@@ -39,10 +39,13 @@ pub(super) fn add(
     let record = record.filter(|_| read((2, place)));
     let instances = copies.map(|copies| instances(copies, &object.material));
     let copied = instances.as_ref().map_or(1, |instances| instances.len() as u32);
-    let material = Material { base_color: brightest(object), ..object.material.clone() };
+    // Rays of all copies end by one limit.
+    let brightest = Material { base_color: brightest(object), ..object.material.clone() };
+    let material = GemMaterial::of(&brightest, rung, settings);
+    let material = GemMaterial { base_color: object.material.base_color, ..material };
     let wavelengths = read((1, 3)).then(|| wavelengths(&object.material, rung.spectrum()));
     Ok(builder.of_object(name, |builder| {
-        let material = builder.record("material", GemMaterial::of(&material, rung, settings).record());
+        let material = builder.record("material", material.record());
         let add = |wanted: u32, bound: &mut Vec<(u32, Bound)>, builder: &mut Builder<'_>| {
             for (_, binding, what, contents) in parts.iter().filter(|(group, ..)| *group == wanted) {
                 bound.push((*binding, builder.storage(what, contents).into()));

@@ -1,7 +1,7 @@
 //! The facet planes of a convex mesh, found from the mesh itself, so that a cut stone can come from
 //! any file and not only from a list of planes.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -75,21 +75,58 @@ pub fn planes_of_convex(mesh: &Mesh) -> Option<Vec<Plane>> {
 pub fn obstacle(mesh: &Mesh) -> String {
     let faults = MeshDiagnosis::of(mesh);
     if !faults.is_solid() {
-        return format!("is no closed solid ({})", faults.clauses().join(", "));
+        let edge = if faults.is_flat { None } else { open_edge(mesh) };
+        let place = edge.map_or(String::new(), |[from, to]| format!("; see the edge from {from} to {to}"));
+        return format!("is no closed solid ({}{place})", faults.clauses().join(", "));
     }
-    // Facets are planes that differ between neighbours; on a smooth body each triangle is one.
+    if let Some([from, to]) = dented_edge(mesh) {
+        return format!("is not convex: it bends inwards at the edge from {from} to {to}");
+    }
+    if is_dented(mesh) {
+        return "is not convex: it has several parts, or passes through itself".to_owned();
+    }
     let triangles: Vec<Triangle> = mesh.triangles().map(Triangle::new).collect();
-    let largest = mesh.positions.iter().fold(0.0, |most: f32, position| most.max(position.abs().max_element()));
-    let tolerance = TOLERANCE * f64::from(largest);
-    let dents = |triangle: &Triangle| {
-        let plane = Plane::through(triangle.corners[0], triangle.area);
-        !triangle.is_sliver(tolerance)
-            && mesh.positions.iter().any(|corner| plane.height(corner.as_dvec3()) > DENT * f64::from(largest))
-    };
-    if triangles.iter().take(MOST_PROBED).any(dents) {
-        return "is not convex".to_owned();
+    match group(&triangles, TOLERANCE * largest(mesh)) {
+        Some(_) => format!("is not convex, though by less than 1/{} of its size", 1.0 / DENT),
+        None => format!("has more than {MAX_PLANES} facets"),
     }
-    format!("has more than {MAX_PLANES} facets")
+}
+
+/// Returns the first edge without a triangle on its other side.
+fn open_edge(mesh: &Mesh) -> Option<[Vec3; 2]> {
+    let key = |position: Vec3| position.to_array().map(|part| (part + 0.0).to_bits());
+    let edges = || mesh.triangles().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let known: HashSet<_> = edges().map(|edge| edge.map(key)).collect();
+    edges().find(|[from, to]| key(*from) != key(*to) && !known.contains(&[key(*to), key(*from)]))
+}
+
+/// Returns the first edge whose two triangles enclose more than half a turn, by more than rounding.
+fn dented_edge(mesh: &Mesh) -> Option<[Vec3; 2]> {
+    let most = DENT * largest(mesh);
+    let key = |position: Vec3| position.to_array().map(|part| (part + 0.0).to_bits());
+    let edges = || mesh.triangles().flat_map(|[a, b, c]| [([a, b], c), ([b, c], a), ([c, a], b)]);
+    let opposite: HashMap<_, Vec3> = edges().map(|([from, to], corner)| ([key(from), key(to)], corner)).collect();
+    let dents = |([from, to], corner): &([Vec3; 2], Vec3)| {
+        let triangle = Triangle::new([*from, *to, *corner]);
+        let plane = Plane::through(triangle.corners[0], triangle.area);
+        let beyond = opposite.get(&[key(*to), key(*from)]);
+        !triangle.is_sliver(most) && beyond.is_some_and(|beyond| plane.height(beyond.as_dvec3()) > most)
+    };
+    edges().find(dents).map(|(edge, _)| edge)
+}
+
+/// Whether a vertex lies above the plane of a triangle by more than rounding.
+fn is_dented(mesh: &Mesh) -> bool {
+    let most = DENT * largest(mesh);
+    mesh.triangles().take(MOST_PROBED).map(Triangle::new).any(|triangle| {
+        let plane = Plane::through(triangle.corners[0], triangle.area);
+        !triangle.is_sliver(most) && mesh.positions.iter().any(|corner| plane.height(corner.as_dvec3()) > most)
+    })
+}
+
+/// Returns the largest coordinate of a mesh.
+fn largest(mesh: &Mesh) -> f64 {
+    f64::from(mesh.positions.iter().fold(0.0, |most: f32, position| most.max(position.abs().max_element())))
 }
 
 /// Height of a vertex above the plane of a triangle, relative to the largest coordinate, beyond

@@ -42,7 +42,9 @@ impl Place {
     /// Returns the transform from the shape's space to world space.
     #[must_use]
     pub fn transform(&self) -> DMat4 {
-        let (scale, rotation) = (DVec3::splat(f64::from(self.scale)), self.rotation.as_dquat().normalize());
+        let (scale, rotation) = (DVec3::splat(f64::from(self.scale)), self.rotation.as_dquat());
+        // As the loader does, to the last bit.
+        let rotation = rotation / rotation.length();
         DMat4::from_scale_rotation_translation(scale, rotation, self.translation.as_dvec3())
     }
 

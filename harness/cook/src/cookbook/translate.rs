@@ -55,7 +55,10 @@ pub fn translate(
             Ok(text.into_bytes())
         }
         Target::Msl => {
-            let options = back::msl::Options { fake_missing_bindings: true, ..back::msl::Options::default() };
+            // Instances have numbers from version 1.2 on.
+            let lang_version = (2, 0);
+            let options =
+                back::msl::Options { lang_version, fake_missing_bindings: true, ..back::msl::Options::default() };
             back::msl::write_string(module, info, &options, &back::msl::PipelineOptions::default())
                 .map(|(text, _)| text.into_bytes())
                 .map_err(|error| error.to_string())

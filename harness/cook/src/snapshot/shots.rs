@@ -43,7 +43,7 @@ pub(super) const LIGHTS_ALONE: f32 = 1.5;
 const BY_MATERIAL: &str = "by-material";
 
 /// All committed pictures of a single scene.
-pub const SHOTS: [Shot; 40] = [
+pub const SHOTS: [Shot; 41] = [
     Shot {
         paragraph: "Every technique at once, each body by what its material calls for: an opaque table, a diamond with dispersion and a ruby \
             without, a wax candle by curvature, a marble figure by the light's ways through it, and a chain of clear glass. \
@@ -69,6 +69,7 @@ pub const SHOTS: [Shot; 40] = [
     shot("prism", "Pentagonal prism, quartz", "prism", BY_MATERIAL),
     fine(shot("prism_chain", "A chain of prisms, one draw call", "prism_chain", BY_MATERIAL)),
     fine(shot("chandelier", "A chandelier, one draw call", "chandelier", BY_MATERIAL)),
+    fine(shot("pave_ring", "A band of 200 stones, one draw call", "pave_ring", BY_MATERIAL)),
     shot("bunny_stone", "Bunny, glass", "bunny_stone", BY_MATERIAL),
     Shot {
         paragraph: "As the paper has it: proxy geometry, one internal hit, no dispersion. What is reflected inside comes from the environment \

@@ -189,7 +189,7 @@ const fn fault(scene_rung: [&'static str; 2], what: &'static str, right: &'stati
     Fault { scene, rung, what, right, wrong }
 }
 
-const FAULTS: [Fault; 20] = [
+const FAULTS: [Fault; 23] = [
     fault(
         ["brilliant", "proxy-1"],
         "another index",
@@ -254,6 +254,24 @@ const FAULTS: [Fault; 20] = [
         ">= material.throughput_limit",
         ">= 30.0f * material.throughput_limit",
     ),
+    fault(
+        ["brilliant", "walk-2"],
+        "copies are turned the wrong way",
+        "return direction * gem_copy.rotation;",
+        "return gem_copy.rotation * direction;",
+    ),
+    fault(
+        ["brilliant", "walk-2"],
+        "copies absorb alike, large or small",
+        "scale * instance.absorption",
+        "instance.absorption",
+    ),
+    fault(
+        ["brilliant", "walk-2"],
+        "copies have one colour",
+        "return gem_copy.base_color;",
+        "return material.base_color;",
+    ),
     fault(["brilliant", "proxy-4+paper"], "a ray that has ended goes on", "if ((*ray).followed) {", "if (true) {"),
 ];
 
@@ -261,7 +279,7 @@ const FAULTS: [Fault; 20] = [
 #[test]
 fn a_wrong_picture_is_seen() {
     for Fault { scene, rung, what, right, wrong } in FAULTS {
-        let scene = Scene::named(scene).expect("built in");
+        let scene = if what.starts_with("copies") { copied(scene) } else { Scene::named(scene).expect("built in") };
         let distance_limit = what.contains("has ended").then_some(1.2);
         let limit_throughput = Some(what.contains("rays end by"));
         let set =

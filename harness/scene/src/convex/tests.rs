@@ -51,7 +51,7 @@ fn every_triangle_lies_in_its_facet() {
 fn built_in_stones_are_convex_but_for_the_bunny_and_many_prisms_in_one_mesh() {
     for built_in in crate::BUILT_IN {
         let scene = Scene::named(built_in.name).unwrap();
-        let convex = scene.objects.iter().all(|object| planes_of_convex(&object.mesh).is_some());
+        let convex = scene.objects.iter().all(|object| planes_of_convex(object.shape()).is_some());
         // Translucent bodies are round.
         let round = scene.objects.iter().any(|object| object.material.medium.is_some());
         let other = round || ["bunny_stone", "prism_chain", "chandelier"].contains(&built_in.name);

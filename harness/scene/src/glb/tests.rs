@@ -18,6 +18,7 @@ fn every_built_in_scene_survives_writing_and_loading() {
             let thickness = again.material.thickness;
             assert!((thickness - object.material.thickness).abs() <= 1e-6 * thickness);
             let material = Material { thickness, ..object.material.clone() };
+            assert!(again.copies == object.copies, "{}", object.name);
             assert_eq!(*again, Object { mesh: object.mesh.without_halo(), material, ..object.clone() });
         }
         assert_eq!(again.objects.len(), scene.objects.len());
