@@ -3,7 +3,8 @@
 //! Ize 2013.
 //!
 //! The WGSL file states the units, domain and accuracy of each function. This file follows it line
-//! by line. [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`.
+//! by line. [`traversal`] mirrors the part `wgsl/recipes/parts/trace_nearest.wgsl`, and [`Bvh`] builds
+//! the nodes that it reads.
 //!
 //! ```
 //! use glam::{Vec3, vec3};
@@ -18,8 +19,11 @@
 
 #[cfg(feature = "formulas")]
 pub mod formulas;
+mod hierarchy;
 pub mod oracle;
 pub mod traversal;
+
+pub use hierarchy::Bvh;
 
 #[cfg(test)]
 mod tests;

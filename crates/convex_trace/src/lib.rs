@@ -3,7 +3,7 @@
 //! fig. 7.
 //!
 //! The WGSL file states the units, domain and accuracy of each function. This file follows it line
-//! by line.
+//! by line. [`Facets`] finds the planes of a mesh.
 //!
 //! ```
 //! use glam::{Vec3, vec4};
@@ -16,9 +16,12 @@
 //! assert_eq!((hit.face, hit.distance), (0, 1.0));
 //! ```
 
+pub mod facets;
 #[cfg(feature = "formulas")]
 pub mod formulas;
 pub mod oracle;
+
+pub use facets::{Facets, NoFacets};
 
 use glam::{Vec3, Vec4, Vec4Swizzles as _};
 

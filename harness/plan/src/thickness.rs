@@ -62,7 +62,7 @@ fn mean_free_path(medium: &Medium) -> f32 {
 /// shows through them.
 #[must_use]
 pub fn measured(mesh: &Mesh) -> f32 {
-    let bvh = Bvh::build(mesh);
+    let bvh = Bvh::build(&mesh.positions, &mesh.indices);
     let triangles: Vec<[Vec3; 3]> =
         bvh.indices.chunks_exact(3).map(|corners| corner_positions(mesh, corners)).collect();
     let areas: Vec<f64> = triangles.iter().map(|[a, b, c]| f64::from((b - a).cross(c - a).length())).collect();

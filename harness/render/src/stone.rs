@@ -150,7 +150,7 @@ impl<'a> Geometries<'a> {
                 Self { indices, own, record: Some(("stone", stone)), steps: 32 }
             }
             Geometry::Bvh | Geometry::Triangles => {
-                let bvh = Bvh::build(mesh);
+                let bvh = Bvh::build(&mesh.positions, &mesh.indices);
                 let nodes: &[u8] = bytemuck::cast_slice(&bvh.nodes);
                 let own = vec![("nodes", nodes.to_vec().into())];
                 // The recipe, too, numbers triangles in the order of the leaves.

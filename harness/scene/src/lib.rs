@@ -21,7 +21,6 @@ use std::path::Path;
 use glam::Vec3;
 
 mod built_in;
-pub mod bvh;
 mod camera;
 pub mod convex;
 pub mod copies;
@@ -48,12 +47,12 @@ pub mod surfaces;
 pub mod view;
 
 pub use built_in::{BUILT_IN, BuiltIn, names};
-pub use bvh::Bvh;
 pub use camera::Camera;
 pub use convex::{Convex, Shape};
 pub use copies::{Copies, Place};
 pub use environment::Environment;
 pub use error::SceneError;
+pub use lapidary_bvh_trace::Bvh;
 pub use light::Light;
 pub use material::{Dispersion, Material, Mineral};
 pub use medium::{Density, DensityGrid, Medium};

@@ -28,7 +28,7 @@ struct Body {
 fn body(name: &'static str) -> Body {
     let scene = Scene::named(name).expect("a built-in scene");
     let mesh = scene.objects[0].mesh.clone();
-    let bvh = Bvh::build(&mesh);
+    let bvh = Bvh::build(&mesh.positions, &mesh.indices);
     Body { name, mesh, bvh }
 }
 
@@ -338,12 +338,12 @@ fn every_hierarchy_holds_its_mesh() {
     let meshes = Domain::new(any_mesh);
     for row in 0..2_000 {
         let mesh = meshes.row(15, row);
-        check_hierarchy(&mesh, &Bvh::build(&mesh));
+        check_hierarchy(&mesh, &Bvh::build(&mesh.positions, &mesh.indices));
     }
     for body in bodies() {
         check_hierarchy(&body.mesh, &body.bvh);
     }
-    let empty = Bvh::build(&Mesh::default());
+    let empty = Bvh::build(&[], &[]);
     assert_eq!((empty.nodes.len(), empty.indices.len(), empty.depth()), (0, 0, 0));
 }
 
@@ -353,7 +353,7 @@ fn many_equal_triangles_still_fit_the_stack() {
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y].repeat(count);
     let indices = (0..3 * count as u32).collect();
     let mesh = Mesh { normals: vec![Vec3::Z; positions.len()], positions, indices, ..Mesh::default() };
-    let bvh = Bvh::build(&mesh);
+    let bvh = Bvh::build(&mesh.positions, &mesh.indices);
     check_hierarchy(&mesh, &bvh);
     println!("{count} equal triangles: {} deep", bvh.depth());
 }

@@ -57,7 +57,7 @@ impl Triangles {
             let turned = object.mesh.indices.chunks_exact(3).flat_map(|corners| [corners[0], corners[2], corners[1]]);
             mesh.indices.extend(turned.map(|index| first + index));
         }
-        let bvh = Bvh::build(&mesh);
+        let bvh = Bvh::build(&mesh.positions, &mesh.indices);
         Self { mesh, bvh }
     }
 

@@ -40,7 +40,7 @@ struct Leaves {
 
 impl Leaves {
     fn of(mesh: &Mesh) -> Self {
-        let bvh = Bvh::build(mesh);
+        let bvh = Bvh::build(&mesh.positions, &mesh.indices);
         let mut place = vec![u32::MAX; mesh.triangle_count()];
         for (leaf, &triangle) in (0..).zip(&bvh.order) {
             place[triangle as usize] = leaf;

@@ -4,6 +4,7 @@ use crate::cuts::{
 };
 use crate::polyhedron::Polyhedron;
 use crate::{Averaging, Scene};
+use glam::Vec3;
 use lapidary_assay::extremum::largest;
 
 fn all_cuts() -> [(&'static str, Polyhedron, usize); 4] {

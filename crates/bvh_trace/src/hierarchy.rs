@@ -10,10 +10,8 @@
 //! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), and halving
 //! wherever those would make the hierarchy too deep.
 
+use crate::traversal::BVH_TRACE_DEPTH;
 use glam::{DVec3, Vec3, Vec4};
-use lapidary_bvh_trace::traversal::BVH_TRACE_DEPTH;
-
-use super::Mesh;
 
 /// Largest number of triangles in a leaf.
 const MOST_IN_A_LEAF: usize = 4;
@@ -83,14 +81,13 @@ impl Extent {
 }
 
 impl Bvh {
-    /// Builds the hierarchy of `mesh`, at most [`BVH_TRACE_DEPTH`] nodes deep below its root.
-    /// Triangles with a corner that is not finite, or that does not exist, cannot be hit and are
-    /// left out.
+    /// Builds the hierarchy of a mesh, at most [`BVH_TRACE_DEPTH`] nodes deep below its root.
+    /// `indices` are three per triangle, counter-clockwise from outside. Triangles with a corner that
+    /// is not finite, or that does not exist, cannot be hit and are left out.
     #[must_use]
-    pub fn build(mesh: &Mesh) -> Self {
-        let corner = |index: u32| mesh.positions.get(index as usize).copied().filter(|position| position.is_finite());
-        let mut triangles: Vec<Triangle> = mesh
-            .indices
+    pub fn build(positions: &[Vec3], indices: &[u32]) -> Self {
+        let corner = |index: u32| positions.get(index as usize).copied().filter(|position| position.is_finite());
+        let mut triangles: Vec<Triangle> = indices
             .chunks_exact(3)
             .zip(0..)
             .filter_map(|(corners, number)| {
@@ -103,7 +100,7 @@ impl Bvh {
         }
         let nodes = nodes(&mut triangles);
         let order: Vec<u32> = triangles.iter().map(|triangle| triangle.number).collect();
-        let corners = |number: &u32| mesh.indices[3 * *number as usize..][..3].iter().copied();
+        let corners = |number: &u32| indices[3 * *number as usize..][..3].iter().copied();
         Self { nodes, indices: order.iter().flat_map(corners).collect(), order }
     }
 
