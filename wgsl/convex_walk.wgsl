@@ -1,6 +1,6 @@
 // convex_walk: the facet through which a ray leaves a convex stone, found in a few steps over a map of the facets by direction. Exact, at a cost that hardly grows with their number.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 9a484c9b1cc77bc8
+// Version: 0.2.0, hash 45ed79d5a517787a
 // Source: own. The square: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal
 //   Vectors", 2010 (octahedral coordinates). For the planes: the module convex_trace.
 //
@@ -48,9 +48,9 @@ const CONVEX_WALK_SHIFT: u32 = 12u;
 const CONVEX_WALK_PLACE: u32 = 0x7ffffu;
 // The bit of a word that another follows.
 const CONVEX_WALK_MORE: u32 = 0x80000000u;
-// Most words that a walk may read. It needs a few: it ends by itself, since each pass over a cell is
-// to a facet nearer than the one before.
-const CONVEX_WALK_STEPS: u32 = 4096u;
+// Most words that a walk may read, four cells that list all facets. It needs a few: it ends by
+// itself, since each pass over a cell is to a facet nearer than the one before.
+const CONVEX_WALK_STEPS: u32 = 16384u;
 // Slope below which a ray is parallel to a side of the box.
 const CONVEX_WALK_PARALLEL: f32 = 1e-20f;
 

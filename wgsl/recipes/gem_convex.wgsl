@@ -11,7 +11,8 @@
 // KHR_materials_transmission.
 override EFFECT_CONVEX_TRACE: bool = true;
 
-// Outward unit normal of each facet plane and its distance from the origin, in world space.
+// Outward unit normal of each facet plane and its distance from the origin, in the space of
+// `positions`.
 @group(2) @binding(0) var<storage, read> planes: array<vec4f>;
 // The number of each triangle's plane.
 @group(2) @binding(1) var<storage, read> face_of_triangle: array<u32>;

@@ -13,11 +13,12 @@ override EFFECT_CONVEX_TRACE: bool = true;
 
 // The stone's place and a box around it.
 struct GemStone {
-    // A point well inside the stone, in world space: the origin of its own coordinates.
+    // A point well inside the stone, in the space of `positions`: the origin of the planes, the map
+    // and the box.
     centre: vec3f,
     // Cells along each side of the map.
     side: u32,
-    // Corners of the box, in the stone's own coordinates.
+    // Corners of the box, about the centre.
     lower: vec3f,
     upper: vec3f,
 }
@@ -56,7 +57,7 @@ fn gem_vertex(
 }
 
 // The place of a ray inside: the facet that it left last, which it cannot meet again immediately,
-// and the point where it did, in the stone's own coordinates.
+// and the point where it did, about the centre.
 struct GemPlace {
     face: u32,
     position: vec3f,

@@ -34,7 +34,7 @@ pub const CONVEX_WALK_PLACE: u32 = 0x7ffff;
 /// The bit of a word that another follows.
 pub const CONVEX_WALK_MORE: u32 = 0x8000_0000;
 /// Most words that a walk may read.
-pub const CONVEX_WALK_STEPS: u32 = 4096;
+pub const CONVEX_WALK_STEPS: u32 = 16384;
 /// Slope below which a ray is parallel to a side of the box.
 pub const CONVEX_WALK_PARALLEL: f32 = 1e-20;
 

@@ -111,6 +111,37 @@ impl FacetMap {
         })
     }
 
+    /// Returns the map of a side that suits the number of planes, [`FacetMap::usual_side`], or of the
+    /// next smaller one whose lists can be addressed.
+    ///
+    /// # Errors
+    /// [`NoMap`], as for [`FacetMap::of_planes`].
+    pub fn of_stone(planes: &[Vec4]) -> Result<Self, NoMap> {
+        let mut side = Self::usual_side(planes.len());
+        loop {
+            match Self::of_planes(planes, side) {
+                Err(NoMap::Lists(_)) if side > 2 => side /= 2,
+                made => return made,
+            }
+        }
+    }
+
+    /// Returns the number of words of the longest list of a cell.
+    #[must_use]
+    pub fn longest_list(&self) -> usize {
+        let cells = (self.side * self.side) as usize;
+        let length = |cell: usize| {
+            let mut words = 1;
+            let mut place = cell;
+            while self.words[place] >= CONVEX_WALK_MORE {
+                place = (self.words[place] >> CONVEX_WALK_SHIFT & CONVEX_WALK_PLACE) as usize;
+                words += 1;
+            }
+            words
+        };
+        (0..cells).map(length).max().unwrap_or_default()
+    }
+
     /// Returns the candidates of the cell in which `point` is seen from the origin, in the order in
     /// which a shader tests them, two for each word.
     pub fn candidates(&self, point: Vec3) -> impl Iterator<Item = u32> + '_ {

@@ -5,7 +5,7 @@ use crate::{Geometry, Note, Objects, Request, Rung};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use lapidary_environment::oracle;
 use lapidary_scene::normals::has_hard_edges;
-use lapidary_scene::{Dispersion, Environment, MeshDiagnosis, Object, Scene, clip_from_world};
+use lapidary_scene::{Dispersion, Environment, Material, MeshDiagnosis, Object, Scene, clip_from_world};
 use std::f64::consts::PI;
 
 /// Maximum triangle count of a mesh that is diagnosed. Larger ones would take seconds, and as much
@@ -128,10 +128,15 @@ impl Case<'_> {
             return None;
         }
         // Only an absorbing body has to be measured.
-        let thickness = if material.absorbs() { thickness::measured(mesh) } else { 0.0 };
-        let coefficient = lapidary_absorption::coefficient(material.attenuation_color, material.attenuation_distance);
-        let left = material.base_color * lapidary_absorption::transmittance(coefficient, thickness);
-        let share = left.max_element();
+        let absorbs = self.object.materials().any(|material| material.absorbs());
+        let thickness = if absorbs { thickness::measured(mesh) } else { 0.0 };
+        let left = self.object.materials().map(|material| {
+            let Material { base_color, attenuation_color, attenuation_distance, .. } = material;
+            let coefficient = lapidary_absorption::coefficient(attenuation_color, attenuation_distance);
+            (base_color * lapidary_absorption::transmittance(coefficient, thickness)).max_element()
+        });
+        // The brightest of the copies, if there are any.
+        let share = left.fold(0.0, f32::max);
         (share * self.request.exposure < INVISIBLE).then(|| Note::Black { objects: objects.clone(), share, thickness })
     }
 

@@ -50,6 +50,7 @@ impl Plan {
     /// # Errors
     /// If the scene cannot be drawn with these settings.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        let scene = &*render::drawing::apart(scene, settings);
         let planned = |(object, name): (&lapidary_scene::Object, String)| PlannedObject {
             object: name,
             material: object.material.name.clone(),

@@ -146,8 +146,8 @@ impl<'a> Geometries<'a> {
                     ("face of triangle", bytes(bytemuck::cast_slice(&convex.face_of_triangle))),
                     ("facet map", bytes(bytemuck::cast_slice(&map.words))),
                 ];
-                // Few walks read as many as 32 words.
-                Self { indices, own, record: Some(("stone", stone)), steps: 32 }
+                // Few walks take more than four passes, even over the longest lists.
+                Self { indices, own, record: Some(("stone", stone)), steps: 4 * map.longest_list() as u64 }
             }
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(&mesh.positions, &mesh.indices);

@@ -1,6 +1,6 @@
 //! The facet planes of a convex mesh in the form that shaders and references use.
 
-use glam::Vec4;
+use glam::{DVec4, Vec3, Vec4};
 pub use lapidary_convex_trace::facets::TOLERANCE;
 use lapidary_convex_trace::{Facets, NoFacets};
 
@@ -22,8 +22,17 @@ impl Convex {
     /// [`planes_of_convex`] finds none.
     #[must_use]
     pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
+        Self::about(Vec3::ZERO, mesh)
+    }
+
+    /// Returns the same with distances from `centre`, which are as exact as the stone is large,
+    /// however far it lies from the origin.
+    #[must_use]
+    pub fn about(centre: Vec3, mesh: &Mesh) -> Option<Self> {
         let facets = facets(mesh)?;
-        let planes = facets.planes.iter().map(|plane| plane.as_vec4()).collect();
+        let centre = centre.as_dvec3();
+        let about = |plane: &DVec4| plane.truncate().extend(plane.w - plane.truncate().dot(centre)).as_vec4();
+        let planes = facets.planes.iter().map(about).collect();
         Some(Self { planes, face_of_triangle: facets.face_of_triangle })
     }
 }
@@ -64,7 +73,7 @@ fn facets(mesh: &Mesh) -> Option<Facets> {
 /// its other side, a triangle points inwards, or there are more than [`MAX_PLANES`] facets.
 #[must_use]
 pub fn planes_of_convex(mesh: &Mesh) -> Option<Vec<Plane>> {
-    let plane = |plane: &glam::DVec4| Plane { normal: plane.truncate(), distance: plane.w };
+    let plane = |plane: &DVec4| Plane { normal: plane.truncate(), distance: plane.w };
     facets(mesh).map(|facets| facets.planes.iter().map(plane).collect())
 }
 

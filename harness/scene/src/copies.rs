@@ -1,5 +1,7 @@
 //! Copies of one shape at many places, which a renderer may draw in one call.
 
+use std::collections::HashMap;
+
 use glam::{DMat4, DQuat, DVec3, Mat3, Quat, Vec3, Vec4};
 
 use super::{Material, Mesh, Object};
@@ -131,14 +133,25 @@ impl Object {
         places.iter().map(|place| place.material(&self.material))
     }
 
-    /// Returns each copy as a body of its own.
+    /// Returns the copies of each colour as one body, in the order of their first copies.
     #[must_use]
     pub fn apart(&self) -> Vec<Self> {
         let Some(Copies { shape, places }) = &self.copies else { return vec![self.clone()] };
-        let body = |place: &Place| {
-            Self::new(&*self.name, shape.transformed(place.transform()), place.material(&self.material))
+        let key = |place: &Place| {
+            let bits = |color: Vec3| color.to_array().map(f32::to_bits);
+            (bits(place.base_color), place.attenuation_color.map(bits))
         };
-        places.iter().map(body).collect()
+        let mut numbers = HashMap::new();
+        let mut bodies: Vec<Self> = Vec::new();
+        for place in places {
+            let copy = shape.transformed(place.transform());
+            let number = *numbers.entry(key(place)).or_insert(bodies.len());
+            match bodies.get_mut(number) {
+                Some(body) => body.mesh.append(&copy),
+                None => bodies.push(Self::new(&*self.name, copy, place.material(&self.material))),
+            }
+        }
+        bodies
     }
 }
 
@@ -177,19 +190,21 @@ mod tests {
     }
 
     #[test]
-    fn copies_joined_are_the_copies_apart() {
+    fn copies_apart_are_one_body_for_each_colour() {
         let stone = Scene::named("octahedron").expect("built in").objects.remove(0);
         let red = Place { attenuation_color: Some(Vec3::X), base_color: Vec3::splat(0.5), ..place() };
-        let copies = Copies { shape: stone.mesh.clone(), places: vec![Place::IDENTITY, red] };
+        let again = Place { translation: Vec3::splat(9.0), ..red };
+        let copies = Copies { shape: stone.mesh.clone(), places: vec![Place::IDENTITY, red, again] };
         assert!(copies.is_coloured());
         let both = Object::of_copies("both", copies, stone.material.clone());
         let apart = both.apart();
-        assert_eq!(apart[0].mesh, stone.mesh);
+        assert_eq!((apart.len(), &apart[0].mesh), (2, &stone.mesh));
         let mut joined = stone.mesh.clone();
         joined.append(&apart[1].mesh);
         assert_eq!(both.mesh, joined);
         assert_eq!(apart[1].material, red.material(&stone.material));
         assert_eq!(apart[1].material.attenuation_color, Vec3::X);
-        assert_eq!(both.materials().collect::<Vec<_>>(), [apart[0].material.clone(), apart[1].material.clone()]);
+        let materials = [0, 1, 1].map(|body: usize| apart[body].material.clone());
+        assert_eq!(both.materials().collect::<Vec<_>>(), materials);
     }
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::gltf::{COLORING, INSTANCING};
-use super::{Bounds, Camera, Copies, Density, Material, Mesh, Object, Scene};
+use super::{Bounds, Camera, Copies, Density, Material, Mesh, Object, Place, Scene};
 
 mod light;
 mod material;
@@ -152,7 +152,7 @@ impl Document {
         let mut node = json!({"name": object.name, "mesh": self.meshes.len()});
         let mut material = object.material.clone();
         if let Some(copies) = &object.copies {
-            node["extensions"] = json!({INSTANCING: {"attributes": self.places(copies)}});
+            node["extensions"] = json!({INSTANCING: {"attributes": self.places(copies, &object.material)}});
             // glTF states the thickness in the mesh's space.
             material.thickness /= copies.places.iter().map(|place| place.scale).fold(0.0, f32::max);
         }
@@ -171,7 +171,7 @@ impl Document {
     }
 
     /// Appends the attributes of copies and returns their accessors by name.
-    fn places(&mut self, copies: &Copies) -> Value {
+    fn places(&mut self, copies: &Copies, material: &Material) -> Value {
         let places = &copies.places;
         let mut attributes = json!({
             "TRANSLATION": self.vectors(places.iter().map(|place| place.translation.to_array())),
@@ -182,9 +182,9 @@ impl Document {
             let [base_color, attenuation_color] = COLORING;
             attributes[base_color] = json!(self.vectors(places.iter().map(|place| place.base_color.to_array())));
             // glTF has no attribute that some copies lack.
-            if places.iter().all(|place| place.attenuation_color.is_some()) {
-                let colors: Vec<Vec3> = places.iter().filter_map(|place| place.attenuation_color).collect();
-                attributes[attenuation_color] = json!(self.vectors(colors.iter().map(Vec3::to_array)));
+            if places.iter().any(|place| place.attenuation_color.is_some()) {
+                let color = |place: &Place| place.attenuation_color.unwrap_or(material.attenuation_color).to_array();
+                attributes[attenuation_color] = json!(self.vectors(places.iter().map(color)));
             }
         }
         attributes

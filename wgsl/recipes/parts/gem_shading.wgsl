@@ -90,7 +90,7 @@ struct GemInstance {
 // Not a uniform: lavapipe recompiles the shader for every uniform buffer that it is drawn with,
 // which costs megabytes per body.
 @group(1) @binding(0) var<storage, read> material: GemMaterial;
-// Three floats per vertex, in world space.
+// Three floats per vertex, in world space; with instances, in the stone's own space.
 @group(1) @binding(1) var<storage, read> positions: array<f32>;
 @group(1) @binding(2) var<storage, read> indices: array<u32>;
 @group(1) @binding(3) var<storage, read> wavelengths: array<GemWavelength>;
@@ -149,6 +149,14 @@ fn gem_world_direction(direction: vec3f) -> vec3f {
     return direction;
 }
 
+// World length of a length in the stone's space.
+fn gem_world_length(length_inside: f32) -> f32 {
+    if (EFFECT_INSTANCES) {
+        return gem_copy.scale * length_inside;
+    }
+    return length_inside;
+}
+
 // Radiance that arrives from a direction in the stone's space.
 fn gem_surroundings(direction: vec3f) -> vec3f {
     return surroundings_radiance(gem_world_direction(direction));
@@ -188,10 +196,7 @@ fn gem_exit(inside: vec3f, normal: vec3f, index: f32) -> GemExit {
 
 // Whether a ray ends after it has travelled this distance.
 fn gem_ends(travelled: f32) -> bool {
-    if (EFFECT_INSTANCES) {
-        return LIMIT_DISTANCE && gem_copy.scale * travelled > material.distance_limit;
-    }
-    return LIMIT_DISTANCE && travelled > material.distance_limit;
+    return LIMIT_DISTANCE && gem_world_length(travelled) > material.distance_limit;
 }
 
 // A ray inside the stone.
@@ -315,7 +320,8 @@ fn gem_trace_tracked(input: GemVertex, direction: vec3f) -> vec3f {
 
 // Radiance around a red ray, with green and blue shifted along the paper's direction of dispersion,
 // eq. (12).
-fn gem_environment_paper(red: vec3f, spread: vec3f, travelled: f32) -> vec3f {
+fn gem_environment_paper(red: vec3f, spread: vec3f, travelled_inside: f32) -> vec3f {
+    let travelled = gem_world_length(travelled_inside);
     return gem_environment_channels(
         red,
         dispersion_paper_direction(red, spread, travelled, DISPERSION_PAPER_GREEN, material.dispersion_strength),

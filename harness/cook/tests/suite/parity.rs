@@ -173,6 +173,8 @@ fn so_it_is_with_copies() {
     }
     let limited = Settings { samples: 1, ..with("walk-8", |gem| gem.distance_limit = Some(2.5)) };
     check("brilliant", "copied, limited", &parity(&copied("brilliant"), &limited, None));
+    let limited = Settings { samples: 1, ..with("walk-16", |gem| gem.limit_throughput = Some(true)) };
+    check("brilliant", "copied, by throughput", &parity(&copied("brilliant"), &limited, None));
 }
 
 /// Fault planted in a recipe's text.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Version of the format; readers of other versions should refuse it.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Reason why a frame could not be written.
 #[derive(Debug, thiserror::Error)]

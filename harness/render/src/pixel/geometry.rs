@@ -195,9 +195,12 @@ impl Place<'_> {
             }
             Self::Walk { stone: Walked { convex, map, centre }, face, position: start } => {
                 let mut nearest = convex_trace::start(convex_walk::exit(*start, direction, map.lower, map.upper));
-                for _ in 0..CONVEX_WALK_STEPS {
+                let mut words = 0;
+                while words < CONVEX_WALK_STEPS {
                     let before = nearest.face;
-                    for candidate in map.candidates(*start + nearest.distance * direction) {
+                    for (number, candidate) in (0..).zip(map.candidates(*start + nearest.distance * direction)) {
+                        // Two candidates a word.
+                        words += number % 2;
                         let plane = convex.planes[candidate as usize];
                         nearest = convex_trace::step(nearest, *start, direction, plane, candidate, *face);
                     }

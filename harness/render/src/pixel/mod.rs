@@ -134,12 +134,16 @@ impl<'a> Shading<'a> {
         Self {
             absorbs: !settings.without.has(Effect::Absorption) && place.material(material).absorbs(),
             copy: Some(copy),
-            ..Self::new(material, settings)
+            ..Self::new(&place.material(material), settings)
         }
     }
 
     fn world_direction(&self, direction: Vec3) -> Vec3 {
         self.copy.as_ref().map_or(direction, |copy| copy.rotation.transpose() * direction)
+    }
+
+    fn world_length(&self, length_inside: f32) -> f32 {
+        self.copy.as_ref().map_or(length_inside, |copy| copy.scale * length_inside)
     }
 
     fn base_color(&self) -> Vec3 {
@@ -172,8 +176,7 @@ impl<'a> Shading<'a> {
     }
 
     fn ends(&self, travelled: f32) -> bool {
-        let scale = self.copy.as_ref().map_or(1.0, |copy| copy.scale);
-        self.settings.gem.distance_limit.is_some() && scale * travelled > self.material.distance_limit
+        self.settings.gem.distance_limit.is_some() && self.world_length(travelled) > self.material.distance_limit
     }
 
     /// Follows a ray to its next facet. The callers stop where it ends; the recipe's loops
@@ -262,7 +265,8 @@ impl<'a> Shading<'a> {
         ray
     }
 
-    fn environment_paper(&self, red: Vec3, spread: Vec3, travelled: f32) -> Vec3 {
+    fn environment_paper(&self, red: Vec3, spread: Vec3, travelled_inside: f32) -> Vec3 {
+        let travelled = self.world_length(travelled_inside);
         let strength = self.material.dispersion_strength;
         self.environment_channels(
             red,

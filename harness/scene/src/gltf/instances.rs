@@ -1,7 +1,7 @@
 //! Placement of a node's mesh: once, or many times by `EXT_mesh_gpu_instancing`.
 
 use ::gltf::json::Root;
-use glam::{DMat3, DMat4, Quat, Vec3};
+use glam::{DMat3, DMat4, DQuat, Quat, Vec3};
 use serde_json::{Map, Value};
 
 use super::accessor::{Elements, Kind, ROTATIONS, VECTORS};
@@ -17,7 +17,7 @@ pub(crate) const NAME: &str = "EXT_mesh_gpu_instancing";
 pub(super) const PLACING: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
 /// Attributes of our own that colour an instance: a factor of the base colour, and an attenuation
 /// colour in place of the material's.
-pub(crate) const COLORING: [&str; 2] = ["_BASE_COLOR", "_ATTENUATION_COLOR"];
+pub(crate) const COLORING: [&str; 2] = ["_LAPIDARY_BASE_COLOR", "_LAPIDARY_ATTENUATION_COLOR"];
 
 /// Places at which a node shows its mesh.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +115,12 @@ impl<'a> Instances<'a> {
             true => list.places_as_given(),
             false => self.transforms().map(Place::of_transform).collect(),
         };
-        let Some(mut places): Option<Vec<Place>> = places else { return Ok(None) };
+        let Some(mut places): Option<Vec<Place>> = places else {
+            let colored = list.base_colors.is_some() || list.attenuation_colors.is_some();
+            let wrong = "its instances have colours, but one is mirrored or scaled unevenly; scale it alike along all \
+                         axes, or leave the colours out";
+            return if colored { Err(wrong.to_owned()) } else { Ok(None) };
+        };
         let color = |name: &str, instance: usize, color: [f32; 3]| {
             let proper = color.iter().all(|part| (0.0..=1.0).contains(part));
             let [r, g, b] = color;
@@ -148,8 +153,14 @@ impl List<'_> {
             place.translation = Vec3::from_array(translation);
         }
         for (place, rotation) in places.iter_mut().zip(self.rotations.iter().flat_map(|all| all.quaternions())) {
-            let rotation = Quat::from_array(rotation);
-            place.rotation = if rotation.length() > 0.0 { rotation } else { Quat::IDENTITY };
+            let exact = DQuat::from_array(rotation.map(f64::from));
+            let length = exact.length();
+            place.rotation = match length {
+                0.0 => Quat::IDENTITY,
+                // The file's own numbers are as close to length 1 as f32 comes.
+                _ if (length - 1.0).abs() < 1e-6 => Quat::from_array(rotation),
+                _ => (exact / length).as_quat(),
+            };
         }
         for (place, [x, y, z]) in places.iter_mut().zip(self.scales.iter().flat_map(|all| all.vectors())) {
             if !(x > 0.0 && x == y && y == z) {

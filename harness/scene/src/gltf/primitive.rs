@@ -178,10 +178,7 @@ impl<'a> Reader<'a> {
         let Some(places) = instances.places().map_err(|problem| GltfError::part(self.user.to_owned(), problem))? else {
             return Ok(all.into_iter().map(|mesh| (mesh, None)).collect());
         };
-        // The shape in its own space may lie farther out than in the world.
-        let Ok(shape) = mesh(DMat4::IDENTITY, None) else {
-            return Ok(all.into_iter().map(|mesh| (mesh, None)).collect());
-        };
+        let shape = mesh(DMat4::IDENTITY, None)?;
         let copies = places.chunks(joined).map(|places| Copies { shape: shape.clone(), places: places.to_vec() });
         Ok(all.into_iter().zip(copies.map(Some)).collect())
     }

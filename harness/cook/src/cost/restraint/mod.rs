@@ -16,7 +16,8 @@ pub const LADDER: Ladder =
     Ladder { name: "restraint", tables: tables::tables, plots: |_| Vec::new(), whole: tables::whole };
 /// The rungs whose rays end once they carry too little light: few hits and many, with each
 /// geometry.
-pub const RUNGS: [&str; 6] = ["proxy-4", "proxy-8", "convex-8", "convex-16", "convex-64", "bvh-16"];
+pub const RUNGS: [&str; 9] =
+    ["proxy-4", "proxy-8", "walk-8", "walk-16", "walk-64", "convex-8", "convex-16", "convex-64", "bvh-16"];
 /// The scenes: a stone with total reflection, an absorbing one, and one with few facets.
 pub const SCENES: [&str; 3] = ["brilliant", "ruby", "prism"];
 

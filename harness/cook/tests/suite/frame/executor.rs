@@ -32,7 +32,7 @@ struct Host<'a> {
 pub fn run(device: &Device, queue: &Queue, folder: &Path) -> BTreeMap<String, Picture> {
     let text = std::fs::read_to_string(folder.join("frame.json")).expect("frame.json");
     let frame: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(frame["version"], 1);
+    assert_eq!(frame["version"], 2);
     let mut host = Host { device, queue, resources: Vec::new(), pipelines: Vec::new(), groups: Vec::new() };
     host.resources = list(&frame["resources"]).iter().map(|row| host.resource(row, folder)).collect();
     host.pipelines = list(&frame["pipelines"]).iter().map(|row| host.pipeline(row, folder)).collect();
