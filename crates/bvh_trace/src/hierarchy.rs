@@ -13,8 +13,8 @@
 use crate::traversal::BVH_TRACE_DEPTH;
 use glam::{DVec3, Vec3, Vec4};
 
-/// Largest number of triangles in a leaf.
-const MOST_IN_A_LEAF: usize = 4;
+/// Largest number of triangles in a leaf. Four take 3 % longer in a bunny, one 6 % in a brilliant.
+const MOST_IN_A_LEAF: usize = 2;
 /// Number of bins along each axis; splits are tried between them.
 const BINS: usize = 16;
 /// Cost of a step down relative to a triangle: two boxes and their transfer from memory.

@@ -73,40 +73,46 @@ pub fn trace_with(
     let mut stack = [0u32; BVH_TRACE_DEPTH];
     let mut entries = [0f32; BVH_TRACE_DEPTH];
     let mut depth = 0;
-    let mut node = 0;
-    loop {
-        let current = &nodes[node as usize];
-        let first = first_of(current);
-        let count = count_of(current);
-        if count == 0 {
+    let mut first = first_of(&nodes[0]);
+    let mut count = count_of(&nodes[0]);
+    let mut found = true;
+    while found {
+        // Down to a leaf.
+        while found && count == 0 {
             let (one, other) = (&nodes[first as usize], &nodes[first as usize + 1]);
             let box_one = crate::r#box(ray, lower_of(one), upper_of(one), hit.distance);
             let box_other = crate::r#box(ray, lower_of(other), upper_of(other), hit.distance);
             // The nearer child first: its hits cull the farther child.
             let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
-            let near = if other_first { first + 1 } else { first };
+            let mut node = if other_first { first + 1 } else { first };
             if box_one.hit && box_other.hit {
-                stack[depth] = 2 * first + 1 - near;
+                stack[depth] = 2 * first + 1 - node;
                 entries[depth] = box_one.entry.max(box_other.entry);
                 depth += 1;
             }
-            if box_one.hit || box_other.hit {
-                node = near;
-                continue;
+            // Back to the last box that may still hold a nearer hit.
+            found = box_one.hit || box_other.hit;
+            while depth > 0 && !found {
+                depth -= 1;
+                node = stack[depth];
+                found = entries[depth] <= hit.distance;
             }
+            first = first_of(&nodes[node as usize]);
+            count = count_of(&nodes[node as usize]);
         }
-        for triangle in first..first + count {
-            hit = test(positions, indices, hit, ray, triangle, left, with);
-        }
-        // Back to the last box that may still hold a nearer hit.
-        let mut found = false;
-        while depth > 0 && !found {
-            depth -= 1;
-            node = stack[depth];
-            found = entries[depth] <= hit.distance;
-        }
-        if !found {
-            break;
+        if found {
+            for triangle in first..first + count {
+                hit = test(positions, indices, hit, ray, triangle, left, with);
+            }
+            let mut node = 0;
+            found = false;
+            while depth > 0 && !found {
+                depth -= 1;
+                node = stack[depth];
+                found = entries[depth] <= hit.distance;
+            }
+            first = first_of(&nodes[node as usize]);
+            count = count_of(&nodes[node as usize]);
         }
     }
     hit

@@ -46,38 +46,46 @@ fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     var stack: array<u32, TRACE_DEPTH>;
     var entries: array<f32, TRACE_DEPTH>;
     var depth = 0u;
-    var node = 0u;
-    loop {
-        let first = nodes[node].first;
-        let count = nodes[node].count;
-        if (count == 0u) {
+    var first = nodes[0].first;
+    var count = nodes[0].count;
+    var found = true;
+    while (found) {
+        // Down to a leaf. Rays that run side by side wait here for the last one, so that they test
+        // boxes together and then triangles together.
+        while (found && count == 0u) {
             let box_one = bvh_trace_box(ray, nodes[first].lower, nodes[first].upper, hit.distance);
             let box_other = bvh_trace_box(ray, nodes[first + 1u].lower, nodes[first + 1u].upper, hit.distance);
             // The nearer child first: its hits cull the farther child.
             let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
-            let near = select(first, first + 1u, other_first);
+            var node = select(first, first + 1u, other_first);
             if (box_one.hit && box_other.hit) {
-                stack[depth] = 2u * first + 1u - near;
+                stack[depth] = 2u * first + 1u - node;
                 entries[depth] = max(box_one.entry, box_other.entry);
                 depth += 1u;
             }
-            if (box_one.hit || box_other.hit) {
-                node = near;
-                continue;
+            // Back to the last box that may still hold a nearer hit.
+            found = box_one.hit || box_other.hit;
+            while (depth > 0u && !found) {
+                depth -= 1u;
+                node = stack[depth];
+                found = entries[depth] <= hit.distance;
             }
+            first = nodes[node].first;
+            count = nodes[node].count;
         }
-        for (var triangle = first; triangle < first + count; triangle += 1u) {
-            hit = trace_triangle(hit, ray, triangle, left);
-        }
-        // Back to the last box that may still hold a nearer hit.
-        var found = false;
-        while (depth > 0u && !found) {
-            depth -= 1u;
-            node = stack[depth];
-            found = entries[depth] <= hit.distance;
-        }
-        if (!found) {
-            break;
+        if (found) {
+            for (var triangle = first; triangle < first + count; triangle += 1u) {
+                hit = trace_triangle(hit, ray, triangle, left);
+            }
+            var node = 0u;
+            found = false;
+            while (depth > 0u && !found) {
+                depth -= 1u;
+                node = stack[depth];
+                found = entries[depth] <= hit.distance;
+            }
+            first = nodes[node].first;
+            count = nodes[node].count;
         }
     }
     return hit;
