@@ -18,7 +18,7 @@ const ROUNDS: usize = 7;
 /// Resets the seeds, solves, and returns the time of the solve.
 fn run(gpu: &Gpu, solver: &LoneSolver<'_>, case: &Case) -> Duration {
     let wait = || gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a device");
-    solver.set_seeds(&case.seeds);
+    solver.set_seeds(&case.seeds).expect("a seed for each voxel");
     gpu.queue.submit([]);
     wait();
     let start = Instant::now();
@@ -37,7 +37,7 @@ fn main() {
         let solvers = Method::ALL.map(|method| {
             let solve = Solve { method, heterogeneous: false, most_passes: None };
             let solver = LoneSolver::new(gpu, case.grid, solve, case.extinction, None).expect("it compiles");
-            solver.set_body(&case.bits(), &[]);
+            solver.set_body(&case.bits(), &[]).expect("a bit for each voxel");
             solver
         });
         let mut least = [Duration::MAX; Method::ALL.len()];

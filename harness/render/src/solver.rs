@@ -253,16 +253,23 @@ impl<'gpu> LoneSolver<'gpu> {
     }
 
     /// Sets the body: one bit per voxel and, if the solver is heterogeneous, one density per voxel.
-    pub fn set_body(&self, matter: &[u32], density: &[f32]) {
-        self.executor.write_buffer(self.solved.matter, bytemuck::cast_slice(matter));
-        if let Some(buffer) = self.solved.density {
-            self.executor.write_buffer(buffer, bytemuck::cast_slice(density));
+    ///
+    /// # Errors
+    /// If a list does not have the grid's length.
+    pub fn set_body(&self, matter: &[u32], density: &[f32]) -> Result<(), GpuError> {
+        self.executor.write_buffer(self.solved.matter, bytemuck::cast_slice(matter))?;
+        match self.solved.density {
+            Some(buffer) => self.executor.write_buffer(buffer, bytemuck::cast_slice(density)),
+            None => Ok(()),
         }
     }
 
     /// Sets the seeds: one cost per voxel, unreached where there is no seed.
-    pub fn set_seeds(&self, seeds: &[f32]) {
-        self.executor.write_buffer(self.solved.cost, bytemuck::cast_slice(seeds));
+    ///
+    /// # Errors
+    /// If the list does not have the grid's length.
+    pub fn set_seeds(&self, seeds: &[f32]) -> Result<(), GpuError> {
+        self.executor.write_buffer(self.solved.cost, bytemuck::cast_slice(seeds))
     }
 
     /// Solves from the seeds, without waiting.

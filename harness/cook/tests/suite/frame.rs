@@ -42,6 +42,7 @@ fn another_host_draws_the_same_pictures() {
         ("brilliant", Settings { samples: 8, width: 300, height: 270, ..by_material.clone() }),
         ("bunny", of_rung("tiled-26-64")),
         ("dragon", of_rung("ping-pong-6-32")),
+        ("pave_ring", by_material.clone()),
         ("skin_bunny", Settings { shadows: true, ..of_rung("blur") }),
         ("wax", of_rung("table-257-rgba16f")),
         ("ruby", Settings { gem: GemOptions { deferred: true, ..GemOptions::default() }, ..of_rung("proxy-2") }),

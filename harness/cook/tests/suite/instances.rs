@@ -82,7 +82,12 @@ fn a_turning_ring_uploads_its_places_alone() {
     };
     let executor = Executor::new(gpu(), first.clone()).expect("made");
     let before = linear(&executor);
-    changes.iter().for_each(|(buffer, contents)| executor.write_buffer(*buffer, contents));
+    for (buffer, contents) in changes {
+        executor.write_buffer(buffer, contents).expect("written");
+        // Places for fewer stones are no places for all of them.
+        let error = executor.write_buffer(buffer, &contents[16..]).expect_err("too few").to_string();
+        assert!(error.contains(first.name(buffer)) && error.contains(&contents.len().to_string()), "{error}");
+    }
     let moved = linear(&executor);
     let anew = linear(&Executor::new(gpu(), second).expect("made"));
     assert!(moved == anew && moved != before);

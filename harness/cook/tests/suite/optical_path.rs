@@ -34,8 +34,8 @@ fn solve_within(case: &Case, method: Method, most_passes: Option<u32>) -> (Vec<f
         .or_insert_with(|| {
             LoneSolver::new(super::gpu(), case.grid, solve, case.extinction, None).expect("it compiles")
         });
-    solver.set_body(&case.bits(), &case.density);
-    solver.set_seeds(&case.seeds);
+    solver.set_body(&case.bits(), &case.density).expect("the body");
+    solver.set_seeds(&case.seeds).expect("the seeds");
     solver.run().expect("run");
     (solver.costs().expect("a device"), solver.status().expect("a device"))
 }

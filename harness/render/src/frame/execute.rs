@@ -128,9 +128,20 @@ impl<'gpu> Executor<'gpu> {
         self.gpu.queue.write_texture(texture.as_image_copy(), texels, layout, size);
     }
 
-    /// Fills a buffer from its start. The buffer must allow copies to it.
-    pub fn write_buffer(&self, buffer: Buffer, contents: &[u8]) {
+    /// Fills a buffer, which must allow copies to it.
+    ///
+    /// # Errors
+    /// If the contents are longer or shorter than the buffer.
+    pub fn write_buffer(&self, buffer: Buffer, contents: &[u8]) -> Result<(), GpuError> {
+        let (size, given) = (self.buffer(buffer).size(), contents.len() as u64);
+        if size != given {
+            let what = format!("writing `{}`", self.frame.name(buffer));
+            let reason =
+                format!("it holds {size} bytes, but {given} were given; make the frame anew for another number");
+            return Err(GpuError::Device { what, reason });
+        }
         self.gpu.queue.write_buffer(self.buffer(buffer), 0, contents);
+        Ok(())
     }
 
     /// Returns the words of a whole buffer, which must allow copies from it. Waits for everything

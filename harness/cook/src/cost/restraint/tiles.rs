@@ -81,7 +81,7 @@ fn seeded(words: &[u32], grid: VoxelGrid) -> (Vec<f32>, f64) {
 fn solve(gpu: &Gpu, solver: &LoneSolver<'_>, seeds: &[f32]) -> Result<f64, RenderError> {
     let wait =
         || gpu.guarded("solving by tiles", |device| device.poll(wgpu::PollType::wait_indefinitely())).map(Result::ok);
-    solver.set_seeds(seeds);
+    solver.set_seeds(seeds)?;
     gpu.queue.submit([]);
     wait()?;
     let start = Instant::now();
@@ -112,7 +112,7 @@ pub(super) fn measure(
             let source = changes.iter().fold(plain.clone(), |source, (right, cut)| source.replace(right, cut));
             let solve = Solve { method: METHOD, heterogeneous: false, most_passes: None };
             let solver = LoneSolver::new(gpu, grid, solve, extinction, Some(&source)).map_err(RenderError::from)?;
-            solver.set_body(&matter, &[]);
+            solver.set_body(&matter, &[]).map_err(lapidary_render::RenderError::from)?;
             solvers.push(solver);
         }
         let tiles = u64::from(cells / TILE).pow(3);
