@@ -74,7 +74,7 @@ pub(super) fn add(
 
 /// Returns the brightest base colour of an object's copies, by channel; the material's own if it is
 /// shown once.
-pub(crate) fn brightest(object: &Object) -> Vec3 {
+fn brightest(object: &Object) -> Vec3 {
     object.materials().map(|material| material.base_color).fold(Vec3::ZERO, Vec3::max)
 }
 
@@ -117,6 +117,7 @@ impl<'a> Geometries<'a> {
     /// Returns the data for a body of this name.
     fn of(name: &str, mesh: &'a Mesh, rung: Rung) -> Result<Self, RenderError> {
         let indices = Cow::Borrowed(&mesh.indices[..]);
+        let not_convex = |reason| RenderError::NotConvex { object: name.to_owned(), reason };
         Ok(match rung.geometry() {
             Geometry::Proxy => {
                 let normals = match soft_normals(mesh) {
@@ -126,26 +127,15 @@ impl<'a> Geometries<'a> {
                 Self { indices, own: vec![("normals", normals)], record: None, steps: 0 }
             }
             Geometry::Convex => {
-                let not_convex = || RenderError::NotConvex { object: name.to_owned(), reason: convex::obstacle(mesh) };
-                let convex = Convex::of_mesh(mesh).ok_or_else(not_convex)?;
-                let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
-                let faces: &[u8] = bytemuck::cast_slice(&convex.face_of_triangle);
-                let planes: &[u8] = bytemuck::cast_slice(&planes);
-                let own = vec![("planes", planes.to_vec().into()), ("face of triangle", faces.to_vec().into())];
-                Self { indices, own, record: None, steps: convex.planes.len() as u64 }
+                let convex = Convex::of_mesh(mesh).ok_or_else(|| not_convex(convex::obstacle(mesh)))?;
+                Self { indices, own: facets(&convex), record: None, steps: convex.planes.len() as u64 }
             }
             Geometry::Walk => {
-                let not_convex = |reason| RenderError::NotConvex { object: name.to_owned(), reason };
                 let Walked { convex, map, centre } = Walked::of_mesh(mesh).map_err(not_convex)?;
-                let planes: Vec<[f32; 4]> = convex.planes.iter().map(|plane| plane.to_array()).collect();
-                let bytes = |part: &[u8]| Cow::Owned(part.to_vec());
                 let stone = Record::new("GemStone").with("centre", centre).with("side", map.side);
                 let stone = stone.with("lower", map.lower).with("upper", map.upper);
-                let own = vec![
-                    ("planes", bytes(bytemuck::cast_slice(&planes))),
-                    ("face of triangle", bytes(bytemuck::cast_slice(&convex.face_of_triangle))),
-                    ("facet map", bytes(bytemuck::cast_slice(&map.words))),
-                ];
+                let mut own = facets(&convex);
+                own.push(("facet map", bytemuck::cast_slice(&map.words).to_vec().into()));
                 // Few walks take more than four passes, even over the longest lists.
                 Self { indices, own, record: Some(("stone", stone)), steps: 4 * map.longest_list() as u64 }
             }
@@ -163,6 +153,13 @@ impl<'a> Geometries<'a> {
             }
         })
     }
+}
+
+/// Returns the buffers of a convex body's facets.
+fn facets<'a>(Convex { planes, face_of_triangle }: &Convex) -> Vec<(&'static str, Cow<'a, [u8]>)> {
+    let planes: Vec<[f32; 4]> = planes.iter().map(|plane| plane.to_array()).collect();
+    let (planes, faces): (&[u8], &[u8]) = (bytemuck::cast_slice(&planes), bytemuck::cast_slice(face_of_triangle));
+    vec![("planes", planes.to_vec().into()), ("face of triangle", faces.to_vec().into())]
 }
 
 /// Size in bytes of the device buffers that a rung's geometry needs for `object`, besides positions

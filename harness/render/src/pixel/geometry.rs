@@ -87,18 +87,15 @@ impl<'a> Stone<'a> {
     pub fn new(object: &'a Object, settings: &Settings) -> Result<Self, RenderError> {
         let joined = settings.without.has(Effect::Instances);
         let mesh = if joined { &object.mesh } else { object.shape() };
-        let not_convex = || RenderError::NotConvex { object: object.name.clone(), reason: convex::obstacle(mesh) };
+        let not_convex = |reason| RenderError::NotConvex { object: object.name.clone(), reason };
         let normals = match settings.rung.geometry() {
             Geometry::Proxy => soft_normals(mesh),
             _ => Cow::Borrowed(&mesh.normals[..]),
         };
         let data = match settings.rung.geometry() {
             Geometry::Proxy => Data::Proxy,
-            Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(not_convex)?),
-            Geometry::Walk => Data::Walk(
-                Walked::of_mesh(mesh)
-                    .map_err(|reason| RenderError::NotConvex { object: object.name.clone(), reason })?,
-            ),
+            Geometry::Convex => Data::Convex(Convex::of_mesh(mesh).ok_or_else(|| not_convex(convex::obstacle(mesh)))?),
+            Geometry::Walk => Data::Walk(Walked::of_mesh(mesh).map_err(not_convex)?),
             Geometry::Triangles => Data::Triangles(Leaves::of(mesh)),
             Geometry::Bvh => Data::Bvh(Leaves::of(mesh)),
         };

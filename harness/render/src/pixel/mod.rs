@@ -53,13 +53,13 @@ struct GemCopy {
 }
 
 impl GemCopy {
-    fn of(place: &lapidary_scene::Place, material: &Material) -> Self {
-        let Material { base_color, attenuation_color, attenuation_distance, .. } = place.material(material);
-        let absorption = absorption::coefficient(attenuation_color, attenuation_distance);
+    /// Returns the copy at `place`, of its own material.
+    fn of(place: &lapidary_scene::Place, material: &GemMaterial) -> Self {
         let rows = place.rows();
         let scale = rows[0].xyz().length();
         let rotation = Mat3::from_cols(rows[0].xyz() / scale, rows[1].xyz() / scale, rows[2].xyz() / scale);
         let translation = Vec3::new(rows[0].w, rows[1].w, rows[2].w);
+        let GemMaterial { base_color, absorption, .. } = *material;
         Self { rotation, scale, translation, base_color, absorption: scale * absorption }
     }
 }
@@ -130,12 +130,8 @@ impl<'a> Shading<'a> {
 
     /// Prepares the shading of a copy of `material` at `place`.
     pub fn of_copy(material: &Material, place: &lapidary_scene::Place, settings: &'a Settings) -> Self {
-        let copy = GemCopy::of(place, material);
-        Self {
-            absorbs: !settings.without.has(Effect::Absorption) && place.material(material).absorbs(),
-            copy: Some(copy),
-            ..Self::new(&place.material(material), settings)
-        }
+        let shading = Self::new(&place.material(material), settings);
+        Self { copy: Some(GemCopy::of(place, &shading.material)), ..shading }
     }
 
     fn world_direction(&self, direction: Vec3) -> Vec3 {
