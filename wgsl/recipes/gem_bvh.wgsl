@@ -3,16 +3,18 @@
 // Source: the part trace_nearest; its loop over all triangles is the comparison of Imagire, "Proxy
 //   Geometry Gem Rendering", section 5.
 // requires: absorption, bvh_trace, dispersion, environment, fresnel, proxy_geometry, refraction
-// parts: mesh, surroundings, trace_nearest, gem_shading
+// parts: surroundings, trace_nearest, gem_shading
 //
-// Draw it like the recipe `gem`, with the index buffer in the order of the leaves, and also bind
-// the nodes.
+// Draw 3 vertices per triangle, in the order of the leaves, without a vertex buffer. The nodes and
+// the corners are bound in place of the mesh.
 
 // Light passes through the stone; if off, only its surface reflects. Called for by
 // KHR_materials_transmission.
 override EFFECT_BVH_TRACE: bool = true;
-// The root is first; the two children of a node are side by side.
+// The root is first.
 @group(2) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;
+// Three per triangle, counter-clockwise from outside, in the order of the leaves. w is not read.
+@group(2) @binding(1) var<storage, read> corners: array<vec4f>;
 
 struct GemVertex {
     @builtin(position) clip: vec4f,
@@ -24,9 +26,9 @@ struct GemVertex {
 
 fn gem_face_normal(triangle: u32) -> vec3f {
     return proxy_geometry_face_normal(
-        mesh_position(indices[3u * triangle]),
-        mesh_position(indices[3u * triangle + 1u]),
-        mesh_position(indices[3u * triangle + 2u]),
+        corners[3u * triangle].xyz,
+        corners[3u * triangle + 1u].xyz,
+        corners[3u * triangle + 2u].xyz,
     );
 }
 
@@ -35,7 +37,7 @@ fn gem_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,  //+instances
 ) -> GemVertex {
-    let position = mesh_position(indices[vertex]);
+    let position = corners[vertex].xyz;
     let triangle = vertex / 3u;
     return GemVertex(
         //-instances gem_clip(position),

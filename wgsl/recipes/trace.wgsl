@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
 // Source: the part trace_nearest, which other recipes share.
 // requires: bvh_trace
-// parts: mesh, trace_nearest
+// parts: trace_nearest
 //
-// A shader that traces rays itself uses these two parts and the bindings of group 0.
+// A shader that traces rays itself uses this part and the bindings of group 0.
 
-// The root is first; the two children of a node are side by side. At least one node.
+// The root is first. At least one node.
 @group(0) @binding(0) var<storage, read> nodes: array<BvhTraceNode>;
-// Three floats per vertex.
-@group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Three per triangle, counter-clockwise from outside, in the order of the leaves. A triangle's
-// number is its position here.
-@group(0) @binding(2) var<storage, read> indices: array<u32>;
+// Three per triangle, counter-clockwise from outside, in the order of the leaves; w is not read. A
+// triangle's number is its position here.
+@group(0) @binding(1) var<storage, read> corners: array<vec4f>;
 
 struct TraceQuery {
     origin: vec3f,

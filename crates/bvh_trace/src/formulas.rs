@@ -3,16 +3,18 @@
 mod outside;
 
 use crate::{
-    self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceObjectRay, BvhTraceRay,
-    oracle,
+    self as mirror, BVH_TRACE_NAIVE_EPSILON, BVH_TRACE_NONE, BvhTraceBox, BvhTraceExtent, BvhTraceHit, BvhTraceNode,
+    BvhTraceObjectRay, BvhTraceRay, oracle,
 };
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, UVec3, UVec4, Vec2, Vec3};
 use lapidary_assay::draws::Draws;
 use lapidary_assay::formula::{Formula, formula, near, with_promises};
 use lapidary_assay::mirror_struct;
 
 mirror_struct!(crate, BvhTraceRay { origin, direction, reciprocal, shear, axis, margin });
 mirror_struct!(crate, BvhTraceObjectRay { origin, direction, stretch });
+mirror_struct!(crate, BvhTraceNode { corner, steps, lower, upper, children });
+mirror_struct!(crate, BvhTraceExtent { lower, upper });
 mirror_struct!(crate, BvhTraceBox { entry, hit });
 mirror_struct!(crate, BvhTraceHit { distance, barycentrics, triangle });
 
@@ -336,7 +338,7 @@ pub fn formulas() -> Vec<Formula> {
 }
 
 fn functions() -> Vec<Formula> {
-    let all = [vec![to_object_formula()], ray_formulas(), box_formulas(), triangle_formulas()];
+    let all = [vec![to_object_formula()], ray_formulas(), node_formulas(), box_formulas(), triangle_formulas()];
     all.into_iter().flatten().collect()
 }
 
@@ -425,6 +427,68 @@ fn ray_formulas() -> Vec<Formula> {
             near("distance", (back - offset).length(), 0.0, 8.0 * 2f64.powi(-23) * offset.length())
         })
         .build(),
+    ]
+}
+
+/// Draws a node: of any bytes, or of the boxes of a hierarchy's node, with 1 to 4 children.
+fn node(draws: &mut Draws<'_>) -> BvhTraceNode {
+    let exponent = 87 + draws.below(81);
+    let near = |draws: &mut Draws<'_>| (exponent + draws.below(3)).min(167);
+    let steps = near(draws) | near(draws) << 8 | near(draws) << 16;
+    let step = 2f64.powi(exponent as i32 - 127);
+    // Corners where the sum rounds, and where it cancels.
+    let corner = match draws.below(4) {
+        0 => Vec3::ZERO,
+        1 => -(step * f64::from(draws.below(256))) as f32 * Vec3::ONE,
+        _ => (step * f64::from(draws.magnitude(0, 20))) as f32 * draws.in_cube(),
+    };
+    let corner = corner.clamp(Vec3::splat(-1e12), Vec3::splat(1e12));
+    let mut bytes = || UVec3::new(draws.below(u32::MAX), draws.below(u32::MAX), draws.below(u32::MAX));
+    let (one, other) = (bytes(), bytes());
+    let count = 1 + draws.below(4);
+    let (mut lower, mut upper) = (UVec3::ZERO, UVec3::ZERO);
+    for axis in 0..3 {
+        for child in 0..count {
+            let [one, other] = [one, other].map(|words| words[axis] >> (8 * child) & 255);
+            lower[axis] |= one.min(other) << (8 * child);
+            upper[axis] |= one.max(other) << (8 * child);
+        }
+    }
+    let child = |place: u32| if place < count { place + 1 } else { BVH_TRACE_NONE };
+    BvhTraceNode { corner, steps, lower, upper, children: UVec4::new(child(0), child(1), child(2), child(3)) }
+}
+
+fn node_formulas() -> Vec<Formula> {
+    // The sides of a flat box are equal sums, each rounded on its own: up or down, as WGSL has it.
+    let ordered = |extent: BvhTraceExtent| {
+        let give = f32::EPSILON * extent.upper.abs();
+        if extent.lower.cmple(extent.upper + give).all() { Ok(()) } else { Err(format!("{extent:?}")) }
+    };
+    vec![
+        formula(M, "bvh_trace_child_box", mirror::child_box, oracle::child_box, |draws| (node(draws), draws.below(4)))
+            .edge("the first child", |(_, child)| child == 0)
+            .edge("the last child", |(_, child)| child == 3)
+            .edge("no child", |(node, child)| node.children[child as usize] == BVH_TRACE_NONE)
+            .edge("a corner at the origin", |(node, _)| node.corner == Vec3::ZERO)
+            .edge("steps that differ", |(node, _)| node.steps & 255 != node.steps >> 8 & 255)
+            .edge("a sum that cancels", |(node, child)| {
+                let BvhTraceExtent { lower, .. } = mirror::child_box(node, child);
+                lower.x == 0.0 && node.corner.x != 0.0
+            })
+            .invariant("lower is not above upper, but for rounding", move |_, extent: BvhTraceExtent| ordered(extent))
+            .build(),
+        formula(M, "bvh_trace_bounds", mirror::bounds, oracle::bounds, |draws| (node(draws),))
+            .edge("one child", |(node,)| node.children.y == BVH_TRACE_NONE)
+            .edge("four children", |(node,)| node.children.w != BVH_TRACE_NONE)
+            .edge("a corner at the origin", |(node,)| node.corner == Vec3::ZERO)
+            .invariant("every child's box lies within", |(node,), whole: BvhTraceExtent| {
+                let outside = (0..4).map(|child| mirror::child_box(node, child)).find(|child| {
+                    let give = 2f32.powi(-22) * (child.lower.abs().max(child.upper.abs()) + node.corner.abs());
+                    !(child.lower + give).cmpge(whole.lower).all() || !(child.upper - give).cmple(whole.upper).all()
+                });
+                outside.map_or(Ok(()), |child| Err(format!("{child:?} in {whole:?}")))
+            })
+            .build(),
     ]
 }
 

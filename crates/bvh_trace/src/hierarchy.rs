@@ -1,20 +1,26 @@
 //! A bounding volume hierarchy over a mesh, in the layout of the storage buffers of
 //! `wgsl/recipes/trace.wgsl` and `gem_bvh.wgsl`.
 //!
-//! Built here because no crate fits. obvhs 0.4 has the right layout, 32-byte nodes with adjacent
-//! children, and few dependencies; but its clustering does not bound the depth, as a shader's stack
+//! Built here because no crate fits. obvhs 0.4 has nodes of two children and compressed ones of
+//! eight, and few dependencies; but its clustering does not bound the depth, as a shader's stack
 //! requires, and with debug assertions, as in the test builds, it panics on some degenerate meshes
 //! and overflows the stack with 20,000 equal triangles. bvh 0.13 keeps an enum of nodes with
 //! parents, or a list of 36-byte nodes to skip through, which has no near-to-far order, and it
 //! depends on nalgebra. The remaining work is short: splits by the surface area heuristic in bins
-//! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), and halving
-//! wherever those would make the hierarchy too deep.
+//! (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), halving wherever
+//! those would make the hierarchy too deep, and boxes in bytes (Ylitie, Karras and Laine, "Efficient
+//! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
 
-use crate::traversal::BVH_TRACE_DEPTH;
-use glam::{DVec3, Vec3, Vec4};
+use crate::traversal::{BVH_TRACE_LEAF, BVH_TRACE_LEVELS};
+use crate::{BVH_TRACE_NONE, BvhTraceNode};
+use glam::{DVec3, UVec3, UVec4, Vec3, Vec4};
+use std::ops::Range;
 
-/// Largest number of triangles in a leaf. Four take 3 % longer in a bunny, one 6 % in a brilliant.
+/// Largest number of triangles in a leaf. One takes 7 % longer in a bunny, 14 % in a brilliant; three
+/// take as long.
 const MOST_IN_A_LEAF: usize = 2;
+/// Largest number of splits above a leaf: each level of nodes takes two at least.
+const MOST_SPLITS: usize = 2 * BVH_TRACE_LEVELS;
 /// Number of bins along each axis; splits are tried between them.
 const BINS: usize = 16;
 /// Cost of a step down relative to a triangle: two boxes and their transfer from memory.
@@ -23,14 +29,13 @@ const STEP: f64 = 1.0;
 /// A hierarchy of boxes over the triangles of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
-    /// Nodes of 32 bytes each, `BvhTraceNode` in WGSL: (lower corner, count) and (upper corner,
-    /// first), the last component of each being the bits of a `u32`. A node with count above 0 is a
-    /// leaf of the triangles first, …, first + count - 1; one with 0 is an inner node whose
-    /// children are the nodes first and first + 1. The root is the first node, and a node precedes
-    /// its children. Empty if the mesh has no triangle.
-    pub nodes: Vec<[Vec4; 2]>,
+    /// Nodes, `BvhTraceNode` in WGSL, each before its children; the root is the first. Empty if the
+    /// mesh has no triangle.
+    pub nodes: Vec<BvhTraceNode>,
     /// Three vertex indices per triangle, in the order of the leaves.
     pub indices: Vec<u32>,
+    /// Positions of these vertices, in the layout of a storage buffer; w is 0.
+    pub corners: Vec<Vec4>,
     /// Number in the mesh of each of these triangles.
     pub order: Vec<u32>,
 }
@@ -81,9 +86,9 @@ impl Extent {
 }
 
 impl Bvh {
-    /// Builds the hierarchy of a mesh, at most [`BVH_TRACE_DEPTH`] nodes deep below its root.
-    /// `indices` are three per triangle, counter-clockwise from outside. Triangles with a corner that
-    /// is not finite, or that does not exist, cannot be hit and are left out.
+    /// Builds the hierarchy of a mesh, of at most [`BVH_TRACE_LEVELS`] levels of nodes. `indices` are
+    /// three per triangle, counter-clockwise from outside. Triangles with a corner that is not
+    /// finite, or that does not exist, cannot be hit and are left out.
     #[must_use]
     pub fn build(positions: &[Vec3], indices: &[u32]) -> Self {
         let corner = |index: u32| positions.get(index as usize).copied().filter(|position| position.is_finite());
@@ -100,50 +105,155 @@ impl Bvh {
         }
         let nodes = nodes(&mut triangles);
         let order: Vec<u32> = triangles.iter().map(|triangle| triangle.number).collect();
-        let corners = |number: &u32| indices[3 * *number as usize..][..3].iter().copied();
-        Self { nodes, indices: order.iter().flat_map(corners).collect(), order }
+        let vertices = |number: &u32| indices[3 * *number as usize..][..3].iter().copied();
+        let indices: Vec<u32> = order.iter().flat_map(vertices).collect();
+        let corners = indices.iter().map(|index| positions[*index as usize].extend(0.0)).collect();
+        Self { nodes, indices, corners, order }
     }
 
-    /// Returns the largest number of nodes below the root on the way to a leaf; 0 without nodes.
+    /// Returns the nodes in the layout of a storage buffer, 16 words each.
     #[must_use]
-    pub fn depth(&self) -> usize {
-        let mut depths = vec![0; self.nodes.len()];
+    pub fn words(&self) -> Vec<[u32; 16]> {
+        self.nodes.iter().map(words).collect()
+    }
+
+    /// Returns the largest number of nodes on the way from the root to a leaf; 0 without nodes.
+    #[must_use]
+    pub fn levels(&self) -> usize {
+        let mut levels = vec![1; self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate() {
-            if node[0].w.to_bits() == 0 {
-                let first = node[1].w.to_bits() as usize;
-                depths[first] = depths[index] + 1;
-                depths[first + 1] = depths[index] + 1;
+            for child in node.children.to_array().into_iter().filter(|child| *child < BVH_TRACE_LEAF) {
+                levels[child as usize] = levels[index] + 1;
             }
         }
-        depths.into_iter().max().unwrap_or(0)
+        levels.into_iter().max().unwrap_or(0)
+    }
+}
+
+fn words(node: &BvhTraceNode) -> [u32; 16] {
+    let [x, y, z] = node.corner.to_array().map(f32::to_bits);
+    let ([lower_x, lower_y, lower_z], [upper_x, upper_y, upper_z]) = (node.lower.to_array(), node.upper.to_array());
+    let [a, b, c, d] = node.children.to_array();
+    [x, y, z, node.steps, lower_x, lower_y, lower_z, 0, upper_x, upper_y, upper_z, 0, a, b, c, d]
+}
+
+/// A part of the triangles that becomes one child.
+struct Part {
+    range: Range<usize>,
+    extent: Extent,
+    /// Where it is split; `None` for a leaf.
+    middle: Option<usize>,
+    /// Number of splits above.
+    depth: usize,
+}
+
+impl Part {
+    fn of(triangles: &mut [Triangle], range: Range<usize>, depth: usize) -> Self {
+        let part = &mut triangles[range.clone()];
+        let extent = Extent::of(part);
+        let middle = split(part, extent, depth).map(|count| range.start + count);
+        Self { range, extent, middle, depth }
     }
 }
 
 /// Builds the nodes, and sorts the triangles into the order of the leaves.
-fn nodes(triangles: &mut [Triangle]) -> Vec<[Vec4; 2]> {
-    let mut nodes = vec![[Vec4::ZERO; 2]];
-    let mut open = vec![(0, 0..triangles.len(), 0)];
-    while let Some((node, range, depth)) = open.pop() {
-        let part = &mut triangles[range.clone()];
-        let extent = Extent::of(part);
-        let (count, first) = match split(part, extent, depth) {
-            None => (part.len(), range.start),
-            Some(middle) => {
-                let first = nodes.len();
-                nodes.extend([[Vec4::ZERO; 2]; 2]);
-                // The first child is built next, so that it and its contents are close by in
-                // memory.
-                open.push((first + 1, range.start + middle..range.end, depth + 1));
-                open.push((first, range.start..range.start + middle, depth + 1));
-                (0, first)
+fn nodes(triangles: &mut [Triangle]) -> Vec<BvhTraceNode> {
+    let whole = 0..triangles.len();
+    let mut nodes = vec![BvhTraceNode::EMPTY];
+    let root = Part::of(triangles, whole, 0);
+    let mut open = vec![(0, root)];
+    while let Some((place, part)) = open.pop() {
+        let parts = children(triangles, part);
+        let mut node = BvhTraceNode::around(parts.iter().map(|part| part.extent));
+        let mut inner = Vec::new();
+        for (child, part) in parts.into_iter().enumerate() {
+            // A mesh has fewer triangles and nodes than 2^30, because its indices are counted by u32.
+            if part.middle.is_none() {
+                node.children[child] = part.range.start as u32 | (part.range.len() as u32) << 30;
+            } else {
+                node.children[child] = nodes.len() as u32;
+                inner.push((nodes.len(), part));
+                nodes.push(BvhTraceNode::EMPTY);
             }
-        };
-        // A mesh has fewer than 2³² / 3 triangles and less than twice as many nodes, because its
-        // indices are counted by u32.
-        let bits = |number: usize| f32::from_bits(number as u32);
-        nodes[node] = [extent.lower.extend(bits(count)), extent.upper.extend(bits(first))];
+        }
+        nodes[place] = node;
+        // The first child is built next, so that it and its contents are close by in memory.
+        open.extend(inner.into_iter().rev());
     }
     nodes
+}
+
+/// Splits a part into two, each of those into two, and then the largest again, until there are
+/// four. Each level of nodes so takes up two levels of splits at least.
+fn children(triangles: &mut [Triangle], part: Part) -> Vec<Part> {
+    let mut parts = vec![part];
+    for _ in 0..2 {
+        parts = parts.into_iter().flat_map(|part| halves(triangles, part)).collect();
+    }
+    while parts.len() < 4 {
+        let inner = (0..parts.len()).filter(|place| parts[*place].middle.is_some());
+        let Some(largest) = inner.max_by(|a, b| parts[*a].extent.area().total_cmp(&parts[*b].extent.area())) else {
+            break;
+        };
+        let part = parts.remove(largest);
+        parts.splice(largest..largest, halves(triangles, part));
+    }
+    parts
+}
+
+/// Returns the two halves of a part, or the part itself if it is a leaf.
+fn halves(triangles: &mut [Triangle], part: Part) -> Vec<Part> {
+    match part.middle {
+        None => vec![part],
+        Some(middle) => [part.range.start..middle, middle..part.range.end]
+            .map(|range| Part::of(triangles, range, part.depth + 1))
+            .into(),
+    }
+}
+
+impl BvhTraceNode {
+    /// A node without children.
+    const EMPTY: Self = Self {
+        corner: Vec3::ZERO,
+        steps: 0,
+        lower: UVec3::ZERO,
+        upper: UVec3::ZERO,
+        children: UVec4::splat(BVH_TRACE_NONE),
+    };
+
+    /// Returns a node with the boxes of up to four children.
+    fn around(extents: impl Iterator<Item = Extent> + Clone) -> Self {
+        let whole = extents.clone().fold(Extent::EMPTY, Extent::join);
+        let mut node = Self { corner: whole.lower, ..Self::EMPTY };
+        for axis in 0..3 {
+            let corner = f64::from(whole.lower[axis]);
+            let upper = f64::from(whole.upper[axis]);
+            // The least power of two of which 255 reach across.
+            let step = |exponent: i32| 2f64.powi(exponent - 127);
+            let mut exponent = (((upper - corner) / 255.0).log2().ceil() as i32).saturating_add(127).clamp(1, 254);
+            while corner + 255.0 * step(exponent) < upper {
+                exponent += 1;
+            }
+            node.steps |= (exponent as u32) << (8 * axis);
+            let step = step(exponent);
+            for (child, extent) in extents.clone().enumerate() {
+                // Rounded outwards. The shader's sum is off by its rounding, which a ray's margin
+                // covers.
+                let (side, other) = (f64::from(extent.lower[axis]), f64::from(extent.upper[axis]));
+                let (mut lower, mut upper) = (((side - corner) / step).floor(), ((other - corner) / step).ceil());
+                if corner + lower * step > side {
+                    lower -= 1.0;
+                }
+                if corner + upper * step < other {
+                    upper += 1.0;
+                }
+                let (lower, upper) = (lower as u32, upper as u32);
+                node.lower[axis] |= lower << (8 * child);
+                node.upper[axis] |= upper << (8 * child);
+            }
+        }
+        node
+    }
 }
 
 /// Returns the number of levels that halving needs for this many triangles.
@@ -179,7 +289,7 @@ fn split(part: &mut [Triangle], extent: Extent, depth: usize) -> Option<usize> {
             let [first, second] =
                 [&bins[..start], &bins[start..]].map(|bins| bins.iter().copied().fold((0, Extent::EMPTY), join));
             // The remaining levels must suffice for halving either child.
-            if first.0.min(second.0) == 0 || depth + 1 + levels(first.0.max(second.0)) > BVH_TRACE_DEPTH {
+            if first.0.min(second.0) == 0 || depth + 1 + levels(first.0.max(second.0)) > MOST_SPLITS {
                 continue;
             }
             let cost = first.1.area() * first.0 as f64 + second.1.area() * second.0 as f64;

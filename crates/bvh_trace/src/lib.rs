@@ -28,7 +28,7 @@ pub use hierarchy::Bvh;
 #[cfg(test)]
 mod tests;
 
-use glam::{Vec2, Vec3};
+use glam::{UVec3, UVec4, Vec2, Vec3};
 
 /// Factor of the margin on the mesh's largest distance from the origin along an axis, 2⁻¹⁸.
 pub const BVH_TRACE_MARGIN_REACH: f32 = 3.814697265625e-6;
@@ -40,6 +40,33 @@ pub const BVH_TRACE_NAIVE_EPSILON: f32 = 1e-6;
 
 /// Triangle index that stands for "no hit".
 pub const BVH_TRACE_NONE: u32 = 0xffffffff;
+
+/// A node of a hierarchy: up to four children, and their boxes in steps from a corner, rounded
+/// outwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceNode {
+    /// Corner from which the steps are counted.
+    pub corner: Vec3,
+    /// Three bytes, from the lowest: the exponents of the steps along x, y and z, as in the bits of
+    /// an f32.
+    pub steps: u32,
+    /// Lower sides of the boxes along x, y and z: a byte for each child, from the lowest.
+    pub lower: UVec3,
+    /// Upper sides, likewise.
+    pub upper: UVec3,
+    /// What each child is: the number of a node, below 2³⁰; or a leaf, its number of triangles, 1
+    /// or 2, in the two highest bits and its first triangle in the others; or [`BVH_TRACE_NONE`].
+    pub children: UVec4,
+}
+
+/// The box of a child.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceExtent {
+    /// Lower corner.
+    pub lower: Vec3,
+    /// Upper corner.
+    pub upper: Vec3,
+}
 
 /// Ray data shared by all box and triangle tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,6 +162,29 @@ pub fn ray(origin: Vec3, direction: Vec3, lower: Vec3, upper: Vec3) -> BvhTraceR
     let margin = BVH_TRACE_MARGIN_REACH * reach.x.max(reach.y.max(reach.z))
         + BVH_TRACE_MARGIN_ORIGIN * place.x.max(place.y.max(place.z));
     BvhTraceRay { origin, direction, reciprocal, shear, axis, margin }
+}
+
+/// Returns the box of a child of a node; for a place without a child, the node's corner twice.
+pub fn child_box(node: BvhTraceNode, child: u32) -> BvhTraceExtent {
+    let exponents = [0, 8, 16].map(|place| (node.steps >> place) & 255);
+    let step = Vec3::from_array(exponents.map(|exponent| f32::from_bits(exponent << 23)));
+    let place = 8 * (child & 3);
+    // A product with a power of two is exact, so only the sum rounds.
+    let lower = node.corner + ((node.lower >> place) & 255).as_vec3() * step;
+    let upper = node.corner + ((node.upper >> place) & 255).as_vec3() * step;
+    BvhTraceExtent { lower, upper }
+}
+
+/// Returns the box around all children of a node; around the whole mesh if the node is the root.
+pub fn bounds(node: BvhTraceNode) -> BvhTraceExtent {
+    let a = child_box(node, 0);
+    let b = child_box(node, 1);
+    let c = child_box(node, 2);
+    let d = child_box(node, 3);
+    BvhTraceExtent {
+        lower: a.lower.min(b.lower).min(c.lower.min(d.lower)),
+        upper: a.upper.max(b.upper).max(c.upper.max(d.upper)),
+    }
 }
 
 /// Tests whether a ray meets a box, enlarged by the ray's margin on all sides, at a distance in

@@ -3,7 +3,7 @@
 //! permuted or sheared frame. [`crossings`] tests the whole mesh by brute force, without any
 //! margin; it is the reference for [`crate::traversal::trace`].
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, UVec3, UVec4};
 
 /// Ray data shared by all box and triangle tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,30 @@ pub struct BvhTraceObjectRay {
     pub direction: DVec3,
     /// Distance along the ray in the body's coordinates, divided by the same distance in the world.
     pub stretch: f64,
+}
+
+/// A node, with the exact corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceNode {
+    /// Corner from which the steps are counted.
+    pub corner: DVec3,
+    /// Exponents of the steps.
+    pub steps: u32,
+    /// Lower sides of the boxes, a byte for each child.
+    pub lower: UVec3,
+    /// Upper sides, likewise.
+    pub upper: UVec3,
+    /// What each child is.
+    pub children: UVec4,
+}
+
+/// The box of a child.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhTraceExtent {
+    /// Lower corner.
+    pub lower: DVec3,
+    /// Upper corner.
+    pub upper: DVec3,
 }
 
 /// Result of a box test.
@@ -127,6 +151,23 @@ pub fn r#box(ray: BvhTraceRay, lower: DVec3, upper: DVec3, nearest: f64) -> BvhT
         [-1.0, 1.0].iter().any(|side| inside((middle[axis] + side * half[axis]) / direction[axis], Some(axis)))
     });
     BvhTraceBox { entry, hit: inside(0.0, None) || inside(nearest, None) || crosses }
+}
+
+/// Returns the box of a child, axis by axis, with powers of two for the steps.
+pub fn child_box(node: BvhTraceNode, child: u32) -> BvhTraceExtent {
+    let side = |words: UVec3, axis: usize| {
+        let step = 2f64.powi(i32::from(node.steps.to_le_bytes()[axis]) - 127);
+        node.corner[axis] + f64::from(words[axis].to_le_bytes()[child as usize % 4]) * step
+    };
+    let corner = |words: UVec3| DVec3::from_array([0, 1, 2].map(|axis| side(words, axis)));
+    BvhTraceExtent { lower: corner(node.lower), upper: corner(node.upper) }
+}
+
+/// Returns the box around all children.
+pub fn bounds(node: BvhTraceNode) -> BvhTraceExtent {
+    let all = (0..4).map(|child| child_box(node, child));
+    let empty = BvhTraceExtent { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
+    all.fold(empty, |a, b| BvhTraceExtent { lower: a.lower.min(b.lower), upper: a.upper.max(b.upper) })
 }
 
 /// Returns a record without a hit, up to a distance.

@@ -2,45 +2,24 @@
 //! the loop over all triangles, and both find the same hits as f64.
 
 use super::*;
-use crate::traversal::{BVH_TRACE_DEPTH, TriangleFn, met, trace, trace_all, trace_with};
-use glam::{DVec3, Vec4};
+use crate::traversal::{TriangleFn, met, trace, trace_all, trace_with};
+use glam::DVec3;
 use lapidary_assay::draws::Draws;
 use std::collections::BTreeMap;
 
 struct Body {
-    nodes: Vec<[Vec4; 2]>,
+    bvh: Bvh,
     positions: Vec<Vec3>,
-    indices: Vec<u32>,
 }
 
-/// Builds a hierarchy: halves the triangles along the longest side of their box, down to two in a
-/// leaf.
 fn body(positions: Vec<Vec3>, indices: &[u32]) -> Body {
-    let mut triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    let mut nodes = vec![[Vec4::ZERO; 2]];
-    let mut open = vec![(0, 0, triangles.len())];
-    while let Some((node, start, end)) = open.pop() {
-        let part = &mut triangles[start..end];
-        let corners = part.iter().flatten().map(|index| positions[*index as usize]);
-        let (lower, upper) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lower, upper), corner| {
-            (lower.min(corner), upper.max(corner))
-        });
-        let (count, first) = if part.len() <= 2 {
-            (part.len() as u32, start as u32)
-        } else {
-            let size = upper - lower;
-            let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
-            let key = |t: &[u32; 3]| t.iter().map(|index| positions[*index as usize][axis]).sum::<f32>();
-            part.sort_by(|a, b| key(a).total_cmp(&key(b)));
-            let middle = (start + end) / 2;
-            open.push((nodes.len(), start, middle));
-            open.push((nodes.len() + 1, middle, end));
-            nodes.extend([[Vec4::ZERO; 2]; 2]);
-            (0, (nodes.len() - 2) as u32)
-        };
-        nodes[node] = [lower.extend(f32::from_bits(count)), upper.extend(f32::from_bits(first))];
+    Body { bvh: Bvh::build(&positions, indices), positions }
+}
+
+impl Body {
+    fn trace(&self, origin: Vec3, direction: Vec3, left: u32) -> BvhTraceHit {
+        trace(&self.bvh.nodes, &self.bvh.corners, origin, direction, left)
     }
-    Body { nodes, positions, indices: triangles.concat() }
 }
 
 /// Builds a sphere from an icosahedron by cutting every triangle into four, `times` times over;
@@ -97,15 +76,15 @@ fn bumpy() -> Body {
 /// Builds a body of few facets, with edges as sharp as at the girdle of a brilliant.
 fn lens() -> Body {
     let solid = icosphere(0, |_| 1.0);
-    body(solid.positions.iter().map(|p| Vec3::new(p.x, 0.2 * p.y, p.z)).collect(), &solid.indices)
+    body(solid.positions.iter().map(|p| Vec3::new(p.x, 0.2 * p.y, p.z)).collect(), &solid.bvh.indices)
 }
 
 /// Draws a ray from near the middle, aimed exactly at a vertex or at a point of an edge.
 fn aimed_ray(random: &mut Draws<'_>, body: &Body) -> (Vec3, Vec3) {
     let origin = (0.1 * random.unit() * random.direction()).as_vec3();
     let origin = if random.below(4) == 0 { Vec3::ZERO } else { origin };
-    let corner = 3 * random.below((body.indices.len() / 3) as u32) as usize;
-    let [a, b] = [0, 1].map(|k| body.positions[body.indices[corner + k] as usize].as_dvec3());
+    let corner = 3 * random.below((body.bvh.indices.len() / 3) as u32) as usize;
+    let [a, b] = [0, 1].map(|k| body.positions[body.bvh.indices[corner + k] as usize].as_dvec3());
     let target = if random.below(2) == 0 { a } else { a.lerp(b, random.unit()) };
     (origin, (target - origin.as_dvec3()).normalize().as_vec3())
 }
@@ -115,7 +94,7 @@ fn leaks(body: &Body, rays: usize, with: TriangleFn) -> usize {
     (0..rays)
         .filter(|_| {
             let (origin, direction) = aimed_ray(&mut random, body);
-            !met(&trace_with(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE, with))
+            !met(&trace_with(&body.bvh.nodes, &body.bvh.corners, origin, direction, BVH_TRACE_NONE, with))
         })
         .count()
 }
@@ -148,12 +127,13 @@ fn the_naive_test_leaks_there() {
 /// Returns a contradiction between the hit and f64 without any margin: a triangle that the ray
 /// clearly meets is missed, or a triangle is hit that the ray does not meet.
 fn faults(body: &Body, origin: Vec3, direction: Vec3, left: u32, hit: &BvhTraceHit) -> Option<String> {
-    let ray = ray(origin, direction, body.nodes[0][0].truncate(), body.nodes[0][1].truncate());
+    let BvhTraceExtent { lower, upper } = bounds(body.bvh.nodes[0]);
+    let ray = ray(origin, direction, lower, upper);
     // The margin is measured along two axes of the ray's frame, which is oblique: at most √3 each
     // way.
     let bound = 3.0 * f64::from(ray.margin);
     let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3()).collect();
-    let all = oracle::crossings(&positions, &body.indices, origin.as_dvec3(), direction.as_dvec3(), left, bound);
+    let all = oracle::crossings(&positions, &body.bvh.indices, origin.as_dvec3(), direction.as_dvec3(), left, bound);
     let distance = f64::from(hit.distance);
     if met(hit) && !all.iter().any(|crossing| crossing.triangle == hit.triangle) {
         return Some(format!("{hit:?} is passed by more than {bound:e}"));
@@ -175,12 +155,12 @@ fn the_nearest_triangle_is_that_of_f64() {
         let mut left = BVH_TRACE_NONE;
         if count % 4 == 0 {
             // From the surface back inside.
-            let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE);
+            let hit = body.trace(origin, direction, BVH_TRACE_NONE);
             origin += hit.distance * direction;
             direction = -direction;
             left = hit.triangle;
         }
-        let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, left);
+        let hit = body.trace(origin, direction, left);
         assert!(met(&hit));
         let fault = faults(&body, origin, direction, left, &hit);
         assert_eq!(fault, None, "from {origin} to {direction}");
@@ -193,8 +173,8 @@ fn the_hierarchy_finds_what_the_loop_finds() {
     let body = bumpy();
     for _ in 0..3000 {
         let (origin, direction) = aimed_ray(&mut random, &body);
-        let found = trace(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE);
-        let all = trace_all(&body.nodes, &body.positions, &body.indices, origin, direction, BVH_TRACE_NONE, triangle);
+        let found = body.trace(origin, direction, BVH_TRACE_NONE);
+        let all = trace_all(&body.bvh.nodes, &body.bvh.corners, origin, direction, BVH_TRACE_NONE, triangle);
         assert_eq!(found, all);
     }
 }
@@ -204,9 +184,9 @@ fn the_hierarchy_finds_what_the_loop_finds() {
 /// on by mirror reflections.
 fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
     let mut random = Draws::of_row(4, 0);
-    let count = body.indices.len() / 3;
+    let count = body.bvh.indices.len() / 3;
     let corners =
-        |triangle: usize| [0, 1, 2].map(|k| body.positions[body.indices[3 * triangle + k] as usize].as_dvec3());
+        |triangle: usize| [0, 1, 2].map(|k| body.positions[body.bvh.indices[3 * triangle + k] as usize].as_dvec3());
     let normal = |triangle: usize| {
         let [a, b, c] = corners(triangle);
         (b - a).cross(c - a).normalize()
@@ -228,7 +208,7 @@ fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
         .filter(|_| {
             let (mut origin, mut direction, mut left) = start();
             (0..bounces).any(|_| {
-                let hit = trace(&body.nodes, &body.positions, &body.indices, origin, direction, left);
+                let hit = body.trace(origin, direction, left);
                 if !met(&hit) {
                     return true;
                 }
@@ -247,17 +227,12 @@ fn lost(body: &Body, rays: usize, bounces: usize) -> usize {
 fn sixty_four_reflections_stay_inside_at_every_size() {
     for (name, solid) in [("bumpy", bumpy()), ("lens", lens())] {
         for scale in [1.0, 1e-4, 1e4] {
-            let scaled = body(solid.positions.iter().map(|position| scale * *position).collect(), &solid.indices);
+            let scaled = body(solid.positions.iter().map(|position| scale * *position).collect(), &solid.bvh.indices);
             let lost = lost(&scaled, 10_000, 64);
             println!("{name} at scale {scale}: {lost} of 10000 lost within 64 reflections");
             assert_eq!(lost, 0, "{name} at scale {scale}");
         }
     }
-}
-
-#[test]
-fn the_tests_own_hierarchy_is_shallow() {
-    assert!((bumpy().nodes.len().ilog2() as usize) < BVH_TRACE_DEPTH);
 }
 
 /// A body is a million times its size away from the world's origin. f32 resolves only quarters
@@ -267,7 +242,7 @@ fn the_tests_own_hierarchy_is_shallow() {
 fn a_body_far_away_is_traced_in_its_own_coordinates() {
     let body = sphere();
     let place = Vec3::new(1_048_576.0, -2_097_152.0, 524_288.0);
-    let moved = self::body(body.positions.iter().map(|position| *position + place).collect(), &body.indices);
+    let moved = self::body(body.positions.iter().map(|position| *position + place).collect(), &body.bvh.indices);
     let positions: Vec<DVec3> = body.positions.iter().map(|position| position.as_dvec3()).collect();
     let mut random = Draws::of_row(11, 0);
     let (mut worst, mut worst_there) = (0.0f64, 0.0f64);
@@ -275,14 +250,14 @@ fn a_body_far_away_is_traced_in_its_own_coordinates() {
         let origin = place + (Vec3::new(1.0, 0.0, -2.0) * 0.125);
         let direction = random.direction().as_vec3();
         let ray = to_object(origin, direction, place, Vec3::X, Vec3::Y, Vec3::Z);
-        let hit = trace(&body.nodes, &body.positions, &body.indices, ray.origin, ray.direction, BVH_TRACE_NONE);
+        let hit = body.trace(ray.origin, ray.direction, BVH_TRACE_NONE);
         assert!(met(&hit));
         let (start, along) = ((origin - place).as_dvec3(), direction.as_dvec3());
-        let crossings = oracle::crossings(&positions, &body.indices, start, along, BVH_TRACE_NONE, 1e-9);
+        let crossings = oracle::crossings(&positions, &body.bvh.indices, start, along, BVH_TRACE_NONE, 1e-9);
         let ahead = crossings.iter().map(|crossing| crossing.distance).filter(|distance| *distance > 0.0);
         let exact = ahead.fold(f64::INFINITY, f64::min);
         worst = worst.max((f64::from(hit.distance / ray.stretch) - exact).abs());
-        let there = trace(&moved.nodes, &moved.positions, &moved.indices, origin, direction, BVH_TRACE_NONE);
+        let there = moved.trace(origin, direction, BVH_TRACE_NONE);
         worst_there = worst_there.max((f64::from(there.distance) - exact).abs());
     }
     assert!(worst < 1e-5, "{worst:e}");

@@ -78,7 +78,7 @@ pub fn measured(mesh: &Mesh) -> f32 {
     for ((number, triangle), area) in (0..).zip(&triangles).zip(&areas) {
         behind += area;
         while next < behind {
-            lengths.extend(inwards(mesh, &bvh, number, triangle));
+            lengths.extend(inwards(&bvh, number, triangle));
             next += step;
         }
     }
@@ -91,10 +91,10 @@ fn corner_positions(mesh: &Mesh, corners: &[u32]) -> [Vec3; 3] {
 }
 
 /// Returns the distance inwards from a triangle's centre, along its normal; `None` without a hit.
-fn inwards(mesh: &Mesh, bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option<f32> {
+fn inwards(bvh: &Bvh, number: u32, [a, b, c]: &[Vec3; 3]) -> Option<f32> {
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let middle = (a + b + c) / 3.0;
-    let hit = traversal::trace(&bvh.nodes, &mesh.positions, &bvh.indices, middle, -normal, number);
+    let hit = traversal::trace(&bvh.nodes, &bvh.corners, middle, -normal, number);
     (normal != Vec3::ZERO && traversal::met(&hit)).then_some(hit.distance)
 }
 

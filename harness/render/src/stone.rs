@@ -141,8 +141,10 @@ impl<'a> Geometries<'a> {
             }
             Geometry::Bvh | Geometry::Triangles => {
                 let bvh = Bvh::build(&mesh.positions, &mesh.indices);
-                let nodes: &[u8] = bytemuck::cast_slice(&bvh.nodes);
-                let own = vec![("nodes", nodes.to_vec().into())];
+                let words = bvh.words();
+                let (nodes, corners): (&[u8], &[u8]) =
+                    (bytemuck::cast_slice(&words), bytemuck::cast_slice(&bvh.corners));
+                let own = vec![("nodes", nodes.to_vec().into()), ("corners", corners.to_vec().into())];
                 // The recipe, too, numbers triangles in the order of the leaves.
                 let triangles = mesh.triangle_count() as u64;
                 // A ray's path through a hierarchy has no useful bound; few take as many as 16

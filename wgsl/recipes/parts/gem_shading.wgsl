@@ -3,7 +3,7 @@
 // Source: Imagire, "Proxy Geometry Gem Rendering", sections 3 and 4; Beer-Lambert; exact Fresnel.
 // compares: dispersion
 //
-// A geometry recipe adds: the parts mesh and surroundings; struct GemVertex, whose members include
+// A geometry recipe adds: the part surroundings, and mesh if it reads one; struct GemVertex, whose members include
 // `position`, `face_normal` and, with instances, `instance`; the entry point gem_vertex; struct
 // GemPlace (the place of a ray inside the stone); gem_enter (the place of a ray that enters); and
 // gem_hit (the next facet).

@@ -5,87 +5,123 @@
 //   Rendering", section 5.
 // compares: bvh_trace
 //
-// A recipe adds: the module bvh_trace, the part mesh, and the bindings `nodes` and `indices`.
-// `nodes`, array<BvhTraceNode>, has the root first and the two children of a node side by side.
-// `indices`, array<u32>, has three entries per triangle, counter-clockwise from outside, in the
-// order of the leaves. A triangle's number is its position there.
+// A recipe adds: the module bvh_trace, and the bindings `nodes` and `corners`. `nodes`,
+// array<BvhTraceNode>, has the root first. `corners`, array<vec4f>, has three entries per triangle,
+// counter-clockwise from outside, in the order of the leaves; w is not read. A triangle's number is
+// its position there. Positions in a list of their own, so that a corner is one load: where
+// triangles are looked up by indices, loads take a quarter of the time on lavapipe.
 
 // Loops over all triangles instead of the hierarchy: the paper's comparison.
 override TRAVERSAL_LOOP: bool = false;
 // Uses Möller and Trumbore's test with an epsilon instead of the watertight test.
 override TRIANGLE_NAIVE: bool = false;
 
-// The largest number of nodes between the root and a leaf. The builder of the hierarchy must
-// respect this limit.
-const TRACE_DEPTH = 32u;
+// Capacity of the stack: three children for each of 16 levels of nodes. The builder of the hierarchy
+// must respect this limit.
+const TRACE_STACK = 48u;
 // A distance farther than any hit.
 const TRACE_FAR = 1e37f;
+// The first number of a child that is a leaf.
+const TRACE_LEAF = 0x40000000u;
+
+// The children that are still to be visited. Private, so that it is set to 0 once, not for each ray.
+var<private> trace_stack: array<u32, TRACE_STACK>;
 
 // Tests the triangle of a given number.
 fn trace_triangle(hit: BvhTraceHit, ray: BvhTraceRay, triangle: u32, left: u32) -> BvhTraceHit {
-    let a = mesh_position(indices[3u * triangle]);
-    let b = mesh_position(indices[3u * triangle + 1u]);
-    let c = mesh_position(indices[3u * triangle + 2u]);
+    let a = corners[3u * triangle].xyz;
+    let b = corners[3u * triangle + 1u].xyz;
+    let c = corners[3u * triangle + 2u].xyz;
     if (TRIANGLE_NAIVE) {
         return bvh_trace_triangle_naive(hit, ray, a, b, c, triangle, left);
     }
     return bvh_trace_triangle(hit, ray, a, b, c, triangle, left);
 }
 
+// A child of a node.
+struct TraceChild {
+    // Distance at which the ray enters its box; TRACE_FAR if the ray does not meet it.
+    entry: f32,
+    // As in the node.
+    child: u32,
+}
+
+fn trace_child(node: BvhTraceNode, place: u32, ray: BvhTraceRay, nearest: f32) -> TraceChild {
+    let extent = bvh_trace_child_box(node, place);
+    let met = bvh_trace_box(ray, extent.lower, extent.upper, nearest);
+    let child = node.children[place];
+    return TraceChild(select(TRACE_FAR, met.entry, met.hit && child != BVH_TRACE_NONE), child);
+}
+
+fn trace_nearer(one: TraceChild, other: TraceChild) -> TraceChild {
+    let second = other.entry < one.entry;
+    return TraceChild(select(one.entry, other.entry, second), select(one.child, other.child, second));
+}
+
+fn trace_farther(one: TraceChild, other: TraceChild) -> TraceChild {
+    let second = other.entry < one.entry;
+    return TraceChild(select(other.entry, one.entry, second), select(other.child, one.child, second));
+}
+
+// Puts a child on the stack if the ray meets it, and returns the new height.
+fn trace_push(height: u32, child: TraceChild) -> u32 {
+    if (child.entry < TRACE_FAR) {
+        trace_stack[height] = child.child;
+        return height + 1u;
+    }
+    return height;
+}
+
 // The nearest triangle through which a ray leaves the solid.
 fn trace_nearest(origin: vec3f, direction: vec3f, left: u32) -> BvhTraceHit {
     var hit = bvh_trace_start(TRACE_FAR);
-    let ray = bvh_trace_ray(origin, direction, nodes[0].lower, nodes[0].upper);
+    let whole = bvh_trace_bounds(nodes[0]);
+    let ray = bvh_trace_ray(origin, direction, whole.lower, whole.upper);
     if (TRAVERSAL_LOOP) {
-        for (var triangle = 0u; triangle < arrayLength(&indices) / 3u; triangle += 1u) {
+        for (var triangle = 0u; triangle < arrayLength(&corners) / 3u; triangle += 1u) {
             hit = trace_triangle(hit, ray, triangle, left);
         }
         return hit;
     }
-    // The farther children, and the distances at which the ray enters them.
-    var stack: array<u32, TRACE_DEPTH>;
-    var entries: array<f32, TRACE_DEPTH>;
-    var depth = 0u;
-    var first = nodes[0].first;
-    var count = nodes[0].count;
+    var next = 0u;
+    var height = 0u;
     var found = true;
     while (found) {
         // Down to a leaf. Rays that run side by side wait here for the last one, so that they test
         // boxes together and then triangles together.
-        while (found && count == 0u) {
-            let box_one = bvh_trace_box(ray, nodes[first].lower, nodes[first].upper, hit.distance);
-            let box_other = bvh_trace_box(ray, nodes[first + 1u].lower, nodes[first + 1u].upper, hit.distance);
-            // The nearer child first: its hits cull the farther child.
-            let other_first = box_other.hit && (!box_one.hit || box_other.entry < box_one.entry);
-            var node = select(first, first + 1u, other_first);
-            if (box_one.hit && box_other.hit) {
-                stack[depth] = 2u * first + 1u - node;
-                entries[depth] = max(box_one.entry, box_other.entry);
-                depth += 1u;
+        while (found && next < TRACE_LEAF) {
+            let node = nodes[next];
+            let a = trace_child(node, 0u, ray, hit.distance);
+            let b = trace_child(node, 1u, ray, hit.distance);
+            let c = trace_child(node, 2u, ray, hit.distance);
+            let d = trace_child(node, 3u, ray, hit.distance);
+            // The nearest child first: its hits cull the others, when their boxes are opened. Their
+            // order matters less than the time that it takes to sort them, or to keep distances.
+            let ab = trace_nearer(a, b);
+            let cd = trace_nearer(c, d);
+            height = trace_push(height, trace_farther(a, b));
+            height = trace_push(height, trace_farther(c, d));
+            height = trace_push(height, trace_farther(ab, cd));
+            let nearest = trace_nearer(ab, cd);
+            next = nearest.child;
+            found = nearest.entry < TRACE_FAR;
+            if (!found && height > 0u) {
+                height -= 1u;
+                next = trace_stack[height];
+                found = true;
             }
-            // Back to the last box that may still hold a nearer hit.
-            found = box_one.hit || box_other.hit;
-            while (depth > 0u && !found) {
-                depth -= 1u;
-                node = stack[depth];
-                found = entries[depth] <= hit.distance;
-            }
-            first = nodes[node].first;
-            count = nodes[node].count;
         }
         if (found) {
-            for (var triangle = first; triangle < first + count; triangle += 1u) {
+            let first = next & (TRACE_LEAF - 1u);
+            let end = first + (next >> 30u);
+            for (var triangle = first; triangle < end; triangle += 1u) {
                 hit = trace_triangle(hit, ray, triangle, left);
             }
-            var node = 0u;
-            found = false;
-            while (depth > 0u && !found) {
-                depth -= 1u;
-                node = stack[depth];
-                found = entries[depth] <= hit.distance;
+            found = height > 0u;
+            if (found) {
+                height -= 1u;
+                next = trace_stack[height];
             }
-            first = nodes[node].first;
-            count = nodes[node].count;
         }
     }
     return hit;

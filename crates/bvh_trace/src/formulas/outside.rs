@@ -1,9 +1,11 @@
 //! Promises of the functions outside their domains, one for each clause of their `Outside:` lines.
 
-use crate::{self as bvh, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceRay};
-use glam::{DVec3, Mat3, Quat, Vec3};
+use crate::{self as bvh, BVH_TRACE_NONE, BvhTraceBox, BvhTraceHit, BvhTraceNode, BvhTraceRay};
+use glam::{DVec3, Mat3, Quat, UVec4, Vec3};
 use lapidary_assay::draws::Draws;
-use lapidary_assay::outside::{Promise, any_vector, finite, holds, like, nothing, of_length, that, vector_up_to};
+use lapidary_assay::outside::{
+    Promise, any_numbers, any_vector, finite, holds, like, nothing, of_length, that, vector_up_to,
+};
 
 /// Draws a ray and the box that it is made for, with coordinates up to 2^`high`.
 fn ray(draws: &mut Draws<'_>, high: i32) -> (BvhTraceRay, Vec3, Vec3) {
@@ -13,9 +15,18 @@ fn ray(draws: &mut Draws<'_>, high: i32) -> (BvhTraceRay, Vec3, Vec3) {
     (bvh::ray(vector_up_to(draws, high), direction, lower, upper), lower, upper)
 }
 
+/// Draws a node of any bytes, with exponents up to `high`.
+fn node(draws: &mut Draws<'_>, high: u32) -> BvhTraceNode {
+    let mut exponent = || draws.below(high + 1);
+    let steps = exponent() | exponent() << 8 | exponent() << 16;
+    let corner = vector_up_to(draws, 99);
+    BvhTraceNode { corner, steps, lower: any_numbers(draws), upper: any_numbers(draws), children: UVec4::ZERO }
+}
+
 /// Returns all promises of the module.
 pub(super) fn promises() -> Vec<Promise> {
     const TRIANGLE: &str = "bvh_trace_triangle";
+    const FAR_STEPS: &str = "finite for exponents up to 240 and coordinates up to 1e30";
     const HUGE: &str = "finite for coordinates up to 1e30";
     // 2^99 is below 1e30.
     let huge = 99;
@@ -38,6 +49,14 @@ pub(super) fn promises() -> Vec<Promise> {
             let place = vector_up_to(draws, 50);
             (vector_up_to(draws, 50), of_length(draws, -10, 30), place, rows.x_axis, rows.y_axis, rows.z_axis)
         }),
+        like(
+            "bvh_trace_child_box",
+            "a child of 4 and more counts as its remainder by 4",
+            |draws| (node(draws, 167), 4 + draws.below(u32::MAX - 4)),
+            |(node, child): (BvhTraceNode, u32)| (node, child % 4),
+        ),
+        finite("bvh_trace_child_box", FAR_STEPS, |draws| (node(draws, 240), draws.below(4))),
+        finite("bvh_trace_bounds", FAR_STEPS, |draws| (node(draws, 240),)),
         finite("bvh_trace_box", HUGE, move |draws| {
             let (ray, lower, upper) = ray(draws, huge);
             (ray, lower, upper, draws.magnitude(-20, 120))

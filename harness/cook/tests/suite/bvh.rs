@@ -4,8 +4,8 @@
 use glam::{DVec3, Vec2, Vec3};
 use lapidary_assay::draws::{Domain, Draws};
 use lapidary_assay::extremum::larger;
-use lapidary_bvh_trace::traversal::{self, BVH_TRACE_DEPTH, met};
-use lapidary_bvh_trace::{self as mirror, BvhTraceHit, oracle};
+use lapidary_bvh_trace::traversal::{self, BVH_TRACE_LEAF, BVH_TRACE_LEVELS, met};
+use lapidary_bvh_trace::{self as mirror, BVH_TRACE_NONE, BvhTraceExtent, BvhTraceHit, BvhTraceNode, oracle};
 use lapidary_gpu::Gpu;
 use lapidary_render::compute::{self, Binding, RecipeRun};
 use lapidary_scene::{Bvh, Mesh, Scene};
@@ -42,14 +42,7 @@ impl Body {
     }
 
     fn trace(&self, query: &Query) -> BvhTraceHit {
-        traversal::trace(
-            &self.bvh.nodes,
-            &self.mesh.positions,
-            &self.bvh.indices,
-            query.origin,
-            query.direction,
-            query.left,
-        )
+        traversal::trace(&self.bvh.nodes, &self.bvh.corners, query.origin, query.direction, query.left)
     }
 
     /// Reflects a ray at its hit.
@@ -117,11 +110,9 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
             [x, y, z, query.left, u, v, w, 0]
         })
         .collect();
-    let mesh = [
-        Binding::Storage(bytemuck::cast_slice(&body.bvh.nodes)),
-        Binding::Storage(bytemuck::cast_slice(&body.mesh.positions)),
-        Binding::Storage(bytemuck::cast_slice(&body.bvh.indices)),
-    ];
+    let nodes = body.bvh.words();
+    let mesh =
+        [Binding::Storage(bytemuck::cast_slice(&nodes)), Binding::Storage(bytemuck::cast_slice(&body.bvh.corners))];
     // Distance, padding, weights, triangle, padding.
     let rays = [Binding::Storage(bytemuck::cast_slice(&words)), Binding::Result((queries.len() * 24) as u64)];
     let run = RecipeRun {
@@ -143,8 +134,8 @@ fn traced(gpu: &Gpu, body: &Body, queries: &[Query], constants: &[(&str, f64)]) 
 /// Returns the distance by which a ray may pass a triangle and still meet it: the margin in the
 /// ray's own, slanted frame, times √3 across and √3 for the slant.
 fn bound(body: &Body, query: &Query) -> f64 {
-    let root = body.bvh.nodes[0];
-    let ray = mirror::ray(query.origin, query.direction, root[0].truncate(), root[1].truncate());
+    let BvhTraceExtent { lower, upper } = mirror::bounds(body.bvh.nodes[0]);
+    let ray = mirror::ray(query.origin, query.direction, lower, upper);
     3.0 * f64::from(ray.margin)
 }
 
@@ -196,10 +187,10 @@ fn the_recipe_traces_as_its_mirror_does_and_as_f64_does() {
             }
         }
         println!(
-            "{}: {} nodes, {} deep; {RAYS} rays, {others} meet another triangle than the mirror's, distance off by {largest:e}",
+            "{}: {} nodes in {} levels; {RAYS} rays, {others} meet another triangle than the mirror's, distance off by {largest:e}",
             body.name,
             body.bvh.nodes.len(),
-            body.bvh.depth()
+            body.bvh.levels()
         );
         // On lavapipe every operation rounds as in the mirror, except for the order of a product of
         // matrices, which this recipe does not use.
@@ -300,34 +291,52 @@ fn any_mesh(draws: &mut Draws<'_>) -> Mesh {
 
 /// Checks the properties that a shader relies on.
 fn check_hierarchy(mesh: &Mesh, bvh: &Bvh) {
-    assert!(bvh.depth() <= BVH_TRACE_DEPTH, "{} deep", bvh.depth());
+    assert!(bvh.levels() <= BVH_TRACE_LEVELS, "{} levels", bvh.levels());
     assert_eq!(bvh.indices.len(), 3 * bvh.order.len());
     let finite = |index: &u32| mesh.positions.get(*index as usize).is_some_and(|position| position.is_finite());
     let mut wanted: Vec<u32> =
         mesh.indices.chunks_exact(3).zip(0..).filter(|(t, _)| t.iter().all(finite)).map(|(_, number)| number).collect();
     let mut reached = Vec::new();
-    let inside = |point: Vec3, node: &[glam::Vec4; 2]| {
-        point.cmpge(node[0].truncate()).all() && point.cmple(node[1].truncate()).all()
+    // A box of f64, in which the sum of a corner and its steps does not round.
+    let inside = |point: Vec3, node: &BvhTraceNode, child: usize| {
+        (0..3).all(|axis| {
+            let step = 2f64.powi((node.steps >> (8 * axis) & 255) as i32 - 127);
+            let side =
+                |bytes: glam::UVec3| f64::from(node.corner[axis]) + f64::from(bytes[axis] >> (8 * child) & 255) * step;
+            (side(node.lower)..=side(node.upper)).contains(&f64::from(point[axis]))
+        })
     };
-    for (index, node) in bvh.nodes.iter().enumerate() {
-        let (count, first) = (node[0].w.to_bits() as usize, node[1].w.to_bits() as usize);
-        if count == 0 {
-            assert!(first > index && first + 1 < bvh.nodes.len());
-            for child in &bvh.nodes[first..first + 2] {
-                assert!(inside(child[0].truncate(), node) && inside(child[1].truncate(), node));
+    // Nodes, with the places in their ancestors that lead to them.
+    let mut open = if bvh.nodes.is_empty() { vec![] } else { vec![(0, vec![])] };
+    let mut visited = 0;
+    while let Some((place, above)) = open.pop() {
+        visited += 1;
+        for child in 0..4 {
+            let path: Vec<(usize, usize)> = above.iter().copied().chain([(place, child)]).collect();
+            let number = bvh.nodes[place].children[child];
+            if number == BVH_TRACE_NONE {
+                continue;
             }
-            continue;
-        }
-        for triangle in first..first + count {
-            let number = bvh.order[triangle];
-            reached.push(number);
-            for k in 0..3 {
-                let vertex = mesh.indices[3 * number as usize + k];
-                assert_eq!(bvh.indices[3 * triangle + k], vertex);
-                assert!(inside(mesh.positions[vertex as usize], node));
+            if number < BVH_TRACE_LEAF {
+                assert!(number as usize > place);
+                open.push((number as usize, path));
+                continue;
+            }
+            let first = (number & (BVH_TRACE_LEAF - 1)) as usize;
+            for triangle in first..first + (number >> 30) as usize {
+                let number = bvh.order[triangle];
+                reached.push(number);
+                for k in 0..3 {
+                    let vertex = mesh.indices[3 * number as usize + k];
+                    assert_eq!(bvh.indices[3 * triangle + k], vertex);
+                    let position = mesh.positions[vertex as usize];
+                    assert_eq!(bvh.corners[3 * triangle + k], position.extend(0.0));
+                    assert!(path.iter().all(|(place, child)| inside(position, &bvh.nodes[*place], *child)));
+                }
             }
         }
     }
+    assert_eq!(visited, bvh.nodes.len(), "no node without a parent");
     reached.sort_unstable();
     wanted.sort_unstable();
     assert_eq!(reached, wanted, "every triangle once");
@@ -344,7 +353,7 @@ fn every_hierarchy_holds_its_mesh() {
         check_hierarchy(&body.mesh, &body.bvh);
     }
     let empty = Bvh::build(&[], &[]);
-    assert_eq!((empty.nodes.len(), empty.indices.len(), empty.depth()), (0, 0, 0));
+    assert_eq!((empty.nodes.len(), empty.indices.len(), empty.levels()), (0, 0, 0));
 }
 
 #[test]
@@ -355,5 +364,5 @@ fn many_equal_triangles_still_fit_the_stack() {
     let mesh = Mesh { normals: vec![Vec3::Z; positions.len()], positions, indices, ..Mesh::default() };
     let bvh = Bvh::build(&mesh.positions, &mesh.indices);
     check_hierarchy(&mesh, &bvh);
-    println!("{count} equal triangles: {} deep", bvh.depth());
+    println!("{count} equal triangles: {} levels", bvh.levels());
 }

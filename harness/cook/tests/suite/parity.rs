@@ -211,7 +211,7 @@ const FAULTS: [Fault; 23] = [
     fault(["brilliant", "walk-2"], "second candidates are left out", "select(rest, first, more)", "first"),
     fault(["brilliant", "walk-2"], "a walk ends at its first pass", "nearest.face == before", "true"),
     fault(["brilliant", "walk-2"], "the place is not renewed", "*place = GemPlace(", "let next = GemPlace("),
-    fault(["brilliant", "bvh-2"], "farther children are forgotten", "depth += 1u;", ""),
+    fault(["brilliant", "bvh-2"], "farther children are forgotten", "return height + 1u;", ""),
     fault(
         ["brilliant", "bvh-1"],
         "another triangle's normal",

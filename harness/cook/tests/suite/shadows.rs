@@ -62,9 +62,8 @@ impl Triangles {
     }
 
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<BvhTraceHit> {
-        let (nodes, indices) = (&self.bvh.nodes, &self.bvh.indices);
         let (origin, direction) = (origin.as_vec3(), direction.as_vec3());
-        let hit = traversal::trace(nodes, &self.mesh.positions, indices, origin, direction, u32::MAX);
+        let hit = traversal::trace(&self.bvh.nodes, &self.bvh.corners, origin, direction, u32::MAX);
         met(&hit).then_some(hit)
     }
 

@@ -4,7 +4,7 @@
 use super::SurfacePoint;
 use crate::walk::Walked;
 use crate::{RenderError, Settings};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use lapidary_bvh_trace::{BvhTraceHit, traversal};
 use lapidary_closest_point as closest_point;
 use lapidary_convex_trace::{self as convex_trace, CONVEX_TRACE_NONE};
@@ -62,8 +62,8 @@ pub(super) enum Place<'a> {
     Proxy { plane: ProxyGeometryPlane, centre: Vec3, normal: Vec3 },
     Convex { convex: &'a Convex, face: u32 },
     Walk { stone: &'a Walked, face: u32, position: Vec3 },
-    Triangles { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
-    Bvh { mesh: &'a Mesh, bvh: &'a Bvh, triangle: u32 },
+    Triangles { bvh: &'a Bvh, triangle: u32 },
+    Bvh { bvh: &'a Bvh, triangle: u32 },
 }
 
 /// The next facet that a ray meets.
@@ -134,11 +134,11 @@ impl<'a> Stone<'a> {
             }
             Data::Triangles(Leaves { bvh, place }) => {
                 let triangle = place[triangle as usize];
-                Entry { position, face_normal, start: Place::Triangles { mesh, bvh, triangle } }
+                Entry { position, face_normal, start: Place::Triangles { bvh, triangle } }
             }
             Data::Bvh(Leaves { bvh, place }) => {
                 let triangle = place[triangle as usize];
-                Entry { position, face_normal, start: Place::Bvh { mesh, bvh, triangle } }
+                Entry { position, face_normal, start: Place::Bvh { bvh, triangle } }
             }
         }
     }
@@ -218,44 +218,34 @@ impl Place<'_> {
                     facet: Some(u64::from(nearest.face)),
                 }
             }
-            Self::Triangles { mesh, bvh, triangle } => {
+            Self::Triangles { bvh, triangle } => {
                 let nearest = traversal::trace_all(
                     &bvh.nodes,
-                    &mesh.positions,
-                    &bvh.indices,
+                    &bvh.corners,
                     position,
                     direction,
                     *triangle,
                     lapidary_bvh_trace::triangle,
                 );
-                triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
+                triangle_hit(&bvh.corners, nearest, triangle, position, direction)
             }
-            Self::Bvh { mesh, bvh, triangle } => {
-                let nearest =
-                    traversal::trace(&bvh.nodes, &mesh.positions, &bvh.indices, position, direction, *triangle);
-                triangle_hit(mesh, &bvh.indices, nearest, triangle, position, direction)
+            Self::Bvh { bvh, triangle } => {
+                let nearest = traversal::trace(&bvh.nodes, &bvh.corners, position, direction, *triangle);
+                triangle_hit(&bvh.corners, nearest, triangle, position, direction)
             }
         }
     }
 }
 
 /// The end of `gem_hit` in both recipes that intersect triangles.
-fn triangle_hit(
-    mesh: &Mesh,
-    indices: &[u32],
-    nearest: BvhTraceHit,
-    left: &mut u32,
-    position: Vec3,
-    direction: Vec3,
-) -> Hit {
-    let Some(corners) = indices.get(3 * nearest.triangle as usize..).and_then(|rest| rest.get(..3)) else {
+fn triangle_hit(corners: &[Vec4], nearest: BvhTraceHit, left: &mut u32, position: Vec3, direction: Vec3) -> Hit {
+    let Some([a, b, c]) = corners.get(3 * nearest.triangle as usize..).and_then(|rest| rest.first_chunk()) else {
         return Hit::none(position, direction);
     };
     *left = nearest.triangle;
-    let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[corners[k] as usize]);
     Hit {
         point: position + nearest.distance * direction,
-        normal: -proxy_geometry::face_normal(a, b, c),
+        normal: -proxy_geometry::face_normal(a.truncate(), b.truncate(), c.truncate()),
         distance: nearest.distance,
         facet: Some(u64::from(nearest.triangle)),
     }

@@ -1,0 +1,217 @@
+// Runs a Lapidary frame on WebGPU: what `./cook frame` writes, as docs/frame.md describes it.
+// It needs nothing but this file.
+//
+//   const frame = await Frame.load(device, 'url/of/folder');
+//   const { 'linear picture': picture } = await frame.run();
+//
+// or, for a frame after a frame, without reading anything back:
+//
+//   frame.draw((pass) => pass.kind !== 'read');
+
+const TEXEL_BYTES = { rgba8unorm: 4, r32float: 4, depth32float: 4, rg32float: 8, rgba16float: 8, rgba32float: 16 };
+
+/** Or-s the flags of WebGPU's names. */
+const flags = (names, all) => names.reduce((sum, name) => sum | all[name], 0);
+
+/** Fetches a file, as JSON, text or bytes. */
+async function fetched(folder, file, as) {
+  const path = file.split('/').map(encodeURIComponent).join('/');
+  const response = await fetch(`${folder}/${path}`);
+  if (!response.ok) throw new Error(`${folder}/${file}: ${response.status}`);
+  return response[as]();
+}
+
+export class Frame {
+  /** Makes everything that the frame in a folder needs; nothing is drawn yet. */
+  static async load(device, folder) {
+    const frame = new Frame();
+    frame.device = device;
+    frame.rows = await fetched(folder, 'frame.json', 'json');
+    if (frame.rows.version !== 2) throw new Error(`a frame of version ${frame.rows.version}, not 2`);
+    const { resources, pipelines, bind_groups } = frame.rows;
+    const bytes = (file) => (file === null ? null : fetched(folder, file, 'arrayBuffer'));
+    frame.contents = await Promise.all(resources.map((row) => bytes(row.contents ?? null)));
+    const texts = await Promise.all(pipelines.map((row) => fetched(folder, row.wgsl, 'text')));
+    frame.resources = resources.map((row, place) => frame.#resource(row, frame.contents[place]));
+    frame.pipelines = await Promise.all(pipelines.map((row, place) => frame.#pipeline(row, texts[place])));
+    frame.groups = bind_groups.map((row) => frame.#group(row));
+    return frame;
+  }
+
+  /** Runs all passes, and returns the pictures by name: width, height and texels, row by row. */
+  async run() {
+    const pictures = {};
+    for (const { name, format, size } of this.rows.pictures) {
+      const [width, height] = size;
+      const bytes = new ArrayBuffer(width * height * TEXEL_BYTES[format]);
+      const texels = format.endsWith('32float') ? new Float32Array(bytes) : new Uint8Array(bytes);
+      pictures[name] = { width, height, texels };
+    }
+    let encoder = this.device.createCommandEncoder();
+    for (const pass of this.rows.passes) {
+      this.#encode(encoder, pass);
+      if (pass.kind !== 'read') continue;
+      // The next tile is copied to the same buffer, so this one is read first.
+      this.device.queue.submit([encoder.finish()]);
+      await this.#read(pass, pictures[pass.picture]);
+      encoder = this.device.createCommandEncoder();
+    }
+    this.device.queue.submit([encoder.finish()]);
+    return pictures;
+  }
+
+  /** Submits the passes that a test selects, by default all that do not read back. */
+  draw(selects = (pass) => pass.kind !== 'read') {
+    const encoder = this.device.createCommandEncoder();
+    for (const pass of this.rows.passes.filter(selects)) this.#encode(encoder, pass);
+    this.device.queue.submit([encoder.finish()]);
+  }
+
+  /** The buffers of a name that hold a struct; a name is shared by all tiles. */
+  buffers(name) {
+    const places = this.rows.resources.keys();
+    return [...places].filter((place) => this.rows.resources[place].layout && this.rows.resources[place].name === name);
+  }
+
+  /** The initial value of a field of a buffer, as floats. */
+  field(place, name) {
+    const { offset, type } = this.rows.resources[place].layout.fields.find((field) => field.name === name);
+    const count = { f32: 1, 'vec2<f32>': 2, 'vec3<f32>': 3, 'vec4<f32>': 4, 'mat4x4<f32>': 16 }[type];
+    return new Float32Array(this.contents[place], offset, count);
+  }
+
+  /** Writes a field of a buffer. */
+  write(place, name, floats) {
+    const { offset } = this.rows.resources[place].layout.fields.find((field) => field.name === name);
+    this.device.queue.writeBuffer(this.resources[place], offset, Float32Array.from(floats));
+  }
+
+  /** Frees what the frame holds on the device. */
+  destroy() {
+    for (const resource of this.resources) resource.destroy?.();
+  }
+
+  #resource(row, contents) {
+    const { device } = this;
+    if (row.kind === 'sampler') {
+      const [addressModeU, addressModeV] = row.address;
+      return device.createSampler({ magFilter: row.filter, minFilter: row.filter, addressModeU, addressModeV });
+    }
+    if (row.kind === 'buffer') {
+      const usage = flags(row.usage, GPUBufferUsage);
+      const buffer = device.createBuffer({ size: row.bytes, usage, mappedAtCreation: contents !== null });
+      if (contents === null) return buffer;
+      new Uint8Array(buffer.getMappedRange()).set(new Uint8Array(contents));
+      buffer.unmap();
+      return buffer;
+    }
+    const { size, format, dimension } = row;
+    const texture = device.createTexture({ size, format, dimension, usage: flags(row.usage, GPUTextureUsage) });
+    if (contents !== null) {
+      const layout = { bytesPerRow: size[0] * TEXEL_BYTES[format], rowsPerImage: size[1] };
+      device.queue.writeTexture({ texture }, contents, layout, size);
+    }
+    return texture;
+  }
+
+  #pipeline(row, code) {
+    const module = this.device.createShaderModule({ label: row.name, code });
+    const [first, second] = row.entries;
+    if (row.kind === 'compute') {
+      const compute = { module, entryPoint: first };
+      return this.device.createComputePipelineAsync({ label: row.name, layout: 'auto', compute });
+    }
+    return this.device.createRenderPipelineAsync({
+      label: row.name,
+      layout: 'auto',
+      vertex: { module, entryPoint: first },
+      primitive: { topology: 'triangle-list', frontFace: 'ccw', cullMode: row.cull },
+      depthStencil: row.depth ? { format: row.depth, depthWriteEnabled: true, depthCompare: 'less' } : undefined,
+      fragment: { module, entryPoint: second, targets: row.targets.map((format) => ({ format })) },
+    });
+  }
+
+  #group(row) {
+    const entries = row.entries.map(({ binding, resource: place, dimension }) => {
+      const [kind, resource] = [this.rows.resources[place].kind, this.resources[place]];
+      if (kind === 'buffer') return { binding, resource: { buffer: resource } };
+      return { binding, resource: kind === 'texture' ? resource.createView({ dimension }) : resource };
+    });
+    const layout = this.pipelines[row.pipeline].getBindGroupLayout(row.group);
+    return this.device.createBindGroup({ layout, entries });
+  }
+
+  #encode(encoder, pass) {
+    const { resources } = this;
+    if (pass.kind === 'render') {
+      this.#render(encoder, pass);
+    } else if (pass.kind === 'compute') {
+      this.#compute(encoder, pass);
+    } else if (pass.kind === 'clear') {
+      encoder.clearBuffer(resources[pass.buffer], 0, pass.bytes);
+    } else if (pass.kind === 'copy') {
+      encoder.copyBufferToBuffer(resources[pass.from], 0, resources[pass.to], 0, pass.bytes);
+    } else if (pass.kind === 'read') {
+      const target = { buffer: resources[pass.buffer], bytesPerRow: pass.bytes_per_row };
+      encoder.copyTextureToBuffer({ texture: resources[pass.texture] }, target, pass.size);
+    } else {
+      throw new Error(`a pass of kind ${pass.kind}`);
+    }
+  }
+
+  #layer(place, baseArrayLayer) {
+    return this.resources[place].createView({ dimension: '2d', baseArrayLayer, arrayLayerCount: 1 });
+  }
+
+  #bind(encoder, draw) {
+    encoder.setPipeline(this.pipelines[draw.pipeline]);
+    draw.groups.forEach((group, number) => group !== null && encoder.setBindGroup(number, this.groups[group]));
+  }
+
+  #render(encoder, pass) {
+    const colorAttachments = pass.targets.map(({ texture, layer, clear }) => {
+      return { view: this.#layer(texture, layer), clearValue: clear, loadOp: 'clear', storeOp: 'store' };
+    });
+    const depth = pass.depth && {
+      view: this.#layer(pass.depth.texture, 0),
+      depthClearValue: 1,
+      depthLoadOp: 'clear',
+      depthStoreOp: pass.depth.keep ? 'store' : 'discard',
+    };
+    const render = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment: depth ?? undefined });
+    if (pass.viewport) render.setViewport(...pass.viewport, 0, 1);
+    for (const draw of pass.draws) {
+      this.#bind(render, draw);
+      if (draw.scissor) render.setScissorRect(...draw.scissor);
+      render.draw(draw.vertices, draw.instances);
+    }
+    render.end();
+  }
+
+  #compute(encoder, pass) {
+    const compute = encoder.beginComputePass();
+    for (let time = 0; time < pass.repeat; time++) {
+      for (const dispatch of pass.dispatches) {
+        this.#bind(compute, dispatch);
+        if (dispatch.indirect == null) compute.dispatchWorkgroups(...dispatch.workgroups);
+        else compute.dispatchWorkgroupsIndirect(this.resources[dispatch.indirect], 0);
+      }
+    }
+    compute.end();
+  }
+
+  /** Copies the rows of a buffer that was read to their place in the picture. */
+  async #read(pass, picture) {
+    const buffer = this.resources[pass.buffer];
+    await buffer.mapAsync(GPUMapMode.READ);
+    const Texels = picture.texels.constructor;
+    const channels = picture.texels.length / (picture.width * picture.height);
+    const [[width, height], [left, top]] = [pass.size, pass.at];
+    const mapped = buffer.getMappedRange();
+    for (let row = 0; row < height; row++) {
+      const texels = new Texels(mapped, row * pass.bytes_per_row, width * channels);
+      picture.texels.set(texels, ((top + row) * picture.width + left) * channels);
+    }
+    buffer.unmap();
+  }
+}
