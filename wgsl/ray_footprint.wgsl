@@ -1,6 +1,6 @@
 // ray_footprint: which part of a pixel shows what lies beyond the edge of a facet inside a stone, and which neighbours show the same.
 // SPDX-License-Identifier: MIT-0 OR Apache-2.0
-// Version: 0.2.0, hash 2c27c5957540d0b8
+// Version: 0.2.0, hash 05967dd5607ab28c
 // Source: Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, eq. (10) to (17), for flat surfaces; the
 //   mixing of neighbours: Persson, "Geometry Buffer Anti-Aliasing", in GPU Pro 3, 2012, for edges of
 //   the drawn mesh. The edges seen through facets, their shares, and the growth: own.
@@ -47,7 +47,7 @@ fn ray_footprint_growth(distance: f32, travelled: f32, relative_index: f32) -> f
 //   1e-3; gap in [0, 1e4]; offsets `right` and `down` at the point of the hit, up to 1e4.
 // Outside: finite for offsets and a gap up to 2^30 and other vectors up to 2^10; where one slope is
 //   below 0, so is f.
-// Accuracy: lavapipe 1 ulp + 4 backward; portable 2 ulp + 16 backward
+// Accuracy: lavapipe 1 ulp + 8 backward; portable 2 ulp + 16 backward
 fn ray_footprint_edge(direction: vec3f, right: vec3f, down: vec3f, nearest: vec3f, runner_up: vec3f, gap: f32) -> vec3f {
     let slope = dot(nearest, direction);
     let slope_runner_up = dot(runner_up, direction);

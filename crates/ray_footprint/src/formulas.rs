@@ -176,7 +176,7 @@ fn neighbours_formula() -> Formula {
     .edge("nothing to share", |(_, share): (Vec3, f32)| share == 0.0)
     .invariant("they add up to the share, or to nothing", |(edge, share): (Vec3, f32), shares: Vec4| {
         let sum = shares.as_dvec4().element_sum();
-        if edge.y.abs().max(edge.z.abs()) <= edge.x {
+        if edge.y.abs().max(edge.z.abs()) <= edge.x.max(0.0) {
             near("sum", sum, 0.0, 0.0)
         } else {
             near("sum", sum, share.into(), 8.0 * f64::from(f32::EPSILON))
