@@ -3,6 +3,7 @@
 
 pub mod builtins;
 pub mod check;
+pub mod compare;
 pub mod cookbook;
 pub mod cost;
 pub mod exposure;

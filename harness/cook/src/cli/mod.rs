@@ -6,6 +6,7 @@ mod asked;
 mod browser;
 mod builtins;
 mod check;
+mod compare;
 mod copy;
 mod cost;
 mod drawn;
@@ -71,6 +72,7 @@ enum Command {
     Render(render::Arguments),
     Scene(scene::Arguments),
     Snapshots(snapshots::Arguments),
+    Compare(compare::Arguments),
 }
 
 /// State shared by all commands.
@@ -110,6 +112,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&context, &arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Snapshots(arguments) => snapshots::run(&context, &arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
     };
     browser::close();
     match outcome {

@@ -185,6 +185,12 @@ const ENVIRONMENTS: &[Row] = &[
     ("octahedron --size 8x8 --environment {}/folder.png --out {}/out.png", One, &["folder.png: ", "it is a folder"]),
 ];
 
+const COMPARE: &[Row] = &[
+    ("{}/none.exr {}/text.glb", One, &["none.exr: ", "cannot be read"]),
+    ("{}/text.glb {}/text.glb", One, &["text.glb: ", "cannot be read", ".png or .exr"]),
+    ("{}/text.glb", Usage, &["<PICTURE>"]),
+];
+
 const CHECK: &[Row] = &[
     ("refracton", One, &["no module `refracton`", "did you mean `refraction`?"]),
     ("zzz", One, &["no module `zzz`", "refraction", "srgb"]),
@@ -273,6 +279,11 @@ const OTHERS: &[Row] = &[
     ("scene brilliant --out {}/text.glb/out.glb", One, &["text.glb/out.glb", "cannot be written"]),
     ("scene brilliant", Usage, &["--out"]),
 ];
+
+#[test]
+fn pictures_that_cannot_be_compared_are_refused() {
+    all_refused("compare", COMPARE);
+}
 
 #[test]
 fn render_refuses_bad_settings() {

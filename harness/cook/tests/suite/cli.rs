@@ -20,7 +20,9 @@ fn without_arguments_it_prints_help() {
     let answer = cook(folder().path(), &[] as &[&str]);
     assert!(matches!(answer.code, Some(0 | 2)), "{answer:?}");
     let help = answer.stdout + &answer.stderr;
-    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "--adapter"] {
+    for command in
+        ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "compare", "--adapter"]
+    {
         assert!(help.contains(command), "{command}: {help}");
     }
     let asked = succeeds(folder().path(), &["--help"]);
@@ -29,7 +31,7 @@ fn without_arguments_it_prints_help() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots"] {
+    for command in ["gallery", "test", "check", "list", "copy", "plan", "render", "scene", "snapshots", "compare"] {
         let help = succeeds(folder().path(), &[command, "--help"]).stdout;
         assert!(help.contains("Example") && help.contains(&format!("./cook {command}")), "{help}");
     }
